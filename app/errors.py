@@ -15,7 +15,6 @@ from typing import Any
 import click
 
 _RAW_BYTE = re.compile("[\udc80-\udcff]")  # of a name that is no UTF-8, as Python reads it
-LONGEST_LINE = 2000  # [characters] of a message; the middle of a longer one is left out
 
 
 def in_one_line(message: object) -> str:
@@ -25,8 +24,9 @@ def in_one_line(message: object) -> str:
     may it steer the terminal.
     """
     text = as_text(message)
-    if len(text) > LONGEST_LINE:
-        text = f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 2 :]}"
+    longest_line = 2000  # [characters] of a message; the middle of a longer one is left out
+    if len(text) > longest_line:
+        text = f"{text[: longest_line // 2]} ... {text[-longest_line // 2 :]}"
     return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
 
 

@@ -5,7 +5,7 @@
     mesh = assets.read_mesh("sheet.ply")  # or OBJ, STL, OFF, GLB, glTF
     head = fitting.fit_head("anna.obj", "anna.json")  # from risorius.assets import fitting
 
-The built-in head ships as data; docs/head.md says what it was fitted to.
+The built-in head ships as data; docs/head.md names the data of its fit.
 """
 
 from .errors import AssetError

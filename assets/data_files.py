@@ -19,8 +19,8 @@ Arrays = dict[str, npt.NDArray[Any]]
 
 
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
-    """AssetError that names the file, whatever its reader raises."""
+def _errors_named(path: Path) -> Iterator[None]:
+    """Raise every error of a reader as an AssetError that names the file."""
     try:
         yield
     except Exception as error:  # zip, its compression, numpy and PNG have their own kinds each
@@ -29,7 +29,7 @@ def _told(path: Path) -> Iterator[None]:
 
 def read_arrays(path: Path) -> Arrays:
     """Read an npz file, array name -> array, read-only; AssetError if it is missing or broken."""
-    with _told(path), np.load(path, allow_pickle=False) as file:
+    with _errors_named(path), np.load(path, allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
     for array in arrays.values():
         array.flags.writeable = False
@@ -38,7 +38,7 @@ def read_arrays(path: Path) -> Arrays:
 
 def read_toml(path: Path) -> dict[str, Any]:
     """Read a TOML file; AssetError if it is missing or broken."""
-    with _told(path):
+    with _errors_named(path):
         return tomllib.loads(path.read_text("utf-8"))
 
 
@@ -46,7 +46,7 @@ def read_image(path: Path, *, mode: str = "RGB") -> Image:
     """Read an image, shape (H, W, 3), in mode "L" (H, W), uint8, read-only; or AssetError."""
     import PIL.Image  # which to load a head takes no time for
 
-    with _told(path), PIL.Image.open(path) as file:
+    with _errors_named(path), PIL.Image.open(path) as file:
         image: Image = np.array(file.convert(mode), dtype=np.uint8)
     image.flags.writeable = False
     return image

@@ -27,14 +27,13 @@ from .topology import strip_triangles, unique_points
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
-TRIANGLES, STRIP, FAN = 4, 5, 6  # modes of a primitive that is a surface
-APART = 1e-3  # of the farthest way of any vertex: so far apart two move that are not the same
-MOST_IN_ONE_PLACE = 16  # vertices that move each in its own way; others there stay as they are
+STRIP = 5
+FAN = 6
 
 
 @dataclass(frozen=True)
 class GltfSurface:
-    """What a glTF file shows.
+    """The surface that a glTF file shows.
 
     vertices: in the coordinates of the scene, shape (V, 3). faces: shape (F, 3).
     same: of vertices that the file doubles, the one that `faces` name, shape (V,).
@@ -69,7 +68,7 @@ class _Piece(NamedTuple):
 def read_gltf(content: bytes, folder: Path) -> GltfSurface:
     """The surface in a file. folder: its own, in which other files of it may lie.
 
-    Raises AssetError for what cannot be read, and any other error for what is broken.
+    Raises AssetError for a kind that cannot be read, any other error for a broken file.
     """
     reader = _Reader(GltfFile(content, folder))
     pieces = [*reader.pieces()]
@@ -120,6 +119,7 @@ class _Reader:
 
     def pieces(self) -> Iterator[_Piece]:
         """The surfaces of all nodes that the scene shows."""
+        triangles = 4  # the number of this mode
         for number in self._shown():
             node = self._document.nodes[number]
             if node.mesh is None:
@@ -127,7 +127,7 @@ class _Reader:
             mesh = self._document.meshes[node.mesh]
             weights = (node.extras or {}).get("weights") or mesh.weights or []
             for primitive in mesh.primitives:
-                has_surface = primitive.mode is None or primitive.mode in (TRIANGLES, STRIP, FAN)
+                has_surface = primitive.mode is None or primitive.mode in (triangles, STRIP, FAN)
                 if has_surface and primitive.attributes.POSITION is not None:
                     yield self._piece(number, primitive, weights)
 
@@ -280,10 +280,13 @@ def _first_of_same(stored: Floats, motion: Floats) -> Integers:
     """The first of the vertices that lie in one place and move alike, shape (V,)."""
     same = np.arange(len(stored))
     left = np.arange(len(stored))
-    for _ in range(MOST_IN_ONE_PLACE):
+    # Share of the farthest way of any vertex: farther apart, two vertices differ.
+    least_distance = 1e-3
+    most_in_one_place = 16  # vertices that move each in its own way; others there stay apart
+    for _ in range(most_in_one_place):
         first, number = unique_points(stored[left] + 0.0)  # no zero with a sign
         same[left] = left[first[number]]
-        left = left[abs(motion[left] - motion[same[left]]).max(axis=1) > APART]
+        left = left[abs(motion[left] - motion[same[left]]).max(axis=1) > least_distance]
         if not len(left):
             return same
     same[left] = left

@@ -24,19 +24,9 @@ import numpy.typing as npt
 from .errors import AssetError
 from .user_files import MOST_VERTICES, beside, named, read_file
 
-MAGIC = b"glTF"  # how a GLB file begins
-MOST_NUMBERS = 3 * MOST_VERTICES  # rows of one accessor: the corners of so many triangles
-MOST_MEGABYTES = 100  # of a file of data
 COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
-# What a file may require: its numbers, and all that changes looks alone, by how the names begin.
-READ = (
-    *("KHR_mesh_quantization", "KHR_texture_", "EXT_texture_", "MSFT_texture_"),
-    *("KHR_materials_", "KHR_lights_", "EXT_lights_", "KHR_xmp"),
-)
 DRACO = "KHR_draco_mesh_compression"
 MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
-PACKED = (DRACO, *MESHOPT)
 
 
 class GltfFile:
@@ -52,7 +42,8 @@ class GltfFile:
         """
         import pygltflib  # which to load the built-in head takes no time for
 
-        text, self._data = _chunks(content) if content.startswith(MAGIC) else (content, None)
+        magic = b"glTF"  # the first bytes of a GLB file
+        text, self._data = _chunks(content) if content.startswith(magic) else (content, None)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of pygltflib, which would print them
             self.document = pygltflib.GLTF2.from_json(
@@ -63,10 +54,16 @@ class GltfFile:
         version = str(self.document.asset.version)
         if not version.startswith("2."):
             raise AssetError(f"is glTF {named(version)}; export it as glTF 2.0")
+        # Extensions that a file may require: of numbers, and of looks alone, by how names begin.
+        readable = (
+            *("KHR_mesh_quantization", "KHR_texture_", "EXT_texture_", "MSFT_texture_"),
+            *("KHR_materials_", "KHR_lights_", "EXT_lights_", "KHR_xmp"),
+        )
+        packed_kinds = (DRACO, *MESHOPT)
         for name in self.document.extensionsRequired or []:
-            if name in PACKED:
+            if name in packed_kinds:
                 raise packed(name)
-            if not str(name).startswith(READ):
+            if not str(name).startswith(readable):
                 raise AssetError(
                     f"needs the extension {named(name)}, which is not read here; export it without"
                 )
@@ -75,10 +72,12 @@ class GltfFile:
         """The rows of an accessor, shape (count, width); shares and floats as float64."""
         accessor = self.document.accessors[number]
         kind = np.dtype(COMPONENTS[accessor.componentType])
-        width = WIDTHS[accessor.type]
-        if not 0 <= accessor.count <= MOST_NUMBERS:
+        widths = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+        width = widths[accessor.type]
+        most_rows = 3 * MOST_VERTICES
+        if not 0 <= accessor.count <= most_rows:
             raise AssetError(
-                f"has an accessor of {accessor.count} rows; allowed are {MOST_NUMBERS}: reduce the "
+                f"has an accessor of {accessor.count} rows; allowed are {most_rows}: reduce the "
                 "mesh in a modelling program"
             )
         shape = (accessor.count, width)
@@ -93,7 +92,7 @@ class GltfFile:
         return shares(rows) if accessor.normalized else rows
 
     def picture(self, number: int) -> tuple[bytes, str]:
-        """The content of a picture's file, and what it is called."""
+        """The content of a picture's file, and its name."""
         image = self.document.images[number]
         if image.uri is None:
             return bytes(self._view(image.bufferView)), str(image.name or number)
@@ -149,7 +148,7 @@ class GltfFile:
         return self._buffers[number]
 
     def _content(self, uri: str, kind: str) -> bytes:
-        """What a URI names: data in itself, or a file beside this one."""
+        """The data that a URI holds, or those of the file that it names."""
         if uri.startswith("data:"):
             head, _, data = uri.partition(",")
             plain = unquote_to_bytes(data)
@@ -157,7 +156,8 @@ class GltfFile:
         name = unquote_to_bytes(uri).decode()
         path = beside(self._folder, name)
         try:
-            return read_file(path, kind=kind, most=MOST_MEGABYTES)
+            most_megabytes = 100
+            return read_file(path, kind=kind, most=most_megabytes)
         except AssetError as error:
             raise AssetError(f"its {kind} {named(name)}: {error}") from None
 

@@ -22,9 +22,7 @@ from .pictures import decoded, tinted
 
 Floats = npt.NDArray[np.float64]
 
-CLAMPED, MIRRORED = 33071, 33648  # ways in which a picture goes on beyond its edge; or it repeats
 WHITE = (1.0, 1.0, 1.0)
-SPECULAR = "KHR_materials_pbrSpecularGlossiness"
 UNREAD = ("KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds")  # formats of pictures
 
 
@@ -99,7 +97,8 @@ class GltfPainter:
 
 def _base_colour(material: Any) -> tuple[Any, tuple[float, ...]]:
     """What names the picture of a material, None for none, and its tint in linear light."""
-    older = (material.extensions or {}).get(SPECULAR)
+    specular = "KHR_materials_pbrSpecularGlossiness"
+    older = (material.extensions or {}).get(specular)
     if older is not None:
         info = older.get("diffuseTexture")
         factor = older.get("diffuseFactor")
@@ -125,8 +124,10 @@ def _placed(uv: Floats, placing: Mapping[str, Any]) -> Floats:
 
 def _within_picture(values: Floats, way: int | None) -> Floats:
     """Coordinates along one axis of a picture that goes on beyond its edge in some way."""
-    if way == CLAMPED:
+    clamped = 33071  # numbers of ways to continue a picture beyond its edge
+    if way == clamped:
         return values.clip(0.0, 1.0)
-    if way == MIRRORED:
+    mirrored = 33648
+    if way == mirrored:
         return np.asarray(1.0 - abs(np.mod(values, 2.0) - 1.0))
     return values

@@ -9,20 +9,20 @@ from risorius.geometry.rays import PARALLEL, crossings
 from .smooth import Points
 from .topology import Faces
 
-INSIDE = 1e-6  # relative; touching at a corner or an edge does not count as intersecting
-
 
 def self_intersections(vertices: Points, faces: Faces) -> Faces:
     """Pairs of faces without a common vertex that cut through each other, shape (k, 2)."""
     corner = vertices[faces]
     pairs = _near_pairs(corner)
-    first, second = pairs[:, 0], pairs[:, 1]
+    first = pairs[:, 0]
+    second = pairs[:, 1]
     apart = (faces[first][:, :, None] != faces[second][:, None, :]).all(axis=(1, 2))
     pairs = pairs[apart]
     hit = np.zeros(len(pairs), dtype=bool)
     for one, other in ((0, 1), (1, 0)):
         for k in range(3):
-            start, end = corner[pairs[:, one], k], corner[pairs[:, one], (k + 1) % 3]
+            start = corner[pairs[:, one], k]
+            end = corner[pairs[:, one], (k + 1) % 3]
             hit |= _segment_cuts(start, end, corner[pairs[:, other]])
     return np.asarray(pairs[hit], np.int32)
 
@@ -43,7 +43,8 @@ def _near_pairs(corner: Points) -> npt.NDArray[np.int64]:
 def _segment_cuts(start: Points, end: Points, triangle: Points) -> npt.NDArray[np.bool_]:
     """Whether segments cut triangles, row by row."""
     volume, u, v, along = crossings(start, end - start, triangle)
-    in_triangle = (u > INSIDE) & (v > INSIDE) & (u + v < 1 - INSIDE)
+    margin = 1e-6  # relative; touching at a corner or an edge does not count as intersecting
+    in_triangle = (u > margin) & (v > margin) & (u + v < 1 - margin)
     return np.asarray(
-        in_triangle & (along > INSIDE) & (along < 1 - INSIDE) & (np.abs(volume) > PARALLEL)
+        in_triangle & (along > margin) & (along < 1 - margin) & (np.abs(volume) > PARALLEL)
     )

@@ -45,7 +45,7 @@ def load(name: Literal["plane"]) -> Plane: ...
 def load(name: str) -> Head | Plane: ...
 @functools.cache
 def load(name: str) -> Head | Plane:
-    """Load the asset called `name` ("head" or "plane"), once; nobody may change what is in it.
+    """Load the asset called `name` ("head" or "plane"), once; nobody may change its content.
 
     Raises AssetError for an unknown name, and for a missing or broken file.
     """

@@ -29,7 +29,6 @@ from .user_files import MOST_VERTICES, named, plain_text, read_file
 from .wavefront import read_obj
 
 FORMATS = ("obj", "ply", "stl", "off", "glb", "gltf")  # ends of names
-MOST_MEGABYTES = 100
 FARTHEST = 1e9  # of a coordinate, in any unit: far beyond all, and its cube is still a number
 _BLANK_LINES = re.compile(rb"\n\s*\n")
 
@@ -76,7 +75,8 @@ def read_mesh(path: str | Path) -> Mesh:
             known = ", ".join(f".{name}" for name in FORMATS)
             cure = "unpack it" if suffix in ("gz", "zip") else "save the mesh as one of these"
             raise AssetError(f"its name must end in {known}: {cure}")
-        content = read_file(path, kind="mesh", most=MOST_MEGABYTES)
+        most_megabytes = 100
+        content = read_file(path, kind="mesh", most=most_megabytes)
         with _broken_files_named():
             mesh = _read(content, suffix, Path(path).parent)
         _check(mesh.vertices, mesh.faces)
@@ -121,7 +121,7 @@ def _numbers(faces: npt.NDArray[Any]) -> npt.NDArray[np.int32]:
 
 @contextlib.contextmanager
 def _broken_files_named() -> Iterator[None]:
-    """What a reader stumbles over becomes an AssetError: every one has its own kinds."""
+    """Raise every error of a reader as an AssetError: each reader has its own kinds."""
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")

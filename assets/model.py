@@ -28,11 +28,10 @@ from .topology import quarter
 FloatArray = npt.NDArray[np.float64]
 SingleArray = npt.NDArray[np.float32]
 IndexArray = npt.NDArray[np.int32]
-FINER_LEVELS = (1, 2)
 
 
 class Segment(IntEnum):
-    """What a pixel of a face shows, by the numbers of FaceSynthetics (Wood et al. 2021).
+    """Segments of a face that pixels show, by the numbers of FaceSynthetics (Wood et al. 2021).
 
     Left and right are the subject's.
     """
@@ -83,8 +82,8 @@ class Part:
     normals: unit normals, shape (n, 3), float32.
     faces: vertex numbers, counter-clockwise from the visible side, shape (m, 3), int32.
     colours: sRGB 0..1, shape (n, 3), float32.
-    bone: "cranium", "mandible", "eye_left" or "eye_right"; the part moves with it. What is on the
-        "neck" stands still.
+    bone: "cranium", "mandible", "eye_left" or "eye_right"; the part moves with it. Parts of the
+        "neck" stand still.
     shine: strength of the highlight, 0 (dull) to 1 (wet).
     roots: for a part that is attached to the skin and moves with it, for each vertex the one whose
         place on the skin it keeps to, shape (n,), int32; None for all others.
@@ -123,7 +122,7 @@ class Layer:
     title: heading under which a panel lists them.
     source: the file it was read from, for error texts.
     rows: control name -> {name of a lower control, or one of NOT_SHARES: value}, as in the file;
-        sim/layers.py says what they mean.
+        sim/layers.py explains them.
     """
 
     NOT_SHARES: ClassVar[tuple[str, ...]] = ("action", "pair", "mirror", "share_of", "at_least")
@@ -134,7 +133,7 @@ class Layer:
 
 @dataclass(frozen=True)
 class Wrinkles:
-    """What a face wrinkles like: furrows over its texture, and when its vertices show them.
+    """Wrinkles of a face: furrows over its texture, and when its vertices show them.
 
     map: row 0 is v = 1, shape (H, W, 4), uint8. Slope of the skin's height along u and v (128 is
         level), depth of the furrow, and the slot that the texel follows (0 the first, 255 the
@@ -155,7 +154,7 @@ class Wrinkles:
 
 
 class FineShape(NamedTuple):
-    """Fine shape of a skin at rest, over what is usually drawn of it, in the layout of `uv`."""
+    """Fine shape of a skin at rest, beyond its triangles, in the layout of `uv`."""
 
     slopes: Image
     """Of its height along u and v, row 0 is v = 1, shape (H, W, 2), uint8; 128 is level."""
@@ -215,8 +214,8 @@ class Head:
         piece without seams, so that U = V.
     face_uv: numbers of the texture coordinates of each face's corners, shape (F, 3), int32; the
         same numbers as `faces`.
-    file: what it was read from. The maps and meshes that simulating it needs not lie beside it
-        and are read when they are asked for; all of them raise AssetError where they cannot be.
+    file: the file that it was read from. Maps and meshes for drawing lie beside it and are read at
+        their first use; they raise AssetError where they cannot be read.
     rig: the parsed rig file.
     layers: action units, expressions, visemes, ARKit shapes, from the lowest up.
     """
@@ -288,16 +287,19 @@ class Head:
 
         Read at every call. Raises ValueError for another level.
         """
-        if level not in FINER_LEVELS:
+        levels = (1, 2)
+        if level not in levels:
             raise ValueError(
                 f"level was {level!r}; allowed are 1 (4 triangles for each one) and 2 (16)"
             )
         arrays = read_arrays(self.beside("_finer.npz"))
-        faces, count = self.faces, len(self.vertices)
+        faces = self.faces
+        count = len(self.vertices)
         edges = []
         for _ in range(level):
             cut = quarter(faces, count)
-            faces, count = cut.faces, count + len(cut.edges)
+            faces = cut.faces
+            count = count + len(cut.edges)
             edges.append(cut.edges)
         added = arrays["added_vertices"][: count - len(self.vertices)]
         normals = arrays["normals"][:count].astype(np.float64)

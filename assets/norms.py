@@ -42,7 +42,7 @@ NORMS = {
 def measures_of(vertices: FloatArray, anatomy: Mapping[str, int]) -> dict[str, float]:
     """All `DISTANCES` between vertices (V, 3), code -> [mm].
 
-    What is taken on one side is the mean of both.
+    A measure of one side is the mean of both.
     """
 
     def between(first: str, second: str) -> float:

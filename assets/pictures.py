@@ -25,8 +25,6 @@ from .errors import AssetError
 from .user_files import beside, named, read_file
 from .wavefront import MaterialPicture, ObjSurface, pictures_of
 
-FORMATS = ("PNG", "JPEG", "WEBP")
-MOST_MEGABYTES = 100
 LARGEST = 4096  # [pixels] each way: larger ones are shrunk; every graphics card takes them
 
 
@@ -47,7 +45,7 @@ class Texture:
 
 
 def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple[str, ...]]:
-    """What the material libraries beside an OBJ file paint it with; None where they paint nothing.
+    """The picture that material libraries beside an OBJ file give it; None where they give none.
 
     Beside it a line for each library that was never sent along, as with many files.
     """
@@ -59,7 +57,7 @@ def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple
             by_material.update(pictures_of(read_file(library, kind="material", most=1)))
         else:
             missing.append(
-                f"its material library {named(name)} is missing: painted without what it names"
+                f"its material library {named(name)} is missing: painted without its pictures"
             )
     of_materials = [_picture_of(each, by_material) for each in surface.materials]
     used = sorted({each for each in of_materials if each is not None})
@@ -105,7 +103,8 @@ def _libraries(lines: Sequence[str], folder: Path) -> list[str]:
 def _read_picture(folder: Path, name: str) -> Image:
     path = beside(folder, name)
     try:
-        content = read_file(path, kind="picture", most=MOST_MEGABYTES)
+        most_megabytes = 100
+        content = read_file(path, kind="picture", most=most_megabytes)
     except AssetError as error:
         raise AssetError(f"its picture {named(path.name)}: {error}") from None
     return decoded(content, path.name)
@@ -114,14 +113,14 @@ def _read_picture(folder: Path, name: str) -> Image:
 def decoded(content: bytes, name: str) -> Image:
     """A picture of a file's content, sRGB, shape (H, W, 3), at most LARGEST each way.
 
-    name: for messages. Raises AssetError for what is broken, too large, or of another format.
+    name: for messages. Raises AssetError for a broken or too large picture, or another format.
     """
     import PIL.Image  # which to load a head takes no time for
 
     try:
         with warnings.catch_warnings():  # of what unfolds to gigabytes
             warnings.simplefilter("error", PIL.Image.DecompressionBombWarning)
-            with PIL.Image.open(io.BytesIO(content), formats=FORMATS) as picture:
+            with PIL.Image.open(io.BytesIO(content), formats=("PNG", "JPEG", "WEBP")) as picture:
                 return _shrunk(picture)
     except Exception as error:  # every format of Pillow has its own kinds
         reason = " ".join(str(error).split())[:200]

@@ -18,7 +18,7 @@ SHADOW = np.array([0.47, 0.47, 0.42])  # shaved hair: grey, a little blue
 
 @dataclass(frozen=True)
 class Complexion:
-    """What a tone means: amounts of melanin and blood, and the colour of hair (sRGB)."""
+    """The pigments of a tone: amounts of melanin and blood, and the colour of hair (sRGB)."""
 
     melanin: float
     blood: float

@@ -29,18 +29,12 @@ KINDS = {
     **dict.fromkeys(("float", "float32"), "f4"),
     **dict.fromkeys(("double", "float64"), "f8"),
 }
-COLOURS = (
-    ("red", "green", "blue"),
-    ("r", "g", "b"),
-    ("diffuse_red", "diffuse_green", "diffuse_blue"),
-)
-CORNERS = 16  # of a polygon: lists of one length are read at once, but no strips
 _END = re.compile(rb"\bend_header[ \t]*(\r\n|\n|\r)")
 
 
 @dataclass(frozen=True)
 class PlySurface:
-    """What a PLY file says of a surface.
+    """The surface of a PLY file.
 
     vertices: shape (V, 3), in the order of the file. faces: shape (F, 3); polygons become fans.
     colours: of vertices, shape (V, 3), uint8; None where there are none.
@@ -72,7 +66,7 @@ class _Element:
 
 
 def read_ply(content: bytes) -> PlySurface:
-    """The surface in a file. Raises AssetError or any other error for what is broken."""
+    """The surface in a file. Raises AssetError or any other error for a broken file."""
     end = _END.search(content)
     if end is None:
         raise ValueError("its header has no end")
@@ -92,7 +86,7 @@ def read_ply(content: bytes) -> PlySurface:
 
 
 def _header(text: bytes) -> tuple[list[_Element], str]:
-    """What the file holds, in its order, and the form of its numbers."""
+    """The elements of the file, in its order, and the form of its numbers."""
     first, *lines = text.decode().split("\n")
     if first.strip() != "ply":
         raise ValueError("it does not begin with ply")
@@ -166,7 +160,10 @@ def _rows(element: _Element, body: _Numbers | _Bytes) -> dict[str, Any]:
         start = body.place
         lengths = [len(each) for each in _row(element, body)]
         body.place = start
-        columns = _table(element, lengths, body) if max(lengths, default=0) <= CORNERS else None
+        most_corners = 16  # of a polygon: lists of one length are read at once, but no strips
+        columns = (
+            _table(element, lengths, body) if max(lengths, default=0) <= most_corners else None
+        )
         if columns is not None:
             return columns
         body.place = start
@@ -240,7 +237,12 @@ def _strips(strips: _Lists) -> list[npt.NDArray[np.int64]]:
 
 def _colours(points: dict[str, Any]) -> npt.NDArray[np.uint8] | None:
     """The colours of vertices, shape (V, 3): shares, or integers of 8 or 16 bits."""
-    for names in COLOURS:
+    names_of_colours = (
+        ("red", "green", "blue"),
+        ("r", "g", "b"),
+        ("diffuse_red", "diffuse_green", "diffuse_blue"),
+    )
+    for names in names_of_colours:
         if all(name in points for name in names):
             found = np.nan_to_num(np.column_stack([points[name] for name in names]))
             greatest = found.max(initial=0)

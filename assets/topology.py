@@ -8,7 +8,6 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 Edge = tuple[int, int]
-UNEVEN = 5e-5  # of a mesh's size: 0.01 mm on a head
 
 
 def boundary_loops(faces: Faces) -> list[list[int]]:
@@ -67,7 +66,10 @@ def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> F
     """
     if closed:
         rows = np.hstack([rows, rows[:, :1]])
-    a, b, c, d = rows[:-1, :-1], rows[1:, :-1], rows[1:, 1:], rows[:-1, 1:]
+    a = rows[:-1, :-1]
+    b = rows[1:, :-1]
+    c = rows[1:, 1:]
+    d = rows[:-1, 1:]
     return np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3).astype(np.int32)
 
 
@@ -106,8 +108,9 @@ def decimated(
     """
     import fast_simplification  # dense meshes alone need it
 
+    unevenness = 5e-5  # share of a mesh's size: 0.01 mm on a head
     # On a plane, as subdivided polygons are, any place would do: it would take one for many.
-    uneven = np.random.default_rng(attempt).uniform(-UNEVEN, UNEVEN, vertices.shape)
+    uneven = np.random.default_rng(attempt).uniform(-unevenness, unevenness, vertices.shape)
     points, triangles = fast_simplification.simplify(
         np.ascontiguousarray(vertices + uneven * np.ptp(vertices, axis=0).max()),
         np.array(faces, np.int32),  # one that it may write into

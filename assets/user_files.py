@@ -11,7 +11,6 @@ from pathlib import Path, PureWindowsPath
 
 from .errors import AssetError
 
-MEGABYTE = 1_000_000
 MOST_VERTICES = 500_000  # of a mesh, and as many triangles: far beyond what can be simulated
 # Readers split lines and words at more characters than the formats do, and guess at encodings.
 # All that the formats mean is ASCII; anything else is in names and remarks, which are not read.
@@ -39,7 +38,7 @@ def beside(folder: Path, name: str) -> Path:
 def read_file(path: str | Path, *, kind: str, most: int) -> bytes:
     """The content of a file, at most `most` megabytes of it.
 
-    kind: what it is to be, for messages ("mesh"). Raises AssetError for a file that is missing,
+    kind: the expected one, for messages ("mesh"). Raises AssetError for a file that is missing,
     empty or too long, or no file but a device, say.
     """
     try:
@@ -47,10 +46,11 @@ def read_file(path: str | Path, *, kind: str, most: int) -> bytes:
         if not stat.S_ISREG(status.st_mode):
             found = "a folder" if stat.S_ISDIR(status.st_mode) else "a pipe or a device"
             raise AssetError(f"is {found}; it must be a {kind} file")
-        if status.st_size > most * MEGABYTE:
+        megabyte = 1_000_000
+        if status.st_size > most * megabyte:
             raise AssetError(
-                f"has {status.st_size / MEGABYTE:.3g} MB; a {kind} file may have {most} MB: reduce "
-                "it, and keep what is needed alone"
+                f"has {status.st_size / megabyte:.3g} MB; a {kind} file may have {most} MB: reduce "
+                "it, and keep only the needed part"
             )
         content = Path(path).read_bytes()
     except FileNotFoundError:
@@ -66,7 +66,7 @@ def read_file(path: str | Path, *, kind: str, most: int) -> bytes:
 
 
 def plain_text(content: bytes) -> bytes:
-    r"""Text of any encoding as ASCII whose lines end in \n; what is not ASCII becomes '?'.
+    r"""Text of any encoding as ASCII whose lines end in \n; other characters become '?'.
 
     Raises AssetError for binary data.
     """

@@ -30,7 +30,6 @@ OPTIONS = {  # and how many words follow each, those included
     **dict.fromkeys(("-blendu", "-blendv", "-cc", "-clamp", "-texres", "-bm", "-boost"), 1),
     **dict.fromkeys(("-imfchan", "-type", "-colorspace"), 1),
 }
-EXCERPT = 30  # bytes of what is wrong in a line, at most
 _REMARKS = re.compile(rb"(?m)^[ \t]*#[^\n]*")
 _CONTINUED = re.compile(rb"\\[ \t]*\n")
 
@@ -42,7 +41,7 @@ class ObjSurface:
     vertices: shape (V, 3), in the order of the file. faces: shape (F, 3); polygons become fans.
     uv: texture coordinates, shape (U, 2). face_uv: their numbers, -1 for none, shape (F, 3).
     material: place in `materials` of each triangle, -1 for none, shape (F,).
-    libraries: names of files that tell of materials.
+    libraries: names of files that define materials.
     """
 
     vertices: npt.NDArray[np.float64]
@@ -59,9 +58,15 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
 
     most: vertices and triangles that are allowed. Raises AssetError, which names the line.
     """
-    coordinates, places, corners, corner_places = array("d"), array("d"), array("q"), array("q")
-    material, materials, libraries = array("q"), dict[str, int](), list[str]()
+    coordinates = array("d")
+    places = array("d")
+    corners = array("q")
+    corner_places = array("q")
+    material = array("q")
+    materials = dict[str, int]()
+    libraries = list[str]()
     current = -1
+    excerpt_length = 30  # bytes of a faulty line in a message
     for number, line in enumerate(io.BytesIO(_joined(content)), start=1):
         word, *fields = line.split(b"#", 1)[0].split() or [b""]
         try:
@@ -82,7 +87,7 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
             elif word == b"mtllib":
                 libraries.append(_parted(line.decode())[1])
         except (ValueError, IndexError, OverflowError):
-            shown = line[:EXCERPT].decode().strip()
+            shown = line[:excerpt_length].decode().strip()
             raise AssetError(
                 f"line {number}: '{shown}' cannot be used; right are 'v x y z', 'vt u v', and 'f' "
                 "with three or more vertex numbers, from 1 on, or from -1 back"
@@ -149,7 +154,8 @@ class MaterialPicture:
 
 def pictures_of(content: bytes) -> dict[str, MaterialPicture]:
     """The pictures of colour in a material library (MTL), by material."""
-    pictures, material = {}, ""
+    pictures = {}
+    material = ""
     for line in _joined(content).decode().split("\n"):
         word, rest = _parted(line)
         if word == "newmtl":

@@ -21,7 +21,6 @@ Transforms = Mapping[str, npt.NDArray[np.float64]]
 CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE)
 FLAT = replace(CLAY, shading=render.Shading.FLAT)
 GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
-POSITION_AND_NORMAL = 6  # columns of a vertex without texture coordinates
 
 
 @dataclass(frozen=True)
@@ -101,7 +100,8 @@ class Canvas:
         drawing: Drawing,
     ) -> Image:
         """Draw a surface whose normals are known, and that no refiner made; read back."""
-        stream = self.renderer.lend_stream(len(positions), len(faces), POSITION_AND_NORMAL)
+        position_and_normal = 6  # columns of a vertex without texture coordinates
+        stream = self.renderer.lend_stream(len(positions), len(faces), position_and_normal)
         stream.vertices[:] = np.hstack([positions, normals])
         stream.triangles[:] = faces
         stream.upload(len(positions), len(faces))

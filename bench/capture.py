@@ -23,8 +23,6 @@ from risorius.app.script import Script
 from .canvas import Canvas
 from .report import processor
 
-ROUNDS = 3
-
 
 def report(size: tuple[int, int], seconds: float) -> str:
     """Make films of so many seconds of the script; the text to print."""
@@ -35,15 +33,16 @@ def report(size: tuple[int, int], seconds: float) -> str:
     frame_count = round(script.duration * options.frames_per_second) + 1
     with Canvas((16, 16)) as canvas:
         driver = canvas.surface.gl.info["GL_RENDERER"]
+    rounds = 3
     with tempfile.TemporaryDirectory() as folder:
         film = Path(folder) / "film.mp4"
-        wall, spent = np.median([_timed(script, options, film) for _ in range(ROUNDS)], axis=0)
+        wall, spent = np.median([_timed(script, options, film) for _ in range(rounds)], axis=0)
     width, height = size
     return "\n".join(
         [
             f"A film of {frame_count} frames of two, {width}x{height}, 4 samples, on",
             f"{driver}, {os.cpu_count()} cores of {processor()};",
-            f"median of {ROUNDS}; processor time with that of the encoder.",
+            f"median of {rounds}; processor time with that of the encoder.",
             "",
             f"{frame_count / wall:.1f} frames/s by {processes.worthwhile(options, frame_count)} "
             f"process(es): {wall:.1f} s, and {spent:.1f} s of processor time",

@@ -14,7 +14,6 @@ from .report import conclude, say_progress
 PATH = click.Path(path_type=Path)
 FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
-MESHES = ("face", "2k", "20k", "200k", "1M")
 needed_reference = click.option(
     "--reference", type=FOLDER, required=True, help="A folder of `risorius bench reference`."
 )
@@ -30,7 +29,7 @@ def bench() -> None:
 @click.option(
     "--size",
     "sizes",
-    type=click.Choice(MESHES),
+    type=click.Choice(("face", "2k", "20k", "200k", "1M")),
     multiple=True,
     help="Only this mesh; may be given several times. By default all but 2k.",
 )

@@ -34,14 +34,6 @@ from .subjects import settled_positions
 Array = npt.NDArray[np.float64]
 Triangles = npt.NDArray[Any]
 
-SETTLE = 45  # frames of 1/60 s until a pose is still
-UNITS = "Action units"
-# FACS: these part the lips themselves. All others leave the mouth as it is.
-LIP_PARTING = ("AU9", "AU10", "AU16", "AU22", "AU25", "AU26", "AU27")
-MOUTH_SHUT = ("sadness", "anger", "contempt", "wink", "kiss", "blink", "viseme_sil", "viseme_PP")
-EYES_SHUT = ("yawn",)  # beside those above
-SHUT_VALUE = 0.99  # of the muscle that closes a lid
-CLOSER = "orbicularis_oculi_palpebral_upper"
 LARGEST_FAULTS = {"slit": 0.2, "eye": 0.2, "lips": 0.1, "lids": 0.1, "teeth": 0.1}  # mm
 YAWS = (0.0, -30.0, 30.0, -60.0, 60.0)  # degrees
 PITCHES = (0.0, -10.0, 10.0, -25.0, 25.0, -40.0, 40.0)
@@ -50,18 +42,7 @@ VIEWS = tuple(  # the whole front, as far as cameras go round it
     for yaw, pitch in itertools.product(YAWS, PITCHES)
     if (yaw / 60.0) ** 2 + (pitch / 40.0) ** 2 < 1.3
 )
-MOUTH_RADIUS = 60.0  # mm around the mouth's middle in which skin may cover it
 EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}  # landmarks
-LID_COLUMNS = 23  # planes across an eye
-LID_END = 1.5  # [mm] beside the corners of an eye, which are not looked at
-LID_STEP = 0.05  # mm between lines of sight in a plane
-LID_WINDOW = 12.0  # mm above and below the eye's middle
-EYE_RADIUS = 100.0  # mm around the eye's middle in which skin may cover it
-SEED = 2001
-MOST_CONTROLS = 8  # in a mixture
-MOST_TORN = 2.0  # [% of poses]
-MOST_IN_A_POSE = 3  # triangles
-COMPARED_RADIUS = 12.0  # mm around a triangle whose mean turn it is compared with
 
 
 class Pose(NamedTuple):
@@ -83,8 +64,10 @@ def measure(mixtures: int) -> list[Pose]:
     options = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
     refiner = refine.create("kahler", head.faces, head.vertices, **options)
     poses = []
-    for name, values in _values(simulation, mixtures, np.random.default_rng(SEED)):
-        now = settled_positions(simulation, values, SETTLE)
+    settling_frames = 45  # of 1/60 s until a pose is still
+    seed = 2001
+    for name, values in _values(simulation, mixtures, np.random.default_rng(seed)):
+        now = settled_positions(simulation, values, settling_frames)
         gaps = _gaps(head, simulation, refiner, name)
         inverted = _inverted(simulation.rest_positions, now, head.faces)
         deep = simulation.anatomy.penetrations()
@@ -99,11 +82,27 @@ def _gaps(
     sums = simulation.controls.sums
     moved = {control for control, value in sums.items() if value != 0.0}
     is_turned = moved and all(control.startswith("head_") for control in moved)  # and nothing else
-    if is_turned or name not in (*simulation.controls.layers[UNITS], *MOUTH_SHUT, *EYES_SHUT):
+    layer = "Action units"
+    mouth_shut = (
+        "sadness",
+        "anger",
+        "contempt",
+        "wink",
+        "kiss",
+        "blink",
+        "viseme_sil",
+        "viseme_PP",
+    )
+    eyes_shut = ("yawn",)  # beside those above
+    if is_turned or name not in (*simulation.controls.layers[layer], *mouth_shut, *eyes_shut):
         return None, None
-    is_shut = name.removesuffix("_left").removesuffix("_right") not in LIP_PARTING + EYES_SHUT
+    # FACS: these part the lips themselves. All others leave the mouth as it is.
+    lip_parting = ("AU9", "AU10", "AU16", "AU22", "AU25", "AU26", "AU27")
+    is_shut = name.removesuffix("_left").removesuffix("_right") not in lip_parting + eyes_shut
     landmarks = simulation.positions[head.landmarks]
-    shut = [side for side in ("right", "left") if sums[f"{CLOSER}_{side}"] >= SHUT_VALUE]
+    shut_value = 0.99  # of the muscle that closes a lid
+    closing_muscle = "orbicularis_oculi_palpebral_upper"
+    shut = [side for side in ("right", "left") if sums[f"{closing_muscle}_{side}"] >= shut_value]
     slits = []
     eyes = []
     for positions, triangles in meshes_of(simulation, refiner).values():
@@ -125,9 +124,10 @@ def _values(
     # The pose of the head turns all triangles alike; it is left out.
     limits = {n: controls.limits[n] for n in controls.lowest if not n.startswith("head_")}
     names = np.array(list(limits))
+    most_controls = 8  # in a mixture
     for number in range(mixtures):
         chosen = generator.choice(
-            names, size=generator.integers(2, MOST_CONTROLS + 1), replace=False
+            names, size=generator.integers(2, most_controls + 1), replace=False
         )
         values = {str(name): float(generator.uniform(*limits[str(name)])) for name in chosen}
         yield f"mixture {number}: {', '.join(values)}", values
@@ -150,7 +150,8 @@ def widest_slit(positions: Array, triangles: Triangles, landmarks: Array) -> flo
     `landmarks`: where the 68 are now (68, 3).
     """
     lip = landmarks[list(LOWER_EDGES["mouth"])]
-    near = around(positions[triangles], (lip[0] + lip[-1]) / 2.0, MOUTH_RADIUS)
+    mouth_radius = 60.0  # mm around the mouth's middle in which skin may cover it
+    near = around(positions[triangles], (lip[0] + lip[-1]) / 2.0, mouth_radius)
     turns = [_turned_by(*view) for view in VIEWS]
     return max(opening(near @ turn.T, lip @ turn.T) for turn in turns)
 
@@ -186,10 +187,11 @@ def lid_gaps(
     """
     turns = [_turned_by(*view) for view in VIEWS]
     gaps = {}
+    eye_radius = 100.0  # mm around the eye's middle in which skin may cover it
     for side, numbers in EYE_CORNERS.items():
         ends = landmarks[list(numbers)]
         ball = eyeballs[side]
-        near = around(positions[triangles], ends.mean(axis=0), EYE_RADIUS)
+        near = around(positions[triangles], ends.mean(axis=0), eye_radius)
         gaps[side] = max(_lid_gap(near @ turn.T, ends @ turn.T, ball @ turn.T) for turn in turns)
     return gaps
 
@@ -203,14 +205,18 @@ def _lid_gap(near: Array, ends: Array, ball: Array) -> float:
     left, right = np.sort(ends[:, 0])
     middle = ends[:, 1].mean()
     deepest = ball[:, :, 2].min()
-    heights = np.arange(middle - LID_WINDOW, middle + LID_WINDOW, LID_STEP)
+    lid_step = 0.05  # mm between lines of sight in a plane
+    lid_window = 12.0  # mm above and below the eye's middle
+    heights = np.arange(middle - lid_window, middle + lid_window, lid_step)
     widest = 0
-    for x in np.linspace(left + LID_END, right - LID_END, LID_COLUMNS):
+    lid_columns = 23  # planes across an eye
+    lid_end = 1.5  # [mm] beside the corners of an eye, which are not looked at
+    for x in np.linspace(left + lid_end, right - lid_end, lid_columns):
         covered = _front(near, x, heights) >= np.maximum(_front(ball, x, heights), deepest)
         skin = np.flatnonzero(covered)  # beyond the outermost the head may have ended
         if len(skin):
             widest = max(widest, int((~covered[skin[0] : skin[-1]]).sum()))
-    return LID_STEP * widest
+    return lid_step * widest
 
 
 def _front(triangles: Array, x: float, heights: Array) -> Array:
@@ -236,9 +242,10 @@ def _inverted(rest: Array, now: Array, faces: Triangles) -> int:
     before = cross_products(rest, faces)
     after = cross_products(now, faces)
     count = 0
+    compared_radius = 12.0  # mm around a triangle whose mean turn it is compared with
     for face in np.flatnonzero((before * after).sum(axis=1) < 0.0):
         away = np.linalg.norm(rest - rest[faces[face]].mean(axis=0), axis=1)
-        reach = max(COMPARED_RADIUS, 2.0 * away[faces[face]].max())  # never the triangle alone
+        reach = max(compared_radius, 2.0 * away[faces[face]].max())  # never the triangle alone
         near = away < reach
         a = rest[near] - rest[near].mean(axis=0)
         b = now[near] - now[near].mean(axis=0)
@@ -277,8 +284,10 @@ def targets(poses: Sequence[Pose]) -> list[Target]:
     """The targets of skin and contacts; a triangle turns over in a wink or a yawn."""
     torn = sum(pose.inverted > 0 for pose in poses) / len(poses)
     most = LARGEST_FAULTS.items()
+    most_torn = 2.0  # [% of poses]
+    most_in_a_pose = 3  # triangles
     return [
-        at_most("poses with a triangle turned", 100.0 * torn, MOST_TORN, " %"),
-        at_most("triangles turned in one pose", _worst(poses, "inverted")[0], MOST_IN_A_POSE),
+        at_most("poses with a triangle turned", 100.0 * torn, most_torn, " %"),
+        at_most("triangles turned in one pose", _worst(poses, "inverted")[0], most_in_a_pose),
         *(at_most(name, _worst(poses, name)[0], limit, " mm") for name, limit in most),
     ]

@@ -36,16 +36,8 @@ Labels = npt.NDArray[np.str_]
 
 # [mm] RMS that may be left of the finer mesh.
 MOST_DISTANCES = {"all": 0.50, "nose": 0.60, "mouth": 0.60}
-MOST_ANGLE = 5.0  # [deg] of the finer mesh
-MOST_COARSE = 0.80  # [mm] of the coarse mesh
-ROUNDS = 18  # of nearest points
-LANDMARK_ROUNDS = 6  # of the first rounds, which landmarks lead, too
 LANDMARKS = slice(17, 68)  # without the outline of the face, which slides
-LANDMARK_WEIGHT = 0.3  # of 1/mm^2
 REGIONS = ("forehead", "eyes", "nose", "cheek", "mouth", "chin", "jaw")
-OPPOSITE_DEPTH = 12.0  # [mm] on a line of sight within which skin hides a vertex
-FARTHEST_DISTANCE = 12.0  # [mm] that points may be apart
-INDEPENDENT_POINTS = 600  # points that count as independent: neighbours err alike
 
 
 @dataclass(frozen=True)
@@ -116,7 +108,8 @@ class IdentitySpace:
         angles = np.radians(np.arange(0.0, 360.0, 60.0))[:, None, None]
         slanted = facing + np.cos(angles) * aside + np.sin(angles) * np.cross(facing, aside)
         ways = np.concatenate([facing[None], np.sqrt(0.5) * slanted])
-        points = self.mean + np.arange(1.0, OPPOSITE_DEPTH)[:, None, None, None] * ways
+        opposite_depth = 12.0  # [mm] on a line of sight within which skin hides a vertex
+        points = self.mean + np.arange(1.0, opposite_depth)[:, None, None, None] * ways
         at = closest_points(points.reshape(-1, 3), self.mean, self.triangles)
         away = points.reshape(-1, 3) - at.interpolate(self.mean)
         is_within = (away * at.interpolate(facing)).sum(axis=1) < 0.0
@@ -175,28 +168,33 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: Surface) -> Rest:
     marked = space.mean[space.landmarks]
     turn = Rotation.align_vectors(*(x - x.mean(axis=0) for x in (surface.landmarks, marked)))[0]
     shift = surface.landmarks.mean(axis=0) - turn.apply(marked).mean(axis=0)
-    for number in range(ROUNDS):
+    rounds = 18  # of nearest points
+    landmark_rounds = 6  # of the first rounds, which landmarks lead, too
+    landmark_weight = 0.3  # of 1/mm^2
+    farthest_distance = 12.0  # [mm] that points may be apart
+    independent_points = 600  # points that count as independent: neighbours err alike
+    for number in range(rounds):
         points = turn.apply(space.person(weights)) + shift
         modes = space.modes @ turn.as_matrix().T
         foot, facing, _ = _feet(points, space.triangles, asked, surface)
-        near = np.linalg.norm(foot - points[asked], axis=1) < FARTHEST_DISTANCE
+        near = np.linalg.norm(foot - points[asked], axis=1) < farthest_distance
         i = asked[near]
         n = facing[near]
         # A small turn w about the origin moves a point p along n by (p x n) w.
         columns = [np.einsum("kij,ij->ki", modes[:, i], n).T, np.cross(points[i], n), n]
         system = np.hstack(columns)
         left = ((foot[near] - points[i]) * n).sum(axis=1)
-        share = INDEPENDENT_POINTS / max(len(i), 1)
+        share = independent_points / max(len(i), 1)
         normal = share * system.T @ system
         right = share * system.T @ left
-        if number < LANDMARK_ROUNDS:
+        if number < landmark_rounds:
             marks = space.landmarks[LANDMARKS]
             for axis in np.eye(3):
                 to = np.broadcast_to(axis, (len(marks), 3))
                 rows = np.hstack([(modes[:, marks] @ axis).T, np.cross(points[marks], to), to])
                 off = (surface.landmarks[LANDMARKS] - points[marks]) @ axis
-                normal += LANDMARK_WEIGHT * rows.T @ rows
-                right += LANDMARK_WEIGHT * rows.T @ off
+                normal += landmark_weight * rows.T @ rows
+                right += landmark_weight * rows.T @ off
         normal[:count, :count] += np.eye(count)  # a weight is as likely as among people
         right[:count] -= weights
         step = np.linalg.solve(normal, right)
@@ -207,7 +205,7 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: Surface) -> Rest:
     points = turn.apply(space.person(weights)) + shift
     foot, facing, cosine = _feet(points, space.triangles, asked, surface)
     away = foot - points[asked]
-    near = np.linalg.norm(away, axis=1) < FARTHEST_DISTANCE
+    near = np.linalg.norm(away, axis=1) < farthest_distance
     distance = (away * facing).sum(axis=1)
     angle = np.degrees(np.arccos(cosine))
     groups = {name: near & (labels[asked] == name) for name in REGIONS} | {"all": near}
@@ -268,8 +266,10 @@ def targets(found: Mapping[str, Rest]) -> list[Target]:
     """The targets of the form of a head."""
     fine = found["finer"]
     limits = MOST_DISTANCES.items()
+    most_angle = 5.0  # [deg] of the finer mesh
+    most_coarse = 0.80  # [mm] of the coarse mesh
     return [
         *(at_most(f"finer, {n}", fine.distances[n], most, " mm") for n, most in limits),
-        at_most("finer, angle", fine.angles["all"], MOST_ANGLE, " degrees"),
-        at_most("coarse, all", found["coarse"].distances["all"], MOST_COARSE, " mm"),
+        at_most("finer, angle", fine.angles["all"], most_angle, " degrees"),
+        at_most("coarse, all", found["coarse"].distances["all"], most_coarse, " mm"),
     ]

@@ -30,10 +30,6 @@ from risorius.app.recordings.names import shape_of
 from .report import Target, at_least, at_most, table
 from .subjects import Points, Scans, settled_positions
 
-LEAST_MEAN = 0.94  # cosine
-LEAST_OF_A_SHAPE = 0.88  # cosine
-BLOB_WIDTHS = (6.0, 9.0, 13.0, 18.0, 25.0, 35.0, 50.0)  # [mm]
-SETTLE = 60  # frames of 1/60 s until a pose is still
 ALSO_CALLED = {"cheekraiser": "cheekSquint"}  # ICT-FaceKit has AU6 twice
 
 
@@ -83,8 +79,14 @@ def _moved(simulation: sim.Simulation, shapes: list[str]) -> Points:
     """Displacement by shapes at 1 [mm], (V, 3), from the shapes that they are shares of, at 1."""
     share_of = simulation.controls.tables.share_of
     base = {share_of[each]: 1.0 for each in shapes if each in share_of}
-    start = settled_positions(simulation, base, SETTLE) if base else simulation.rest_positions
-    return settled_positions(simulation, {**base, **dict.fromkeys(shapes, 1.0)}, SETTLE) - start
+    settling_frames = 60  # of 1/60 s until a pose is still
+    start = (
+        settled_positions(simulation, base, settling_frames) if base else simulation.rest_positions
+    )
+    return (
+        settled_positions(simulation, {**base, **dict.fromkeys(shapes, 1.0)}, settling_frames)
+        - start
+    )
 
 
 def _row(name: str, moved: Points, scanned: Points, simulation: sim.Simulation) -> Row:
@@ -118,7 +120,8 @@ def _blobs(skin: Points, scanned: Points) -> Iterator[Points]:
     peaks = {peak}
     if size[mirrored] >= 0.5 * size[peak]:
         peaks.add(mirrored)
-    for width in BLOB_WIDTHS:
+    blob_widths = (6.0, 9.0, 13.0, 18.0, 25.0, 35.0, 50.0)  # [mm]
+    for width in blob_widths:
         blob = np.zeros_like(scanned)
         for at in sorted(peaks):
             squared = ((skin - skin[at]) ** 2).sum(axis=1)
@@ -152,9 +155,11 @@ def targets(rows: list[Row], _: list[str]) -> list[Target]:
     worst = min(rows, key=lambda row: row.cosine)
     below = [row for row in rows if not row.residual < 1.0 - row.blob**2]
     nearest = max(rows, key=lambda row: row.residual / (1.0 - row.blob**2))
+    least_mean = 0.94  # cosine
+    least_of_a_shape = 0.88  # cosine
     return [
-        at_least("mean cosine", mean_row(rows).cosine, LEAST_MEAN),
-        at_least(f"least cosine, {worst.shape}", worst.cosine, LEAST_OF_A_SHAPE),
+        at_least("mean cosine", mean_row(rows).cosine, least_mean),
+        at_least(f"least cosine, {worst.shape}", worst.cosine, least_of_a_shape),
         *(
             at_most(f"residual beside its blob, {row.shape}", row.residual, 1.0 - row.blob**2)
             for row in below or [nearest]

@@ -38,15 +38,10 @@ from .subjects import Points, Subject
 Mesh = Any
 """Positions [mm] and unit normals, shape (N, 3), and triangles, shape (M, 3); RefinedMesh fits."""
 
-BUDGET = 2.0
 SIZE = 480  # width and height of a picture [pixels]
 FINER = 2
 VIEWS = ("front", "three-quarter", "profile")
 ON_BLACK = replace(CLAY, bumps=0.0, background=render.BLACK)
-LEVEL_BEHIND = 215.0  # grey level where there is no mesh, about that of the window's
-SEARCH_STEPS = 18
-SCALES = (1e-5, 1e3)  # of thresholds: too many, too few triangles
-LEAST_GAIN = 20.0  # [%] of the error of static
 STATIC = "static"
 BEST = "cubic displacement 2x"
 _PRESET = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
@@ -145,7 +140,8 @@ def _bound(subject: Subject, refiner: str, options: Mapping[str, Any]) -> Callab
     kind = refiner if refiner in ("none", "loop") else "kahler"
     bound = refine.create(kind, subject.coarse_faces, subject.rest.coarse, **own)
     if refiner == "sliding":
-        most = BUDGET * len(subject.coarse_faces)
+        triangle_share = 2.0
+        most = triangle_share * len(subject.coarse_faces)
         return lambda positions: _slid(bound, own["criterion"], positions, most)
     return bound.refine
 
@@ -164,8 +160,10 @@ def _slid(
         criterion.thresholds = Thresholds(once, twice, "measures")
         return refiner.refine(positions)
 
-    low, high = np.log(SCALES)
-    for _ in range(SEARCH_STEPS):
+    scales = (1e-5, 1e3)  # of thresholds: too many, too few triangles
+    low, high = np.log(scales)
+    search_steps = 18
+    for _ in range(search_steps):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if len(refined(middle).triangles) > most else (low, middle)
     return refined(high)
@@ -182,7 +180,8 @@ def _shoot(
     x, normals, faces = mesh[:3]
     fine = np.stack([canvas.draw_surface(x, normals, faces, each) for each in drawings]).mean(3)
     covered = fine > 0.0  # lit clay is nowhere black, an empty frame is
-    return _block_means(np.where(covered, fine, LEVEL_BEHIND)), covered
+    level_behind = 215.0  # grey level where there is no mesh, about that of the window's
+    return _block_means(np.where(covered, fine, level_behind)), covered
 
 
 def _apart(
@@ -244,4 +243,5 @@ def targets(scores: Sequence[Score]) -> list[Target]:
     average = means(scores)
     names = ("distance", "picture")
     gains = {name: _gain(average[BEST], average[STATIC], name) for name in names}
-    return [at_least(f"{n}: less than static", g, LEAST_GAIN, " %") for n, g in gains.items()]
+    least_gain = 20.0  # [%] of the error of static
+    return [at_least(f"{n}: less than static", g, least_gain, " %") for n, g in gains.items()]

@@ -32,10 +32,7 @@ Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int64]
 
 MODEL = "FaceXModel"
-NEUTRAL = "generic_neutral_mesh"
 FACE_VERTICES = 9409
-LICENCE = "LICENSE"
-MOST_ELEMENTS = 500_000  # vertices and triangles of a file
 BOTH_SIDES = (
     *("browInnerUp", "browDown", "noseSneer", "eyeBlink", "mouthFrown", "mouthStretch"),
     *("mouthLowerDown", "cheekPuff", "eyeSquint", "eyeWide"),
@@ -55,9 +52,11 @@ def make(checkout: Path, folder: Path) -> list[str]:
 
     Raises UserError for a checkout that is none, and OSError.
     """
-    for name in (DENSE, MODES, LICENCE):
+    licence_file = "LICENSE"
+    for name in (DENSE, MODES, licence_file):
         check_file(folder / name)
-    head, corners = _read(checkout, NEUTRAL)
+    neutral_file = "generic_neutral_mesh"
+    head, corners = _read(checkout, neutral_file)
     neutral = head[:FACE_VERTICES]
     triangles = corners[(corners < len(neutral)).all(axis=1)].astype(np.int32)
 
@@ -84,9 +83,9 @@ def make(checkout: Path, folder: Path) -> list[str]:
     for name, content in arrays.items():
         with written_atomically(folder / name) as part:
             np.savez_compressed(part, allow_pickle=False, **content)
-    if (checkout / LICENCE).is_file():
-        with written_atomically(folder / LICENCE) as part:
-            part.write_bytes((checkout / LICENCE).read_bytes())
+    if (checkout / licence_file).is_file():
+        with written_atomically(folder / licence_file) as part:
+            part.write_bytes((checkout / licence_file).read_bytes())
     missing = [name for name in SHAPES if name not in fields]
     return [
         *(f"{folder / name}: {', '.join(content)}" for name, content in arrays.items()),
@@ -111,7 +110,8 @@ def _read(checkout: Path, name: str) -> tuple[Points, Faces]:
         content = file.read_bytes()
         if file.suffix == ".gz":
             content = gzip.decompress(content)
-        surface = read_obj(content, most=MOST_ELEMENTS)
+        most_elements = 500_000  # vertices and triangles of a file
+        surface = read_obj(content, most=most_elements)
         return surface.vertices, surface.faces
     except (assets.AssetError, EOFError, gzip.BadGzipFile, zlib.error) as error:
         raise UserError(f"{file}: {error}") from None

@@ -42,14 +42,11 @@ from .subjects import SETTLE, settled_positions
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
-FULL_EXPRESSIONS = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
 SHARES = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
 """Per cent of the edges that are split -> quantiles of the drops that are the two thresholds."""
 TRIANGLE_COUNTS = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
 SIZES = ("face", "20k", "200k", "1M")
 """The meshes of a run by default; 2k is for a quick look."""
-FEWEST_ROUNDS = 5
-MOST_ROUNDS = 200
 WINDOWS_LOOK: Mapping[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
 METHODS: Mapping[str, Mapping[str, Any]] = {
     "kahler": {},
@@ -61,9 +58,6 @@ METHODS: Mapping[str, Mapping[str, Any]] = {
     "window's look": WINDOWS_LOOK,
 }
 """Our methods on the face: the paper's, and each scheme and each option beside it."""
-SEED = 2003
-WAVES = ((13.0, 0.4), (29.0, 1.1), (9.0, 2.5))  # length [cells], direction [radians]
-HEIGHT = 1.0  # of the waves [cells]; bends most edges by 2 to 20 degrees
 
 
 @dataclass(frozen=True)
@@ -125,8 +119,9 @@ def load_of(size: str) -> Load:
         return waving_mesh(size, TRIANGLE_COUNTS[size])
     head = assets.load("head")
     simulation = sim.create(head)
+    full_expressions = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
     frames = [
-        settled_positions(simulation, head.expressions[name], SETTLE) for name in FULL_EXPRESSIONS
+        settled_positions(simulation, head.expressions[name], SETTLE) for name in full_expressions
     ]
     return Load("face", head.faces, head.vertices, frames)
 
@@ -138,7 +133,8 @@ def waving_mesh(name: str, triangle_count: int) -> Load:
     """
     side = round((0.5 * triangle_count) ** 0.5)
     flat, faces = make_grid(side, side, 1.0)
-    aside = np.random.default_rng(SEED).uniform(-0.3, 0.3, (len(flat), 2))
+    seed = 2003
+    aside = np.random.default_rng(seed).uniform(-0.3, 0.3, (len(flat), 2))
     rest = flat + np.pad(aside, ((0, 0), (0, 1)))
     frames = [_waved(rest, phase) for phase in (0.0, 0.5)]
     return Load(name, faces, rest, frames)
@@ -150,11 +146,13 @@ def _waved(rest: Points, phase: float) -> Points:
     y = rest[:, 1]
     strength = 0.15 + np.sin(x / 61.0) ** 2 * np.sin(y / 47.0) ** 2
     height = np.zeros(len(rest))
-    for length, direction in WAVES:
+    waves = ((13.0, 0.4), (29.0, 1.1), (9.0, 2.5))  # length [cells], direction [radians]
+    for length, direction in waves:
         along = np.cos(direction) * x + np.sin(direction) * y
         height += np.sin(2.0 * np.pi * (along / length - phase))
     moved = rest.copy()
-    moved[:, 2] += HEIGHT * strength * height
+    wave_height = 1.0  # of the waves [cells]; bends most edges by 2 to 20 degrees
+    moved[:, 2] += wave_height * strength * height
     return moved
 
 
@@ -226,7 +224,9 @@ def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:
     for call in calls:
         call()
     spent = time.perf_counter() - start
-    rounds = int(np.clip(seconds / max(spent, 1e-9), FEWEST_ROUNDS, MOST_ROUNDS))
+    fewest_rounds = 5
+    most_rounds = 200
+    rounds = int(np.clip(seconds / max(spent, 1e-9), fewest_rounds, most_rounds))
     times = 1e3 * interleaved(calls, rounds) / len(load.frames)
     return [
         Row(

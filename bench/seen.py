@@ -40,7 +40,6 @@ Tracker = Callable[[Image], Scores]
 
 VIEWS = ("front", "-8,0", "8,0")  # as people sit before a camera
 SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
-SEEN_SCORE = 0.1  # a score below says nothing
 # Shapes whose sides cannot be posed together, and the shapes that are posed beside them: no eye
 # looks to a side alone, and lips that close do so over an open jaw.
 POSED_BESIDE: dict[str, tuple[str, ...]] = {
@@ -111,7 +110,8 @@ class Shape(NamedTuple):
     @property
     def verdict(self) -> str:
         """Whether it is seen, and under which name."""
-        if max(self.own, self.score) < SEEN_SCORE:
+        seen_score = 0.1  # a score below says nothing
+        if max(self.own, self.score) < seen_score:
             return "not seen"
         return "seen" if self.own >= self.score else f"as {self.highest}"
 

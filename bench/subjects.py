@@ -33,7 +33,6 @@ MILLIMETRES = 10.0  # per unit of a folder of scans (cm)
 DENSE = "face.npz"
 MODES = "identity_modes.npz"
 SIDES = {"_L": "Left", "_R": "Right"}
-NOT_MOTION = ("vertices", "triangles", "landmarks68")
 SETTLE = 90  # frames of 1/60 s until a pose is still
 COARSE_TRIANGLES = 2029  # of a decimated scan: about those of the built-in head
 
@@ -52,8 +51,9 @@ class Scans:
     @classmethod
     def read(cls, directory: Path) -> Scans:
         """Read a folder. Raises UserError, naming the file, if it is broken."""
-        arrays = read_arrays(directory / DENSE, NOT_MOTION)
-        vertices, triangles, landmarks = (arrays.pop(name) for name in NOT_MOTION)
+        other_arrays = ("vertices", "triangles", "landmarks68")
+        arrays = read_arrays(directory / DENSE, other_arrays)
+        vertices, triangles, landmarks = (arrays.pop(name) for name in other_arrays)
         is_mesh = vertices.shape[1:] == triangles.shape[1:] == (3,) and landmarks.shape == (68,)
         if not is_mesh or max(triangles.max(), landmarks.max()) >= len(vertices):
             raise UserError(f"{directory / DENSE}: holds no mesh with 68 of its vertices")

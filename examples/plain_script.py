@@ -17,24 +17,23 @@ from risorius import refine
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
-AROUND = 12  # cells of the tube
-ALONG = 16  # cells of the tube
-RADIUS = 1.0
 LENGTH = 8.0
-BEND = 3.5  # [radians] of the last frame
 
 
 def tube() -> tuple[Points, Faces]:
     """A straight tube along y, open at both ends."""
-    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
-    circle = RADIUS * np.stack([np.cos(angle), np.zeros(AROUND), -np.sin(angle)], axis=1)
-    heights = LENGTH * np.linspace(0.0, 1.0, ALONG + 1)
+    around = 12  # cells of the tube
+    angle = 2.0 * np.pi * np.arange(around) / around
+    radius = 1.0
+    circle = radius * np.stack([np.cos(angle), np.zeros(around), -np.sin(angle)], axis=1)
+    along = 16  # cells of the tube
+    heights = LENGTH * np.linspace(0.0, 1.0, along + 1)
     vertices = (circle[None] + heights[:, None, None] * [0.0, 1.0, 0.0]).reshape(-1, 3)
-    ring, k = np.meshgrid(np.arange(ALONG), np.arange(AROUND), indexing="ij")
-    a = ring * AROUND + k
-    b = ring * AROUND + (k + 1) % AROUND
-    lower = np.stack([a, b, b + AROUND], axis=2)
-    upper = np.stack([a, b + AROUND, a + AROUND], axis=2)
+    ring, k = np.meshgrid(np.arange(along), np.arange(around), indexing="ij")
+    a = ring * around + k
+    b = ring * around + (k + 1) % around
+    lower = np.stack([a, b, b + around], axis=2)
+    upper = np.stack([a, b + around, a + around], axis=2)
     return vertices, np.concatenate([lower, upper]).reshape(-1, 3).astype(np.int32)
 
 
@@ -61,11 +60,12 @@ def main(target: Path) -> list[int]:
     rest, faces = tube()
     refiner = refine.create("kahler", faces, rest)  # once per mesh
     counts = []
+    bend = 3.5  # [radians] of the last frame
     for frame in range(60):
-        angle = BEND * np.sin(np.pi * frame / 59)
+        angle = bend * np.sin(np.pi * frame / 59)
         mesh = refiner.refine(bent(rest, angle))  # each frame: views of reused buffers
         counts.append(len(mesh.triangles))
-    write_obj(target, refiner.refine(bent(rest, BEND)))
+    write_obj(target, refiner.refine(bent(rest, bend)))
     return counts
 
 

@@ -30,7 +30,6 @@ MOST_GROUPS = 65535
 """Of a dispatch, that OpenGL promises."""
 VECTOR_BYTES = 16  # bytes
 NUMBER_BYTES = 4  # bytes
-DOUBLE_BYTES = 8  # bytes
 _STREAM = {4: "vertex_buffer", 5: "index_buffer", 6: "source_buffer", 7: "command_buffer"}
 
 
@@ -51,7 +50,8 @@ class Frames:
         self._sizes = gl.buffer(_block(tables))
         self._mesh = _buffer(gl, NUMBER_BYTES * len(tables.words))
         self._mesh.write(tables.words)
-        self._positions = _buffer(gl, 3 * DOUBLE_BYTES * sizes["vertex_count"])
+        double_bytes = 8  # bytes
+        self._positions = _buffer(gl, 3 * double_bytes * sizes["vertex_count"])
         self._fields = _buffer(gl, VECTOR_BYTES * tables.field_count)
         self._work = _buffer(gl, NUMBER_BYTES * tables.work_count)
         rest_cosines = np.where(rules.undefined_edges(), -np.inf, 0.0).astype(np.float32)

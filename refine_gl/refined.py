@@ -10,7 +10,6 @@ import numpy as np
 from risorius.refine import GpuStream, RefinedMesh
 from risorius.refine.mesh.arrays import Floats, Indices, Unsigned, Wide
 
-NUMBER_BYTES = 4
 """Bytes."""
 COMMAND_WORDS = 7
 """Of a command buffer: DrawElementsIndirectCommand (5), numbers of vertices and of triangles."""
@@ -29,10 +28,11 @@ class GpuBuffers:
     ) -> None:
         """Make room for the largest frame."""
         self.context = gl
-        self.vertex_buffer = gl.buffer(reserve=max(NUMBER_BYTES * columns * vertex_capacity, 16))
-        self.index_buffer = gl.buffer(reserve=max(3 * NUMBER_BYTES * triangle_capacity, 16))
-        self.source_buffer = gl.buffer(reserve=max(NUMBER_BYTES * triangle_capacity, 16))
-        self.command_buffer = gl.buffer(reserve=NUMBER_BYTES * COMMAND_WORDS)
+        number_bytes = 4
+        self.vertex_buffer = gl.buffer(reserve=max(number_bytes * columns * vertex_capacity, 16))
+        self.index_buffer = gl.buffer(reserve=max(3 * number_bytes * triangle_capacity, 16))
+        self.source_buffer = gl.buffer(reserve=max(number_bytes * triangle_capacity, 16))
+        self.command_buffer = gl.buffer(reserve=number_bytes * COMMAND_WORDS)
 
 
 class GpuMesh:

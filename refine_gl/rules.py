@@ -49,7 +49,6 @@ THREADS: Mapping[str, tuple[str, ...]] = {
     "place_centres": ("face_count",),
 }
 """The elements that each pass has threads for. Passes are dispatches, named as their shaders."""
-CURVES = "steepen", "displace", "centres", "surface_vertices", "surface_edges", "place_centres"
 """Passes of cubic edges alone."""
 
 
@@ -103,7 +102,15 @@ class Rules:
     @property
     def passes(self) -> list[str]:
         """The dispatches of a frame, in their order."""
-        left_out = {"quarters"} if self.scheme == "cubic" else set(CURVES)
+        curves = (
+            "steepen",
+            "displace",
+            "centres",
+            "surface_vertices",
+            "surface_edges",
+            "place_centres",
+        )
+        left_out = {"quarters"} if self.scheme == "cubic" else set(curves)
         left_out |= set() if self.blends else {"place_centres"}
         return [name for name in THREADS if name not in left_out]
 

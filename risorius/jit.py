@@ -38,11 +38,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 """Of all kernels: other threads may run meanwhile, and 1 / 0 is infinite as it is in numpy."""
-MOST_FOLDERS = 8
 """Folders of other digests that stay at any age."""
-UNUSED_SECONDS = 24 * 3600.0
 """Without use, after which other folders may leave."""
-ROOM = 1 << 26
 """Bytes that must be free: numba fails where the disk is full, and all our kernels need a tenth."""
 
 log = logging.getLogger(__name__)
@@ -90,7 +87,8 @@ def cache_folder() -> Path | None:
         status = folder.lstat()
         if hasattr(os, "geteuid") and (status.st_uid != os.geteuid() or status.st_mode & 0o022):
             raise OSError("others may write into it")
-        if shutil.disk_usage(folder).free < ROOM:
+        free_bytes = 1 << 26
+        if shutil.disk_usage(folder).free < free_bytes:
             raise OSError("the disk is full")
         tempfile.TemporaryFile(dir=folder).close()
         os.utime(folder)
@@ -120,8 +118,10 @@ def _remove_old(above: Path) -> None:
     """Remove folders of other digests, but for some that were used last."""
     with suppress(OSError):
         used = {folder: folder.stat().st_mtime for folder in above.glob("compiled-*")}
-        for folder in sorted(used, key=used.__getitem__, reverse=True)[MOST_FOLDERS:]:
-            if used[folder] < time.time() - UNUSED_SECONDS:
+        most_folders = 8
+        unused_seconds = 24 * 3600.0
+        for folder in sorted(used, key=used.__getitem__, reverse=True)[most_folders:]:
+            if used[folder] < time.time() - unused_seconds:
                 shutil.rmtree(folder, ignore_errors=True)
 
 

@@ -49,7 +49,7 @@ class PolyDataRefiner:
         -------
         pyvista.PolyData
             Triangles with point normals and all data. Those of points are linear along edges and
-            keep their types; what is no float is rounded. `vtkOriginalCellIds` has the cell of
+            keep their types; integers are rounded. `vtkOriginalCellIds` has the cell of
             each triangle. Raises ValueError for another number of points or cells.
         """
         given = frame if isinstance(frame, pyvista.PolyData) else self._rest
@@ -250,19 +250,19 @@ class RisoriusAccessor:
             the output.
         weld_tolerance : float, optional
             How far apart points may lie that are one, in sizes of the mesh (longest side of its
-            bounds): 1e-9 by default, or the last bits of the points' type where that is
-            more. 0 welds what is equal to the last bit.
+            bounds): by default 1e-9, or the last bits of the points' type where that is
+            more. 0 welds points that are equal to the last bit.
         **options
             What `risorius.refine.create_kahler` takes, but for texture coordinates and attributes:
-            all data go along by themselves. By default, `scheme="cubic"` and
-            `criterion="displacement+rest"`, which round what is coarse at rest and what bends;
+            all data go along by themselves. The defaults are `scheme="cubic"` and
+            `criterion="displacement+rest"`, which round coarse places at rest and bent ones;
             `scheme="loop", criterion="normal"` is the paper's rule. All edges are rounded, sharp
             ones too, unless `crease_angle` [degrees] is given, which is VTK's feature angle: edges
             where cells turn by more at rest keep their place, as borders do.
 
         Examples
         --------
-        Keep the rims of a cylinder sharp, and round what is between them.
+        Keep the rims of a cylinder sharp, and round the sides between them.
 
         >>> import pyvista as pv
         >>> cylinder = pv.Cylinder(resolution=12)

@@ -24,14 +24,8 @@ from .skull import Eyeball
 from .substep import SLIDE_DISTANCE
 from .surface import Surface
 
-LIP_EDGE = 5.0  # mm around the mouth line in which lip vertices are looked for
-OWN_SIDE_LEVEL = 0.1  # of the lip side field: nearer to the corner lips are one
 PAIR_GAP = 2.0  # mm: lips further apart at rest are no pair; their red must not fold on the line
-LEAST_SEAL_AREA = 4.0  # mm2: tiny vertices of a lip edge still carry their share
-UNBROKEN_SEAL = 100.0  # x the rig's seal while nothing opens the lips: gaps below 0.1 mm
-FULL_PRESS_ACTIVITY = 0.25  # activity from which they overlap in full
 PRESSED_OVERLAP = 1.5  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
-EYE_REACH = 12.0  # mm around an eyeball in which skin is watched
 EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the eyeball
 
 
@@ -73,8 +67,10 @@ class Grip(NamedTuple):
 
         Whole, it outdoes every muscle; it must give way early or the mouth would pop open.
         """
-        stiffness = strength**5 / (1.0 - strength + 1.0 / UNBROKEN_SEAL)
-        return cls(stiffness, PRESSED_OVERLAP * strength * min(activity / FULL_PRESS_ACTIVITY, 1.0))
+        unbroken_seal = 100.0  # x the rig's seal while nothing opens the lips: gaps below 0.1 mm
+        stiffness = strength**5 / (1.0 - strength + 1.0 / unbroken_seal)
+        full_press_activity = 0.25  # activity from which they overlap in full
+        return cls(stiffness, PRESSED_OVERLAP * strength * min(activity / full_press_activity, 1.0))
 
 
 SEALED = Grip.of(1.0, 0.0)
@@ -84,11 +80,13 @@ def pair_lips(surface: Surface, landmarks: Array, lip_side: Array, seal: float) 
     """Pair the edges of the lips; no pairs if the mouth is open at rest or has no slit."""
     x = surface.positions
     line = mouth_line(landmarks)
-    at_edge = polyline_distance(x, line) < LIP_EDGE
+    lip_edge = 5.0  # mm around the mouth line in which lip vertices are looked for
+    at_edge = polyline_distance(x, line) < lip_edge
     at_edge &= np.abs(x[:, 0] - line[2, 0]) < 0.51 * abs(line[-1, 0] - line[0, 0])
-    upper = np.flatnonzero(at_edge & (lip_side > OWN_SIDE_LEVEL))
+    own_side_level = 0.1  # of the lip side field: nearer to the corner lips are one
+    upper = np.flatnonzero(at_edge & (lip_side > own_side_level))
     pairs = []
-    for i in np.flatnonzero(at_edge & (lip_side < -OWN_SIDE_LEVEL)):
+    for i in np.flatnonzero(at_edge & (lip_side < -own_side_level)):
         found = _upper_point(x, int(i), upper)
         if found is not None:
             pairs.append((int(i), *found))
@@ -123,7 +121,8 @@ def _lip_pairs(surface: Surface, pairs: list[tuple[int, int, int, float]], seal:
     count += np.bincount(upper[share > 0.0, 0], minlength=surface.vertex_count)
     count += np.bincount(upper[share < 1.0, 1], minlength=surface.vertex_count)
     most = np.maximum(count[lower], count[upper].max(axis=1, initial=1))
-    strength = seal * np.maximum(surface.areas[lower], LEAST_SEAL_AREA)
+    least_seal_area = 4.0  # mm2: tiny vertices of a lip edge still carry their share
+    strength = seal * np.maximum(surface.areas[lower], least_seal_area)
     members = np.flatnonzero(count).astype(np.int32)
     return LipPairs(lower, upper, share, np.minimum(gap, 0.0), strength, 1.0 / most, members)
 
@@ -146,9 +145,10 @@ def watch_eyeballs(surface: Surface, eyeballs: tuple[Eyeball, ...]) -> EyeContac
     vertices = []
     centres = []
     least = []
+    eye_reach = 12.0  # mm around an eyeball in which skin is watched
     for ball in eyeballs:
         distance = np.linalg.norm(surface.positions - ball.centre, axis=1)
-        near = np.flatnonzero(distance < ball.radius + EYE_REACH)
+        near = np.flatnonzero(distance < ball.radius + eye_reach)
         vertices.append(near)
         centres.append(np.tile(ball.centre, (len(near), 1)))
         least.append(np.minimum(distance[near], ball.radius + EYE_CLEARANCE))

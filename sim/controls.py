@@ -30,11 +30,7 @@ from .landmarks import Array
 from .layers import BOTH_SIDES, NO_LAYERS, SIDES, Layers, share_of_whole
 from .rig import Rig
 
-MUSCLE_RATE = 45.0  # rad/s
 GAZE_RATE = 120.0  # rad/s: a saccade takes some 35 ms
-SETTLED_DISTANCE = 1e-6  # a distance from the wanted value that counts as none
-SETTLED_SPEED = 1e-4  # per second: a speed that counts as rest
-SLACK = 1e-6  # beyond a limit by rounding is not an error
 
 
 @dataclass(frozen=True)
@@ -45,7 +41,7 @@ class Control:
     group: str
     low: float = 0.0
     high: float = 1.0
-    rate: float = MUSCLE_RATE
+    rate: float = 45.0  # rad/s
     action: str = ""  # its effect, in words
 
 
@@ -92,8 +88,9 @@ class Controls:
         self.actions = MappingProxyType({**{c.name: c.action for c in controls}, **layers.actions})
         self._places = {name: n for n, name in enumerate(self.names)}
         bounds = np.array([*self.limits.values()], np.float64).reshape(-1, 2)
-        self._least = bounds[:, 0] - SLACK
-        self._most = bounds[:, 1] + SLACK
+        slack = 1e-6  # beyond a limit by rounding is not an error
+        self._least = bounds[:, 0] - slack
+        self._most = bounds[:, 1] + slack
         self._low, self._high = bounds[: len(controls)].T.copy()
         self._rate = np.array([c.rate for c in controls], dtype=np.float64)
         self._shares = np.array([layers.shares[name] for name in layers.shares])  # (N - C, C)
@@ -257,6 +254,8 @@ def _limits(controls: tuple[Control, ...], layers: Layers) -> dict[str, tuple[fl
 @njit
 def follow(wanted, activation, speed, rate, dt):  # type: ignore[no-untyped-def]
     """Advance critically damped oscillators of angular frequency `rate` [rad/s] by `dt` [s]."""
+    settled_distance = 1e-6  # a distance from the wanted value that counts as none
+    settled_speed = 1e-4  # per second: a speed that counts as rest
     for n in range(len(wanted)):
         away = activation[n] - wanted[n]
         slope = speed[n] + rate[n] * away
@@ -264,6 +263,6 @@ def follow(wanted, activation, speed, rate, dt):  # type: ignore[no-untyped-def]
         away = (away + slope * dt) * decay
         speed[n] = (speed[n] - rate[n] * slope * dt) * decay
         # Below a millionth a muscle is relaxed: rest must be reached, not only approached.
-        if abs(away) < SETTLED_DISTANCE and abs(speed[n]) < SETTLED_SPEED:
+        if abs(away) < settled_distance and abs(speed[n]) < settled_speed:
             away = speed[n] = 0.0
         activation[n] = wanted[n] + away

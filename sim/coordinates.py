@@ -20,11 +20,6 @@ import numpy.typing as npt
 from ..jit import njit
 from .landmarks import Array
 
-# mm between the outer eye corners 36 and 45: the size rigs are written in (adult mean)
-STANDARD_EYE_SPAN = 89.2
-# mm, bounding box of a head; scales meshes that have no landmarks (chosen: our head's)
-STANDARD_DIAGONAL = 280.0
-
 
 @dataclass(frozen=True)
 class FaceSpace:
@@ -55,7 +50,9 @@ class FaceSpace:
         upward = upward - lateral * (lateral @ upward)
         upward = upward / np.linalg.norm(upward)
         axes = np.array([lateral, upward, np.cross(lateral, upward)])
-        return cls(points[27].copy(), axes, span / STANDARD_EYE_SPAN)
+        # mm between the outer eye corners 36 and 45: the size rigs are written in (adult mean)
+        standard_eye_span = 89.2
+        return cls(points[27].copy(), axes, span / standard_eye_span)
 
     @classmethod
     def from_bounds(cls, vertices: Array) -> FaceSpace:
@@ -63,7 +60,9 @@ class FaceSpace:
         low = vertices.min(axis=0)
         high = vertices.max(axis=0)
         diagonal = float(np.linalg.norm(high - low))
-        scale = diagonal / STANDARD_DIAGONAL if diagonal > 0.0 else 1.0
+        # mm, bounding box of a head; scales meshes that have no landmarks (chosen: our head's)
+        standard_diagonal = 280.0
+        scale = diagonal / standard_diagonal if diagonal > 0.0 else 1.0
         return cls((low + high) / 2.0, np.eye(3), scale)
 
     def to_standard(self, points: npt.ArrayLike) -> Array:

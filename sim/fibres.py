@@ -146,11 +146,9 @@ def fibre_coordinates(
     at_end = (arc >= 1.0 - 1e-12) & (past > 0.0)
     squared_widths = squared[row, best] / width**2
     reach = np.where(at_end, across / width**2 + (past / beyond) ** 2, squared_widths)
-    weight = np.where(reach < CUT_WIDTHS**2, np.exp(-reach), 0.0)
+    cut_widths = 2.2  # widths at which the Gaussian (0.8 %) is cut to zero
+    weight = np.where(reach < cut_widths**2, np.exp(-reach), 0.0)
     return FibreCoordinates(weight, arc, foot)
-
-
-CUT_WIDTHS = 2.2  # widths at which the Gaussian (0.8 %) is cut to zero
 
 
 @njit

@@ -214,7 +214,7 @@ class _Reader:
             if control in self.share_of:
                 raise ValueError(
                     f"{where}, '{control}': is a share of '{self.share_of[control]}', which only a "
-                    "value that is set can be; name what it moves instead"
+                    "value that is set can be; name the controls that it moves instead"
                 )
 
     def _sums(self, row: _Row, side: str, below: Mapping[str, Array]) -> tuple[Array, Array]:

@@ -19,12 +19,7 @@ from .contact import EYE_CLEARANCE
 from .landmarks import Array
 from .skull import Eyeball
 
-CORNEA_WIDTH = 0.49  # radii of the ball: half its width
-CORNEA_RISE = 0.085  # radii of the ball: its height above it
-EDGE_STEPS = 6  # parts of a triangle's edges at whose ends it is held against the eyeball
-MOST_PASSES = 30  # until corners that triangles share are out of the way for all of them
 LIFT_TOLERANCE = 1e-3  # mm
-LEAST_SHARE = 0.5  # that corners on the upper lid have in a point, if they are to move for it
 
 
 def lift_off(
@@ -44,8 +39,10 @@ def lift_off(
     lift = np.zeros(len(x))
     before = np.linalg.norm(shares @ (rest - ball.centre)[faces], axis=2) - ball.radius
     kept = np.where(before < 0.0, before, EYE_CLEARANCE)
-    kept[moves[faces] @ shares.T < LEAST_SHARE] = -np.inf
-    for _ in range(MOST_PASSES):
+    least_share = 0.5  # that corners on the upper lid have in a point, if they are to move for it
+    kept[moves[faces] @ shares.T < least_share] = -np.inf
+    most_passes = 30  # until corners that triangles share are out of the way for all of them
+    for _ in range(most_passes):
         points = shares @ (away + lift[:, None] * ways)[faces]  # (F, S, 3)
         deep = _reach(points, ball.radius) + kept - np.linalg.norm(points, axis=2)
         share = shares[deep.argmax(axis=1)] * moves[faces]
@@ -60,7 +57,8 @@ def lift_off(
 
 def _shares() -> Array:
     """Shares of the corners in points all over a triangle, shape (S, 3)."""
-    n = EDGE_STEPS
+    edge_steps = 6  # parts of a triangle's edges at whose ends it is held against the eyeball
+    n = edge_steps
     ways = [(i, j, n - i - j) for i in range(n + 1) for j in range(n + 1 - i)]
     return np.array(ways, np.float64) / n
 
@@ -68,7 +66,9 @@ def _shares() -> Array:
 def _reach(points: Array, radius: float) -> Array:
     """How far from its centre an eyeball's surface is towards `points` (..., 3); it looks ahead."""
     ahead = points[..., 2] / np.maximum(np.linalg.norm(points, axis=-1), LIFT_TOLERANCE)
-    beside = np.sqrt(np.maximum(1.0 - ahead**2, 0.0)) / CORNEA_WIDTH
-    rise = CORNEA_RISE * np.maximum(1.0 - beside**2, 0.0) ** 1.5
+    cornea_width = 0.49  # radii of the ball: half its width
+    beside = np.sqrt(np.maximum(1.0 - ahead**2, 0.0)) / cornea_width
+    cornea_rise = 0.085  # radii of the ball: its height above it
+    rise = cornea_rise * np.maximum(1.0 - beside**2, 0.0) ** 1.5
     reach: Array = radius * (1.0 + np.where(ahead > 0.0, rise, 0.0))
     return reach

@@ -40,20 +40,6 @@ from .state import State
 from .surface import Surface
 
 COLUMNS = 41  # places along the opening where its height is known
-SMOOTH_COLUMNS = 13  # a third of the opening's width
-MARGIN_REACH = 3.5  # mm from a lid's front edge that are its margin
-OVERLAP = 0.11  # rad (1.4 mm) by which closed lids are pressed into each other
-EDGE = 1e-3  # rad
-OFF_EDGE = 0.3  # 1/mm nearer to or farther from the eyeball than the landmarks: no front edge
-PROUD_HEIGHT = 0.7  # mm that the closed upper lid lies in front of the lower one
-LEAST_OPENING = 0.05  # rad: at the corners lids do not overlap
-WIDE_OPENING = 0.3  # rad: from here on they do in full
-SLIDE_REACH = 1.9  # x the reach of the turn: skin around the lid slides along with it
-SLIDE_ENDS = (0.1, 1.7)  # x the slide at the outer and the inner corner
-CORNER_SHARE = 0.5  # of the motion of the open lid is there: their ligaments give
-STEEPEST_SLOPE = 0.45  # of its way up that the fold goes back: it slides on the orbit
-FIRM_FOLD_TURN = 0.12  # rad of turn from which the fold is held in full
-LEAST_TURN = 1e-3  # lid vertices that move less are not lid
 
 
 class LidVertices(NamedTuple):
@@ -223,8 +209,10 @@ def _one_eye(
     slide = upper.slide + lower.slide
     height = np.maximum(upper.front - lower.front, 0.0)
     wide = _smoothed(height)
-    slide *= np.interp(column, where, wide, 0.0, 0.0) / max(height.max(), LEAST_OPENING)
-    slide *= np.interp(column, (0.0, 1.0), SLIDE_ENDS)
+    least_opening = 0.05  # rad: at the corners lids do not overlap
+    slide *= np.interp(column, where, wide, 0.0, 0.0) / max(height.max(), least_opening)
+    slide_ends = (0.1, 1.7)  # x the slide at the outer and the inner corner
+    slide *= np.interp(column, (0.0, 1.0), slide_ends)
     exact, broad = (np.interp(column, where, h) for h in (height, np.minimum(wide, height.max())))
     weight = upper.weight + lower.weight
     opening = weight * exact + (1.0 - weight) * broad
@@ -234,20 +222,26 @@ def _one_eye(
     seam = lower.front + eyes.blink_meeting * height  # where closed lids meet
     meeting, rises = (np.interp(c, where, seam) for c in (arrives, column))
     closing += weight * (meeting - rises)
+    edge_turn = 1e-3  # rad
     for lid, sign in ((upper, 1.0), (lower, -1.0)):  # the margin itself, up to its front edge
         within = sign * (angle - np.interp(column, where, lid.front))
-        margin = lid.near & (within < EDGE)
+        margin = lid.near & (within < edge_turn)
         closing[margin] = (meeting - angle)[margin]
     before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is no lid
-    at_middle = CORNER_SHARE + (1.0 - CORNER_SHARE) * np.sin(np.pi * np.clip(column, 0.0, 1.0))
+    corner_share = 0.5  # of the motion of the open lid is there: their ligaments give
+    at_middle = corner_share + (1.0 - corner_share) * np.sin(np.pi * np.clip(column, 0.0, 1.0))
     fold = before * (upper.fold + lower.fold) * at_middle
     weight = before * weight
     closing = before * closing
-    sink = np.interp(column, where, upper.depth - lower.depth) - PROUD_HEIGHT
+    proud_height = 0.7  # mm that the closed upper lid lies in front of the lower one
+    sink = np.interp(column, where, upper.depth - lower.depth) - proud_height
     sink *= (side > 0.0) * weight
-    vertex = np.flatnonzero(np.maximum(np.maximum(weight, fold), slide) > LEAST_TURN)
-    width = (opening - LEAST_OPENING) / (WIDE_OPENING - LEAST_OPENING)
-    overlap = OVERLAP * weight * smoothstep(width)
+    least_turn = 1e-3  # lid vertices that move less are not lid
+    vertex = np.flatnonzero(np.maximum(np.maximum(weight, fold), slide) > least_turn)
+    wide_opening = 0.3  # rad: from here on they do in full
+    width = (opening - least_opening) / (wide_opening - least_opening)
+    pressed_turn = 0.11  # rad (1.4 mm) by which closed lids are pressed into each other
+    overlap = pressed_turn * weight * smoothstep(width)
     values = (weight, closing, overlap, sink, fold, opening, slide)
     return _OneEye(vertex, side[vertex] > 0.0, *(each[vertex] for each in values))
 
@@ -278,11 +272,13 @@ def _one_lid(
     edge = edge[np.argsort(axes.column(edge), kind="stable")]
     places = axes.column(edge)
     where = np.linspace(0.0, 1.0, COLUMNS)
+    margin_reach = 3.5  # mm from a lid's front edge that are its margin
+    slide_reach = 1.9  # x the reach of the turn: skin around the lid slides along with it
     return _OneLid(
         weight=on_lid * _share(distance, eyes.lid_plateau, eyes.lid_reach),
         fold=on_lid * _share(distance, *fold_ends),
-        slide=on_lid * _share(distance, 0.0, SLIDE_REACH * eyes.lid_reach),
-        near=on_lid & (distance < MARGIN_REACH) & (column > -0.02) & (column < 1.02),
+        slide=on_lid * _share(distance, 0.0, slide_reach * eyes.lid_reach),
+        near=on_lid & (distance < margin_reach) & (column > -0.02) & (column < 1.02),
         front=np.interp(where, places, axes.angle(edge)),
         depth=np.interp(where, places, np.linalg.norm(edge - axes.centre, axis=1)),
     )
@@ -294,15 +290,17 @@ def _front_edge(surface: Surface, line: Array, axes: _LidAxes) -> Array:
     reaches = np.linalg.norm(line - axes.centre, axis=1)
     order = np.argsort(axes.column(line))
     expected = np.interp(axes.column(x), axes.column(line)[order], reaches[order])
-    behind = OFF_EDGE * np.abs(np.linalg.norm(x - axes.centre, axis=1) - expected)
+    edge_cost = 0.3  # 1/mm off the landmarks' distance from the eyeball: no front edge
+    behind = edge_cost * np.abs(np.linalg.norm(x - axes.centre, axis=1) - expected)
     edge: Array = x[surface.way_through(surface.nearest(line), behind)]
     return edge
 
 
 def _smoothed(height: Array) -> Array:
     """The opening by column, ending softly: skin away from the margin must not crease there."""
-    wide = np.convolve(np.pad(height, SMOOTH_COLUMNS), np.ones(SMOOTH_COLUMNS) / SMOOTH_COLUMNS)
-    return np.asarray(wide[SMOOTH_COLUMNS + SMOOTH_COLUMNS // 2 :][:COLUMNS])
+    smooth_columns = 13  # a third of the opening's width
+    wide = np.convolve(np.pad(height, smooth_columns), np.ones(smooth_columns) / smooth_columns)
+    return np.asarray(wide[smooth_columns + smooth_columns // 2 :][:COLUMNS])
 
 
 def _share(distance: Array, plateau: float, reach: float) -> Array:
@@ -335,6 +333,8 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
     centres = lids.centres
     up = lids.up
     forward = lids.forward
+    steepest_slope = 0.45  # of its way up that the fold goes back: it slides on the orbit
+    firm_fold_turn = 0.12  # rad of turn from which the fold is held in full
     for row in range(len(lids.vertex)):
         i = lids.vertex[row]
         e = lids.eye[row]
@@ -352,7 +352,7 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
             angle -= close**3 * lids.overlap[row]  # late: half a blink is half closed
         free *= 1.0 - close
         angle += free
-        state.hold[i] += lids.fold_hold[row] * min(abs(free) / FIRM_FOLD_TURN, 1.0)
+        state.hold[i] += lids.fold_hold[row] * min(abs(free) / firm_fold_turn, 1.0)
         state.hold[i] += lids.shut_hold[row] * close
         aside = gaze[e, 0] * lids.inward[e, 0] * lids.radii[e]
         inward = lids.along[row] * (inward + lids.sideways_follow * aside)
@@ -368,7 +368,7 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
             normal_high += normals[i, k] * up[e, k]
             normal_far += normals[i, k] * forward[e, k]
         if free > 0.0:
-            high = min(high, STEEPEST_SLOPE * far)
+            high = min(high, steepest_slope * far)
         nearer = close * lids.sink[row] / max(np.sqrt(high * high + far * far), 1.0)
         for k in range(3):
             u = up[e, k]

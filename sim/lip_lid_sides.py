@@ -22,22 +22,19 @@ from .landmarks import (
 )
 from .surface import Surface
 
-LIP_REACH = 20.0  # mm from the middle of a lip within which skin belongs to it
-CORNER_FADE = 10.0  # mm from the mouth corner where a lip moves fully on its own
-LID_REACH = 14.0  # mm from the lid landmarks
-CERTAIN_DISTANCE = 3.0  # mm by which one lid must be nearer; less only happens at the corners
-
 
 def lip_side(surface: Surface, landmarks: Array) -> Array:
     """+1 on the upper lip .. -1 on the lower lip, smooth around the corners, shape (V,)."""
     upper = _distance(surface, landmarks, UPPER_LIP)
     lower = _distance(surface, landmarks, LOWER_LIP)
-    inside = np.flatnonzero(np.minimum(upper, lower) < LIP_REACH)
+    lip_reach = 20.0  # mm from the middle of a lip within which skin belongs to it
+    inside = np.flatnonzero(np.minimum(upper, lower) < lip_reach)
     # On a lip the two ways differ by twice the distance to the mouth corner, where they are alike
     # but for the lips' shape.
     longer = lower - upper
     longer = longer - longer[surface.nearest(landmarks[list(INNER_CORNERS)])].mean()
-    ramp = np.clip(longer[inside] / (2.0 * CORNER_FADE), -1.0, 1.0)
+    corner_fade = 10.0  # mm from the mouth corner where a lip moves fully on its own
+    ramp = np.clip(longer[inside] / (2.0 * corner_fade), -1.0, 1.0)
     ends = surface.nearest(landmarks[[33, 30, 8]])
     vertices = np.concatenate([inside, ends])
     values = np.concatenate([ramp, [1.0, 1.0, -1.0]])
@@ -49,11 +46,13 @@ def lid_side(surface: Surface, landmarks: Array, side: Side) -> Array:
     outer, upper_outer, upper_inner, inner, lower_inner, lower_outer = EYE_LANDMARKS[side]
     upper = _distance(surface, landmarks, (upper_outer, upper_inner))
     lower = _distance(surface, landmarks, (lower_outer, lower_inner))
-    near = np.minimum(upper, lower) < LID_REACH
+    lid_reach = 14.0  # mm from the lid landmarks
+    near = np.minimum(upper, lower) < lid_reach
+    certain_distance = 3.0  # mm by which one lid must be nearer; less only happens at the corners
     balance = (lower - upper) / np.maximum(
-        np.abs(lower - upper).max(where=near, initial=CERTAIN_DISTANCE), CERTAIN_DISTANCE
+        np.abs(lower - upper).max(where=near, initial=certain_distance), certain_distance
     )
-    ramp = np.sign(balance) * smoothstep(np.abs(lower - upper) / CERTAIN_DISTANCE)
+    ramp = np.sign(balance) * smoothstep(np.abs(lower - upper) / certain_distance)
     vertices = np.concatenate([np.flatnonzero(near), surface.nearest(landmarks[[outer, inner]])])
     values = np.concatenate([ramp[near], [0.0, 0.0]])
     return np.clip(surface.harmonic(vertices, values), -1.0, 1.0)

@@ -37,9 +37,6 @@ from .surface import Surface
 Indices = npt.NDArray[np.int32]
 Unsigned = npt.NDArray[np.uint32]  # saves the kernels a test per access
 
-LEAST_STIFFNESS = 0.4  # per area, in units of the rig: attachments below it are dropped
-LEAST_CARRIED = 0.05  # likewise those by which one muscle carries the skin on another
-
 
 class Attachments(NamedTuple):
     """Vertices attached to muscles or lines; owner m has rows[m] up to rows[m + 1]."""
@@ -131,7 +128,8 @@ def build_muscle_forces(
     for at in placed:
         k = at.muscle.stiffness * strength
         holds.append((k * at.weight, k[:, None] * at.steady))
-    least = LEAST_STIFFNESS * strength
+    least_stiffness = 0.4  # per area, in units of the rig: attachments below it are dropped
+    least = least_stiffness * strength
     return MuscleForces(
         names=tuple(at.name for at in placed),
         opens_lips=np.array([at.muscle.opens_lips for at in placed], dtype=np.float64),
@@ -210,6 +208,7 @@ def _carries(
     lies = np.zeros((len(stack.rows) - 1, FIBRE_POINTS), dtype=np.bool_)
     lies[np.repeat(np.arange(len(lies)), np.diff(stack.rows)), stack.point] = True
     parts: list[Part] = []
+    least_carried = 0.05  # likewise those by which one muscle carries the skin on another
     for n in order:
         k = placed[n].muscle.stiffness * strength
         weights = np.stack([line.skin.weight for line in placed[n].lines])
@@ -218,7 +217,7 @@ def _carries(
             place = points_along(line, line.skin.arc)
             before = np.minimum(place.astype(np.int64), FIBRE_POINTS - 2)
             lies_there = lies[len(parts), before] | lies[len(parts), before + 1]
-            on = lies_there & (hangs_on == f) & (weights[f] > LEAST_CARRIED)
+            on = lies_there & (hangs_on == f) & (weights[f] > least_carried)
             parts.append((k * weights[f] * on, place))
     return parts
 

@@ -31,8 +31,6 @@ from .landmarks import Array
 from .muscles import AttachedPoints, Line, PlacedMuscle, attach
 from .surface import Surface
 
-LEAST_SHARE = 0.02  # of a displacement: less carries nothing
-
 Entry = tuple[int, int, float, float, float, Array]  # a row of Stack, in its order
 
 
@@ -109,7 +107,8 @@ def _entries(
                 held[p] += weight
     most = np.maximum(held, 1.0)
     shared = [(*row[:4], row[4] / most[row[0]], row[5] / most[row[0]]) for row in entries]
-    return [row for row in shared if row[4] > LEAST_SHARE]
+    least_share = 0.02  # of a displacement: less carries nothing
+    return [row for row in shared if row[4] > least_share]
 
 
 def points_along(line: Line, arc: Array) -> Array:

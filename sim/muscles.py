@@ -24,15 +24,6 @@ from .rig import MOUTH, Fibre, LinearMuscle, Muscle, Rig, RingMuscle
 from .skull import LATERAL, UP, rotation
 from .surface import Surface
 
-RING_POINTS = 25  # corners of the line drawn for a sphincter
-BULGE_SPREAD = 0.3  # of the fibre's length (fitted)
-GATE_ENDS = -0.6  # of the lip side field: beyond it a gated muscle leaves the other lip alone
-GATE_FULL = 1.0  # where it has its full hold; in between it fades, or corners get square
-MOUTH_ROUND = 1.08  # half widths of the mouth at which flare and parting end
-FLARE_HEIGHT = 3.0  # mm from the mouth line where the flare is three quarters of its full size
-MIDLINE_FADE = 20.0  # mm across the midline over which a paired muscle yields to its twin
-FACE_DEPTH = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
-
 
 class AttachedPoints(NamedTuple):
     """Points that may hang on a muscle: the skin, or control points of a muscle above it."""
@@ -130,10 +121,14 @@ def _gate(muscle: Muscle, side: Side, places: AttachedPoints) -> Array:
     gate = np.ones(len(places.positions))
     if muscle.pair and not muscle.crosses:  # fades to 0 across the midline; twins add up to 1
         lateral = side.sign * places.positions[:, 0]
-        gate = np.clip(0.5 + lateral / (2.0 * MIDLINE_FADE), 0.0, 1.0)
+        midline_fade = 20.0  # mm across the midline over which a paired muscle yields to its twin
+        gate = np.clip(0.5 + lateral / (2.0 * midline_fade), 0.0, 1.0)
     if muscle.gate != "none":  # fades to 0 on the other lip
         towards = places.lip_side if muscle.gate == "upper_lip" else -places.lip_side
-        gate = gate * smoothstep((towards - GATE_ENDS) / (GATE_FULL - GATE_ENDS))
+        # A value of the lip side field: beyond it a gated muscle leaves the other lip alone.
+        gate_ends = -0.6
+        gate_full = 1.0  # where it has its full hold; in between it fades, or corners get square
+        gate = gate * smoothstep((towards - gate_ends) / (gate_full - gate_ends))
     return gate
 
 
@@ -147,7 +142,8 @@ def attach_to_fibre(
     )
     weight = fibre.weight * at.weight * _gate(muscle, side, places)
     drawn = fibre.gain * fibre.convergence * muscle.contraction * at.arc
-    bulge = muscle.bulge * np.exp(-(((at.arc - muscle.bulge_at) / BULGE_SPREAD) ** 2))
+    bulge_spread = 0.3  # of the fibre's length (fitted)
+    bulge = muscle.bulge * np.exp(-(((at.arc - muscle.bulge_at) / bulge_spread) ** 2))
     bulge += fibre.lift
     steady = (weight * drawn)[:, None] * (at.foot - places.positions)
     steady += (weight * bulge)[:, None] * places.normals
@@ -170,7 +166,8 @@ def attach_to_ring(
     angle = np.degrees(np.arctan2(d[:, 1], d[:, 0] * side.sign))
     off = np.abs((angle - at + 180.0) % 360.0 - 180.0)
     weight *= smoothstep(1.0 - (off - half) / max(fade, 1e-3))
-    weight *= x[:, 2] > landmarks[[36, 45], 2].mean() - FACE_DEPTH
+    face_depth = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
+    weight *= x[:, 2] > landmarks[[36, 45], 2].mean() - face_depth
     weight *= _gate(muscle, side, places)
     pull = np.array(muscle.contraction) * (centre - x)
     if muscle.opening != (0.0, 0.0):
@@ -180,10 +177,12 @@ def attach_to_ring(
     turn = rotation(UP, side.sign * yaw) @ rotation(LATERAL, roll)
     pull += (x - centre) @ (turn.T - np.eye(3))
     seam = landmarks[[62, 66], 1].mean()
+    mouth_round = 1.08  # half widths of the mouth at which flare and parting end
     # On an ellipse through the mouth's corners, or an open mouth has straight edges.
-    corner = MOUTH_ROUND * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
+    corner = mouth_round * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
     across = np.sqrt(np.maximum(1.0 - (x[:, 0] / corner) ** 2, 0.0))
-    pull[:, 1] += muscle.flare * np.tanh((x[:, 1] - seam) / FLARE_HEIGHT) * across
+    flare_height = 3.0  # mm from the mouth line where the flare is three quarters of its full size
+    pull[:, 1] += muscle.flare * np.tanh((x[:, 1] - seam) / flare_height) * across
     pull += muscle.bulge * places.normals
     if (muscle.shape or muscle.centre) == MOUTH:  # between the lips both halves are as near
         to_line = np.where(places.lip_side > 0.0, up, down) * np.maximum(1.0 - rho, 0.0)
@@ -237,7 +236,8 @@ def _ring_vertices(
     muscle: RingMuscle, x: Array, landmarks: Array, weight: Array, side: Side
 ) -> npt.NDArray[np.int32]:
     """Skin vertices nearest to the ellipse of a sphincter, in order, for drawing it."""
-    outline = _outline(muscle, side, muscle.arc_deg[1], RING_POINTS)[:, :2]
+    ring_points = 25  # corners of the line drawn for a sphincter
+    outline = _outline(muscle, side, muscle.arc_deg[1], ring_points)[:, :2]
     middle = _middle(muscle, landmarks, side)
     attached = np.flatnonzero(weight >= 0.1 * weight.max())
     off = (x[attached, None, :2] - middle[:2] - outline) ** 2

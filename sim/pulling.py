@@ -20,8 +20,8 @@ are at their limits.
 
 Solved by Gauss and Newton. p is a clone of the face, at rest; its slopes are measured on a second
 clone, by moving one control a little and letting the skin come to rest. A clone's muscles have no
-lag, so that takes six steps of 0.3 ms, and it knows what the tangent of the springs does not: lips
-that stick and part, lids on their eyeballs, muscles that stiffen the skin.
+lag, so that takes six steps of 0.3 ms. It includes effects that the tangent of the springs lacks:
+lips that stick and part, lids on their eyeballs, muscles that stiffen the skin.
 
 Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. Prices make it the
 elastic net (Zou, Hastie 2005), solved along one control after the other (Friedman et al. 2007);
@@ -40,23 +40,8 @@ from .face import Simulation
 from .landmarks import Array
 
 STEP = 1.0 / 60.0  # [s] of a clone
-STEPS_TO_REST = 6  # of a clone after a small change; less than a twentieth of it is left
-MOST_CANDIDATES = 16  # controls that are looked at: those that move the finger's skin most
-LEAST_MOTION = 0.1  # of a control's largest motion of skin: with less at the finger it is not used
-PROBE_SHARE = 0.25  # of a control's range, to measure its slope
-SIGHT_WEIGHT = 0.05  # weight of a distance along the line of sight
-REST_WEIGHT = 0.0051  # weight of the rest of the face, against an equal area under the finger
-PRICE = 0.0041  # of a control at its limit, against skin that does not come along at all
-EFFORT = 0.034  # the same, as the square of its share: two that do the same share it
 MOST_CONTROLS = 3  # that are used; and so many strongest decide how far targets can be
-MOST_SWEEPS = 60  # through all controls at most
-SWEEP_TOLERANCE = 1e-4  # a change that counts as none, between sweeps
-MIDDLE_POWER = 6  # power of the firmness, for the skin next to the mouse
-MOST_ROUNDS = 12  # of Gauss and Newton at most
 ROUND_TOLERANCE = 0.01  # a change that counts as none, between rounds
-LEAST_WORTH = 0.015  # of the squared distances: a control that mends less beside others is not used
-ALIKE_SHARE = 0.2  # of that: whose worth differs by less come together, as both sides of a muscle
-LEAST_GAIN = 0.25  # of the squared distances: an answer that mends less is no answer
 Names = tuple[str, ...]
 
 
@@ -84,9 +69,11 @@ class Pull:
         self._vertices = np.asarray(vertices, np.int64)
         share = np.asarray(firmness, np.float64)
         self._share = share / share.sum()
-        self._middle = share**MIDDLE_POWER / (share**MIDDLE_POWER).sum()
+        middle_power = 6  # power of the firmness, for the skin next to the mouse
+        self._middle = share**middle_power / (share**middle_power).sum()
         axis = np.asarray(sight, np.float64) / np.linalg.norm(sight)
-        self._seen = np.eye(3) - (1.0 - SIGHT_WEIGHT) * np.outer(axis, axis)
+        sight_weight = 0.05  # weight of a distance along the line of sight
+        self._seen = np.eye(3) - (1.0 - sight_weight) * np.outer(axis, axis)
         _rest(self._base, {})
         self._home = self._base.clone()
         self._from = self._base.positions.copy()
@@ -113,7 +100,9 @@ class Pull:
             self._measure(np.arange(len(firsts)))
             here = np.sqrt([self._square(slope[self._vertices]) for slope in self._slope])
             largest = np.linalg.norm(self._slope, axis=2).max(axis=1, initial=0.0)
-            is_meant = here > LEAST_MOTION * largest
+            # Share of a control's largest motion of skin: with less at the finger it is not used.
+            least_motion = 0.1
+            is_meant = here > least_motion * largest
             self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
             self._low = self._low[is_meant]
             self._high = self._high[is_meant]
@@ -133,7 +122,8 @@ class Pull:
     @property
     def mends(self) -> bool:
         """Whether the answer comes nearer by more than a trace."""
-        return self._off(self._base.positions) < (1.0 - LEAST_GAIN) * self._drawn
+        least_gain = 0.25  # of the squared distances: an answer that mends less is no answer
+        return self._off(self._base.positions) < (1.0 - least_gain) * self._drawn
 
     @property
     def short(self) -> float:
@@ -157,7 +147,8 @@ class Pull:
         needed = self._more(np.zeros(len(self._start), np.bool_))
         while (more := self._more(needed)).sum() > needed.sum():
             needed = more
-        for _ in range(MOST_ROUNDS):
+        most_rounds = 12  # of Gauss and Newton at most
+        for _ in range(most_rounds):
             before = self._value
             self._value = before + self._system().least(needed)
             values = zip(self._value.tolist(), self.candidates, strict=True)
@@ -188,8 +179,9 @@ class Pull:
             self._probe.jump(self._towards(names, 1.0))
             self._probe.step(STEP)
             moved.append(self._square((self._probe.positions - self._from)[self._vertices]))
+        most_candidates = 16  # controls that are looked at: those that move the finger's skin most
         # Of two that are alike none stays away.
-        least = 0.99 * sorted([0.0, *moved])[-MOST_CANDIDATES:][0]
+        least = 0.99 * sorted([0.0, *moved])[-most_candidates:][0]
         return [c for c, far in zip(candidates, moved, strict=True) if far > least]
 
     def _square(self, by: Array) -> float:
@@ -210,8 +202,9 @@ class Pull:
 
     def _measure(self, which: npt.ArrayLike) -> None:
         """The slopes of the skin in some controls, by number, here."""
+        probe_share = 0.25  # of a control's range, to measure its slope
         for n in np.asarray(which, np.int64):
-            moved = self._towards(self.candidates[n], PROBE_SHARE)
+            moved = self._towards(self.candidates[n], probe_share)
             self._probe.copy_from(self._base)
             _rest(self._probe, moved)
             by = next(iter(moved.values())) - self._value[n]
@@ -222,10 +215,14 @@ class Pull:
         if needed.sum() >= MOST_CONTROLS:
             return needed
         system = self._system()
-        worth = LEAST_WORTH * self._drawn
+        # Share of the squared distances: a control that mends less beside others is not used.
+        least_worth = 0.015
+        worth = least_worth * self._drawn
         costs = np.array([system.cost(needed | one) for one in np.eye(len(needed), dtype=bool)])
         best = needed | (np.arange(len(costs)) == costs.argmin())
-        alike = needed | (costs <= costs.min() + ALIKE_SHARE * worth)
+        # Share of that: whose worth differs by less come together, as both sides of a muscle.
+        alike_share = 0.2
+        alike = needed | (costs <= costs.min() + alike_share * worth)
         if alike.sum() > best.sum() and system.cost(alike) < costs.min() - worth:
             best = alike
         is_worth_it = best.sum() <= MOST_CONTROLS and costs.min() < system.cost(needed) - worth
@@ -239,20 +236,25 @@ class Pull:
         under = ((self._slope[:, self._vertices] @ self._seen) * root).reshape(count, -1)
         off = (((self._aims - now[self._vertices]) @ self._seen) * root).ravel()
         slope = self._slope.reshape(count, -1)
-        others = slope * np.repeat(REST_WEIGHT * self._area, 3)
-        effort = EFFORT * self._drawn
+        # Weight of the rest of the face, against an equal area under the finger.
+        rest_weight = 0.0051
+        others = slope * np.repeat(rest_weight * self._area, 3)
+        square_price = 0.034  # the same, as the square of its share: two equal controls share it
+        effort = square_price * self._drawn
         changed = self._value - self._start
+        price = 0.0041  # of a control at its limit, against skin that stays behind altogether
         return _Lasso(
             under @ under.T + others @ slope.T + effort * np.eye(count),
             under @ off + others @ (self._from - now).ravel() - effort * changed,
-            0.5 * PRICE * self._drawn / np.maximum(self._high, -self._low),
+            0.5 * price * self._drawn / np.maximum(self._high, -self._low),
             changed, self._low - self._start, self._high - self._start,
         )  # fmt: skip
 
 
 def _rest(clone: Simulation, values: dict[str, float]) -> None:
     clone.jump(values)
-    for _ in range(STEPS_TO_REST):
+    steps_to_rest = 6  # of a clone after a small change; less than a twentieth of it is left
+    for _ in range(steps_to_rest):
         clone.step(STEP)
 
 
@@ -275,7 +277,9 @@ class _Lasso(NamedTuple):
         downhill = self.right.copy()
         downhill += self.gram[:, ~usable] @ total[~usable]
         total[~usable] = 0.0
-        for _ in range(MOST_SWEEPS):
+        most_sweeps = 60  # through all controls at most
+        sweep_tolerance = 1e-4  # a change that counts as none, between sweeps
+        for _ in range(most_sweeps):
             farthest = 0.0
             for c in np.flatnonzero(usable):
                 slope = self.gram[c, c]
@@ -286,7 +290,7 @@ class _Lasso(NamedTuple):
                     total[c] += by
                     downhill -= by * self.gram[c]
                     farthest = max(farthest, abs(by))
-            if farthest < SWEEP_TOLERANCE:
+            if farthest < sweep_tolerance:
                 break
         return total - self.changed
 

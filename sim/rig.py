@@ -8,7 +8,7 @@ head at hand. Muscles are written for the subject's left side and mirrored.
     [tissue]                 membrane, tissue springs, damping: class Tissue
     [jaw]                    hinge, glide, seeds of the mandible weight: class Jaw
     [eyes]                   gaze, lids resting on the eyeballs: class Eyes
-    [head]                   how far and about what the head turns: class Head
+    [head]                   angles and axis of the head's turns: class Head
     [muscle.<name>]          kind = "linear" | "ring" | "lid", then the keys of class LinearMuscle,
                              RingMuscle or LidMuscle; <name> in full anatomical words, without side
     [[muscle.<name>.fibre]]  one table per fibre of a linear muscle: class Fibre
@@ -43,8 +43,6 @@ from ..schema import (
 )
 from .landmarks import LANDMARK_COUNT, LandmarkPoint
 
-BONES = ("cranium", "mandible")
-GATES = ("none", "upper_lip", "lower_lip")
 LIDS = ("upper_close", "lower_raise", "upper_raise")  # actions of lid muscles
 
 MOUTH = LandmarkPoint(((62, 0.5), (66, 0.5)))  # where the lips meet
@@ -190,8 +188,10 @@ class Muscle(Record):
     crosses: Flag = False  # a pair, each also on the other side
     drive: Annotated[float, Within(0.5, 2.0)] = 1.0  # x drive_power of the tissue
     tone: Flag = True  # holds the skin when relaxed, too
-    bone: Annotated[str, OneOf(BONES)] = "cranium"  # where the origin is fixed
-    gate: Annotated[str, OneOf(GATES)] = "none"  # which lip it may move
+    bone: Annotated[str, OneOf(("cranium", "mandible"))] = "cranium"  # where the origin is fixed
+    gate: Annotated[str, OneOf(("none", "upper_lip", "lower_lip"))] = (
+        "none"  # which lip it may move
+    )
     opens_lips: Annotated[float, Within(0.0, 1.0)] = 0.0  # how far it breaks the lip seal
     lies_on: tuple[str, ...] = ()  # muscles that carry it
 

@@ -25,17 +25,10 @@ from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Array, Side
 from .rig import Eyes, Head, Jaw
 from .surface import Surface
 
-EYE_RADIUS = 12.5  # mm in the standard space, where a head brings no eyes (adult eyeball: 12)
-EYE_SETBACK = 5.5  # mm from the line of the eye corners back to the centre (fitted on scans)
-NECK_BELOW_CHIN = 45.0  # mm below the chin landmark the skin no longer belongs to the mandible
-BEHIND_EARS = 20.0  # mm behind the ear landmarks likewise
 HEAD_CONTROLS = ("head_pitch", "head_yaw", "head_roll")
-BACKWARD_SHARE = 0.15  # of the way forward: nobody draws the jaw back by more than two millimetres
 HEAD_RATE = 30.0  # rad/s: chosen so that nods of 2 Hz keep 85 % of their size, 63 ms late
 LATERAL = (1.0, 0.0, 0.0)
 UP = (0.0, 1.0, 0.0)
-FORWARD = (0.0, 0.0, 1.0)
-SEED_HOLD = 3.0  # seeds are advice, not nails: a soft hold gives a smooth border
 
 
 class RigidMotion(NamedTuple):
@@ -60,7 +53,8 @@ class RigidMotion(NamedTuple):
 
     def after(self, first: RigidMotion) -> RigidMotion:
         """This motion done after another."""
-        rotation, shift = self.rotation @ first.rotation, self.rotation @ first.shift + self.shift
+        rotation = self.rotation @ first.rotation
+        shift = self.rotation @ first.shift + self.shift
         return RigidMotion.of(rotation, shift)
 
     def matrix(self, space: FaceSpace) -> Array:
@@ -108,7 +102,9 @@ class Skull:
         """The mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""
         ways = self.jaw.opening_glide, self.jaw.forward_glide, self.jaw.sideways_glide
         angles = math.radians(self.jaw.opening_deg), math.radians(self.jaw.sideways_deg)
-        values = opening, max(forward, BACKWARD_SHARE * forward), sideways
+        # Share of the way forward: nobody draws the jaw back by more than two millimetres.
+        backward_share = 0.15
+        values = opening, max(forward, backward_share * forward), sideways
         return RigidMotion.of(*move_mandible(self.condyles, ways, angles, values))
 
     def eye_motion(self, eyeball: Eyeball, horizontal: float, vertical: float) -> RigidMotion:
@@ -171,7 +167,8 @@ def turned(turn, point):  # type: ignore[no-untyped-def]
 def turn_head(condyles, joint, angles):  # type: ignore[no-untyped-def]
     """Rotation and shift of the head; `joint`: off the middle of the condyles; see head_motion."""
     turn = times(rotation(UP, angles[0]), rotation(LATERAL, angles[1]))
-    turn = times(turn, rotation(FORWARD, angles[2]))
+    forward = (0.0, 0.0, 1.0)
+    turn = times(turn, rotation(forward, angles[2]))
     pivot = (condyles[0] + condyles[1]) / 2.0
     for k in range(3):
         pivot[k] += joint[k]
@@ -215,11 +212,13 @@ def in_head(pose, axes, origin, scale):  # type: ignore[no-untyped-def]
 def eyeballs_from_landmarks(landmarks: Array) -> tuple[Eyeball, ...]:
     """Eyeballs guessed from the eye corners of a head that brings none, landmarks (68, 3) [mm]."""
     eyeballs = []
+    eye_radius = 12.5  # mm in the standard space, where a head brings no eyes (adult eyeball: 12)
+    eye_setback = 5.5  # mm from the line of the eye corners back to the centre (fitted on scans)
     for side in (Side.RIGHT, Side.LEFT):
         outer, _, _, inner, _, _ = EYE_LANDMARKS[side]
         middle = (landmarks[outer] + landmarks[inner]) / 2.0
-        centre = middle - np.array([0.0, 0.0, EYE_SETBACK])
-        eyeballs.append(Eyeball(side, centre, EYE_RADIUS))
+        centre = middle - np.array([0.0, 0.0, eye_setback])
+        eyeballs.append(Eyeball(side, centre, eye_radius))
     return tuple(eyeballs)
 
 
@@ -243,12 +242,15 @@ def mandible_weight_from_landmarks(
             vertices.append(int(nearest[landmark]))
             values.append(seed)
     x, y, z = surface.positions.T
-    fixed = (y < landmarks[8, 1] - NECK_BELOW_CHIN) | (y > landmarks[29, 1])
-    fixed |= z < min(landmarks[0, 2], landmarks[16, 2]) - BEHIND_EARS
+    neck_below_chin = 45.0  # mm below the chin landmark the skin no longer belongs to the mandible
+    fixed = (y < landmarks[8, 1] - neck_below_chin) | (y > landmarks[29, 1])
+    behind_ears = 20.0  # mm behind the ear landmarks likewise
+    fixed |= z < min(landmarks[0, 2], landmarks[16, 2]) - behind_ears
     half_mouth = 0.9 * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
     middle = landmarks[list(UPPER_LIP)].mean(axis=0)
     lips = (np.abs(lip_side) > 0.9) & (np.abs(x - middle[0]) < half_mouth)
     lips &= np.linalg.norm(surface.positions - middle, axis=1) < half_mouth
     seeds = np.concatenate([vertices, np.flatnonzero(fixed), np.flatnonzero(lips)])
     wanted = np.concatenate([values, np.zeros(fixed.sum()), (lip_side[lips] < 0.0) * 1.0])
-    return np.clip(surface.harmonic(seeds.astype(np.int64), wanted, hold=SEED_HOLD), 0.0, 1.0)
+    seed_hold = 3.0  # seeds are advice, not nails: a soft hold gives a smooth border
+    return np.clip(surface.harmonic(seeds.astype(np.int64), wanted, hold=seed_hold), 0.0, 1.0)

@@ -29,23 +29,17 @@ import numpy as np
 from ..jit import njit
 
 LONGEST_FRAME = 1.0 / 20.0  # s, the longest `dt` a caller may ask for
-LONGEST_TICK = 1.0 / 60.0  # s: half as long is no more exact than the middle of this
 # s: skin is 24 % heavier in sum than its own mass; 14 % at 1/360, a fifth dearer
 LONGEST_SUBSTEP = 1.0 / 300.0
 ROUNDING = 0.02  # parts: 1/60 s given as 0.0167 is still one tick, not two
-LIP_PASSES = 5  # averaged projections need a second pass where lips are pressed hard
-LARGEST_SPEED = 5000.0  # mm/s per axis; a face never reaches it, a vertex thrown by the caller may
-SHORTEST_EDGE = 1e-6  # mm: the direction of a shorter edge is noise
 SEAL_AXES = (0.5, 1.0, 0.5)  # the seal's stiffness sideways, up and down, forward (last fitted)
 SLIDE_DISTANCE = 3.0  # mm the lower lip comes forward, or rolls in, before it passes the upper one
-SLIDE_FADE = 3.0  # mm over which it then does
-TOOTH_FADE = 3.0  # mm above and below the teeth over which they cease to be felt
-LEAST_SHARE = 0.1  # of an arch: nearer to its axis the way out is uncertain
 
 
 def ticks_in(dt: float) -> int:
     """Into how many ticks a frame of `dt` [s] is divided."""
-    return parts(dt, LONGEST_TICK)
+    longest_tick = 1.0 / 60.0  # s: half as long is no more exact than the middle of this
+    return parts(dt, longest_tick)
 
 
 def substeps_in(tick: float) -> int:
@@ -62,13 +56,14 @@ def parts(whole: float, longest: float) -> int:
 def advance(state, skin, tick):  # type: ignore[no-untyped-def]
     """Advance a face by one tick in substeps: the list of all forces and constraints."""
     damp(state, skin, tick.h)
+    lip_passes = 5  # averaged projections need a second pass where lips are pressed hard
     for _ in range(tick.substeps):
         tissue_forces(state, skin.tissue)
         edge_forces(state, skin.edges)
         accelerate(state)
         hold_lips(state, skin, tick)
         move(state, tick.h)
-        for _ in range(LIP_PASSES):
+        for _ in range(lip_passes):
             keep_lips_apart(state, skin, tick.grip.overlap)
         keep_out_of_eyeballs(state, skin.eyes)
         keep_out_of_teeth(state, skin.teeth, tick.mandible)
@@ -141,8 +136,9 @@ def edge_forces(state, springs):  # type: ignore[no-untyped-def]
         dy = x[j, 1] - x[i, 1]
         dz = x[j, 2] - x[i, 2]
         tension[e] = dx * dx + dy * dy + dz * dz
+    shortest_edge = 1e-6  # mm: the direction of a shorter edge is noise
     for e in range(len(edges)):
-        length = max(np.sqrt(tension[e]), SHORTEST_EDGE)
+        length = max(np.sqrt(tension[e]), shortest_edge)
         extension = length - rest_length[e]
         beyond = max(extension - strain_limit * rest_length[e], 0.0)
         tension[e] = stiffness[e] * (extension + extra * beyond) / length
@@ -233,9 +229,11 @@ def move(state, h):  # type: ignore[no-untyped-def]
     """Second half: positions from the new velocities."""
     x = state.x
     v = state.v
+    # In mm/s per axis; a face never reaches it, a vertex thrown by the caller may.
+    largest_speed = 5000.0
     for i in range(len(x)):
         for k in range(3):
-            v[i, k] = min(max(v[i, k], -LARGEST_SPEED), LARGEST_SPEED)
+            v[i, k] = min(max(v[i, k], -largest_speed), largest_speed)
             x[i, k] += h * v[i, k]
 
 
@@ -249,6 +247,7 @@ def keep_lips_apart(state, skin, overlap):  # type: ignore[no-untyped-def]
     v = state.v
     change = state.work  # of each vertex, columns: height, speed upward
     crossed = False
+    slide_fade = 3.0  # mm over which it then does
     for p in range(len(lips.lower)):
         i = lips.lower[p]
         a = lips.upper[p, 0]
@@ -260,7 +259,7 @@ def keep_lips_apart(state, skin, overlap):  # type: ignore[no-untyped-def]
             continue
         forward = x[i, 2] - rest[i, 2]
         forward -= w * (x[a, 2] - rest[a, 2]) + (1.0 - w) * (x[b, 2] - rest[b, 2])
-        full = min(max(1.0 - (abs(forward) - SLIDE_DISTANCE) / SLIDE_FADE, 0.0), 1.0)
+        full = min(max(1.0 - (abs(forward) - SLIDE_DISTANCE) / slide_fade, 0.0), 1.0)
         if full == 0.0:
             continue
         if not crossed:
@@ -294,6 +293,8 @@ def keep_out_of_teeth(state, teeth, mandible):  # type: ignore[no-untyped-def]
     turn = mandible.rotation
     shift = mandible.shift
     arch = teeth.arch
+    tooth_fade = 3.0  # mm above and below the teeth over which they cease to be felt
+    least_share = 0.1  # of an arch: nearer to its axis the way out is uncertain
     for c in range(len(teeth.vertex)):
         i = teeth.vertex[c]
         width = arch[c, 0]
@@ -313,11 +314,11 @@ def keep_out_of_teeth(state, teeth, mandible):  # type: ignore[no-untyped-def]
             pz = turn[0, 2] * dx + turn[1, 2] * dy + turn[2, 2] * dz
         beyond = max(low - py, py - high, 0.0)
         ahead = pz - axis
-        if beyond >= TOOTH_FADE or ahead <= 0.0:
+        if beyond >= tooth_fade or ahead <= 0.0:
             continue
         share = np.sqrt((px / width) ** 2 + (ahead / depth) ** 2)
-        sunk = (teeth.least[c] - share) * (1.0 - beyond / TOOTH_FADE)
-        if sunk <= 0.0 or share < LEAST_SHARE:
+        sunk = (teeth.least[c] - share) * (1.0 - beyond / tooth_fade)
+        if sunk <= 0.0 or share < least_share:
             continue
         out = sunk / share
         dx = out * px

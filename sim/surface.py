@@ -25,12 +25,6 @@ from ..geometry.normals import cross_products, vertex_normals
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 
-LEAST_AREA = 0.01  # mm2 per vertex: keeps isolated vertices and slivers from having no mass
-LEAST_LENGTH = 0.05  # mm per edge: bounds the stiffness of collapsed edges (Van Gelder's is 1/l2)
-NORMAL_SMOOTHING = 25.0  # mm2: tissue direction is the normal of the surface at some 5 mm scale
-SEED_WEIGHT = 1e4  # how firmly a harmonic field is held at its seeds
-SEED_FLOOR = 1e-6  # pulls components without a seed to zero instead of leaving them undefined
-
 
 @dataclass(frozen=True)
 class Surface:
@@ -91,7 +85,7 @@ class Surface:
         return _smooth(field, extent, self.areas, self.laplacian)
 
     def harmonic(
-        self, vertices: npt.ArrayLike, values: npt.ArrayLike, *, hold: float = SEED_WEIGHT
+        self, vertices: npt.ArrayLike, values: npt.ArrayLike, *, hold: float = 1e4
     ) -> Array:
         """Smoothest field, shape (V,), that takes `values` at the seed `vertices`."""
         weight = np.zeros(self.vertex_count)
@@ -99,7 +93,9 @@ class Surface:
         seeds = np.asarray(vertices, dtype=np.int64)
         np.add.at(weight, seeds, hold)
         np.add.at(right, seeds, hold * np.asarray(values, dtype=np.float64))
-        system = (self.laplacian + sparse.diags_array(weight + SEED_FLOOR * self.areas)).tocsc()
+        # Pulls components without a seed to zero instead of leaving them undefined.
+        seed_floor = 1e-6
+        system = (self.laplacian + sparse.diags_array(weight + seed_floor * self.areas)).tocsc()
         field: Array = sparse_linalg.spsolve(system, right)
         return field
 
@@ -109,13 +105,16 @@ def build_surface(positions: Array, faces: Indices) -> Surface:
     count = len(positions)
     face_areas = np.linalg.norm(cross_products(positions, faces), axis=1) / 2.0
     shares = np.bincount(faces.T.ravel(), np.tile(face_areas / 3.0, 3), count)
-    areas: Array = np.maximum(shares, LEAST_AREA)
+    least_area = 0.01  # mm2 per vertex: keeps isolated vertices and slivers from having no mass
+    areas: Array = np.maximum(shares, least_area)
 
     half_edges = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     unique, inverse = np.unique(half_edges, axis=0, return_inverse=True)
     edges = unique.astype(np.int32).reshape(-1, 2)
     lengths = np.linalg.norm(positions[edges[:, 1]] - positions[edges[:, 0]], axis=1)
-    lengths = np.maximum(lengths, LEAST_LENGTH)
+    # In mm per edge: bounds the stiffness of collapsed edges (Van Gelder's is 1/l2).
+    least_length = 0.05
+    lengths = np.maximum(lengths, least_length)
     stiffness = (
         np.bincount(inverse.ravel(), np.tile(face_areas, 3), minlength=len(edges)) / lengths**2
     )
@@ -125,7 +124,8 @@ def build_surface(positions: Array, faces: Indices) -> Surface:
     weights = sparse.coo_array((np.tile(stiffness, 2), both), shape=(count, count)).tocsr()
     degree = np.asarray(weights.sum(axis=1)).ravel()
     laplacian = (sparse.diags_array(degree) - weights).tocsc()
-    smooth = _smooth(vertex_normals(positions, faces), NORMAL_SMOOTHING, areas, laplacian)
+    normal_smoothing = 25.0  # mm2: tissue direction is the normal of the surface at some 5 mm scale
+    smooth = _smooth(vertex_normals(positions, faces), normal_smoothing, areas, laplacian)
     length = np.linalg.norm(smooth, axis=1, keepdims=True)
     directions = np.where(length > 1e-9, smooth / np.maximum(length, 1e-9), [0.0, 0.0, 1.0])
     return Surface(positions, faces, edges, lengths, stiffness, areas, directions, laplacian)

@@ -22,10 +22,6 @@ from .landmarks import Array
 from .skull import RigidMotion
 from .surface import Surface
 
-TEETH_REACH = 18.0  # mm around an arch in which skin is watched
-LIP_THICKNESS = 0.5  # mm that stay between the skin's inner side and a tooth
-BONES = ("cranium", "mandible")
-
 
 class Teeth(NamedTuple):
     """Skin vertices near an arch, one row for each vertex and arch."""
@@ -56,16 +52,18 @@ def watch_teeth(parts: Any, surface: Surface, space: FaceSpace) -> Teeth:
     """
     rows: list[tuple[npt.NDArray[np.int64], bool, Array, Array]] = []
     given = () if parts is None else parts
+    teeth_reach = 18.0  # mm around an arch in which skin is watched
+    bones = ("cranium", "mandible")
     for part in checked.several("head.parts", given, ("name", "bone", "vertices")):
-        if str(part.name).startswith("teeth_") and part.bone in BONES:
+        if str(part.name).startswith("teeth_") and part.bone in bones:
             found = checked.numbers(f"head.parts: {part.name}", part.vertices, (None, 3), "(n, 3)")
             if not len(found):
                 continue
             arch = _arch(space.to_standard(found))
             inside = _inside(surface.positions, arch)
             off = surface.positions - (0.0, 0.0, arch[2])
-            near = inside < 1.0 + TEETH_REACH / min(arch[0], arch[1])
-            near &= (off[:, 1] > arch[3] - TEETH_REACH) & (off[:, 1] < arch[4] + TEETH_REACH)
+            near = inside < 1.0 + teeth_reach / min(arch[0], arch[1])
+            near &= (off[:, 1] > arch[3] - teeth_reach) & (off[:, 1] < arch[4] + teeth_reach)
             near &= off[:, 2] > 0.0
             vertices = np.flatnonzero(near)
             rows.append((vertices, part.bone == "mandible", arch, inside[vertices]))
@@ -87,7 +85,8 @@ def _arch(teeth: Array) -> Array:
     depth = teeth[:, 2].max() - back
     low = teeth[:, 1].min()
     high = teeth[:, 1].max()
-    return np.array([half_width + LIP_THICKNESS, depth + LIP_THICKNESS, back, low, high])
+    lip_thickness = 0.5  # mm that stay between the skin's inner side and a tooth
+    return np.array([half_width + lip_thickness, depth + lip_thickness, back, low, high])
 
 
 def _inside(points: Array, arch: Array) -> Array:

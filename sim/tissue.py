@@ -35,10 +35,6 @@ from .landmarks import Array
 from .rig import Tissue
 from .surface import Surface
 
-AREAL_MASS = 1.0  # g/cm2: skin and fat about 1 cm thick; only ratios to stiffness matter
-MODIOLUS = 5.0  # mm: its radius (anatomy: a knot of some 10 mm across)
-STABLE_STEP_SHARE = 0.5  # of the square of the largest stable step; the rest is margin for geometry
-
 
 class TissueSprings(NamedTuple):
     """The anchors of all vertices, and the damping."""
@@ -79,8 +75,9 @@ class EdgeSprings(NamedTuple):
         stiffness = tissue.membrane * tissue.stiffness_scale * surface.edge_stiffness
         middle = surface.positions[surface.edges].mean(axis=1)
         shear = tissue.shear * stiffness
+        modiolus = 5.0  # mm: its radius (anatomy: a knot of some 10 mm across)
         for knot in knots:
-            near = np.exp(-((middle - knot) ** 2).sum(axis=1) / MODIOLUS**2)
+            near = np.exp(-((middle - knot) ** 2).sum(axis=1) / modiolus**2)
             stiffness = stiffness * (1.0 + tissue.modiolus * near)
             shear = shear * (1.0 + tissue.modiolus_shear * near)
         rows = np.searchsorted(surface.edges[:, 0], np.arange(surface.vertex_count + 1))
@@ -105,8 +102,11 @@ def masses_for_step(areas: Array, stiffness: Array, step: float) -> Array:
     h is stable for h^2 K < 4 m; small triangles would force a tiny step on all, so they get
     heavier.
     """
-    needed = stiffness * step**2 / (4.0 * STABLE_STEP_SHARE)
-    return np.maximum(areas * AREAL_MASS, needed)
+    # Share of the square of the largest stable step; the rest is margin for geometry.
+    stable_step_share = 0.5
+    needed = stiffness * step**2 / (4.0 * stable_step_share)
+    areal_mass = 1.0  # g/cm2: skin and fat about 1 cm thick; only ratios to stiffness matter
+    return np.maximum(areas * areal_mass, needed)
 
 
 @njit

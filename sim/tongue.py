@@ -28,31 +28,8 @@ from .coordinates import FaceSpace
 from .landmarks import Array, smoothstep
 from .skull import RigidMotion
 
-PARTS = ("tongue", "teeth_lower", "teeth_upper")  # the tongue, and the teeth around it
-LIPS = (62, 66, 57, 65, 67)  # landmarks: upper; middle, lower edge and both sides of the lower lip
 SAMPLES = 65  # points of the spine
-DEGREE = 4  # of the polynomial that is the spine at rest
-SLICES = 24  # in which its thickness is measured
-LEAST_LENGTH = 5.0  # mm: a shorter tongue cannot bend
-INCISORS = 5.0  # mm beside the middle: the incisors' edges
-ROOT_FORWARD = 10.0  # mm that the root comes forward
-BODY = 5.0, 4.0  # mm that its middle comes forward and up
 PATH_SETBACK = 10.0  # mm behind the lower incisors' edges, where the path over them begins
-# Of tongue_out, by which the tip has risen from behind the incisors onto the path.
-RISE_SHARE = 0.25
-FILLED_SHARE = 0.8  # of the room between teeth and lips: thickness of the tongue there
-MOST_THICKNESS = 8.5  # mm: its thickness there at most
-LEAST_ROOM = 1.0  # mm between teeth and lips: with less the tongue stays in
-FREE_ROOM = 3.5  # mm between teeth and lips: with more the tongue comes out as far as it is set
-CLEARANCE = 0.6  # mm above teeth and lip
-LIP_FRONT = 4.2  # mm that the lip's most forward skin is in front of its landmarks
-OVERHANG = 4.0  # mm that the tip is in front of the lip at the end
-DROP = 9.0  # mm that the tip is below the edge of the lip at the end
-PALATE = (5.0, -6.0)  # mm up and forward from the upper incisors' edges: where a risen tip is
-HIGHEST_RISE = 24.0  # mm that the tip rises
-SUNK_SHARE = 0.25  # of the way to where it lies on the lip
-FRONT_SHARE = 0.75  # of the spine that rises with the tip
-LEAST_WIDTH_SHARE = 0.7  # of its width and height
 
 
 @dataclass(frozen=True)
@@ -76,23 +53,36 @@ class Tongue:
         lips = (x[self.lips] - mandible.shift) @ mandible.rotation
         upper_edge = (self.upper_edge - mandible.shift) @ mandible.rotation
         room = min(lips[0, 1], upper_edge[1]) - max(lips[1, 1], self.lower_edge[1])
-        out *= float(np.clip((room - LEAST_ROOM) / (FREE_ROOM - LEAST_ROOM), 0.0, 1.0))
-        thickness = float(np.clip(FILLED_SHARE * room, LEAST_ROOM, MOST_THICKNESS))
-        risen = float(smoothstep(np.array(out / RISE_SHARE)))
+        least_room = 1.0  # mm between teeth and lips: with less the tongue stays in
+        # In mm between teeth and lips: with more the tongue comes out as far as it is set.
+        free_room = 3.5
+        out *= float(np.clip((room - least_room) / (free_room - least_room), 0.0, 1.0))
+        filled_share = 0.8  # of the room between teeth and lips: thickness of the tongue there
+        most_thickness = 8.5  # mm: its thickness there at most
+        thickness = float(np.clip(filled_share * room, least_room, most_thickness))
+        # Of tongue_out, by which the tip has risen from behind the incisors onto the path.
+        rise_share = 0.25
+        risen = float(smoothstep(np.array(out / rise_share)))
         spine = self.spine + risen * (self._on_path(out, lips, thickness) - self.spine)
-        tip_up = upper_edge[[2, 1]] + (PALATE[1], PALATE[0]) - self.spine[0]
-        tip_up *= min(1.0, HIGHEST_RISE / float(np.linalg.norm(tip_up)))
+        # In mm up and forward from the upper incisors' edges: where a risen tip is.
+        palate = (5.0, -6.0)
+        tip_up = upper_edge[[2, 1]] + (palate[1], palate[0]) - self.spine[0]
+        highest_rise = 24.0  # mm that the tip rises
+        tip_up *= min(1.0, highest_rise / float(np.linalg.norm(tip_up)))
         place = np.linspace(0.0, 1.0, SAMPLES)
-        falloff = np.maximum(1.0 - place / FRONT_SHARE, 0.0)[:, None] ** 2
+        front_share = 0.75  # of the spine that rises with the tip
+        falloff = np.maximum(1.0 - place / front_share, 0.0)[:, None] ** 2
         spine += up * (1.0 - risen) * falloff * tip_up
         # Flat where it passes between the teeth.
         between = (spine[:, 0] - self.lower_edge[2] + 2.0 * PATH_SETBACK) / (1.5 * PATH_SETBACK)
         flat = risen * smoothstep(between)
         height = 1.0 + flat * (np.minimum(0.5 * thickness / self.half, 1.0) - 1.0)
-        slender = np.clip(np.sqrt(_length(self.spine) / _length(spine)), LEAST_WIDTH_SHARE, 1.0)
+        least_width_share = 0.7  # of its width and height
+        slender = np.clip(np.sqrt(_length(self.spine) / _length(spine)), least_width_share, 1.0)
         turn = _direction(spine) - _direction(self.spine)
+        sunk_share = 0.25  # of the way to where it lies on the lip
         # The thin tip hangs lower than the middle of the thick rest.
-        sunk = SUNK_SHARE * risen * np.maximum(0.5 * thickness - self.half, 0.0)
+        sunk = sunk_share * risen * np.maximum(0.5 * thickness - self.half, 0.0)
         # The lower lip is lowest in its middle: the tongue lies in it.
         over_lip = smoothstep((spine[:, 0] - self.lower_edge[2]) / PATH_SETBACK)
         rise = max(float(lips[3:, 1].mean()) - lips[1, 1], 0.0)
@@ -112,15 +102,21 @@ class Tongue:
     def _on_path(self, out: float, lips: Array, thickness: float) -> Array:
         """The spine on its way out, shape (SAMPLES, 2)."""
         _, middle, low, *_ = lips
-        above = 0.5 * thickness + CLEARANCE
-        front = max(middle[2], low[2]) + LIP_FRONT
+        clearance = 0.6  # mm above teeth and lip
+        above = 0.5 * thickness + clearance
+        lip_front = 4.2  # mm that the lip's most forward skin is in front of its landmarks
+        front = max(middle[2], low[2]) + lip_front
         over_lip = max(middle[1], self.lower_edge[1]) + above
+        root_forward = 10.0  # mm that the root comes forward
+        body_rise = 5.0, 4.0  # mm that its middle comes forward and up
+        overhang = 4.0  # mm that the tip is in front of the lip at the end
+        tip_drop = 9.0  # mm that the tip is below the edge of the lip at the end
         path = np.array([
-            self.spine[-1] + (ROOT_FORWARD, 0.0),
-            self.spine[SAMPLES // 2] + BODY,
+            self.spine[-1] + (root_forward, 0.0),
+            self.spine[SAMPLES // 2] + body_rise,
             self.lower_edge[[2, 1]] + (-PATH_SETBACK, above),
             (middle[2] - 1.0, over_lip),
-            (front + above + OVERHANG, low[1] - DROP),
+            (front + above + overhang, low[1] - tip_drop),
         ])  # fmt: skip
         lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
         tip = lengths[2] + out * (lengths[-1] - lengths[2])
@@ -140,33 +136,40 @@ def place_tongue(
     parts: objects with `name` and `vertices`; landmarks: vertex numbers, shape (68,).
     """
     found = {}
+    names = ("tongue", "teeth_lower", "teeth_upper")  # the tongue, and the teeth around it
     for part in checked.several("head.parts", () if parts is None else parts, ("name", "vertices")):
-        if part.name in PARTS:
+        if part.name in names:
             what = f"head.parts: {part.name}"
             found[part.name] = checked.numbers(what, part.vertices, (None, 3), "(n, 3)")
-    if landmarks is None or any(not len(found.get(name, ())) for name in PARTS):
+    if landmarks is None or any(not len(found.get(name, ())) for name in names):
         return None
-    rest, lower, upper = (space.to_standard(found[name]) for name in PARTS)
+    rest, lower, upper = (space.to_standard(found[name]) for name in names)
     tip = rest[:, 2].max()
     root = rest[:, 2].min()
-    if len(rest) < SLICES or tip - root < LEAST_LENGTH:
+    slice_count = 24  # in which its thickness is measured
+    least_length = 5.0  # mm: a shorter tongue cannot bend
+    if len(rest) < slice_count or tip - root < least_length:
         return None
     along = (tip - rest[:, 2]) / (tip - root)
     place = np.linspace(0.0, 1.0, SAMPLES)
-    middle = np.polynomial.Polynomial.fit(along, rest[:, 1], DEGREE)
+    degree = 4  # of the polynomial that is the spine at rest
+    middle = np.polynomial.Polynomial.fit(along, rest[:, 1], degree)
     off = rest[:, 1] - middle(along)
-    slices = np.array_split(np.argsort(along), SLICES)
+    slices = np.array_split(np.argsort(along), slice_count)
     half = np.interp(place, [along[s].mean() for s in slices], [np.ptp(off[s]) / 2 for s in slices])
     spine = np.stack([tip - place * (tip - root), middle(place)], axis=1)
+    # Landmarks: upper; middle, lower edge and both sides of the lower lip.
+    lips = (62, 66, 57, 65, 67)
     return Tongue(
         rest, along, spine, off, np.maximum(half, 0.1),
-        _edge(lower, up=1.0), _edge(upper, up=-1.0), landmarks[list(LIPS)],
+        _edge(lower, up=1.0), _edge(upper, up=-1.0), landmarks[list(lips)],
     )  # fmt: skip
 
 
 def _edge(teeth: Array, *, up: float) -> Array:
     """The edge of the incisors of one jaw, in the middle, shape (3,)."""
-    incisors = teeth[np.abs(teeth[:, 0]) < INCISORS]
+    incisor_width = 5.0  # mm beside the middle: the incisors' edges
+    incisors = teeth[np.abs(teeth[:, 0]) < incisor_width]
     among = incisors if len(incisors) else teeth
     edge: Array = among[(up * among[:, 1]).argmax()] * (0.0, 1.0, 1.0)
     return edge

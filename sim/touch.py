@@ -11,8 +11,6 @@ from .face_model import FaceModel
 from .landmarks import Array
 from .state import State
 
-FINGER_RATE = 350.0  # rad/s of the firmest pull: outdoes the skin, stable at the longest substep
-
 
 class Touch:
     """Hands at the skin of one simulation."""
@@ -56,7 +54,9 @@ class Touch:
         away = self._in_standard_space(points - self._positions[numbers])
         self._vertices = numbers
         self._to = self._state.x[numbers] + away
-        self._stiffness = share * self._model.skin.mass[numbers] * FINGER_RATE**2
+        # In rad/s of the firmest pull: outdoes the skin, stable at the longest substep.
+        finger_rate = 350.0
+        self._stiffness = share * self._model.skin.mass[numbers] * finger_rate**2
 
     def end_drag(self) -> None:
         """End every `drag`; the skin swings back."""

@@ -21,9 +21,6 @@ Floats = npt.NDArray[np.float64]
 ROWS = 22  # places along a band
 AROUND = 16  # places around its cross section
 NEAR = 8  # vertices that say where the skin is
-# Measures [mm], chosen by eye after anatomical plates.
-THICK = 2.8
-DEEP = 3.4  # below the skin, at the end of a band
 RELAXED = np.array([0.68, 0.29, 0.245])  # sRGB
 CONTRACTED = np.array([0.50, 0.035, 0.045])  # sRGB
 TENDON = np.array([0.93, 0.87, 0.77])
@@ -138,9 +135,14 @@ class Muscles:
         end = np.sqrt(np.clip(1.0 - (2.0 * u - 1.0) ** 8, 0.0, 1.0))  # round
         swollen = 1.0 + (swollen[:, None] - 1.0) * np.sin(np.pi * u)  # in the middle
         half = 0.5 * self._width * swollen**0.35 * end
-        thick = 0.5 * THICK * (0.45 + 0.55 * np.sin(np.pi * u) ** 0.8) * swollen**0.65 * end
-        deep = depth[:, :1] + (DEEP - depth[:, :1]) * u * u * (3.0 - 2.0 * u)
-        deep[len(self.names) :] = DEEP  # sphincters have no origin on a bone
+        # Measures [mm], chosen by eye after anatomical plates.
+        most_thickness = 2.8
+        thick = (
+            0.5 * most_thickness * (0.45 + 0.55 * np.sin(np.pi * u) ** 0.8) * swollen**0.65 * end
+        )
+        end_depth = 3.4  # below the skin, at the end of a band
+        deep = depth[:, :1] + (end_depth - depth[:, :1]) * u * u * (3.0 - 2.0 * u)
+        deep[len(self.names) :] = end_depth  # sphincters have no origin on a bone
         side = np.cross(np.gradient(lines, axis=1), normal)
         side /= np.maximum(np.linalg.norm(side, axis=2, keepdims=True), 1e-9)
         rails = np.stack([lines + each * half[..., None] * side for each in (-1.0, 0.0, 1.0)])

@@ -20,7 +20,6 @@ from ..stopping import cleaned_up_if_stopped
 from ..workers import DiedError, Send, Worker, share_of_cores
 from .drawing import Capture, CaptureOptions, Frame
 
-SAMPLES_EACH = 1e8  # 27 frames of 1280 x 720: fewer are not worth a start of three seconds
 MOST = 8  # more of them than one encoder can follow
 
 
@@ -39,7 +38,8 @@ def worthwhile(options: CaptureOptions, frame_count: int) -> int:
     """How many processes should draw so many frames: 1 where a GPU does, or a core is all."""
     width, height = options.size
     samples = width * height * max(options.samples, 1) * frame_count
-    count = min(share_of_cores(), MOST, int(samples / SAMPLES_EACH))
+    least_samples = 1e8  # 27 frames of 1280 x 720: fewer are not worth a start of three seconds
+    count = min(share_of_cores(), MOST, int(samples / least_samples))
     if count < 2:
         return 1
     with render.open_offscreen((1, 1), samples=0) as surface:

@@ -20,7 +20,6 @@ TURNED = (  # to one side where their value is above 0, to the other below
 )  # fmt: skip
 # Sides of a motion, not of the face: both at once stand still.
 OPPOSITE = ("AU30", "lips_sideways", "jaw", "mouth")
-SIDEWAYS = ("gaze_horizontal", "eye_yaw", "eyeLookIn", "eyeLookOut")  # copied, eyes would cross
 KNOWN = 4096  # names that are taken apart once: panels ask for all of theirs in each frame
 _TWINS = {  # action units that are each other's image without saying so: eyes turn left, right ...
     "AU61": "AU62", "AU62": "AU61", "AU51": "AU52", "AU52": "AU51", "AU55": "AU56", "AU56": "AU55",
@@ -62,19 +61,16 @@ def mirrored(values: Mapping[str, float]) -> dict[str, float]:
 def copied(values: Mapping[str, float], source: str) -> dict[str, float]:
     """One side ("left" or "right") becomes the other, too; the middle and the gaze stay."""
     result = dict(values)
+    sideways = ("gaze_horizontal", "eye_yaw", "eyeLookIn", "eyeLookOut")
     for name, value in values.items():
         base, side = parted(name)
         twin = twin_of(name)
         is_whole = not side and parted(twin)[0] != name  # of both sides, or a direction
-        if is_whole or base in OPPOSITE or base.startswith(SIDEWAYS) or twin not in values:
+        if is_whole or base in OPPOSITE or base.startswith(sideways) or twin not in values:
             continue
         if (side.strip("_").lower() or "left") == source:
             result[twin] = value
     return result
-
-
-VISEME = "viseme_"
-ENDINGS = ("ing", "ed", "s")  # of a word that is looked for
 
 
 def readable(name: str) -> str:
@@ -124,8 +120,9 @@ def title_of(name: str, action: str = "") -> tuple[str, str]:
         return stem, plain or first[:1].upper() + first[1:]
     if plain:
         return "", plain
-    if name.startswith(VISEME):
-        return name.removeprefix(VISEME), first
+    viseme_prefix = "viseme_"
+    if name.startswith(viseme_prefix):
+        return name.removeprefix(viseme_prefix), first
     if name != name.lower():  # as ARKit spells it
         return name, ""
     return "", readable(stem).capitalize()
@@ -149,5 +146,6 @@ def is_found(words: str, text: str, names: Collection[str]) -> bool:
 
 def _forms(word: str) -> list[str]:
     """A word as it was typed, and without its ending: chewing, chew."""
-    stems = [word.removesuffix(end) for end in ENDINGS if word.endswith(end)]
+    word_endings = ("ing", "ed", "s")  # of a word that is looked for
+    stems = [word.removesuffix(end) for end in word_endings if word.endswith(end)]
     return [word, *(stem for stem in stems if len(stem) >= 3)]  # letters

@@ -18,8 +18,6 @@ LOWER_EDGES = {  # landmarks of a lower lip's inner edge and of lower lids, from
     "eye_right": (36, 41, 40, 39),
     "eye_left": (42, 47, 46, 45),
 }
-END = 1.0  # mm beside a corner that are not looked at: lips and lids are joined there
-WINDOW = 5.0  # mm from the lower edge in which an opening begins that is the one meant
 
 
 def apertures(positions: Array, triangles: npt.NDArray[Any], landmarks: Array) -> dict[str, float]:
@@ -43,8 +41,9 @@ def opening(near: Array, edge: Array) -> float:
     """
     near = near[to_viewer(near)]  # triangles seen from within cover nothing
     left, right = sorted(edge[[0, -1], 0])
+    end_width = 1.0  # mm beside a corner that do not count: lips and lids are joined there
     # Vertical planes across the opening, in which lines of sight lie.
-    columns = np.linspace(left + END, right - END, 40)
+    columns = np.linspace(left + end_width, right - end_width, 40)
     heights = np.interp(columns, *edge[np.argsort(edge[:, 0]), :2].T)
     return max(
         _widest_opening(near, column, height)
@@ -70,7 +69,8 @@ def _widest_opening(triangles: Array, x: float, middle: float) -> float:
     order = np.argsort(low)
     reached = np.maximum.accumulate(high[order])[:-1]
     open_above = low[order][1:] - reached
-    return float(open_above[np.abs(reached - middle) < WINDOW].max(initial=0.0))
+    window = 5.0  # mm from the lower edge in which the opening must begin
+    return float(open_above[np.abs(reached - middle) < window].max(initial=0.0))
 
 
 def to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:

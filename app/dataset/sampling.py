@@ -20,7 +20,6 @@ from ..motion.life import HEAD_RANGES
 from .table import BLINK, LETTERS, SampleTable, Shares, paired_units
 
 MOST_UNITS = 7  # of a mixture
-SIDES = ("_left", "_right")
 
 
 @dataclass(frozen=True)
@@ -190,15 +189,16 @@ def _two_sided(
     is_asymmetric = random.random() < table.sides.asymmetric
     side = int(random.integers(2))  # the one that is stronger, or alone
     result: dict[str, float] = {}
+    sides = ("_left", "_right")
     for name, value in controls.items():
         weaker = 1.0 - min(abs(table.sides.difference * _bounded_normal(random)), 1.0)
         if name not in paired_units() or name == BLINK:
             result[name] = value
         elif random.random() < one_sided:
-            result[name + SIDES[side]] = value
+            result[name + sides[side]] = value
         elif is_asymmetric:
-            result[name + SIDES[side]] = value
-            result[name + SIDES[1 - side]] = value * weaker
+            result[name + sides[side]] = value
+            result[name + sides[1 - side]] = value * weaker
         else:
             result[name] = value
     return result

@@ -38,12 +38,6 @@ from .request import Request
 from .sampling import Sample, View, draw
 from .surroundings import laid_over, light_of
 
-SAMPLES = 8  # of each pixel
-PERSONS = 1  # sets their seeds apart from those of samples
-MARGIN = 0.03  # of the picture, free on each side of the head at zoom 1: the neck ends outside
-CHIN = 8  # the landmark
-BELOW_CHIN = 12.0  # [mm] of the neck that go with the head
-
 
 @dataclass(frozen=True)
 class Shot:
@@ -72,7 +66,8 @@ class Studio:
 
     def __init__(self, request: Request) -> None:
         self._request = request
-        self._surface = render.open_offscreen(request.size, samples=SAMPLES)
+        # of each pixel
+        self._surface = render.open_offscreen(request.size, samples=8)
         self._renderer = render.Renderer(self._surface)
         # The last persons are kept.
         self._person = lru_cache(4)(self._person_of)
@@ -132,7 +127,8 @@ class Studio:
         The tone is an individual typology angle: 55 and more very light, below -30 dark.
         """
         table = self._request.table
-        seeds = np.random.SeedSequence([self._request.seed, number, PERSONS])
+        stream_of_persons = 1  # sets their seeds apart from those of samples
+        seeds = np.random.SeedSequence([self._request.seed, number, stream_of_persons])
         random = np.random.default_rng(seeds)
         tone = round(float(random.uniform(*table.persons.tone)), 2)
         irises = drawn_irises(random, tone, table.irises)
@@ -174,20 +170,23 @@ def _camera_of(scene: FaceScene, view: View, size: tuple[int, int]) -> render.Or
     It is moved on where landmarks would be beside the picture, of `size` pixels.
     """
     rest = scene.rest_positions
-    head = rest[:, 1] > rest[scene.landmarks[CHIN], 1] - BELOW_CHIN
+    chin = 8  # the landmark
+    below_chin = 12.0  # [mm] of the neck that go with the head
+    head = rest[:, 1] > rest[scene.landmarks[chin], 1] - below_chin
     camera = render.OrbitCamera.framing(
         np.vstack([scene.positions, rest]), view="front", field_of_view=view.field_of_view
     )
     camera.orbit(view.yaw, view.pitch)
-    camera.fit(scene.positions[head], MARGIN)
+    margin = 0.03  # of the picture, free on each side of the head at zoom 1: the neck ends outside
+    camera.fit(scene.positions[head], margin)
     camera.zoom(view.zoom)
     camera.pan(*view.shift)
     for _ in range(3):  # perspective makes one round inexact
         pixels = CameraLabels.of(camera, size).project(scene.positions[scene.landmarks])
         places = pixels / size[1]
-        end = np.array([size[0] / size[1], 1.0]) - MARGIN
+        end = np.array([size[0] / size[1], 1.0]) - margin
         right, down = np.maximum(places.max(axis=0) - end, 0.0) - np.maximum(
-            MARGIN - places.min(axis=0), 0.0
+            margin - places.min(axis=0), 0.0
         )
         camera.pan(float(right), -float(down))
     return camera

@@ -21,8 +21,6 @@ from risorius.render import LIGHTS, Background, Light
 from ..errors import UserError, as_text
 from ..pictures import Image
 
-SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
-
 
 @dataclass(frozen=True)
 class Backgrounds:
@@ -101,9 +99,10 @@ def backgrounds_of(text: str | None) -> Backgrounds:
         return Backgrounds()
     folder = Path(text)
     if folder.is_dir():
-        pictures = tuple(sorted(p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES))
+        suffixes = (".png", ".jpg", ".jpeg", ".webp")
+        pictures = tuple(sorted(p for p in folder.iterdir() if p.suffix.lower() in suffixes))
         if not pictures:
-            raise UserError(f"--background {text}: no picture in it, {', '.join(SUFFIXES)}")
+            raise UserError(f"--background {text}: no picture in it, {', '.join(suffixes)}")
         for path in pictures:
             with _readable(path):  # its header: of thousands the whole would take minutes
                 pass

@@ -21,7 +21,6 @@ from risorius.schema import REST, MadeFrom, OneOf, Record, Within, called, parse
 from ..errors import UserError
 from ..files import NoSuchFileError, read_text
 
-KINDS = ("neutral", "expression", "mixture", "speech", "unit")
 LETTERS = ("A", "B", "C", "D", "E")
 BLINK = "AU45"
 OF_EYES_AND_HEAD = {f"AU{number}" for number in range(51, 65)}  # these have their own sections
@@ -151,7 +150,7 @@ class Persons(Record):
 class SampleTable(Record):
     """The content of aus.toml, section by section; its comments are the documentation."""
 
-    kinds: Annotated[Shares, _drawn_from(KINDS)]
+    kinds: Annotated[Shares, _drawn_from(("neutral", "expression", "mixture", "speech", "unit"))]
     letters: Annotated[Shares, _drawn_from(LETTERS)]
     expressions: Annotated[Mapping[str, Expression], MadeFrom(dict[str, Expression], _expressions)]
     units: Annotated[Shares, _drawn_from(_units)]

@@ -35,11 +35,6 @@ from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
 from .morphs import TOLERANCE, Floats, decompose, follow
 
 HEAD = "cranium"  # name of a bone
-NECK = "neck"  # name of a bone
-STILL = 1e-7  # [m, or of a quaternion] by which a node that does not move may be off
-# Roughness, chosen by eye; parts go from dull to wet by their shine.
-DULL = 0.75
-WET = 0.12
 
 
 @dataclass(frozen=True)
@@ -184,7 +179,10 @@ def _add_material(glb: Glb, clip: Clip, surface: Surface) -> int:
     rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.55}  # by eye
     material: dict[str, Any] = {"name": surface.name, "pbrMetallicRoughness": rough}
     if surface.colours is not None:
-        rough["roughnessFactor"] = DULL + surface.shine * (WET - DULL)
+        # Roughness, chosen by eye; parts go from dull to wet by their shine.
+        dull_roughness = 0.75
+        wet_roughness = 0.12
+        rough["roughnessFactor"] = dull_roughness + surface.shine * (wet_roughness - dull_roughness)
         return glb.add("materials", material)
     material["doubleSided"] = True
     scene = clip.scene
@@ -230,7 +228,11 @@ class Skeleton:
 
     def __init__(self, clip: Clip, used: set[str], glb: Glb) -> None:
         self._glb = glb
-        self._bones = {NECK: np.broadcast_to(np.eye(4), (clip.frame_count, 4, 4)), **clip.bones}
+        neck_bone = "neck"
+        self._bones = {
+            neck_bone: np.broadcast_to(np.eye(4), (clip.frame_count, 4, 4)),
+            **clip.bones,
+        }
         self._nodes: dict[str, dict[str, Any]] = {}
         self._pivots: dict[str, Floats] = {}
         self.skin: int | None = None
@@ -238,10 +240,10 @@ class Skeleton:
             self.roots = [self._add(bone, None) for bone in sorted(used)]
             return
         pivots = clip.scene.simulation.bones.pivots()
-        self._pivots = {NECK: pivots[HEAD], **pivots}
-        self.roots = [self._add(NECK, None)]
-        head = self._add(HEAD, NECK)
-        for bone in sorted(used - {HEAD, NECK}):
+        self._pivots = {neck_bone: pivots[HEAD], **pivots}
+        self.roots = [self._add(neck_bone, None)]
+        head = self._add(HEAD, neck_bone)
+        for bone in sorted(used - {HEAD, neck_bone}):
             self._add(bone, HEAD)
         to_bone = np.eye(4, dtype=np.float32)
         to_bone[3, :3] = -METRES * pivots[HEAD]  # columns first
@@ -266,12 +268,13 @@ class Skeleton:
         self._nodes[bone] = {"name": bone, "translation": shift.tolist()}
         node = self._glb.add("nodes", self._nodes[bone])
         translations = METRES * local[:, :3, 3]
-        if np.abs(translations - shift).max() > STILL:
+        still_motion = 1e-7  # [m, or of a quaternion]: a node that moves less stands still
+        if np.abs(translations - shift).max() > still_motion:
             self._glb.animate(node, "translation", translations)
         rotations = scipy.spatial.transform.Rotation.from_matrix(local[:, :3, :3]).as_quat(
             canonical=True
         )
-        if np.abs(rotations[:, :3]).max() > STILL:
+        if np.abs(rotations[:, :3]).max() > still_motion:
             # q and -q turn alike, but values between two keyframes do not.
             is_opposite = (rotations[1:] * rotations[:-1]).sum(axis=1) < 0.0
             rotations[1:] *= np.cumprod(np.where(is_opposite, -1.0, 1.0))[:, None]

@@ -22,8 +22,6 @@ from ..recordings.playback import LEAD
 from .clip import Clip, Floats
 from .formats import Request
 
-DECIMALS = 6  # of numbers, whose zeros at the end are left out: three quarters of a table
-TIMECODE_RATE = 60  # Live Link Face counts so many frames a second, at any rate of the camera
 OTHER_ORDER = {  # its columns are in ARKit's order but for these
     "jawLeft": "jawRight",
     "jawRight": "jawLeft",
@@ -76,17 +74,19 @@ def write_arkit(clip: Clip, part: Path, _: Request) -> None:
     with part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["Timecode", "BlendShapeCount", *columns])
+        decimals = 6  # of numbers, whose zeros at the end are left out: three quarters of a table
         for time, *values in zip(clip.times, *columns.values(), strict=True):
-            numbers = np.round(values, DECIMALS) + 0.0  # -0 is 0
+            numbers = np.round(values, decimals) + 0.0  # -0 is 0
             texts = (np.format_float_positional(number, trim="-") for number in numbers)
             writer.writerow([_timecode(time), len(columns), *texts])
 
 
 def _timecode(time: float) -> str:
     """A time [s] as HH:MM:SS:FF.fff, the frames of TIMECODE_RATE with their fraction."""
-    thousandths = round(time * TIMECODE_RATE * 1000.0)
+    timecode_rate = 60  # Live Link Face counts so many frames a second, at any rate of the camera
+    thousandths = round(time * timecode_rate * 1000.0)
     frames, fraction = divmod(thousandths, 1000)
-    seconds, frame = divmod(frames, TIMECODE_RATE)
+    seconds, frame = divmod(frames, timecode_rate)
     minutes, second = divmod(seconds, 60)
     return f"{minutes // 60:02}:{minutes % 60:02}:{second:02}:{frame:02}.{fraction:03}"
 

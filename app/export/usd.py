@@ -28,8 +28,6 @@ Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
     for name in ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "UsdUtils", "Vt")
 )
 
-DULL = 0.6  # roughness
-WET = 0.1  # roughness
 PICTURE = "skin.png"
 ALWAYS = Usd.TimeCode.Default()
 
@@ -146,7 +144,9 @@ def _add_material(stage: Any, mesh: Any, surface: Surface, *, has_picture: bool)
     material = UsdShade.Material.Define(stage, path)
     shader = UsdShade.Shader.Define(stage, path.AppendChild("surface"))
     shader.CreateIdAttr("UsdPreviewSurface")
-    roughness = DULL + surface.shine * (WET - DULL)
+    dull_roughness = 0.6
+    wet_roughness = 0.1
+    roughness = dull_roughness + surface.shine * (wet_roughness - dull_roughness)
     shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(roughness)
     reader = UsdShade.Shader.Define(stage, path.AppendChild("reader"))
     name = reader.CreateInput("varname", Sdf.ValueTypeNames.String)

@@ -3,8 +3,8 @@
     packets -> channels -> calibration -> mapping -> controls, with a presence of 0 to 1
 
 The newest frame counts. While frames come the presence grows to 1; when they stop, or when the
-sender sees no face, it falls to 0, and our face eases to what it is without them. Whatever else may
-move a face while nobody is there can take over by as much as is missing to 1.
+sender sees no face, it falls to 0, and our face eases to its values without them. Other motion,
+such as idle life, gets the rest of the weight, 1 less the presence.
 """
 
 from __future__ import annotations
@@ -25,11 +25,10 @@ from .protocols import Listening
 from .receiver import Receiver
 
 LOST_AFTER = 0.4  # [s] without a frame; at 30 a second a network may swallow ten
-EASING_IN, EASING_OUT = 0.25, 0.6  # [s]
+EASING_IN = 0.25  # [s]
+EASING_OUT = 0.6
 CALIBRATING = 0.5  # [s] of a neutral face
 CHANNELS = (*ARKIT, *HEAD_ANGLES, *EYE_ANGLES, *VISEMES)  # that may come
-RATED = 1.0  # [s] over which frames are counted
-MOST_RATED = 1000  # frames
 
 
 class State(enum.Enum):
@@ -42,9 +41,9 @@ class State(enum.Enum):
 
 
 class LiveFace(Receiver):
-    """What is received, as a face.
+    """The received frames, as a face.
 
-    calibration: what is done to the channels; may be replaced at any time.
+    calibration: of the channels; may be replaced at any time.
     channels: those of the newest frame, and older ones that it did not name; as they came.
     subject: whose face it is, "" where nobody says so.
     presence: how far it overrides our face, 0 to 1.
@@ -69,11 +68,12 @@ class LiveFace(Receiver):
         self._share = 0.0
         self._has_face = True
         self._last: float | None = None  # when the newest frame came
-        self._times: deque[float] = deque(maxlen=MOST_RATED)
+        most_rated = 1000  # frames
+        self._times: deque[float] = deque(maxlen=most_rated)
         self._neutral: list[dict[str, float]] = []
         self._neutral_until: float | None = None
 
-    # What is told of it
+    # Its state
 
     @property
     def silence(self) -> float:
@@ -84,7 +84,8 @@ class LiveFace(Receiver):
     def rate(self) -> float:
         """Frames in the last second."""
         now = self._clock()
-        return sum(1 for each in self._times if now - each < RATED) / RATED
+        rated_time = 1.0  # [s] over which frames are counted
+        return sum(1 for each in self._times if now - each < rated_time) / rated_time
 
     @property
     def state(self) -> State:
@@ -107,13 +108,13 @@ class LiveFace(Receiver):
 
     @property
     def is_calibrating(self) -> bool:
-        """Whether it is being learned what the neutral face is."""
+        """Whether the neutral face is being learned."""
         return self._neutral_until is not None
 
-    # What is done with it
+    # Its commands
 
     def advance(self, seconds: float) -> None:
-        """Take in what has come; `seconds` have passed since the last call."""
+        """Take in the frames that have come; `seconds` have passed since the last call."""
         self.has_news = False
         for at, frame in self.take():
             self._take_in(frame, at)
@@ -131,7 +132,9 @@ class LiveFace(Receiver):
         self.channels.update(self._pending)
         self._pending.clear()
         self.subject = frame.subject or self.subject
-        self._has_face, self._last, self.has_news = frame.has_face, at, True
+        self._has_face = frame.has_face
+        self._last = at
+        self.has_news = True
         self._times.append(at)
         if self.is_calibrating and frame.has_face:
             self._neutral.append(dict(self.channels))
@@ -152,4 +155,5 @@ class LiveFace(Receiver):
                 for name in self._neutral[-1]
             }
             self.calibration = replace(self.calibration, neutral=neutral_now(median))
-        self._neutral, self._neutral_until = [], None
+        self._neutral = []
+        self._neutral_until = None

@@ -25,13 +25,11 @@ from .frame import LiveFrame, put_angle, put_shape, readable_subject
 VERSION = 6
 COUNT = 61
 LONGEST_TEXT = 1024  # [bytes] of an id or a name
-RATE = 60
 # Behind the shapes; None for what eyes do not do.
 ANGLES = (
     "head_yaw", "head_pitch", "head_roll",
     "eye_yaw_left", "eye_pitch_left", None, "eye_yaw_right", "eye_pitch_right", None,
 )  # fmt: skip
-_DEVICE = b"risorius"
 
 
 def parse(packet: bytes) -> LiveFrame | None:
@@ -71,13 +69,15 @@ def _text(packet: bytes, at: int) -> tuple[bytes, int]:
 
 
 def packet_of(channels: Mapping[str, float], *, subject: str, frame: int) -> bytes:
-    """What the app would send of these channels; a channel that is missing is 0."""
+    """The packet that the app would send of these channels; a missing channel is 0."""
     values = [channels.get(name, 0.0) for name in ARKIT]
     for angle in ANGLES:
         degrees = channels.get(angle or "", 0.0) + OUTWARD.get(angle or "", 0.0)
         values.append(-math.radians(degrees))
     head = struct.pack(">B", VERSION)
-    for text in (_DEVICE, subject.encode()[:LONGEST_TEXT]):
+    device = b"risorius"
+    for text in (device, subject.encode()[:LONGEST_TEXT]):
         head += struct.pack(">i", len(text)) + text
-    time = struct.pack(">ifii", frame, 0.0, RATE, 1)
+    frame_rate = 60
+    time = struct.pack(">ifii", frame, 0.0, frame_rate, 1)
     return head + time + struct.pack(f">B{COUNT}f", COUNT, *values)

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 LOOPBACK = "127.0.0.1"
 ANYWHERE = "0.0.0.0"
-_ELSEWHERE = "192.0.2.1"  # of nobody: kept free for documents (RFC 5737)
 
 
 @dataclass(frozen=True)
@@ -95,7 +94,8 @@ def own_address() -> str:
     """What others in the network call this computer; "" without a network. Nothing is sent."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
         try:
-            asked.connect((_ELSEWHERE, 9))  # the system only chooses a way
+            documentation_address = "192.0.2.1"  # nobody's: kept free for documents (RFC 5737)
+            asked.connect((documentation_address, 9))  # the system only chooses a way
             return str(asked.getsockname()[0])
         except OSError:
             return ""

@@ -1,4 +1,4 @@
-"""Frames as they come: a thread reads packets from the socket and wakes whoever waits for them.
+"""Frames as they come: a thread reads packets from the socket and wakes the threads that wait.
 
 A window sleeps until something happens, and a frame must be such a thing: asking for it once in a
 while would let it lie. Nobody is woken for a part of a frame, for one without a face, or for what
@@ -17,7 +17,6 @@ from ..errors import UserError
 from .frame import MOST_BYTES, LiveFrame
 from .protocols import ANYWHERE, LOOPBACK, Listening, resolved
 
-MOST_WAITING = 256  # frames or parts of them; of more, the oldest are dropped
 LOOK_AROUND = 0.1  # [s] after which the thread sees that it is to end
 
 
@@ -42,7 +41,8 @@ class Receiver:
         self._wake = wake
         self._clock = clock
         self._parse = listening.protocol.parser()
-        self._waiting: deque[tuple[float, LiveFrame]] = deque(maxlen=MOST_WAITING)
+        most_waiting = 256  # frames or parts of them; of more, the oldest are dropped
+        self._waiting: deque[tuple[float, LiveFrame]] = deque(maxlen=most_waiting)
         self.received = self.unusable = 0
         self.has_frame = False
         self._socket = _bound_socket(listening)
@@ -79,7 +79,7 @@ class Receiver:
             self._read(packet, self._clock())
 
     def _read(self, packet: bytes, at: float) -> None:
-        """Keep what a packet says, wake who waits for that, and count the packet as dealt with."""
+        """Keep a packet's content, wake the threads that wait, and count the packet as done."""
         frame = self._parse(packet) if len(packet) <= MOST_BYTES else None
         if frame is None:
             self.unusable += 1

@@ -1,4 +1,4 @@
-"""A recording as packets of Live Link Face: what a phone sends, without one."""
+"""A recording as packets of Live Link Face, as a phone sends them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Sender:
     """Sends frames to one address; a context manager."""
 
     def __init__(self, address: str, port: int | None, subject: str) -> None:
-        """port: None for the protocol's own. UserError for what is no address."""
+        """port: None for the protocol's own. Raises UserError where the address is none."""
         self.port = PROTOCOLS["livelink"].port if port is None else port
         self._subject = subject
         self._sent = 0

@@ -33,9 +33,6 @@ with contextlib.suppress(ImportError):  # see Protocol.check
 
 from .frame import LiveFrame, put_angle, put_shape, shape_named
 
-VALUE, APPLY, BONE = "/VMC/Ext/Blend/Val", "/VMC/Ext/Blend/Apply", "/VMC/Ext/Bone/Pos"
-DEEPEST = 4  # bundles in one another
-BONES = ("Neck", "Head", "LeftEye", "RightEye")
 _BUNDLE = b"#bundle\0"
 _HEAD = len(_BUNDLE) + 8  # and a time, which nobody waits for
 # The messages that we read, as their bytes begin: of others the library might complain in the log.
@@ -46,23 +43,27 @@ Quaternion = tuple[float, float, float, float]  # x, y, z, w
 
 
 def parse(packet: bytes) -> LiveFrame | None:
-    """What a packet adds to a frame, None if it is none; see the head of this file."""
+    """The channels that a packet adds to a frame; None if it is no packet of VMC."""
     channels: dict[str, float] = {}
     bones: dict[str, Quaternion] = {}
     has_values = is_applied = False
     try:
-        for message in _messages(packet, DEEPEST):
+        value_address = "/VMC/Ext/Blend/Val"
+        apply_address = "/VMC/Ext/Blend/Apply"
+        most_depth = 4  # bundles in one another
+        read_bones = ("Neck", "Head", "LeftEye", "RightEye")
+        for message in _messages(packet, most_depth):
             if not _KNOWN.match(message):
                 continue
             parsed = OscMessage(message)
-            if parsed.address == APPLY:
+            if parsed.address == apply_address:
                 is_applied = True
-            elif parsed.address == VALUE:
+            elif parsed.address == value_address:
                 has_values = True
                 name, value = parsed.params
                 if shape := shape_named(name):
                     put_shape(channels, shape, value)
-            elif parsed.params[0] in BONES:
+            elif parsed.params[0] in read_bones:
                 name, _, _, _, x, y, z, w = parsed.params
                 bones[name] = (x, y, z, w)
     except (MessageError, ValueError, struct.error):  # Unicode errors among them

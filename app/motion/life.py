@@ -31,22 +31,9 @@ from ..scenes import FaceScene, Scene
 Values = dict[str, float]
 Place = tuple[float, float]  # to the left and up [degrees]
 
-BLINK_SPAN = 3.5  # [s] in which there is one
-GLANCE_SPAN = 1.6  # [s] in which there is one
-EARLY = 0.8  # share of a span in which it begins, so that there is time between two
-# The lid's muscle follows late, and a short pulse would not shut the eye. With these the lid of the
-# simulation is down by 95 % after 0.12 s, stays so for 0.09 s (99 % at most), comes up in 0.13 s.
-SHUT_FOR = 0.14  # [s] that the muscle is drawn
-OPENS_IN = 0.18  # [s] in which it relaxes
 
 # Glances [degrees]
 EYE_RANGE = 30.0  # that gaze = 1 stands for
-FACE_SPREAD = 1.1, 0.7  # of glances over the viewer's face, across and along
-AWAY = 0.1  # share of glances that leave the viewer, by so much; up and down by half of that
-AWAY_LEAST = 4.0
-AWAY_MOST = 12.0
-# A saccade takes 21 ms and 2.2 ms more for each degree. The eye's own lag is the former.
-SECONDS_PER_DEGREE = 0.0022
 
 # The head at rest: most that it strays [degrees], and the angle of its controls at 1.
 HEAD_STRAYS = {"head_yaw": 1.2, "head_pitch": 0.7, "head_roll": 0.6}
@@ -54,7 +41,6 @@ HEAD_RANGES = {"head_yaw": 45.0, "head_pitch": 30.0, "head_roll": 30.0}
 HEAD_PERIODS = np.array([4.7, 7.9, 13.3])  # [s] of the sines, which never meet
 
 LID = "orbicularis_oculi_palpebral_upper"
-SIDES = "left", "right"
 BLINKS, GLANCES, PLACES, STRAYS = range(4)  # separate streams of random numbers
 
 
@@ -72,8 +58,9 @@ class Life:
         """
         across, along = self._glance(time)
         strays = zip(HEAD_STRAYS.items(), self._drifts(time), strict=True)
+        blink_span = 3.5  # [s] in which there is one
         return {
-            "lids": _both(LID, lid(time - self._latest(BLINKS, BLINK_SPAN, time)[1])),
+            "lids": _both(LID, lid(time - self._latest(BLINKS, blink_span, time)[1])),
             "eyes": {
                 **_both("gaze_horizontal", across / EYE_RANGE),
                 **_both("gaze_vertical", along / EYE_RANGE),
@@ -88,18 +75,22 @@ class Life:
     def _latest(self, what: int, span: float, time: float) -> tuple[int, float]:
         """The number of the last moment before `time` [s], 1 for the first span's, and when."""
         number = int(time // span) + 1
+        latest_start = 0.8  # share of a span in which it begins, so that there is time between two
         for each in (number, number - 1):
-            start = span * (each - 1 + EARLY * self._chance(what, each).random())
+            start = span * (each - 1 + latest_start * self._chance(what, each).random())
             if start <= time and each > 0:
                 return each, start
         return 0, -math.inf
 
     def _glance(self, time: float) -> Place:
         """Where the eyes look; a saccade leads from one place to the next."""
-        number, start = self._latest(GLANCES, GLANCE_SPAN, time)
+        glance_span = 1.6  # [s] in which there is one
+        number, start = self._latest(GLANCES, glance_span, time)
         before = self._place(number - 1)
         there = self._place(number)
-        duration = SECONDS_PER_DEGREE * math.dist(before, there)
+        # A saccade takes 21 ms and 2.2 ms more for each degree. The eye's own lag is the former.
+        seconds_per_degree = 0.0022
+        duration = seconds_per_degree * math.dist(before, there)
         share = min((time - start) / duration, 1.0) if duration else 1.0
         return (
             before[0] + share * (there[0] - before[0]),
@@ -111,10 +102,14 @@ class Life:
         if number < 2:
             return 0.0, 0.0
         chance = self._chance(PLACES, number)
-        if chance.random() >= AWAY:
-            across, along = np.clip(chance.normal(0.0, FACE_SPREAD), -2.0, 2.0)
+        away_share = 0.1  # of glances that leave the viewer
+        if chance.random() >= away_share:
+            face_spread = 1.1, 0.7  # of glances over the viewer's face, across and along
+            across, along = np.clip(chance.normal(0.0, face_spread), -2.0, 2.0)
             return float(across), float(along)
-        size = chance.uniform(AWAY_LEAST, AWAY_MOST)
+        least_away = 4.0
+        most_away = 12.0
+        size = chance.uniform(least_away, most_away)
         angle = chance.uniform(0.0, 2.0 * math.pi)
         return size * math.cos(angle), 0.5 * size * math.sin(angle)
 
@@ -126,22 +121,23 @@ class Life:
 
 
 def _both(name: str, value: float) -> Values:
-    return {f"{name}_{side}": value for side in SIDES}
+    sides = "left", "right"
+    return {f"{name}_{side}": value for side in sides}
 
 
 def lid(age: float) -> float:
     """How far the lids' muscle is drawn `age` [s] after a blink began: at once, then less."""
-    if not 0.0 <= age < SHUT_FOR + OPENS_IN:
+    # The lid's muscle follows late, and a short pulse would not shut the eye. With these the lid of
+    # the simulation is down by 95 % after 0.12 s, stays so for 0.09 s (99 % at most), comes up in
+    # 0.13 s.
+    shut_time = 0.14  # [s] that the muscle is drawn
+    opening_time = 0.18  # [s] in which it relaxes
+    if not 0.0 <= age < shut_time + opening_time:
         return 0.0
-    return 0.5 + 0.5 * math.cos(math.pi * max(age - SHUT_FOR, 0.0) / OPENS_IN)
+    return 0.5 + 0.5 * math.cos(math.pi * max(age - shut_time, 0.0) / opening_time)
 
 
-EYES_ALONE = 10.0  # [degrees] off straight ahead that are left to the eyes
-SHARE_OF_HEAD = 0.5  # of the angle beyond
 EYES_MOST = 25.0  # [degrees] that eyes turn without strain
-# [degrees] aside, and above or below: as far the viewer is looked at; and not at all.
-FOLLOWED = (45.0, 32.0)
-LOST = (65.0, 45.0)
 
 
 class Idle:
@@ -189,8 +185,13 @@ def looking_at(scene: FaceScene, viewer: npt.NDArray[np.float64]) -> dict[str, V
     if not centres:
         return {}
     aside = _angles(viewer - np.mean(list(centres.values()), axis=0))
-    share = math.prod(map(_followed, aside, FOLLOWED, LOST))
-    turn, rise = (share * SHARE_OF_HEAD * _beyond(angle, EYES_ALONE) for angle in aside)
+    # [degrees] aside, and above or below: as far the viewer is looked at; and not at all.
+    followed_angles = (45.0, 32.0)
+    lost_angles = (65.0, 45.0)
+    share = math.prod(map(_followed, aside, followed_angles, lost_angles))
+    eye_angle = 10.0  # [degrees] off straight ahead that are left to the eyes
+    head_share = 0.5  # of the angle beyond
+    turn, rise = (share * head_share * _beyond(angle, eye_angle) for angle in aside)
     to_rest = np.linalg.inv(scene.bone_transforms()["cranium"])
     seen = (to_rest @ [*viewer, 1.0])[:3]  # the viewer, as the turned head has him
     eyes = {}

@@ -35,11 +35,6 @@ Floats = npt.NDArray[np.float64]
 SIDES = ("right", "left")  # the subject's, in the order of landmarks
 FORWARD = np.array([0.0, 0.0, 1.0])  # of a head and of an eye at rest
 DIGITS = 8  # behind the point: points projected anew are off by less than 1e-4 pixels
-COUNT = 70
-# [mm] along the camera's axis: the refined skin may pass a landmark by and be steep within a pixel,
-# and over a pupil a lid of a millimetre may close.
-TOLERANCE = 2.0
-PUPIL_TOLERANCE = 0.6
 
 
 def labels_of(
@@ -139,7 +134,14 @@ def landmarks_in(
     columns, rows = np.floor(pixels).astype(int).T
     is_inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
     seen = depth[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)]
-    tolerance = np.where(np.arange(COUNT) < len(scene.landmarks), TOLERANCE, PUPIL_TOLERANCE)
+    landmark_count = 70
+    # [mm] along the camera's axis: the refined skin may pass a landmark by and be steep within a
+    # pixel, and over a pupil a lid of a millimetre may close.
+    most_behind = 2.0
+    pupil_tolerance = 0.6
+    tolerance = np.where(
+        np.arange(landmark_count) < len(scene.landmarks), most_behind, pupil_tolerance
+    )
     tolerance = np.maximum(tolerance, depths / camera.intrinsics[0, 0])
     # Background has the depth 0.
     visible = is_inside & (seen > 0.0) & (np.abs(seen - depths) <= tolerance)

@@ -9,9 +9,6 @@ import numpy as np
 
 from .take import Array
 
-LARGEST_DEGREES = 360.0  # a larger one is no angle in any unit
-LARGEST_RADIANS = 1.6  # no head that is seen turns further, nor an eye
-
 
 def in_degrees(
     angles: Mapping[str, Array], outward: Mapping[str, float], notes: list[str]
@@ -22,8 +19,9 @@ def in_degrees(
     how much the axes of eyeballs are off [degrees].
     """
     moving = {}
+    largest_degrees = 360.0  # a larger one is no angle in any unit
     for name, values in angles.items():
-        values = np.where(np.abs(values) > LARGEST_DEGREES, np.nan, values)
+        values = np.where(np.abs(values) > largest_degrees, np.nan, values)
         if np.nan_to_num(values).any():
             moving[name] = values
     if len(moving) < len(angles):
@@ -32,7 +30,8 @@ def in_degrees(
     if not moving:
         return {}
     size = max(float(np.nanpercentile(np.abs(values), 99)) for values in moving.values())
-    is_radians = size <= LARGEST_RADIANS
+    largest_radians = 1.6  # no head that is seen turns further, nor an eye
+    is_radians = size <= largest_radians
     unit = "radians" if is_radians else "degrees"
     notes.append(f"Angles reach {size:.2g} and were taken for {unit}.")
     scale = -180.0 / math.pi if is_radians else -1.0

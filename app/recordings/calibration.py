@@ -1,4 +1,4 @@
-"""Calibration: what a recording's channels are of this person's face, and how strongly they count.
+"""Calibration: the neutral face of a recorded person, and gains of the channels.
 
 No face is at 0 while it rests: a phone reads a quarter of a frown in most. Calibration takes the
 neutral face away and keeps the greatest value where it is:
@@ -26,23 +26,18 @@ from .take import Array, Take
 
 Value = TypeVar("Value", float, Array)
 
-LEAST_RANGE = 0.2  # what a neutral face leaves of a channel; more would stretch noise to a motion
 HIGHEST_GAIN = 10.0
-LOW = 5.0  # percentile that counts as neutral
 FIRST_SECONDS = 1.0  # [s] of a take in which the head is held straight
-SHORTEST = 2.0  # [s]; a shorter take has no neutral face in it that could be told from the others
 BLINK_GAIN = 1.15  # blinks are recorded with peaks of 0.86 to 0.94
 OPENFACE_GAIN = 1.4  # intensity E, 5 of 5, is next to never given
-# What is at 0 by itself while the face rests, or is a share of another channel.
-_NEVER_NEUTRAL = ("eyeLook*", "eyeBlink*", "jawOpen", "mouthClose", "AU43*", "AU45*", "AU46*")
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """What is done to the channels of one face before they move another.
+    """Changes of one face's channels before they move another face.
 
-    neutral: channel -> its value in the neutral face, in its own unit; 0 for what is not named.
-    gains: channel -> what it is multiplied with.
+    neutral: channel -> its value in the neutral face, in its own unit; 0 for others.
+    gains: channel -> its factor.
     default_gain: of all other channels but angles.
     mirror: whether left and right change places.
     """
@@ -66,7 +61,9 @@ class Calibration:
         neutral = self.neutral.get(name, 0.0)
         if name in ANGLES:
             return (value - neutral) * self.gains.get(name, 1.0)
-        scale = self.gains.get(name, self.default_gain) / max(1.0 - neutral, LEAST_RANGE)
+        # The least that a neutral face leaves of a channel; less would stretch noise to a motion.
+        least_range = 0.2
+        scale = self.gains.get(name, self.default_gain) / max(1.0 - neutral, least_range)
         return (value - neutral) * scale
 
 
@@ -90,9 +87,9 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
     """The neutral face of a take: channel -> value.
 
     method: "first:SECONDS", the median of so much of its beginning; "percentile", the 5th of each
-    channel (LOW), but the first second of the head's turn; "none". None: percentile for what is
-    neither calibrated nor too short to tell, of what does rest at a value of its own. Raises
-    UserError for another method.
+    channel, but the first second of the head's turn; "none". None: "percentile" for takes that are
+    not calibrated and long enough, without channels that rest at 0. Raises UserError for another
+    method.
     """
     if method == "none":
         return {}
@@ -101,14 +98,18 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
         return _median_of_first(take, names, _seconds_in(method))
     if method not in (None, "percentile"):
         raise UserError(f"--neutral {method}: allowed are first:SECONDS, percentile and none")
-    if method is None and take.duration < SHORTEST:
+    shortest_take = 2.0  # [s]: a shorter one shows no neutral face apart from the others
+    if method is None and take.duration < shortest_take:
         return {}
     neutral = _median_of_first(take, [n for n in names if n in HEAD_ANGLES], FIRST_SECONDS)
     if method is None and take.is_calibrated:
         return neutral
+    low_percentile = 5.0  # that counts as neutral
+    # Channels that rest at 0 by themselves, or are a share of another channel.
+    never_neutral = ("eyeLook*", "eyeBlink*", "jawOpen", "mouthClose", "AU43*", "AU45*", "AU46*")
     for name in names:
-        if name not in ANGLES and not any(_fitting([name], each) for each in _NEVER_NEUTRAL):
-            neutral[name] = float(np.percentile(take.channels[name], LOW))
+        if name not in ANGLES and not any(_fitting([name], each) for each in never_neutral):
+            neutral[name] = float(np.percentile(take.channels[name], low_percentile))
     return neutral
 
 
@@ -139,14 +140,14 @@ def gains_of(
 ) -> tuple[dict[str, float], float]:
     """What `--gain NAME=x ...` makes of channels: the gain of each named one, and of all others.
 
-    NAME is a channel, a pattern (mouth*, *Left), or all; what comes later counts. kind: what wrote
-    them, which tells the gains where nothing else is said. Raises UserError for a name that fits no
-    channel.
+    NAME is a channel, a pattern (mouth*, *Left), or all; later ones win. kind: of the recording,
+    which has default gains. Raises UserError for a name that fits no channel.
     """
     names = list(channels)
     is_openface = kind.startswith("OpenFace")
     pattern, usual = ("AU*", OPENFACE_GAIN) if is_openface else ("eyeBlink*", BLINK_GAIN)
-    gains, default = dict.fromkeys(_fitting(names, pattern), usual), 1.0
+    gains = dict.fromkeys(_fitting(names, pattern), usual)
+    default = 1.0
     for setting in settings:
         name, value = _gain_in(setting)
         if name == "all":

@@ -23,8 +23,6 @@ from .playback import LEAD, Playback
 from .report import Report, report_of
 from .take import Array, Take
 
-LEAST_STEP = 1e-3  # [s] between the first two keys
-CAMERA = "front"  # from where recorded faces were seen
 # How late eyes and head follow [s], where muscles and skin do by LEAD; all measured at 60 Hz.
 _LATE = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.063}
 
@@ -51,11 +49,12 @@ def _script(take: Take, curves: Mapping[str, Array], lead: float) -> Script:
     title = Path(take.source).stem
     preface = f"# Made of {in_one_line(Path(take.source).name)}, {take.kind}.\n"
     moved = {name: values for name, values in curves.items() if np.abs(values).max() > TOLERANCE}
+    # from where recorded faces were seen
     script = Script(
         title,
         duration=rounded(take.duration),
         source=take.source,
-        camera=CAMERA,
+        camera="front",
         sound=take.sound,
         poses=(Pose(0.0),),
         preface=preface,
@@ -79,7 +78,8 @@ def lead_of(control: str, lead: float) -> float:
 def _track(times: Array, values: Array, lead: float) -> Channel:
     """The keys of one control, so much earlier [s]; what comes before the beginning is left out."""
     at_beginning = np.interp(lead, times, values)
-    later = times > lead + LEAST_STEP
+    least_step = 1e-3  # [s] between the first two keys
+    later = times > lead + least_step
     return thinned(
         np.concatenate([[0.0], times[later] - lead]),
         np.concatenate([[at_beginning], values[later]]),

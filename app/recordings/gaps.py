@@ -16,9 +16,6 @@ from .names import ANGLES, NONSENSE
 from .take import Array, Take
 
 SHORT_GAP = 0.3  # [s] that is bridged by a straight line
-MISSING_ROWS = 4.0  # of usual steps: what is longer, and no short gap, is a hole in the recording
-LARGEST_ANGLE = 360.0  # [degrees]; a larger one is no measurement
-LONGEST_TAKE = 86_400.0  # [s]
 
 
 def whole_take(
@@ -37,9 +34,10 @@ def whole_take(
     times: [s], shape (T,). channels: name -> shape (T,). has_keys: whether rows are keys, which may
     be far apart. UserError where no face is in it.
     """
-    told = list(notes)
+    all_notes = list(notes)
+    largest_angle = 360.0  # [degrees]; a larger one is no measurement
     channels = {
-        name: np.where(np.abs(v) > (LARGEST_ANGLE if name in ANGLES else NONSENSE), np.nan, v)
+        name: np.where(np.abs(v) > (largest_angle if name in ANGLES else NONSENSE), np.nan, v)
         for name, v in channels.items()
     }
     channels = {name: values for name, values in channels.items() if np.isfinite(values).any()}
@@ -49,25 +47,26 @@ def whole_take(
         )
     if not np.isfinite(times).any():
         raise UserError(f"{source}: {kind}: no row has a time that can be read")
-    known = np.flatnonzero(np.abs(times - np.nanmedian(times)) <= LONGEST_TAKE)
+    longest_take = 86_400.0  # [s]
+    known = np.flatnonzero(np.abs(times - np.nanmedian(times)) <= longest_take)
     moments, first = np.unique(times[known], return_index=True)
     kept = known[first]
     if len(kept) < len(times):
-        told.append(_left_out(len(times) - len(kept)))
+        all_notes.append(_left_out(len(times) - len(kept)))
     times = moments - moments[0]
-    if times[-1] > LONGEST_TAKE:
+    if times[-1] > longest_take:
         raise UserError(
             f"{source}: {kind}: lasts {times[-1]:.6g} s; a recording lasts a day at most"
         )
     rows = {name: values[kept] for name, values in channels.items()}
     seen = np.any([np.isfinite(values) for values in rows.values()], axis=0)
     if not seen.all():
-        told.append(
+        all_notes.append(
             f"No face in {int((~seen).sum())} of {len(seen)} frames: the last pose is held there."
         )
     holes = np.empty(0, dtype=np.intp) if has_keys else _holes(times)
     if len(holes):
-        told.append(_missing(np.diff(times)[holes]))
+        all_notes.append(_missing(np.diff(times)[holes]))
         times = np.insert(times, holes + 1, times[holes + 1] - SHORT_GAP)
         rows = {name: np.insert(values, holes + 1, np.nan) for name, values in rows.items()}
     filled = {
@@ -75,7 +74,9 @@ def whole_take(
     }
     if not filled:
         raise UserError(f"{source}: {kind}: no frame shows a face with a time")
-    return Take(kind, source, times, filled, is_calibrated, tuple(told), tuple(unknown), has_keys)
+    return Take(
+        kind, source, times, filled, is_calibrated, tuple(all_notes), tuple(unknown), has_keys
+    )
 
 
 def _left_out(count: int) -> str:
@@ -97,7 +98,8 @@ def _holes(times: Array) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     steps = np.diff(times)
     if len(steps) < 3:
         return np.empty(0, dtype=np.intp)
-    longest = max(SHORT_GAP, MISSING_ROWS * float(np.median(steps)))
+    most_steps = 4.0  # usual ones: a longer gap that is not short is a hole in the recording
+    longest = max(SHORT_GAP, most_steps * float(np.median(steps)))
     return np.flatnonzero(steps > longest)
 
 
@@ -106,7 +108,8 @@ def _filled(times: Array, values: Array) -> Array:
     known = np.isfinite(values)
     if known.all():
         return values
-    at, there = times[known], values[known]
+    at = times[known]
+    there = values[known]
     is_long = np.diff(at) > SHORT_GAP
     # Before each frame that ends a long gap: the old value once more, 0.3 s earlier.
     at = np.concatenate([at, at[1:][is_long] - SHORT_GAP])

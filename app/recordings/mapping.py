@@ -1,7 +1,7 @@
 """Mapping: from the channels of a recording to the controls of the face.
 
 Shapes, action units and visemes move the control of their own name, angles head and eyes. Where a
-recording tells the same thing twice, only one of the two moves the face, see `chosen`.
+recording measures the same motion twice, only one of the two moves the face, see `chosen`.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ CONTROLS_OF_ANGLES = {  # and how much of them is a degree: as far as necks go w
     "eye_pitch_right": ("gaze_vertical_right", 0.033333),
 }
 _ACTION_UNIT = re.compile(r"(AU[0-9]{1,2})(_left|_right)?")
-_SHAPE_OF_UNIT = {  # which shapes, by the beginning of their names, tell what an action unit tells
+_SHAPE_OF_UNIT = {  # action unit -> beginning of the names of shapes that measure it, too
     "AU1": "browInnerUp", "AU2": "browOuterUp", "AU4": "browDown", "AU5": "eyeWide",
     "AU6": "cheekSquint", "AU7": "eyeSquint", "AU9": "noseSneer", "AU10": "mouthUpperUp",
     "AU12": "mouthSmile", "AU14": "mouthDimple", "AU15": "mouthFrown", "AU16": "mouthLowerDown",
@@ -47,7 +47,7 @@ _LOOKS_OF_ANGLE = {
 def controls_of(channels: Mapping[str, Value]) -> dict[str, Value]:
     """The values of the controls that the channels move: arrays or numbers, as given.
 
-    Nothing is cut off: limits are of controls, not of what was measured.
+    Nothing is cut off: controls have limits, measurements have none.
     """
     controls: dict[str, Value] = {}
     for channel in chosen(channels):
@@ -57,11 +57,11 @@ def controls_of(channels: Mapping[str, Value]) -> dict[str, Value]:
 
 
 def chosen(channels: Mapping[str, Any]) -> tuple[str, ...]:
-    """The channels that move the face, where some tell the same thing twice.
+    """The channels that move the face, where two measure the same motion.
 
     Eyes by their angles: these have a sign and know no limit, and eyeLook shapes are made of them.
     A tracker that measures no angle leaves it at 0; then the shapes count. An action unit only
-    where no shape of ARKit tells the same: shapes know left from right.
+    where no shape of ARKit measures the same: shapes separate left and right.
     """
     left_out: set[str] = set()
     for angle, looks in _LOOKS_OF_ANGLE.items():

@@ -27,16 +27,9 @@ from .values import is_calibrated, is_flag, rows_without_face, shares, without_r
 # All without capitals and underscores, see `_plain`.
 FACES = ("faceblendshapes", "blendshapes", "categories")
 FRAMES = ("frames", "results", "data", "recording", "samples", "records", "weights")
-LISTED_NAMES = (
-    "facsnames", "names", "blendshapenames", "shapenames", "keys", "channels", "columns",
-    "columnnames", "header", "headers", "fields", "blendshapes", "shapes",
-)  # fmt: skip
 ROWS = ("weightmat", *FRAMES, "rows", "values")
-NAME_KEYS = ("categoryname", "name", "shape", "blendshape", "key", "label")  # of a category
-SCORE_KEYS = ("score", "value", "weight")
 WEIGHTS = ("weights", "values", "coefficients", "scores", *FACES)  # of one frame
 RATES = ("fps", "exportfps", "framerate")
-OF_NO_USE = ("index", "id", "version", "displayname", "facelandmarks", "landmarks")
 DEEPEST = 4  # tables in one another, in which a face is looked for
 
 
@@ -92,7 +85,11 @@ def _take_of(
 def _named_rows(document: Any) -> list[Any]:
     """Frames of a document that names its shapes once; none of another."""
     tables = _tables(document)
-    lists = [table.get(key) for key in LISTED_NAMES for table in tables]
+    listed_names = (
+        "facsnames", "names", "blendshapenames", "shapenames", "keys", "channels", "columns",
+        "columnnames", "header", "headers", "fields", "blendshapes", "shapes",
+    )  # fmt: skip
+    lists = [table.get(key) for key in listed_names for table in tables]
     names = next(filter(_are_names, lists), None)
     if names is None:
         return _frames_over_time(_columns(document))
@@ -224,14 +221,17 @@ def _flat(frame: Any, depth: int = DEEPEST) -> dict[str, Any]:
 def _is_left_out(key: str) -> bool:
     """Whether a key of frames says something that nothing here knows."""
     is_known = is_flag(key) or is_frame(key) or stamp_of(key) is not None
-    return not (is_known or key in OF_NO_USE or key in RATES)
+    useless_names = ("index", "id", "version", "displayname", "facelandmarks", "landmarks")
+    return not (is_known or key in useless_names or key in RATES)
 
 
 def _category(item: Any) -> tuple[str, float] | None:
     """Name and score, where the item is one category; the name is as written."""
     keys = _plain(item)
-    name = _first(keys, NAME_KEYS)
-    score = _first(keys, SCORE_KEYS)
+    name_keys = ("categoryname", "name", "shape", "blendshape", "key", "label")  # of a category
+    name = _first(keys, name_keys)
+    score_keys = ("score", "value", "weight")
+    score = _first(keys, score_keys)
     is_score = score is not None and not isinstance(score, dict | list)
     return (name, _number(score)) if isinstance(name, str) and is_score else None
 
@@ -299,7 +299,7 @@ def _rate(document: Any) -> float | None:
 
 
 def _plain(item: Any) -> dict[str, Any]:
-    """A table under keys without capitals and underscores; an empty one for what is none."""
+    """A table under keys without capitals and underscores; an empty one where the item is none."""
     if not isinstance(item, dict):
         return {}
     return {_plain_name(key): value for key, value in item.items()}
@@ -315,7 +315,7 @@ def _first(keys: Mapping[str, Any], names: Sequence[str]) -> Any:
 
 
 def _number(value: Any) -> float:
-    """A number, also one in quotes or with a percent sign; NaN for what is none."""
+    """A number, also one in quotes or with a percent sign; NaN for any other value."""
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         return math.nan
     try:

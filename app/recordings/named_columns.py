@@ -27,20 +27,11 @@ from .values import (
 # [degrees] by which the axes of eyeballs stand outwards where eyes look ahead, in the app's files
 # and packets, as those of real eyes do.
 OUTWARD = {"eye_yaw_left": 4.0, "eye_yaw_right": -4.0}
-OF_NO_USE = (
-    "blendshapecount",
-    "timecode",
-    "index",
-    "",
-    "unnamed: 0",
-    "lefteyeroll",
-    "righteyeroll",
-)
 
 
 @dataclass
 class Columns:
-    """What the columns of a table hold: channel -> number of the column."""
+    """The channels of a table's columns: channel -> number of the column."""
 
     shapes: dict[str, int] = field(default_factory=dict)
     units: dict[str, int] = field(default_factory=dict)
@@ -57,6 +48,15 @@ class Columns:
         units = [unit_of(name) for name in names]
         has_sides = any(unit is not None and unit.side == "_left" for unit in units)
         has_intensities = any(unit is not None and unit.kind == "intensity" for unit in units)
+        useless_names = (
+            "blendshapecount",
+            "timecode",
+            "index",
+            "",
+            "unnamed: 0",
+            "lefteyeroll",
+            "righteyeroll",
+        )
         for number, (name, unit) in enumerate(zip(names, units, strict=True)):
             known: dict[str, int] | None = None
             channel = ""
@@ -73,7 +73,7 @@ class Columns:
             elif name.casefold().startswith("viseme_") and (viseme := viseme_of(name)):
                 known = found.visemes
                 channel = viseme
-            elif name.casefold() not in OF_NO_USE and not is_flag(name):
+            elif name.casefold() not in useless_names and not is_flag(name):
                 found.unknown.append(number)
             if known is not None and known.setdefault(channel, number) != number:
                 found.repeated.append(number)

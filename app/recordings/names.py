@@ -10,7 +10,7 @@ Left and right are the subject's own. Angles grow to the subject's left, up, and
 shoulder, as the controls do. Readers turn signs and units of a format; nobody after them does.
 
 Programs spell them in many ways: `mouthSmile_L`, `MouthSmileLeft`, `blendShapes.mouthSmileLeft` and
-`mouth_smile_left` are one name; the functions below tell which.
+`mouth_smile_left` are one name; the functions below find it.
 
 Source: Apple, ARFaceAnchor.BlendShapeLocation (the names).
 """

@@ -2,8 +2,8 @@
 
 Source: OpenFace's wiki, "Output Format". The camera's x points to the subject's left, y down:
 pose_Rx + is down, pose_Ry + to the subject's right, pose_Rz + to the subject's left shoulder;
-gaze x + is to the subject's left, y + down; all in radians. Left and right muscles are not told
-apart.
+gaze x + is to the subject's left, y + down; all in radians. Left and right muscles have one
+value.
 """
 
 from __future__ import annotations
@@ -85,10 +85,12 @@ def _eyes(numbers: dict[str, Array], head: dict[str, Array], notes: list[str]) -
     A camera stands above the screen that people look at, so that their gaze is never 0.
     """
     if set(GAZE) <= numbers.keys():
-        across, down = numbers[GAZE[0]], numbers[GAZE[1]]
+        across = numbers[GAZE[0]]
+        down = numbers[GAZE[1]]
     elif set(VECTORS) <= numbers.keys():
         x, y, z = (numbers[f"gaze_0_{each}"] + numbers[f"gaze_1_{each}"] for each in "xyz")
-        across, down = np.arctan2(x, -z), np.arctan2(y, -z)
+        across = np.arctan2(x, -z)
+        down = np.arctan2(y, -z)
     else:
         return {}
     if not (np.nan_to_num(across).any() or np.nan_to_num(down).any()):
@@ -99,5 +101,6 @@ def _eyes(numbers: dict[str, Array], head: dict[str, Array], notes: list[str]) -
     )
     yaw = np.degrees(across) - head.get("head_yaw", 0.0)
     pitch = -np.degrees(down) - head.get("head_pitch", 0.0)
-    yaw, pitch = yaw - np.nanmedian(yaw), pitch - np.nanmedian(pitch)
+    yaw = yaw - np.nanmedian(yaw)
+    pitch = pitch - np.nanmedian(pitch)
     return {name: yaw if "yaw" in name else pitch for name in EYE_ANGLES}

@@ -5,9 +5,8 @@ radians, Pitch + down. Yaw + is to the subject's right; Roll + to the subject's 
 version 2 to the right one. This was found by comparing angles in files of theirs with the landmarks
 beside them, in version 2 of yaw and roll alone. No version gives a time but the number of a frame.
 
-Version 2 tells most of the face twice. Its shapes know left from right and how far, its units only
-how likely they are. So the shapes count, and of the units those which MediaPipe never sees: AU6,
-AU9.
+Version 2 measures most of the face twice. Its shapes have a side and a strength, its units only a
+probability. So the shapes count, and of the units those which MediaPipe never sees: AU6, AU9.
 """
 
 from __future__ import annotations
@@ -26,9 +25,6 @@ from .values import intensities, rows_without_face, shares, without_rows
 UNIT = re.compile(r"au(\d\d)$")
 BOX = {"facerectx", "facerecty", "facerectwidth", "facerectheight", "facescore"}
 POSE = ("pitch", "yaw", "roll")
-NEVER_SEEN = ("cheekPuff", "cheekSquintLeft", "cheekSquintRight", "noseSneerLeft", "noseSneerRight")
-INSTEAD = ("AU6", "AU9")
-LARGEST_RADIANS = 1.6  # a head that is seen turns no further
 
 
 def recognises(names: tuple[str, ...]) -> bool:
@@ -45,12 +41,20 @@ def read(table: Table, request: Request) -> Take:
     places = table.places
     units = {f"AU{int(m[1])}": n for name, n in places.items() if (m := UNIT.match(name))}
     shapes = {shape: n for name, n in places.items() if (shape := shape_of(name))}
-    if len(shapes) > len(NEVER_SEEN):
-        shapes = {name: n for name, n in shapes.items() if name not in NEVER_SEEN}
-        units = {name: n for name, n in units.items() if name in INSTEAD}
+    unseen_shapes = (
+        "cheekPuff",
+        "cheekSquintLeft",
+        "cheekSquintRight",
+        "noseSneerLeft",
+        "noseSneerRight",
+    )
+    if len(shapes) > len(unseen_shapes):
+        shapes = {name: n for name, n in shapes.items() if name not in unseen_shapes}
+        units_instead = ("AU6", "AU9")
+        units = {name: n for name, n in units.items() if name in units_instead}
         notes.append(
-            "Shapes and action units tell the same face twice: the shapes were taken, and AU6 and "
-            "AU9, which the shapes do not know."
+            "Shapes and action units measure the same face twice: the shapes were taken, and AU6 "
+            "and AU9, which the shapes do not have."
         )
     others = {name: places[name] for name in ("facescore", *POSE) if name in places}
     wanted = units | shapes | others
@@ -71,12 +75,13 @@ def read(table: Table, request: Request) -> Take:
 
 
 def _head(numbers: dict[str, Array], is_second: bool, notes: list[str]) -> dict[str, Array]:
-    """The head's angles in degrees, whatever units and signs the version has."""
+    """The head's angles in degrees, from the units and signs of any version."""
     pose = {n: numbers[n] for n in POSE if n in numbers and np.isfinite(numbers[n]).any()}
     if not pose:
         return {}
     size = max(float(np.nanpercentile(np.abs(values), 90)) for values in pose.values())
-    is_early = size > LARGEST_RADIANS
+    largest_radians = 1.6  # a head that is seen turns no further
+    is_early = size > largest_radians
     notes.append(
         f"Angles of the head reach {size:.2g} and were taken for "
         + ("degrees, pitch + up." if is_early else "radians, pitch + down.")

@@ -1,4 +1,4 @@
-"""A file -> a Take: its format is recognised from what it holds, never from its name.
+"""A file -> a Take: its format is recognised from its content, never from its name.
 
 `TABLES` and `DOCUMENTS` list the formats, the most special first. A new one is two functions, one
 that recognises it and one that reads it, and a row here.
@@ -35,12 +35,8 @@ DOCUMENTS: Sequence[tuple[Callable[[Any], bool], Callable[[Any, str, Request], T
     (mediapipe_json.recognises_weights, mediapipe_json.read_weights),
     (mediapipe_json.recognises, mediapipe_json.read),
 )
-KNOWN = (
-    "Live Link Face, OpenFace and py-feat tables, tables with ARKit or AU names above columns, "
-    "MediaPipe JSON, OpenFaceFX and Rhubarb tracks"
-)
 LONGEST_FILE = 2**29  # [bytes]; ten minutes of py-feat's 2183 columns are about as long
-BEGINNING = 2**16  # [bytes] that tell whether a file is a recording; a header of 2183 names fits
+BEGINNING = 2**16  # [bytes] that show whether a file is a recording; a header of 2183 names fits
 NOT_IN_TEXT = re.compile("[\x00-\x08\x0e-\x1a\x1c-\x1f]")  # characters of no text and no table
 JSON = re.compile(r"\s*(\{|\[\s*(\[\s*)*[\{\]])")  # no script in TOML begins so
 SPEAKS_OF_FACES = re.compile(
@@ -56,7 +52,7 @@ def read_take(path: Path, *, face: str | None = None, rate: float | None = None)
     face: which one, where a file holds several; the default is the one seen in most frames.
     rate: frames a second, where the file's own times are wrong or missing.
 
-    Raises UserError: which file, what is wrong, where, and what is allowed.
+    Raises UserError with the file, the fault, its place, and the allowed values.
     """
     if rate is not None and not 1.0 <= rate <= 1000.0:
         raise UserError(f"rate {rate:g}: must lie within 1 and 1000 frames a second")
@@ -69,6 +65,10 @@ def read_take(path: Path, *, face: str | None = None, rate: float | None = None)
 
 def _take_in(text: str, path: Path, request: Request) -> Take:
     """The take in a text. UserError as `read_take` has it."""
+    known_kinds = (
+        "Live Link Face, OpenFace and py-feat tables, tables with ARKit or AU names above columns, "
+        "MediaPipe JSON, OpenFaceFX and Rhubarb tracks"
+    )
     if JSON.match(text):
         try:
             document = parsed_json(text)
@@ -77,18 +77,18 @@ def _take_in(text: str, path: Path, request: Request) -> Take:
         for recognises, read in DOCUMENTS:
             if recognises(document):
                 return read(document, str(path), request)
-        raise UserError(f"{path}: is JSON without shapes of a face; known are {KNOWN}")
+        raise UserError(f"{path}: is JSON without shapes of a face; known are {known_kinds}")
     names = header_of(text)
     for is_known, read_table in TABLES:
         if is_known(names):
             return read_table(table_in(text, source=str(path)), request)
-    raise UserError(f"{path}: {_strange(names)}; known are {KNOWN}")
+    raise UserError(f"{path}: {_strange(names)}; known are {known_kinds}")
 
 
 def is_recording(path: Path) -> bool:
-    """Whether a file looks like a recording, by its first lines; `read_take` tells what is wrong.
+    """Whether a file looks like a recording, by its first lines; `read_take` reports faults.
 
-    False for scripts, heads and what is no text.
+    False for scripts, heads and files that are no text.
     """
     text = read_beginning(path)
     if JSON.match(text):
@@ -98,7 +98,7 @@ def is_recording(path: Path) -> bool:
 
 
 def _strange(names: tuple[str, ...]) -> str:
-    """What a file is that nobody knows."""
+    """The description of a file of no known kind."""
     if len(names) < 2:
         return "is no table and no JSON"
     listed = ", ".join(f"'{name}'" for name in names[:4])

@@ -1,6 +1,6 @@
-"""What is said of a take that is played: as what it was taken, what of it moves the face.
+"""The report on a take that is played: its kind, and the channels that move the face.
 
-A line that says what it is, and under it a few short ones, aligned; one screen at most.
+The first line has its kind. Below it stand a few short lines, aligned; one screen at most.
 """
 
 from __future__ import annotations
@@ -18,11 +18,6 @@ from .mapping import chosen
 from .names import ANGLES, ARKIT
 from .take import Take
 
-WIDTH = 100  # [characters] of a line
-MOST_LINES = 3  # of one heading
-MOST_NAMED = 5  # of neutral channels
-SLIGHT = 0.02  # of a neutral channel: no need to be told
-
 
 @dataclass(frozen=True)
 class Report:
@@ -34,7 +29,7 @@ class Report:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was guessed, skipped or left out, each a sentence."""
+        """Values that were guessed, skipped or left out, each a sentence."""
         return tuple(text for heading, text in self.rows if heading == "note")
 
     @property
@@ -42,14 +37,16 @@ class Report:
         """All of it, as a terminal shows it."""
         wide = max((len(heading) for heading, _ in self.rows), default=0)
         shown = [f"{in_one_line(self.source)}: {self.recognised}"]
+        width = 100  # [characters] of a line
+        most_lines = 3  # of one heading
         for heading, text in self.rows:
             start = f"  {heading:<{wide}}  "
             shown += textwrap.wrap(
                 in_one_line(text),
-                WIDTH,
+                width,
                 initial_indent=start,
                 subsequent_indent=" " * len(start),
-                max_lines=MOST_LINES,
+                max_lines=most_lines,
                 placeholder=" ...",
                 break_on_hyphens=False,
             )
@@ -58,7 +55,8 @@ class Report:
     @property
     def in_brief(self) -> str:
         """All of it in a line, for the window's message."""
-        name, count = Path(self.source).name, len(self.notes)
+        name = Path(self.source).name
+        count = len(self.notes)
         return f"{name}: {self.recognised}" + (f"; {counted(count, 'note')}" if count else "")
 
 
@@ -79,7 +77,7 @@ def report_of(take: Take, calibration: Calibration) -> Report:
 
 
 def _recognised(take: Take) -> str:
-    """What it was taken for, and how much it is."""
+    """The kind of the take, and its size."""
     calibrated = ", calibrated" if take.is_calibrated else ""
     count = len(take.times)
     if count == 1:
@@ -111,14 +109,16 @@ def _used(names: set[str]) -> str:
 
 def _neutral(calibration: Calibration) -> str:
     """How far the face is from 0 at rest, and where most."""
+    slight_value = 0.02  # of a neutral channel, which is not worth a line
     neutral = {
         name: abs(value)
         for name, value in calibration.neutral.items()
-        if name not in ANGLES and abs(value) > SLIGHT
+        if name not in ANGLES and abs(value) > slight_value
     }
     if not neutral:
         return ""
-    furthest = sorted(neutral, key=lambda name: -neutral[name])[:MOST_NAMED]
+    most_named = 5  # of neutral channels
+    furthest = sorted(neutral, key=lambda name: -neutral[name])[:most_named]
     most = f"by up to {neutral[furthest[0]]:.2g}; most {_listed(furthest)}"
     return f"{counted(len(neutral), 'channel')} above 0 at rest, {most}"
 
@@ -126,11 +126,11 @@ def _neutral(calibration: Calibration) -> str:
 def _listed(names: Iterable[str]) -> str:
     """Names one after another, pairs in one word."""
     listed = sorted(names)
-    told: list[str] = []
+    words: list[str] = []
     for name in listed:
         other = name.removesuffix("Left") + "Right"
         if name.endswith("Left") and other in listed:
-            told.append(name.removesuffix("Left") + "Left/Right")
+            words.append(name.removesuffix("Left") + "Left/Right")
         elif not (name.endswith("Right") and name.removesuffix("Right") + "Left" in listed):
-            told.append(name)
-    return " ".join(told)
+            words.append(name)
+    return " ".join(words)

@@ -7,7 +7,6 @@ import numpy.typing as npt
 
 from .take import Array
 
-DEFAULT_RATE = 30.0  # of most cameras
 DAY = 86_400.0  # [s]
 
 
@@ -24,7 +23,8 @@ def frame_times(
     has_stamps: whether there are time stamps that are of no use, as an earlier note says.
     """
     if rate is None:
-        rate = DEFAULT_RATE
+        default_rate = 30.0  # of most cameras
+        rate = default_rate
         if count > 1:
             why = "Instead" if has_stamps else "No times are given:"
             notes.append(f"{why} {rate:g} frames a second were assumed.")

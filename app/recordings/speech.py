@@ -25,10 +25,8 @@ from .gaps import whole_take
 from .names import viseme_of
 from .take import Array, Request, Take
 
-CONTACTS = {"viseme_PP": 1.0, "viseme_FF": 0.9}  # what the peak of a sound needs
+CONTACTS = {"viseme_PP": 1.0, "viseme_FF": 0.9}  # peak that a sound needs
 SILENCE = "viseme_sil"
-PEAK = 0.1  # what is lower is a neighbour's shadow
-LOW = 0.8  # tracks whose peaks are higher are clear enough
 MOUTHS = {  # of Rhubarb -> viseme and value
     "A": ("viseme_PP", 1.0),  # shut: p, b, m
     "B": ("viseme_SS", 0.7),  # teeth together: k, s, t, ee
@@ -40,7 +38,6 @@ MOUTHS = {  # of Rhubarb -> viseme and value
     "H": ("viseme_nn", 0.9),  # tongue up: l
     "X": (SILENCE, 1.0),
 }
-TURN = 0.08  # [s] in which one mouth shape goes over to the next
 
 
 Time = Annotated[float, Within(0.0, 86_400.0)]  # [s]
@@ -93,7 +90,8 @@ def read_tracks(document: Any, source: str, request: Request) -> Take:
     """The take in `{"channels": [{"name": "PP", "keys": [[time, weight], ...]}, ...]}`."""
     request.refuse_face(source)
     tracks: dict[str, Array] = {}
-    unknown, notes = [], list[str]()
+    unknown = []
+    notes = list[str]()
     for channel in read_table(_Tracks, document, source, error=UserError).channels:
         if viseme := viseme_of(channel.name):
             if channel.keys:
@@ -113,7 +111,8 @@ def read_tracks(document: Any, source: str, request: Request) -> Take:
 
 def _made_clear(channels: dict[str, Array], notes: list[str]) -> dict[str, Array]:
     """Weights that shut the lips where they are to meet, and that rest in silence."""
-    if max(float(values.max()) for values in channels.values()) > LOW:
+    clear_peak = 0.8  # tracks whose peaks are higher are clear enough
+    if max(float(values.max()) for values in channels.values()) > clear_peak:
         return channels
     found = dict(channels)
     for name, wanted in CONTACTS.items():
@@ -130,7 +129,8 @@ def _made_clear(channels: dict[str, Array], notes: list[str]) -> dict[str, Array
 def _height(values: Array) -> float:
     """How high the peaks of a track are, in the middle; 0 where it has none."""
     edged = np.concatenate([[-1.0], values, [-1.0]])
-    is_peak = (values >= edged[:-2]) & (values >= edged[2:]) & (values > PEAK)
+    least_peak = 0.1  # a lower one is a neighbour's shadow
+    is_peak = (values >= edged[:-2]) & (values >= edged[2:]) & (values > least_peak)
     return float(np.median(values[is_peak])) if is_peak.any() else 0.0
 
 
@@ -153,7 +153,10 @@ def read_cues(document: Any, source: str, request: Request) -> Take:
     cues = sorted((cue.start, cue.value) for cue in given)
     starts = np.array([start for start, _ in cues])
     ends = np.append(starts[1:], max(end, starts[-1]))
-    half = np.minimum((ends - starts) / 2.0, TURN / 2.0)  # of its way out, and of the next one's in
+    transition = 0.08  # [s] in which one mouth shape goes over to the next
+    half = np.minimum(
+        (ends - starts) / 2.0, transition / 2.0
+    )  # of its way out, and of the next one's in
     points: dict[float, str] = {float(starts[0]): cues[0][1]}
     for number, ((_, mouth), (start, following)) in enumerate(itertools.pairwise(cues)):
         turn = min(half[number], half[number + 1]) if number + 2 < len(cues) else half[number]
@@ -166,7 +169,7 @@ def read_cues(document: Any, source: str, request: Request) -> Take:
         name, value = MOUTHS[points[float(time)]]
         channels[name][row] = value
     used = {name: values for name, values in channels.items() if values.any()}
-    notes = [f"Mouth shapes became visemes, {TURN:g} s from one to the next."]
+    notes = [f"Mouth shapes became visemes, {transition:g} s from one to the next."]
     sound = _sound_of(written.metadata, source, notes)
     take = whole_take(
         "Rhubarb Lip Sync", source, times, used, notes=notes, is_calibrated=True, has_keys=True

@@ -23,12 +23,10 @@ import numpy as np
 from ..errors import UserError, counted
 from .take import Array, Request
 
-LONGEST_NAME = 80  # [characters] of a column; what is longer is no header
-LARGEST = 1e30  # what is larger is no measurement; nanoseconds since 1970 are 1.8e18
+LARGEST = 1e30  # a larger number is no measurement; nanoseconds since 1970 are 1.8e18
 FACE_COLUMNS = ("face_id", "identity", "face_idx", "faceid", "face")
 MOST_LISTED = 8  # faces in a message
 DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "blanks"}
-DECIMALS_SOUGHT = 2**16  # characters of the text in which a decimal comma is looked for
 CLEAN = "\x1f"  # the unit separator of ASCII, which no cell holds
 DECIMAL_COMMA = re.compile(r"[-+]?(\d*|\d{1,3}(\.\d{3})+),\d+(e[-+]?\d+)?", re.IGNORECASE)
 
@@ -112,7 +110,7 @@ class Table:
     lines: the text of each row; all have as many cells as there are names.
     line_numbers: of each row in the file, counted from 1.
     delimiter: the character between the cells of `lines`.
-    notes: what was found odd, each one sentence.
+    notes: oddities of the file, each one sentence.
     """
 
     source: str
@@ -169,7 +167,8 @@ def header_of(text: str) -> tuple[str, ...]:
 def _names_in(header: str, layout: Layout) -> tuple[str, ...]:
     """The names in the first row; none where it has no names."""
     names = tuple(cell.strip() for cell in _cells_of(header, layout))
-    is_header = all(len(name) <= LONGEST_NAME for name in names) and any(
+    longest_name = 80  # [characters] of a column; a longer name is no header
+    is_header = all(len(name) <= longest_name for name in names) and any(
         re.search(r"[^\W\d]", name) for name in names
     )
     return names if is_header else ()
@@ -236,11 +235,12 @@ def _is_empty(line: str) -> bool:
 def _layout_of(text: str, header: str) -> Layout:
     """The layout: the delimiter that makes most cells of the header, which has no numbers."""
     quote = "'" if header.lstrip().startswith("'") else '"'
-    sample = [*_lines_of(text[:DECIMALS_SOUGHT])]
+    decimals_sought = 2**16  # characters of the text in which a decimal comma is looked for
+    sample = [*_lines_of(text[:decimals_sought])]
     best = _with_delimiter(header, sample, quote)
     best = replace(best, is_quoted=quote in text)
     # A comma in a cell can only be found where commas do not part cells, or where quotes do.
-    if best.is_plain and best.delimiter == "," and "%" not in text[:DECIMALS_SOUGHT]:
+    if best.is_plain and best.delimiter == "," and "%" not in text[:decimals_sought]:
         return best
     cells = [cell.strip() for _, row in best.rows_of(sample) for cell in row]
     return replace(

@@ -1,4 +1,4 @@
-"""A recording of a face, whoever made it: channels over time; and what a reader is asked for."""
+"""A recording of a face, of any program: channels over time; and the request to a reader."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Take:
     times: of each frame [s], shape (T,), from 0 and strictly rising; T is at least 1.
     channels: name -> values, shape (T,); finite.
     is_calibrated: whether the neutral face was taken away already.
-    notes: what a report says besides: guessed, skipped, left out, each one sentence.
+    notes: values that were guessed, skipped or left out, each one sentence.
     unknown: columns that nobody knows, as the file spells them.
     has_keys: whether times are of keys, between which values go straight, and not of frames.
     sound: the file of the sound that the recording names, where it is there.

@@ -13,11 +13,7 @@ import numpy as np
 from .row_times import DAY, frame_times, mostly_rises, spread
 from .take import Array
 
-RATES = (  # [frames / s], as timecode counts them
-    24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 72.0, 75.0, 90.0, 100.0, 120.0, 144.0, 240.0, 1000.0
-)  # fmt: skip
 TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})([:;])(\d{1,6}(?:\.\d+)?)$")
-NTSC_TOLERANCE = 0.0025  # 29.97 is a thousandth less than 30, 23.976 than 24
 
 
 def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> Array:
@@ -39,7 +35,8 @@ def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -
     if rate is not None:
         if not is_sure and round(rate) > numbers[known].max():
             base = float(round(rate))
-        is_agreed = abs(rate / base - 1.0) < NTSC_TOLERANCE
+        ntsc_tolerance = 0.0025  # 29.97 is a thousandth less than 30, 23.976 than 24
+        is_agreed = abs(rate / base - 1.0) < ntsc_tolerance
         pace = rate if is_agreed else base
         if not is_agreed:
             notes.append(
@@ -74,7 +71,10 @@ def _base_of(seconds: Array, numbers: Array) -> tuple[float, bool]:
     one second end and the next begin, the usual step is missing just this count.
     """
     highest = float(numbers.max())
-    usual = next((rate for rate in RATES if rate > int(highest)), int(highest) + 1.0)
+    rates = (  # [frames / s], as timecode counts them
+        24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 72.0, 75.0, 90.0, 100.0, 120.0, 144.0, 240.0, 1000.0
+    )  # fmt: skip
+    usual = next((rate for rate in rates if rate > int(highest)), int(highest) + 1.0)
     steps = np.diff(numbers)
     turns = np.diff(seconds)
     within = steps[(turns == 0.0) & (steps > 0.0)]
@@ -86,7 +86,7 @@ def _base_of(seconds: Array, numbers: Array) -> tuple[float, bool]:
     share = float(np.mean(np.abs(counts - count) < 0.25))
     if len(counts) > 1 and share > 0.6 and count > int(highest):
         return count, True
-    fitting = [rate for rate in RATES if int(highest) < rate and abs(count / rate - 1.0) < 0.04]
+    fitting = [rate for rate in rates if int(highest) < rate and abs(count / rate - 1.0) < 0.04]
     return min(fitting, key=lambda rate: abs(rate - count), default=usual), True
 
 

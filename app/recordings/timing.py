@@ -47,23 +47,12 @@ UNITS = (  # shortest step, longest step, of which length [s]; of a time stamp
     (4e3, 2.5e6, 1e-6, "microseconds"),
     (4e6, 2.5e9, 1e-9, "nanoseconds"),
 )
-STAMPS = (  # without the unit behind them; the first that a file has and that rises counts
-    "timestamp", "time", "t", "timecode", "elapsed", "elapsedtime", "timeelapsed", "frametime",
-    "videotime", "mediatime", "capturetime", "relativetime", "datetime", "clock", "clocktime",
-    "systemtime", "localtime", "utctime", "timestamputc", "unixtime", "unixtimestamp", "epoch",
-    "pts",
-)  # fmt: skip
 SPELLED_UNITS = {
     "seconds": 1.0, "second": 1.0, "sec": 1.0, "secs": 1.0, "s": 1.0,
     "milliseconds": 1e-3, "millis": 1e-3, "msec": 1e-3, "ms": 1e-3,
     "microseconds": 1e-6, "micros": 1e-6, "usec": 1e-6, "us": 1e-6,
     "nanoseconds": 1e-9, "nanos": 1e-9, "nsec": 1e-9, "ns": 1e-9,
 }  # fmt: skip
-FRAMES = (
-    "frame", "framenumber", "frameid", "frameindex", "frameidx", "frames", "frameno", "framenum",
-    "framecount",
-)  # fmt: skip
-SAMPLED = 100  # cells that show whether a column holds clock times
 
 
 @dataclass(frozen=True)
@@ -80,25 +69,63 @@ class Stamp:
 def stamp_of(name: str) -> Stamp | None:
     """The meaning of a column or key by its name; None where it is no time."""
     letters = _letters(name)
-    if letters in STAMPS:
-        return Stamp(STAMPS.index(letters))
+    stamp_names = (  # without the unit behind them; the first that a file has and that rises counts
+        "timestamp",
+        "time",
+        "t",
+        "timecode",
+        "elapsed",
+        "elapsedtime",
+        "timeelapsed",
+        "frametime",
+        "videotime",
+        "mediatime",
+        "capturetime",
+        "relativetime",
+        "datetime",
+        "clock",
+        "clocktime",
+        "systemtime",
+        "localtime",
+        "utctime",
+        "timestamputc",
+        "unixtime",
+        "unixtimestamp",
+        "epoch",
+        "pts",
+    )  # without the unit behind them; the first that a file has and that rises counts
+    if letters in stamp_names:
+        return Stamp(stamp_names.index(letters))
     for spelled, unit in SPELLED_UNITS.items():
         stem = letters.removesuffix(spelled)
         if stem == letters:
             continue
         if not stem:  # "ms" and "seconds" alone are times, "s" may be anything
             return (
-                Stamp(len(STAMPS), unit) if spelled in ("ms", "seconds", "milliseconds") else None
+                Stamp(len(stamp_names), unit)
+                if spelled in ("ms", "seconds", "milliseconds")
+                else None
             )
         stem = stem.removesuffix("in")
-        if stem in STAMPS:
-            return Stamp(STAMPS.index(stem), unit)
+        if stem in stamp_names:
+            return Stamp(stamp_names.index(stem), unit)
     return None
 
 
 def is_frame(name: str) -> bool:
     """Whether a name is that of frame numbers."""
-    return _letters(name) in FRAMES
+    frame_names = (
+        "frame",
+        "framenumber",
+        "frameid",
+        "frameindex",
+        "frameidx",
+        "frames",
+        "frameno",
+        "framenum",
+        "framecount",
+    )
+    return _letters(name) in frame_names
 
 
 def _letters(name: str) -> str:
@@ -139,11 +166,12 @@ def find_times(
     """
     stamps = {name: stamp for name in names if (stamp := stamp_of(name))}
     has_stamps = False
+    sample_size = 100  # cells that show whether a column holds clock times
     for name in sorted(
         stamps, key=lambda name: (stamps[name].place, stamps[name].unit is not None)
     ):
         cells = with_colons(texts(name))
-        sample = [cell for cell in cells if cell][:SAMPLED]
+        sample = [cell for cell in cells if cell][:sample_size]
         times: Array | None = None
         if sum(bool(TIMECODE.match(cell)) for cell in sample) * 2 > len(sample):
             times = timecode_times(cells, rate, notes)
@@ -200,7 +228,7 @@ def _seconds_in(cell: str) -> float:
 
 
 def stamp_times(stamps: Array, notes: list[str], unit_of_name: float | None = None) -> Array | None:
-    """Time stamps in seconds, whatever their unit is; None where they are of no use.
+    """Time stamps of any unit in seconds; None where they are of no use.
 
     unit_of_name: the unit that the column's name says [s]; it counts if frames are then 0.5 ms to
     10 s apart.

@@ -19,16 +19,6 @@ from .take import Array
 
 Rows = npt.NDArray[np.bool_]
 
-HIGHEST_UNIT = 6.0  # an intensity of 0 to 5 beyond is none
-MOST_PERCENT = 300.0  # of a shape; programs for animation allow more than 100
-SHARE_OF_PERCENT = 0.05  # of rows with large values: percent, and no stray values
-OVERSHOOT = 1.05  # to which smoothed values of 0 to 1 reach
-SEEN = 0.5  # a flag is 0 or 1; a confidence below is none
-SURE_FLAGS = (
-    "facedetected", "detected", "hasface", "facefound", "facepresent", "facevisible", "istracked",
-    "tracked", "istracking", "facetracked", "isfacetracked", "valid", "isvalid", "success",
-    "confidence", "faceconfidence", "detectionconfidence", "trackingconfidence",
-)  # fmt: skip
 COUNT = "blendshapecount"  # of the values in a row
 WORDS = {"true": 1.0, "yes": 1.0, "false": 0.0, "no": 0.0}
 NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
@@ -39,7 +29,27 @@ ZERO = 1e-6
 def is_flag(name: str) -> bool:
     """Whether a column or key says if a face is seen."""
     letters = _letters(name)
-    return letters in SURE_FLAGS or letters == COUNT
+    sure_flags = (
+        "facedetected",
+        "detected",
+        "hasface",
+        "facefound",
+        "facepresent",
+        "facevisible",
+        "istracked",
+        "tracked",
+        "istracking",
+        "facetracked",
+        "isfacetracked",
+        "valid",
+        "isvalid",
+        "success",
+        "confidence",
+        "faceconfidence",
+        "detectionconfidence",
+        "trackingconfidence",
+    )
+    return letters in sure_flags or letters == COUNT
 
 
 def rows_without_face(
@@ -53,6 +63,7 @@ def rows_without_face(
     lost = np.zeros(count, dtype=bool)
     flags = [name for name in names if is_flag(name)]
     plain = [name for name in flags if "confidence" not in _letters(name)]
+    least_confidence = 0.5  # a flag is 0 or 1; a confidence below is none
     for name in plain or flags:
         values = np.array([_flag_in(cell) for cell in texts(name)])
         if _letters(name) == COUNT:
@@ -61,7 +72,7 @@ def rows_without_face(
                 continue
         else:
             highest = float(np.nanmax(values, initial=0.0))
-            is_lost = values < SEEN * (100.0 if highest > 1.5 else 1.0)
+            is_lost = values < least_confidence * (100.0 if highest > 1.5 else 1.0)
         lost |= is_lost
     return lost
 
@@ -99,10 +110,12 @@ def shares(shapes: Mapping[str, Array], notes: list[str]) -> dict[str, Array]:
 
 def intensities(units: Mapping[str, Array], notes: list[str]) -> dict[str, Array]:
     """Action units as intensities 0 to 1; FACS' 0 to 5 (A to E) and percent are divided."""
-    found = of_percent(units, HIGHEST_UNIT, "Action units", notes)
-    found = {name: np.where(np.abs(v) > HIGHEST_UNIT, np.nan, v) for name, v in found.items()}
+    highest_unit = 6.0  # an intensity of 0 to 5 beyond is none
+    found = of_percent(units, highest_unit, "Action units", notes)
+    found = {name: np.where(np.abs(v) > highest_unit, np.nan, v) for name, v in found.items()}
     highest = max((float(np.nanmax(values, initial=0.0)) for values in found.values()), default=0.0)
-    if highest > OVERSHOOT:
+    most_overshoot = 1.05  # to which smoothed values of 0 to 1 reach
+    if highest > most_overshoot:
         notes.append("Action units go from 0 to 5 and were divided by 5.")
         found = {name: values / 5.0 for name, values in found.items()}
     return found
@@ -136,9 +149,11 @@ def of_percent(
     if not channels:
         return {}
     values = np.array(list(channels.values()))
-    is_large = (values > most) & (values <= MOST_PERCENT)
+    most_percent = 300.0  # of a shape; programs for animation allow more than 100
+    is_large = (values > most) & (values <= most_percent)
     moving = np.any(np.nan_to_num(values) != 0.0, axis=0)
-    if not is_large.any() or is_large.any(axis=0).sum() <= SHARE_OF_PERCENT * moving.sum():
+    share_of_percent = 0.05  # of rows with large values: percent, and no stray values
+    if not is_large.any() or is_large.any(axis=0).sum() <= share_of_percent * moving.sum():
         return dict(channels)
     notes.append(f"{kind} go from 0 to 100 and were divided by 100.")
     return {name: each / 100.0 for name, each in channels.items()}

@@ -16,7 +16,6 @@ from ..scenes import FaceScene, Scene
 from .plug_ins import culprit_of, error_in, plug_ins_of
 from .presets import PRESETS, STATIC, Refinement, named
 
-LARGEST = 1e30  # of a number in an option: in single precision it is still one
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
 AS_IT_SUITS = "automatic"  # the word for an option that is left open
 SWITCHES = {"on": True, "true": True, "off": False, "false": False}
@@ -150,14 +149,17 @@ def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any
             f"--option {settings[0]}: --refiner none draws the mesh as it is and has no options"
         )
     options: dict[str, Any] = {}
+    largest_number = 1e30  # in an option: in single precision it is still finite
     for setting in settings:
         name, equals, text = setting.partition("=")
         if not (name and equals and text):
             raise UserError(f"--option {setting}: write NAME=VALUE, as in scheme=cubic")
         options[name] = _value(text)
         value = options[name]
-        if isinstance(value, int | float) and not -LARGEST <= value <= LARGEST:
-            raise UserError(f"--option {setting}: {text} is not a finite number up to {LARGEST:g}")
+        if isinstance(value, int | float) and not -largest_number <= value <= largest_number:
+            raise UserError(
+                f"--option {setting}: {text} is not a finite number up to {largest_number:g}"
+            )
     return options
 
 

@@ -18,11 +18,6 @@ from ..scenes import Scene
 Amounts = npt.NDArray[np.float32]
 Points = npt.NDArray[np.float64]
 
-# Chosen by eye. Skin gives way a little before it folds, and a fold does not deepen for ever.
-ONSET = 0.015  # loss of length at which furrows begin
-HALF = 0.09  # loss of length at which they are half as deep as they can be
-FLAT = 0.1  # gain of length at which furrows of age are half as deep: taut skin has none
-
 
 class Compression:
     """How far the skin of a scene that has wrinkles is compressed across them."""
@@ -40,9 +35,15 @@ class Compression:
         It begins and ends without a kink: nothing pops.
         """
         lost = self._shortening.measure(positions)
-        beyond = np.square(np.maximum(self._readiness * lost - ONSET, 0.0))
-        amounts = beyond / (beyond + (HALF - ONSET) ** 2)
-        resting = self._resting / (1.0 + np.square(np.minimum(lost, 0.0) / FLAT))
+        # Chosen by eye. Skin gives way a little before it folds, and a fold does not deepen for
+        # ever.
+        onset = 0.015  # loss of length at which furrows begin
+        beyond = np.square(np.maximum(self._readiness * lost - onset, 0.0))
+        half_depth_loss = 0.09  # loss of length at which they are half as deep as they can be
+        amounts = beyond / (beyond + (half_depth_loss - onset) ** 2)
+        # Gain of length at which furrows of age are half as deep: taut skin has none.
+        half_depth_gain = 0.1
+        resting = self._resting / (1.0 + np.square(np.minimum(lost, 0.0) / half_depth_gain))
         shown: Amounts = np.maximum(amounts, resting).astype(np.float32)
         return shown
 

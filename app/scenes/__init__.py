@@ -28,8 +28,10 @@ from ..errors import UserError
 from .mouth import MouthWalls, Tongue, shaded_mouth
 from .surface_attachment import SurfaceAttachment
 
-BUILT_IN, OWN = "built-in", "own"  # what heads are called: that which comes along, and a user's
-CHIN, NECK = 8, 32.0  # landmark, and [mm] below it that a portrait shows
+BUILT_IN = "built-in"  # what heads are called: that which comes along, and a user's
+OWN = "own"
+CHIN = 8  # landmark, and [mm] below it that a portrait shows
+NECK = 32.0
 LOG = logging.getLogger("risorius.heads")  # what was done to a head that somebody brings
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
 
@@ -109,11 +111,14 @@ class FaceScene(Scene):
         head = assets.load("head") if head is None else head
         self.head = head
         self.simulation = simulation = simulation or sim.create(head)
-        self.faces, self.rest_positions = simulation.faces, simulation.rest_positions
+        self.faces = simulation.faces
+        self.rest_positions = simulation.rest_positions
         self.positions = simulation.positions
         controls = simulation.controls
-        self.groups, self.limits = controls.groups, Limits(controls.limits)
-        self.actions, expressions = controls.actions, controls.layers.get("Expressions", ())
+        self.groups = controls.groups
+        self.limits = Limits(controls.limits)
+        self.actions = controls.actions
+        expressions = controls.layers.get("Expressions", ())
         self.expressions = tuple(
             name for name in expressions if parted(name)[0] not in {*expressions} - {name}
         )
@@ -121,8 +126,11 @@ class FaceScene(Scene):
             part if part.roots is None else SurfaceAttachment(part, self.rest_positions, self.faces)
             for part in shaded_mouth(head.parts)
         )
-        self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
-        self.wrinkles, self.fine_shape = head.wrinkles, head.fine_shape
+        self.uv = head.uv
+        self.face_uv = head.face_uv
+        self.albedo = head.albedo
+        self.wrinkles = head.wrinkles
+        self.fine_shape = head.fine_shape
         self.ambient_occlusion = head.ambient_occlusion
         if is_known := isinstance(head, assets.Head):
             self._parts = (*self._parts, *built_in_hair(head))
@@ -168,7 +176,8 @@ class FaceScene(Scene):
         """Bent when they are asked for: a picture may show several steps at once."""
         if not self._are_bent:
             self._are_bent = True
-            tongue, bones = self.simulation.anatomy.tongue(), self.bone_transforms()
+            tongue = self.simulation.anatomy.tongue()
+            bones = self.bone_transforms()
             for part in self._parts:
                 if isinstance(part, SurfaceAttachment):
                     part.follow(self.positions, bones[part.bone])
@@ -211,7 +220,8 @@ class PlaneScene(Scene):
 
     def __init__(self) -> None:
         plane = assets.load("plane")
-        self.faces, self.rest_positions = plane.faces, plane.vertices
+        self.faces = plane.faces
+        self.rest_positions = plane.vertices
         self.focus = read_only(plane.vertices.mean(axis=0))
         self.values = self.limits.pose({})
         self._length = float(np.ptp(plane.vertices, axis=0).max())
@@ -230,7 +240,8 @@ class PlaneScene(Scene):
         frequency = 2.0 * np.pi * self.WAVES / self._length
         along = points.sum(axis=1) / np.sqrt(2.0)
         angle = frequency * along - 2.0 * np.pi * self.values["phase"]
-        moved, normals = points.copy(), np.ones_like(points)
+        moved = points.copy()
+        normals = np.ones_like(points)
         moved[:, 2] += height * np.sin(angle)
         normals[:, :2] = -np.sqrt(0.5) * height * frequency * np.cos(angle)[:, None]
         return moved, normals / np.linalg.norm(normals, axis=1, keepdims=True)

@@ -34,7 +34,8 @@ class Gloom(NamedTuple):
 REDDENED = (0.9, 1.2, 1.25)
 GUMS = Gloom(2.0, 34.0, 0.2)
 TONGUE = Gloom(-5.0, 53.0, 0.63, (0.92, 1.25, 1.3))
-UPPER_TEETH, LOWER_TEETH = Gloom(4.0, 40.0, 0.15, REDDENED), Gloom(2.0, 36.0, 0.25, REDDENED)
+UPPER_TEETH = Gloom(4.0, 40.0, 0.15, REDDENED)
+LOWER_TEETH = Gloom(2.0, 36.0, 0.25, REDDENED)
 
 
 @dataclass(eq=False, kw_only=True)

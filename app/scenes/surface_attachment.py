@@ -25,16 +25,21 @@ Indices = npt.NDArray[np.int32]
 class SurfaceAttachment:
     """A part that changes its shape with the skin; drawn as any other (render/parts.py)."""
 
-    is_enclosed, striation = True, None
+    is_enclosed = True
+    striation = None
     vertices: Singles
     normals: Singles
 
     def __init__(self, part: Any, skin: Floats, faces: Indices) -> None:
         """A part with `roots`, as it stands on the skin at rest, (V, 3) with triangles (F, 3)."""
-        self.name, self.bone = part.name, part.bone
-        self.faces, self.colours = part.faces, part.colours
-        self.shine, self.strand_radius = part.shine, part.strand_radius
-        rest, normals = part.vertices.astype(np.float64), part.normals.astype(np.float64)
+        self.name = part.name
+        self.bone = part.bone
+        self.faces = part.faces
+        self.colours = part.colours
+        self.shine = part.shine
+        self.strand_radius = part.strand_radius
+        rest = part.vertices.astype(np.float64)
+        normals = part.normals.astype(np.float64)
         roots, self._row = np.unique(part.roots, return_inverse=True)  # a vertex's among roots
         # What stands there points out of the skin; what lies there has the skin's normal.
         ahead = np.zeros((len(roots), 3))
@@ -51,7 +56,8 @@ class SurfaceAttachment:
         # (n, 3) from the foot of the root, in its frame at rest.
         self._local = np.einsum("nji,nj->ni", frames[self._row], rest - places[self._row])
         self._local_normals = np.einsum("nji,nj->ni", frames[self._row], normals)
-        self.vertices, self.normals = part.vertices, part.normals
+        self.vertices = part.vertices
+        self.normals = part.normals
 
     def follow(self, skin: Floats, bone: Floats) -> None:
         """Stand on the skin as it is now, (V, 3), told from the part's bone, a matrix (4, 4)."""
@@ -73,7 +79,8 @@ class SurfaceAttachment:
 
 def _along_x(corners: Floats) -> Floats:
     """What the corners of triangles (R, 3, 3) add to the x axis as it lies in them, (R, 3)."""
-    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    first = corners[:, 1] - corners[:, 0]
+    second = corners[:, 2] - corners[:, 0]
     edges = np.stack([first, second], axis=2)
     shares = np.linalg.pinv(edges)[:, :, 0]
     return np.column_stack([-shares.sum(axis=1), shares])

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from ..control_names import sentence
 from ..errors import UserError, as_text
 
-LONGEST_FRAME = 0.25  # [s] that counts for a message: a frame that took longer showed nothing
-
 Message = str | None  # to be shown; None for nothing to say
 Task = Callable[[], Message]  # an action of the user; it may raise UserError or OSError
 
@@ -51,7 +49,9 @@ class Messages:
     def age(self, seconds: float) -> None:
         """Let time pass since the last frame: a line goes away unless it stays."""
         if not self.stays:
-            self.seconds_left -= min(seconds, LONGEST_FRAME)
+            # [s] that counts for a message: a frame that took longer showed nothing.
+            longest_frame = 0.25
+            self.seconds_left -= min(seconds, longest_frame)
         if self.seconds_left <= 0.0:
             self.text = ""
 

@@ -35,9 +35,7 @@ from ..refining.presets import CHANGED, FIRST_PRESET, PRESETS, STATIC, Refinemen
 from ..scenes import FaceScene, Scene
 from .interface.gui import THEMES
 
-LONGEST_FILE = 2**20  # [bytes] of settings; those that we write have two thousand
 SIDES_SHOWN = 200, 16384  # [screen units] of the window, least and most
-SIDES_EXPORTED = 16, 8192  # [pixels] of exported pictures
 ZOOMS = 0.6, 3.0  # least and most of the size of words
 COMPARISONS = ("off", "wipe", "side by side")
 SKINS = {  # whether it is textured, and its colour
@@ -53,7 +51,6 @@ BACKGROUNDS = {
 # Individual typology angles [degrees], see assets/identities/complexion.py; None: the person's own.
 TONES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}
 TONES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
-MOST_REPORTED = 4  # unusable values; a line has room for no more
 FRAMES_KIND = "frames"  # pictures in a folder
 
 
@@ -169,7 +166,10 @@ class ExportChoices(Record):
     """The choices of the last export."""
 
     kind: Annotated[str, OneOf(KINDS)] = "mp4"
-    size: Annotated[tuple[int, int], Within(*SIDES_EXPORTED)] = (1280, 720)
+    size: Annotated[tuple[int, int], Within(*(16, 8192))] = (
+        1280,
+        720,
+    )  # [pixels] of exported pictures
     rate: Annotated[float, Within(1.0, 240.0)] = 30.0  # [frames/s]
     is_transparent: Flag = False
 
@@ -245,7 +245,8 @@ def load_settings(path: Path) -> tuple[Settings, str]:
     The file is written anew on closing.
     """
     try:
-        stored = parsed_json(read_text(path, what="file of settings", longest=LONGEST_FILE))
+        longest_file = 2**20  # [bytes] of settings; those that we write have two thousand
+        stored = parsed_json(read_text(path, what="file of settings", longest=longest_file))
     except NoSuchFileError:
         return Settings(), ""
     except UserError as error:
@@ -255,9 +256,10 @@ def load_settings(path: Path) -> tuple[Settings, str]:
     settings, refused = read_what_fits(Settings, stored)
     if not refused:
         return settings, ""
-    reported = refused[:MOST_REPORTED]
-    if len(refused) > MOST_REPORTED:
-        reported.append(f"{len(refused) - MOST_REPORTED} more")
+    most_reported = 4  # unusable values; a line has room for no more
+    reported = refused[:most_reported]
+    if len(refused) > most_reported:
+        reported.append(f"{len(refused) - most_reported} more")
     return settings, in_one_line(f"{path}: as at first: {'; '.join(reported)}")
 
 

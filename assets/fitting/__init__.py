@@ -1,4 +1,4 @@
-"""Any head: fit what the built-in head knows to a mesh that somebody brings.
+"""Any head: fit the built-in head's landmarks, rig and organs to a user's mesh.
 
     head = assets.fitting.fit_head("anna.obj", "anna_landmarks.json")
     simulation = sim.create(head)

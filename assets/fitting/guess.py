@@ -4,7 +4,7 @@
                   ->  its face laid on the mesh, stiff at first  ->  its landmarks on the mesh
 
 The built-in face is laid on the mesh as one lays a cloth: each of its points goes to the nearest
-place that faces the same way, and a warp that bends ever more follows what they did.
+place that faces the same way. A warp follows them, and bends more in each step.
 
 Source: Amberg, Romdhani, Vetter 2007, "Optimal step nonrigid ICP" (stiffness that falls from step
 to step; here that of a smoothing thin-plate warp).
@@ -30,13 +30,6 @@ from .warp import Similarity, ThinPlateSpline, nearest_on
 # Outer corners of the eyes, tip of the nose, corners of the mouth: easily found by anybody, and
 # far apart in every direction.
 FIRST = (36, 45, 30, 48, 54)
-PAIRS = {"eyes": FIRST[:2], "corners of the mouth": FIRST[3:]}  # right and left
-FARTHEST_OFF = 14.0  # [mm] of the first points, in the mean: beyond it they are no face's
-NEAR = 30.0  # [mm] around landmarks: the part of the built-in face that is laid on the mesh
-MOST_POINTS = 300  # of that part (chosen; more take longer and find the same)
-AROUND = np.array([60.0, 90.0, 120.0])  # [mm] around the first points, in which a face ends
-STIFFNESSES = (1e4, 3e3, 1e3, 300.0, 100.0, 30.0)  # [mm] of the warp, from step to step
-REACH = 18.0  # [mm] beyond which a place on the mesh is not what a point of the face looks for
 
 Known = Mapping[int, npt.ArrayLike]  # points (3,) [unit of the mesh] by the landmark's number
 
@@ -53,14 +46,18 @@ def guess(mesh: Mesh, known: Known) -> FloatArray:
     given = similarity.points(np.array([known[number] for number in numbers]))
     vertices = similarity.points(mesh.vertices)
     faces = skin_around(vertices, mesh.faces, given)
-    # What is laid on the mesh: the landmarks, and the face around them.
+    # The landmarks and the face around them are laid on the mesh.
     chosen = np.concatenate([head.landmarks, _around_landmarks(head)])
-    points, known_points = head.vertices[chosen], head.vertices[head.landmarks[numbers]]
+    points = head.vertices[chosen]
+    known_points = head.vertices[head.landmarks[numbers]]
     is_free = ~np.isin(np.arange(len(chosen)), numbers)
     laid = head.vertices
-    for stiffness in STIFFNESSES:
+    stiffnesses = (1e4, 3e3, 1e3, 300.0, 100.0, 30.0)  # [mm] of the warp, from step to step
+    # [mm]: a point of the face finds no place on the mesh that is farther off.
+    farthest_match = 18.0
+    for stiffness in stiffnesses:
         feet = _feet(laid, head, chosen, vertices, faces)
-        is_laid = is_free & (np.linalg.norm(feet - laid[chosen], axis=1) < REACH)
+        is_laid = is_free & (np.linalg.norm(feet - laid[chosen], axis=1) < farthest_match)
         give = np.concatenate([np.zeros(len(numbers)), np.full(is_laid.sum(), stiffness)])
         source = np.vstack([known_points, points[is_laid]])
         laid = ThinPlateSpline(source, np.vstack([given, feet[is_laid]]), give).points(
@@ -78,10 +75,12 @@ def placing(known: Known) -> Similarity:
     """
     similarity, off = _laid(known)
     right = "right is the subject's own, on your left where the face looks at you"
-    if off.mean() > FARTHEST_OFF:
-        for pair, (a, b) in PAIRS.items():
+    most_mean_distance = 14.0  # [mm] of the first points: farther off, they are no face's
+    if off.mean() > most_mean_distance:
+        right_and_left = {"eyes": FIRST[:2], "corners of the mouth": FIRST[3:]}
+        for pair, (a, b) in right_and_left.items():
             other, less = _laid({**known, a: known[b], b: known[a]})
-            if less.mean() <= FARTHEST_OFF and not other.is_mirrored:
+            if less.mean() <= most_mean_distance and not other.is_mirrored:
                 raise AssetError(f"the {pair} are swapped, landmarks {a} and {b}: {right}")
         raise AssetError(
             f"these points are no face's: landmark {sorted(known)[int(off.argmax())]} lies "
@@ -94,7 +93,8 @@ def placing(known: Known) -> Similarity:
 
 def _laid(known: Known) -> tuple[Similarity, FloatArray]:
     """What brings known landmarks nearest to the built-in ones, and how far off each is [mm]."""
-    head, numbers = load("head"), sorted(known)
+    head = load("head")
+    numbers = sorted(known)
     own = head.vertices[head.landmarks[numbers]]
     given = np.array([known[number] for number in numbers], dtype=np.float64)
     if not np.ptp(given, axis=0).any():
@@ -114,17 +114,21 @@ def skin_around(vertices: FloatArray, faces: IndexArray, given: FloatArray) -> I
     is_skin = piece == np.bincount(piece[under]).argmax()
     if cross_products(vertices, faces[under[is_skin[under]]])[:, 2].sum() < 0.0:
         faces = faces[:, ::-1]
-    low, high = given.min(axis=0) - AROUND, given.max(axis=0) + AROUND
+    face_radii = np.array([60.0, 90.0, 120.0])  # [mm] around the first points, in which a face ends
+    low = given.min(axis=0) - face_radii
+    high = given.max(axis=0) + face_radii
     is_near = ((middles > low) & (middles < high)).all(axis=1)
     return np.ascontiguousarray(faces[is_skin & is_near])
 
 
 def _around_landmarks(head: Head) -> IndexArray:
     """Some vertices near the landmarks of a head, but those themselves."""
-    near = scipy.spatial.cKDTree(head.vertices[head.landmarks]).query(head.vertices)[0] < NEAR
+    reach = 30.0  # [mm] around landmarks: the part of the built-in face that is laid on the mesh
+    near = scipy.spatial.cKDTree(head.vertices[head.landmarks]).query(head.vertices)[0] < reach
     near[head.landmarks] = False
     every = np.flatnonzero(near).astype(np.int32)
-    return every[:: max(len(every) // MOST_POINTS, 1)]
+    most_points = 300  # of that part (chosen; more take longer and find the same)
+    return every[:: max(len(every) // most_points, 1)]
 
 
 def _feet(

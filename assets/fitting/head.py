@@ -48,22 +48,8 @@ from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spre
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
 ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
-SMALLEST = 1e-9  # between the outermost landmarks: below it, squares leave too few digits
-LARGEST = 10_000.0  # [mm] from the middle of the face: farther off, a vertex is a mistake
-# Landmarks so far apart on the built-in head cannot be one place: no muscle spans no way.
-APART = 30.0  # [mm]
-ONE_PLACE = 1.0  # [mm]
 MOST_SIMULATED = 50_000  # triangles: a step of these takes a good half of a frame of 1/60 s
 SIMPLIFIED = 25_000  # triangles are left: these play at 20 frames a second on two cores
-ATTEMPTS = 8  # to simplify a mesh and keep it a surface
-MOST_DISORDERED = 3  # groups of landmarks: where more are so, none of them is meant as it stands
-NECK = "neck"  # what hangs there, a shirt, is the built-in head's: another may have its shoulders
-UPPER_LIP, LOWER_LIP = (60, 61, 62, 63, 64), (60, 67, 66, 65, 64)  # from corner to corner
-TOUCHING = 0.01  # of the way between the outer eye corners: lips that touch lie so near their line
-STEPS = 33  # places on each part of that line
-CHIN, FADE = 8, 25.0  # landmark, and [mm] above a neck's edge, half the way to the chin at most
-EYES = slice(36, 48)
-FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
 
 
 @dataclass(frozen=True)
@@ -76,7 +62,7 @@ class FittedHead:
 
     to_millimetres: takes the file's coordinates to these.
     file_vertices: numbers in the file of the vertices, or of the nearest, shape (V,), int32.
-    notes: what was done to the mesh and its bringer should know, a line each.
+    notes: changes of the mesh that its owner should know, a line each.
     """
 
     vertices: FloatArray
@@ -106,8 +92,10 @@ class FittedHead:
 
         Skin that ends in the middle of a picture may fade so toward its end.
         """
-        chin = self.vertices[self.landmarks[CHIN]]
-        eyes = self.vertices[self.landmarks[EYES], 1].mean()
+        chin_landmark = 8
+        chin = self.vertices[self.landmarks[chin_landmark]]
+        eye_landmarks = slice(36, 48)
+        eyes = self.vertices[self.landmarks[eye_landmarks], 1].mean()
         edges = [self.vertices[loop] for loop in boundary_loops(self.faces)]
         edges = [edge for edge in edges if edge[:, 1].max() < eyes]  # that of a mask goes around it
         ways = [np.roll(edge, -1, axis=0) - edge for edge in edges]
@@ -119,7 +107,8 @@ class FittedHead:
         up = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2][2]
         up = up * np.sign(up[1]) if abs(up[1]) > 0.5 else np.array([0.0, 1.0, 0.0])
         bottom = float((points @ up).max())
-        height = min(FADE, 0.5 * (float(chin @ up) - bottom))
+        full_height = 25.0  # [mm] above a neck's edge, at most half the way to the chin
+        height = min(full_height, 0.5 * (float(chin @ up) - bottom))
         a, b, c = (up / max(height, 1e-9)).tolist()
         return (a, b, c, -bottom / height) if height > 0.0 else None
 
@@ -127,7 +116,7 @@ class FittedHead:
 def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
     """Read a mesh and its landmark file (see landmark_file.py) and fit the built-in head to it.
 
-    Raises AssetError, one line that names the file, for what is missing, broken or cannot work.
+    Raises AssetError, one line that names the file, where a file is missing, broken or unusable.
     """
     found = read_mesh(mesh)
     numbers, points = read_landmarks(Path(landmarks), found)
@@ -141,10 +130,11 @@ def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
             numbers, points = read_landmarks(Path(landmarks), parted)
             return fit(parted, numbers, points=points)
     except AssetError as error:
-        told, is_face = error, [_is_face(found.vertices[numbers - first]) for first in (0, 1)]
+        reason = error
+        is_face = [_is_face(found.vertices[numbers - first]) for first in (0, 1)]
         if points is None and is_face == [False, True]:
-            told = AssetError("landmarks count vertices from 1; count from 0: take 1 off each")
-        raise AssetError(f"{named(mesh)}: {told}") from None
+            reason = AssetError("landmarks count vertices from 1; count from 0: take 1 off each")
+        raise AssetError(f"{named(mesh)}: {reason}") from None
 
 
 def lips_parted(mesh: Mesh, landmarks: FloatArray) -> Mesh | None:
@@ -156,9 +146,14 @@ def lips_parted(mesh: Mesh, landmarks: FloatArray) -> Mesh | None:
     """
     if mesh.corners is None or mesh.same is None:
         return None
-    line = (landmarks[list(UPPER_LIP)] + landmarks[list(LOWER_LIP)]) / 2.0
-    near = TOUCHING * float(np.linalg.norm(np.diff(landmarks[[36, 45]], axis=0)))
-    steps = np.linspace(0.0, 1.0, STEPS)[:, None, None]
+    upper_lip = (60, 61, 62, 63, 64)
+    lower_lip = (60, 67, 66, 65, 64)
+    line = (landmarks[list(upper_lip)] + landmarks[list(lower_lip)]) / 2.0
+    # Share of the way between the outer eye corners: lips that touch lie nearer to their line.
+    most_gap = 0.01
+    near = most_gap * float(np.linalg.norm(np.diff(landmarks[[36, 45]], axis=0)))
+    place_count = 33  # on each part of that line
+    steps = np.linspace(0.0, 1.0, place_count)[:, None, None]
     places = (line[:-1] + steps * np.diff(line, axis=0)).reshape(-1, 3)
     off = scipy.spatial.cKDTree(places).query(mesh.vertices)[0]
     at_corner = scipy.spatial.cKDTree(line[[0, -1]]).query(mesh.vertices)[0] < near
@@ -186,7 +181,8 @@ def fit(mesh: Mesh, landmarks: IndexArray, *, points: FloatArray | None = None) 
     if mesh.texture is not None:
         own = own_picture(mesh.texture, skin.file_faces, skin.is_turned)
     target = similarity.points(points)
-    notes, whole = mesh.notes, skin
+    notes = mesh.notes
+    whole = skin
     if len(skin.faces) > MOST_SIMULATED:
         notes += (f"its {len(skin.faces)} triangles are too many; simplified to {SIMPLIFIED}",)
         skin = _simplified(skin, target)
@@ -198,8 +194,9 @@ def fit(mesh: Mesh, landmarks: IndexArray, *, points: FloatArray | None = None) 
     fitted = FittedSkin(skin.vertices, normals, skin.faces, target, weight)
     eyes = place_eyes(known, fitted)
     parts = place_parts(known, fitted, warp, eyes)
+    neck_part = "neck"  # the shirt of the built-in head, which has its shoulders
     # Landmarks do not say exactly enough where a lid ends for lashes and tears.
-    parts = tuple(part for part in parts if part.bone != NECK and part.roots is None)
+    parts = tuple(part for part in parts if part.bone != neck_part and part.roots is None)
     uv = spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces))
     across = nearest.interpolate(known.wrinkles.across).astype(np.float32)
     layout, albedo, maps = _painted(mesh, own, (whole, skin), Layout(uv, skin.faces))
@@ -240,18 +237,19 @@ def _painted(
     skins: tuple[SkinPiece, SkinPiece],
     built_in: Layout,
 ) -> tuple[Layout, Image, tuple[Wrinkles, Image, Image]]:
-    """Where the skin lies in what picture, and maps over that (see `maps_in`).
+    """The picture of the skin, its layout, and maps in this layout (see `maps_in`).
 
-    own: what the file paints the skin with, where it does. skins: the whole one of the file, and
-    what is left of it. built_in: where the triangles of that lie in the built-in picture. A skin
-    that was simplified has no other layout, and what the whole one is painted with is drawn there.
+    own: the file's picture of the skin, None where it has none. skins: the whole skin of the file,
+    and the part that is kept. built_in: layout of that part in the built-in picture. A simplified
+    skin has only this layout, so the picture of the whole skin is drawn into it.
     """
     known = load("head")
     whole, skin = skins
     if own is not None and skin is whole:
         height, width = own[0].shape[:2]
         return own[1], own[0], maps_in(known, built_in, own[1], (height, width))
-    (picture, light), layout = plain_skin(known), built_in
+    (picture, light) = plain_skin(known)
+    layout = built_in
     has_colours = mesh.colours is not None
     if mesh.has_colour is not None:
         has_colours = bool(mesh.has_colour[whole.file_vertices].all())
@@ -269,7 +267,8 @@ def _painted(
 
 def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:
     """The same form with as many triangles as can be moved in time."""
-    for attempt in range(ATTEMPTS):
+    most_attempts = 8  # to simplify a mesh so that it stays a surface
+    for attempt in range(most_attempts):
         vertices, faces = decimated(skin.vertices, skin.faces, SIMPLIFIED, attempt)
         with contextlib.suppress(AssetError):
             check_manifold(faces)
@@ -288,16 +287,19 @@ def _placed(points: FloatArray, known: Head) -> Similarity:
     """The similarity to millimetres and the face space; AssetError if this is no face."""
     template = known.vertices[known.landmarks]
     extent = np.ptp(points[ORIENTING], axis=0).max()
-    if extent < SMALLEST:
+    least_size = 1e-9  # between the outermost landmarks: below it, squares leave too few digits
+    if extent < least_size:
         raise AssetError(
-            f"the landmarks lie within {extent:.3g} units; allowed are {SMALLEST:g} and more: give "
-            "68 different ones, in metres or millimetres"
+            f"the landmarks lie within {extent:.3g} units; allowed are {least_size:g} and more: "
+            "give 68 different ones, in metres or millimetres"
         )
     similarity = Similarity.between(points[ORIENTING], template[ORIENTING])
     off = np.linalg.norm(similarity.points(points) - template, axis=1)
     disordered = groups_in_disorder(similarity.points(points), template)
-    is_far = off[ORIENTING].mean() > FARTHEST_FROM_A_FACE
-    if disordered and not (is_far and len(disordered) > MOST_DISORDERED):
+    farthest_from_a_face = 14.0  # [mm] mean distance of landmarks from those of the built-in head
+    is_far = off[ORIENTING].mean() > farthest_from_a_face
+    most_disordered = 3  # groups of landmarks: with more of them no order is meant
+    if disordered and not (is_far and len(disordered) > most_disordered):
         _check_different(similarity.points(points), template)
         raise AssetError(disordered[0].complaint)
     if is_far:
@@ -324,20 +326,26 @@ def _is_face(points: FloatArray) -> bool:
 def _check_size(skin: SkinPiece) -> None:
     """AssetError for a vertex [mm] that is nowhere near the face."""
     off = np.linalg.norm(skin.vertices, axis=1)
-    if off.max() > LARGEST:
+    most_distance = 10_000.0  # [mm] from the middle of the face: farther off, a vertex is a mistake
+    if off.max() > most_distance:
         where = int(off.argmax())
         raise AssetError(
             f"vertex {skin.file_vertices[where]} lies {off[where] / 1000.0:.3g} m off the face; "
-            f"allowed are {LARGEST / 1000.0:g} m: remove stray vertices and whatever is not the "
-            "head"
+            f"allowed are {most_distance / 1000.0:g} m: remove stray vertices and "
+            "everything that is not the head"
         )
 
 
 def _check_different(points: FloatArray, template: FloatArray) -> None:
     """AssetError where landmarks [mm] that are far apart on any face are one place."""
     ways, known = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (points, template))
-    a, b = np.unravel_index((ways + np.where(known > APART, 0.0, np.inf)).argmin(), ways.shape)
-    if ways[a, b] < ONE_PLACE:
+    # Landmarks so far apart on the built-in head cannot be one place: no muscle spans no way.
+    least_built_in_distance = 30.0  # [mm]
+    a, b = np.unravel_index(
+        (ways + np.where(known > least_built_in_distance, 0.0, np.inf)).argmin(), ways.shape
+    )
+    least_distance = 1.0  # [mm]
+    if ways[a, b] < least_distance:
         raise AssetError(
             f"landmarks {a} and {b} are {ways[a, b]:.2g} mm apart, on the built-in head "
             f"{known[a, b]:.0f} mm; give each its own place"

@@ -41,11 +41,7 @@ from .warp import nearest_on
 COUNT = 68
 KEY = "landmarks"  # the list to take where there are several
 GUESSED = "guessed"
-FARTHEST_OFF = 0.05  # of the way between the outer eye corners: off the mesh, it is a mistake
-OUTER_EYE_CORNERS = [36, 45]
 Point = Annotated[tuple[float, float, float], Within(-FARTHEST, FARTHEST)]
-DISORDERED = -0.3  # well below 0: who has points in order must not be refused
-TOLD_APART = 3.0  # [mm] that an order moves points on average, or it cannot be told from positions
 INNER_LIPS = ((61, 62, 63), (65, 66, 67))  # upper, lower
 OUTER_LIPS = ((50, 51, 52), (56, 57, 58))
 
@@ -87,7 +83,8 @@ def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, FloatArray], frozenset
         if not marked:
             return {}, frozenset()
         found = [found[marked[0]] if entry is None else entry for entry in found]
-        are_numbers, count = _are_numbers(found), len(mesh.vertices)
+        are_numbers = _are_numbers(found)
+        count = len(mesh.vertices)
         points = mesh.vertices[_numbers(found, count)] if are_numbers else _points(found)
         guessed = document.get(GUESSED) if isinstance(document, dict) else None
         guesses = guessed if isinstance(guessed, list) else []
@@ -162,7 +159,9 @@ def _read_each(kind: Any, found: list[Any]) -> list[Any]:
 def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
     """The vertices nearest to points; each point must be near the mesh."""
     triangles, distance = _triangles_at(points, mesh, mesh.faces)
-    allowed = FARTHEST_OFF * float(np.linalg.norm(np.diff(points[OUTER_EYE_CORNERS], axis=0)))
+    most_share = 0.05  # of the way between the outer eye corners: farther off the mesh is a mistake
+    outer_eye_corners = [36, 45]
+    allowed = most_share * float(np.linalg.norm(np.diff(points[outer_eye_corners], axis=0)))
     if distance.max() > allowed:
         place = int(distance.argmax())
         raise AssetError(
@@ -220,7 +219,7 @@ class Group:
 
     @property
     def complaint(self) -> str:
-        """What is told of a group that is not in its order."""
+        """The message about a group that is not in its order."""
         return (
             f"landmarks {self.first} to {self.first + self.count - 1}, the {self.name}, are not in "
             f"their order; right is: {self.right_order} (the subject's own right and left)"
@@ -245,7 +244,7 @@ GROUPS = (
 def groups_in_disorder(points: FloatArray, template: FloatArray) -> list[Group]:
     """Groups that would fit better in another order; both (68, 3), in the face space [mm].
 
-    What order the inner lips of a closed mouth have only the skin can tell: `check_lips`.
+    The order of inner lips in a closed mouth follows from the skin alone: `check_lips`.
     """
     return [group for group in GROUPS if _is_disordered(group, points, template)]
 
@@ -256,8 +255,10 @@ def _is_disordered(group: Group, points: FloatArray, template: FloatArray) -> bo
     best = scipy.optimize.linear_sum_assignment(given @ known.T, maximize=True)[1]
     moved = known - known[best]
     size = 0.5 * float((moved * moved).sum())
-    is_told = size > 0.5 * group.count * TOLD_APART**2
-    return is_told and float((given * moved).sum()) < DISORDERED * size
+    least_difference = 3.0  # [mm] between mean places in both orders; below it they look alike
+    is_clear = size > 0.5 * group.count * least_difference**2
+    disordered_correlation = -0.3  # well below 0: points that are in order must not be refused
+    return is_clear and float((given * moved).sum()) < disordered_correlation * size
 
 
 def check_lips(skin: SkinPiece) -> None:

@@ -23,15 +23,6 @@ from ..topology import unique_points
 
 MOST_TRIANGLES = 250_000
 FEWEST_TRIANGLES = 300  # below it eyes and mouth have no shape (chosen)
-LIPS = (62, 66)  # inner landmarks in the middle, above and below
-LIP_CORNERS = (60, 64)
-INNER_LIPS = slice(60, 68)
-LIP_RIM, BAG = 4.0, 15.0  # [mm] that lips keep of a bag behind them, and how deep one is at least
-# The two lips join around the corners of the mouth. If the way along the skin from one to the other
-# is less than this share of that way, they are welded; behind them a bag may join them honestly.
-WELDED = 0.6
-LIDS = {"right": ((37, 41), (38, 40)), "left": ((43, 47), (44, 46))}  # above and below
-COVERED = 6.0  # [mm] behind the lids' edges in which skin covers the eye: no socket is so shallow
 
 
 class ShutMouthError(AssetError):
@@ -173,17 +164,29 @@ def check_pieces(faces: IndexArray, count: int) -> None:
 
 def check_openings(skin: SkinPiece) -> None:
     """Raise AssetError where lips are welded or skin covers an eye; in the face space [mm]."""
-    over, under = skin.landmarks[list(LIPS)]
-    from_above, from_below = path_lengths(skin.vertices, skin.faces, skin.landmarks[list(LIPS)])
-    ends = skin.landmarks[list(LIP_CORNERS)]
-    across, around = from_above[under], (from_above[ends] + from_below[ends]).min()
-    if over == under or across < WELDED * around:
+    middle_of_lips = (62, 66)  # inner landmarks, above and below
+    over, under = skin.landmarks[list(middle_of_lips)]
+    from_above, from_below = path_lengths(
+        skin.vertices, skin.faces, skin.landmarks[list(middle_of_lips)]
+    )
+    corners_of_lips = (60, 64)
+    ends = skin.landmarks[list(corners_of_lips)]
+    across = from_above[under]
+    around = (from_above[ends] + from_below[ends]).min()
+    # The two lips join around the corners of the mouth. If the way along the skin from one to the
+    # other is less than this share of that way, they are welded; behind them a bag may join them
+    # honestly.
+    welded_share = 0.6
+    if over == under or across < welded_share * around:
         raise ShutMouthError(
-            f"the mouth is shut: skin joins landmarks {LIPS[0]} and {LIPS[1]} on a way of "
-            f"{across:.0f} mm; cut the mesh open between the lips"
+            "the mouth is shut: skin joins landmarks "
+            f"{middle_of_lips[0]} and {middle_of_lips[1]} on a way of {across:.0f} mm; "
+            "cut the mesh open between the lips"
         )
     corners = skin.vertices[skin.faces]
-    for side, pairs in LIDS.items():
+    # Landmarks above and below.
+    lids = {"right": ((37, 41), (38, 40)), "left": ((43, 47), (44, 46))}
+    for side, pairs in lids.items():
         middle = skin.vertices[skin.landmarks[list(sum(pairs, ()))]].mean(axis=0)
         if _is_covered(corners, middle):
             raise AssetError(
@@ -194,7 +197,8 @@ def check_openings(skin: SkinPiece) -> None:
 
 def without_bag(skin: SkinPiece) -> SkinPiece:
     """Cut away a bag behind the lips, where the built-in mouth comes; in the face space [mm]."""
-    edge = skin.landmarks[INNER_LIPS]
+    inner_lips = slice(60, 68)
+    edge = skin.landmarks[inner_lips]
     edges = _edges(skin.vertices, skin.faces)
     paths = csgraph.dijkstra(edges, directed=False, indices=edge, return_predecessors=True)[1]
     ring = set(edge.tolist())
@@ -203,11 +207,13 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
             ring.add(int(end))
     is_edge = np.isin(np.arange(len(skin.vertices)), list(ring))
     piece = pieces_of(skin.faces[~is_edge[skin.faces].any(axis=1)], len(skin.vertices))
-    is_behind = ~is_edge & ~np.isin(piece, piece[skin.landmarks[: INNER_LIPS.start]])
+    is_behind = ~is_edge & ~np.isin(piece, piece[skin.landmarks[: inner_lips.start]])
     deepest = skin.vertices[is_behind, 2].min(initial=np.inf)
-    if deepest > skin.vertices[is_edge, 2].mean() - BAG:
+    least_bag_depth = 15.0  # [mm]
+    if deepest > skin.vertices[is_edge, 2].mean() - least_bag_depth:
         return skin
-    is_behind &= scipy.spatial.cKDTree(skin.vertices[is_edge]).query(skin.vertices)[0] > LIP_RIM
+    rim_depth = 4.0  # [mm] that lips keep of a bag behind them
+    is_behind &= scipy.spatial.cKDTree(skin.vertices[is_edge]).query(skin.vertices)[0] > rim_depth
     left = np.flatnonzero(~is_behind[skin.faces].any(axis=1))
     part = skin_of(skin.vertices, skin.faces[left], skin.landmarks)
     return replace(
@@ -224,7 +230,9 @@ def _is_covered(corners: FloatArray, point: FloatArray) -> bool:
     to = point - corners
     turn = edges[:, :, 0] * to[:, :, 1] - edges[:, :, 1] * to[:, :, 0]
     hit = (turn > -1e-6).all(axis=1) | (turn < 1e-6).all(axis=1)
-    return bool((corners[hit, :, 2].mean(axis=1) > point[2] - COVERED).any())
+    # [mm] behind the lids' edges in which skin covers the eye: sockets are deeper.
+    cover_depth = 6.0
+    return bool((corners[hit, :, 2].mean(axis=1) > point[2] - cover_depth).any())
 
 
 def path_lengths(

@@ -22,13 +22,11 @@ from .warp import Similarity, ThinPlateSpline
 
 ShareArray = FloatArray | SingleArray
 WALLS = "oral_cavity"  # how the names of these parts begin
-WALL_DEPTH = 5.0  # [mm] behind the skin
-LEAST_COSINE = 0.35  # between the skin's normal and a ray: flatter rays count as this
 
 
 @dataclass(frozen=True)
 class FittedSkin:
-    """What the organs of the built-in head are fitted into.
+    """The skin and eyes that the organs of the built-in head are fitted into.
 
     vertices, normals: the skin at rest [mm], shape (V, 3).
     faces: its triangles, counter-clockwise seen from outside, shape (F, 3).
@@ -90,12 +88,14 @@ def within_skin(
     for mandible in jaws:
         moved = stretched_walls(fitted.vertices, fitted.mandible_weight, mandible)
         skins.append((moved, fitted.faces))
+    wall_depth = 5.0  # [mm] behind the skin
+    least_cosine = 0.35  # between the skin's normal and a ray: flatter rays count as this
     for mandible, (vertices, faces) in zip([np.eye(4), *jaws], skins, strict=True):
         away = stretched_walls(walls, shares, mandible) - middle
         length = np.maximum(np.linalg.norm(away, axis=1), 1e-9)
         ray, distance, cosine = exits(middle, away / length[:, None], vertices, faces)
         room = np.full(len(walls), np.inf)
-        np.minimum.at(room, ray, distance - WALL_DEPTH / np.maximum(cosine, LEAST_COSINE))
+        np.minimum.at(room, ray, distance - wall_depth / np.maximum(cosine, least_cosine))
         nearer = np.clip(room / length, 0.0, 1.0)
         walls = middle + nearer[:, None] * (walls - middle)
     return replace(part, vertices=walls.astype(np.float32))

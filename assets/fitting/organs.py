@@ -24,24 +24,7 @@ from .warp import Similarity, ThinPlateSpline
 EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
 STIFF = ("gums", "teeth", "tongue")  # how the names of stiff parts begin
 LID_CLEARANCE = 0.3  # [mm] between eyeball and the skin of the lids
-SECTORS = 12  # around an eye; in each the skin nearest to the eyeball should lie on it
-TOUCHING = 0.5  # [mm] off the lids from which a sector counts less: corners are off the ball
-STRAIGHT = 2.0  # [1] that a mm aside costs: an eye looks out of the middle of its opening
-ROUND = 20.0  # [mm] that a sphere twice as large costs in the fit
-SUNK = 3.0  # x that skin in the eyeball costs more than a gap before it
-LID_DEPTH = 5.0  # [mm] from the landmarks on a lid's edge, as far as its inner skin may reach
-MOUTH = slice(48, 68)
-FACING = 0.2  # forward share of a normal from which skin is in front of teeth
-TEETH_CLEARANCE = 4.0, 3  # [mm] and number of skin vertices that teeth and gums must keep away from
-STIFF_DEPTH = 2.5  # [mm] of teeth and gums behind the skin: the least that lips and cheeks are
-FARTHEST_BACK = 10.0  # [mm] that the teeth are set back for it
-# Of the rim from the edge of lids to the eyeball.
-FLESH = "eye_corners"  # the part that rims belong to: they have its colour
-RIM_FARTHEST = 1.6  # radii of the ball from its centre: the edge around an eye is nearer
 RIM_ROWS = 8  # of vertices, from the lids' edge backward
-RIM_BEHIND = 3.0  # [mm] behind the equator of the ball: there a rim ends
-TUCKED, RIM_SUNK = 0.2, 0.3  # [mm] that it begins within the lids and ends within the ball
-RIM_DARKEST = 0.6  # of the light at its end: it lies in the shade
 
 
 def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
@@ -50,6 +33,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
     Eyeballs differ less than the openings in front of them: by the root of the ratio.
     """
     eyes = []
+    lid_depth = 5.0  # [mm] from the landmarks on a lid's edge that its inner skin may reach
     for eye in known.eyes:
         around = EYE_LANDMARKS[eye.name]
         source = known.vertices[known.landmarks[around]]
@@ -57,7 +41,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         scale = _extent(target) / _extent(source)
         centre = target.mean(axis=0) + scale * (eye.centre - source.mean(axis=0))
         scale = float(np.sqrt(scale))
-        near = scipy.spatial.cKDTree(target).query(fitted.vertices)[0] < LID_DEPTH
+        near = scipy.spatial.cKDTree(target).query(fitted.vertices)[0] < lid_depth
         skin = np.vstack([target, fitted.vertices[near]])
         centre, radius = _behind_lids(centre, scale * eye.radius, target.mean(axis=0), skin)
         centre[2] += _way_forward(centre, radius + LID_CLEARANCE, skin)
@@ -78,7 +62,8 @@ def _behind_lids(
     centre, radius: about where and how large it is; middle: of the opening; skin: of the lids.
     """
     around = np.arctan2(skin[:, 1] - middle[1], skin[:, 0] - middle[0])
-    sector = np.floor((around / np.pi + 1.0) / 2.0 * SECTORS).astype(int) % SECTORS
+    sector_count = 12  # around an eye; in each the nearest skin should lie on the eyeball
+    sector = np.floor((around / np.pi + 1.0) / 2.0 * sector_count).astype(int) % sector_count
     parts = [skin[sector == k] for k in np.unique(sector)]
 
     def off(values: FloatArray) -> FloatArray:
@@ -86,11 +71,18 @@ def _behind_lids(
         size = radius * np.exp(values[3])
         gaps = np.array([np.linalg.norm(part - values[:3], axis=1).min() for part in parts])
         gaps -= size + LID_CLEARANCE
-        aside = STRAIGHT * (values[:2] - centre[:2])
-        return np.concatenate([np.where(gaps < 0.0, SUNK * gaps, gaps), aside, [ROUND * values[3]]])
+        aside_cost = 2.0  # of a millimetre: an eye looks out of the middle of its opening
+        aside = aside_cost * (values[:2] - centre[:2])
+        size_cost = 20.0  # [mm] of a sphere twice as large
+        sunk_cost = 3.0  # times that of a gap before the eyeball, for skin in it
+        return np.concatenate(
+            [np.where(gaps < 0.0, sunk_cost * gaps, gaps), aside, [size_cost * values[3]]]
+        )
 
+    # [mm] off the lids from which a sector counts less: corners are off the ball.
+    touching_distance = 0.5
     found = scipy.optimize.least_squares(
-        off, np.append(centre, 0.0), loss="soft_l1", f_scale=TOUCHING
+        off, np.append(centre, 0.0), loss="soft_l1", f_scale=touching_distance
     ).x
     return found[:3], radius * float(np.exp(found[3]))
 
@@ -151,15 +143,21 @@ def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similar
     found = [
         part.vertices.astype(np.float64) for part in known.parts if part.name.startswith(STIFF)
     ]
-    stiff = np.vstack([*found, known.vertices[known.landmarks[MOUTH]]])
+    mouth_landmarks = slice(48, 68)
+    stiff = np.vstack([*found, known.vertices[known.landmarks[mouth_landmarks]]])
     mouth = Similarity.between(stiff, warp.points(stiff))
     placed = mouth.points(np.vstack(found)) if found else np.zeros((0, 3))
-    skin = fitted.vertices[fitted.normals[:, 2] > FACING]
-    distance, beside = scipy.spatial.cKDTree(skin[:, :2]).query(placed[:, :2], k=TEETH_CLEARANCE[1])
+    least_forward = 0.2  # share of a normal from which skin is in front of teeth
+    skin = fitted.vertices[fitted.normals[:, 2] > least_forward]
+    # [mm] and number of skin vertices that teeth and gums must keep away from.
+    teeth_clearance = 4.0, 3
+    distance, beside = scipy.spatial.cKDTree(skin[:, :2]).query(placed[:, :2], k=teeth_clearance[1])
+    stiff_depth = 2.5  # [mm] of teeth and gums behind the skin: the least that lips and cheeks are
     depth = (
-        np.where(distance < TEETH_CLEARANCE[0], skin[beside, 2], np.inf).min(axis=1) - STIFF_DEPTH
+        np.where(distance < teeth_clearance[0], skin[beside, 2], np.inf).min(axis=1) - stiff_depth
     )
-    back = float(np.clip((placed[:, 2] - depth).max(initial=0.0), 0.0, FARTHEST_BACK))
+    farthest_back = 10.0  # [mm] that the teeth are set back for it
+    back = float(np.clip((placed[:, 2] - depth).max(initial=0.0), 0.0, farthest_back))
     return replace(mouth, shift=mouth.shift - np.array([0.0, 0.0, back]))
 
 
@@ -191,9 +189,11 @@ def with_eyelid_rims(
     vertices: of the skin [mm], shape (V, 3); faces: its triangles, shape (F, 3).
     """
     loops = [(eye, _edge_around(eye, vertices, faces)) for eye in eyes]
+    # Of the rim from the edge of lids to the eyeball.
+    flesh = "eye_corners"  # the part that rims belong to: they have its colour
     return tuple(
         _joined(part, [_rim_of(eye, vertices[loop]) for eye, loop in loops if loop])
-        if part.name == FLESH
+        if part.name == flesh
         else part
         for part in parts
     )
@@ -201,7 +201,8 @@ def with_eyelid_rims(
 
 def _edge_around(eye: Eye, vertices: FloatArray, faces: IndexArray) -> list[int]:
     """The edge of the skin around an eye, in the direction of its faces; [] in a closed socket."""
-    reach = RIM_FARTHEST * eye.radius
+    most_radii = 1.6  # from the ball's centre: the edge around an eye is nearer
+    reach = most_radii * eye.radius
     away = np.linalg.norm(vertices - eye.centre, axis=1)
     near = faces[(away[faces] < 2.0 * reach).any(axis=1)]  # all would take a second
     loops = boundary_loops(near)
@@ -219,10 +220,13 @@ def _rim_of(eye: Eye, edge: FloatArray) -> tuple[FloatArray, IndexArray]:
     beside = away * [1.0, 1.0, 0.0]
     beside /= np.maximum(np.linalg.norm(beside, axis=1, keepdims=True), 1e-9)
     start = np.arccos(away[:, 2] / length)
-    end = np.maximum(0.5 * np.pi + np.arcsin(RIM_BEHIND / eye.radius), start)
+    rim_depth = 3.0  # [mm] behind the equator of the ball, where a rim ends
+    end = np.maximum(0.5 * np.pi + np.arcsin(rim_depth / eye.radius), start)
     share = np.linspace(0.0, 1.0, RIM_ROWS)[:, None]
     angle = (1.0 - share) * start + share * end
-    reach = (1.0 - share) * (length + TUCKED) + share * (eye.radius - RIM_SUNK)
+    tucked_depth = 0.2  # [mm] within the lids, where a rim begins
+    sunk_depth = 0.3  # [mm] within the ball, where it ends
+    reach = (1.0 - share) * (length + tucked_depth) + share * (eye.radius - sunk_depth)
     ahead = np.sin(angle)[..., None] * beside + np.cos(angle)[..., None] * [0.0, 0.0, 1.0]
     points = eye.centre + (reach[..., None] * ahead).reshape(-1, 3)
     return points, grid_faces(np.arange(len(points)).reshape(RIM_ROWS, -1), closed=True)
@@ -231,8 +235,9 @@ def _rim_of(eye: Eye, edge: FloatArray) -> tuple[FloatArray, IndexArray]:
 def _joined(part: Part, rims: Sequence[tuple[FloatArray, IndexArray]]) -> Part:
     """A part with rims of its colour, which darken backward."""
     colour = part.colours.mean(axis=0)
+    least_light = 0.6  # share at its end, which lies in the shade
     for points, faces in rims:
-        light = np.repeat(np.linspace(1.0, RIM_DARKEST, RIM_ROWS), len(points) // RIM_ROWS)
+        light = np.repeat(np.linspace(1.0, least_light, RIM_ROWS), len(points) // RIM_ROWS)
         part = replace(
             part,
             faces=np.concatenate([part.faces, faces + np.int32(len(part.vertices))]),

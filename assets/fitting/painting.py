@@ -3,12 +3,12 @@
 A vertex takes the texture coordinates of the nearest point on the warped built-in skin. That is
 right on a face and wrong where one head has folds that the other has not: in nostrils, behind ears,
 in the mouth. So feet are trusted the less the farther they are, not at all on an ear or in a
-nostril, and what is between trusted ones is spread evenly, as by springs. With its surroundings
-fixed such a patch covers what they enclose, once (Tutte 1963, "How to draw a graph").
+nostril; vertices between trusted ones spread evenly, as by springs. With its surroundings fixed
+such a patch covers the enclosed area once (Tutte 1963, "How to draw a graph").
 
 A mesh that brings a picture has its own texture coordinates; the maps of the built-in head (of its
-wrinkles, of what is nose or lip) lie in others. They are drawn anew, texel by texel: everything
-drawn has one layout in the end.
+wrinkles, of segments such as nose and lips) lie in others. They are drawn anew, texel by texel:
+everything drawn has one layout in the end.
 """
 
 from __future__ import annotations
@@ -32,15 +32,7 @@ from ..pictures import LARGEST, Texture
 
 BoolArray = npt.NDArray[np.bool_]
 
-TRUSTED_WITHIN = 6.0  # [mm] from a foot: the trust in it falls to half
-FACING = 0.3  # least cosine between the normals of a vertex and of its foot
-COMPETING, APART = 24, 2.0  # feet, and [mm]: so near to each other while vertices are farther
-HOLD = 4.0, 12.0  # times trust, where it is little and where it is full; against one neighbour
-CLOSEST = 0.05  # [mm] between neighbours: closer ones hold each other no more
-PRECISE, MOST_ROUNDS = 1e-5, 1000  # of what holds; rounds in which it is solved
-LEAST = 1e-6  # trust, so that every vertex finds a colour
 SIZE = 1024  # [texels] each way of maps that are drawn anew
-STEEPEST = 99.9  # [percent] of slopes that a map of wrinkles holds as they are
 
 
 def spread_uv(
@@ -59,8 +51,10 @@ def spread_uv(
     away = np.linalg.norm(feet - vertices, axis=1)
     across = cross_products(warped, nearest.corners)
     across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
-    trust = 1.0 / (1.0 + (away / TRUSTED_WITHIN) ** 2)
-    trust[(across * normals).sum(axis=1) < FACING] = 0.0
+    trusted_within = 6.0  # [mm] from a foot: the trust in it falls to half
+    trust = 1.0 / (1.0 + (away / trusted_within) ** 2)
+    least_cosine = 0.3  # between the normals of a vertex and of its foot
+    trust[(across * normals).sum(axis=1) < least_cosine] = 0.0
     is_folded = read_arrays(known.beside("_plain.npz"))["is_folded"]  # on ears and in nostrils
     trust[nearest.interpolate(is_folded.astype(np.float64)) > 0.3] = 0.0
     # A neck or shoulders below those of the built-in head all find its rim.
@@ -72,17 +66,27 @@ def spread_uv(
     trust[is_behind_others(feet, vertices, links) & (on_rim < 0.99)] = 0.0
     # The nearer, the stiffer: else even steps over uneven edges, and slopes in the picture jump.
     lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
-    stiffness = 1.0 / np.maximum(lengths, CLOSEST)
+    # [mm] of neighbours, so that close ones do not hold each other too firmly.
+    least_distance = 0.05
+    stiffness = 1.0 / np.maximum(lengths, least_distance)
     linked = sparse.coo_array((stiffness, links.T), shape=(count, count))
     linked = linked + linked.T
     degree = linked.sum(axis=0)
     neighbour = degree / np.maximum(np.bincount(links.ravel(), minlength=count), 1)
-    hold = neighbour * (HOLD[0] + (HOLD[1] - HOLD[0]) * trust) * np.maximum(trust, LEAST)
+    hold_range = 4.0, 12.0
+    least_trust = 1e-6  # so that every vertex finds a colour
+    hold = (
+        neighbour
+        * (hold_range[0] + (hold_range[1] - hold_range[0]) * trust)
+        * np.maximum(trust, least_trust)
+    )
     system = (sparse.diags_array(degree + hold) - linked).tocsr()
     start = nearest.interpolate(known.uv)
     scale = sparse.diags_array(1.0 / (degree + hold))
+    tolerance = 1e-5
+    most_rounds = 1000
     columns = [
-        cg(system, hold * each, x0=each, M=scale, rtol=PRECISE, maxiter=MOST_ROUNDS)[0]
+        cg(system, hold * each, x0=each, M=scale, rtol=tolerance, maxiter=most_rounds)[0]
         for each in start.T
     ]
     return np.stack(columns, axis=1).astype(np.float32)
@@ -93,28 +97,36 @@ def is_behind_others(
 ) -> BoolArray:
     """Whether another part of the skin lies over the same place, and nearer to it, shape (V,).
 
-    links: edges, shape (E, 2). The middles of long ones count as vertices do: those of a coarse
-    skin alone are too far from each other to tell a nostril from the nose around it.
+    links: edges, shape (E, 2). The middles of long ones count as vertices do: the vertices of a
+    coarse skin alone are too far apart to separate a nostril from the nose around it.
     """
     lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
-    long = links[lengths > APART]
+    # [mm] between feet that compete, where their vertices are farther apart.
+    competing_distance = 2.0
+    long = links[lengths > competing_distance]
     all_feet, places = (np.vstack([each, each[long].mean(axis=1)]) for each in (feet, vertices))
     away = np.linalg.norm(all_feet - places, axis=1)
-    distance, beside = scipy.spatial.cKDTree(all_feet).query(feet, k=min(COMPETING, len(all_feet)))
-    is_other = np.linalg.norm(places[beside] - vertices[:, None], axis=2) > distance + APART
-    is_nearer = away[beside] < away[: len(feet), None] - 0.5 * APART
-    is_behind: BoolArray = (is_other & (distance < APART) & is_nearer).any(axis=1)
+    competing_feet = 24
+    distance, beside = scipy.spatial.cKDTree(all_feet).query(
+        feet, k=min(competing_feet, len(all_feet))
+    )
+    is_other = (
+        np.linalg.norm(places[beside] - vertices[:, None], axis=2) > distance + competing_distance
+    )
+    is_nearer = away[beside] < away[: len(feet), None] - 0.5 * competing_distance
+    is_behind: BoolArray = (is_other & (distance < competing_distance) & is_nearer).any(axis=1)
     return is_behind
 
 
 def plain_skin(known: Head) -> tuple[Image, Image]:
     """The built-in picture with skin over its ears and nostrils, and light without their shade.
 
-    Another head has them elsewhere, as form, which the light shows. What is drawn ships as data,
+    Another head has them elsewhere, as form, which the light shows. The pictures ship as data,
     as `plain_picture` and `own_light` of revision c11b6d62 drew it.
     """
     drawn = read_arrays(known.beside("_plain.npz"))
-    picture, light = known.albedo.copy(), known.ambient_occlusion.copy()
+    picture = known.albedo.copy()
+    light = known.ambient_occlusion.copy()
     picture[drawn["is_drawn"]] = drawn["colours"]
     light[drawn["is_lit"]] = drawn["light"]
     return picture, light
@@ -139,7 +151,7 @@ def texels_within(layout: Layout, size: tuple[int, int]) -> Texels:
     Raises AssetError where triangles cover the picture many times over.
     """
     try:
-        return Texels.within(layout.corners, size, margin=1.0)  # for what is blended across edges
+        return Texels.within(layout.corners, size, margin=1.0)  # colours blend across edges
     except ValueError:
         raise AssetError(
             "its texture coordinates cover the picture many times over; unwrap it anew, or remove "
@@ -190,7 +202,10 @@ def maps_in(
     change = rates(own.corners, theirs.corners)
     slope = (found[:, :2] - 128.0) * (known.wrinkles.steepest / 127.0)
     slope = np.einsum("nij,nj->ni", change[texels.faces], slope)
-    steepest = max(float(np.percentile(abs(slope), STEEPEST)), 1e-6) if len(slope) else 1.0
+    steepest_percentile = 99.9  # of slopes that a map of wrinkles holds as they are
+    steepest = (
+        max(float(np.percentile(abs(slope), steepest_percentile)), 1e-6) if len(slope) else 1.0
+    )
     wrinkles = np.full((SIZE, SIZE, 4), (128, 128, 0, 0), np.uint8)
     level = (128.0 + slope * (127.0 / steepest)).round().clip(1, 255).astype(np.uint8)
     wrinkles[texels.rows, texels.columns] = np.column_stack([level, found[:, 2:]])
@@ -203,7 +218,7 @@ def own_picture(
 ) -> tuple[Image, Layout] | None:
     """The picture of some triangles and where they lie in it; None where they have none.
 
-    Several pictures become one, side by side; what has none takes the mean of the others' colours.
+    Several pictures become one, side by side; triangles without one take the others' mean colour.
     turned: whether the corners of these triangles are to be in the other order.
     """
     import PIL.Image  # which to load a head takes no time for

@@ -23,88 +23,114 @@ from ..model import FloatArray, Part
 from ..topology import boundary_loops, grid_faces
 from .warp import ThinPlateSpline
 
-FILE = Path(__file__).parents[1] / "data" / "skull.npz"
-STEP = 0.02  # [mm] of the places in it
-NAMES = "cranium", "mandible", "spine", "nose", "throat"
-BONES = {"nose": "cranium", "throat": "cranium", "spine": "neck"}  # others move with their own
-SHINE = 0.28
-BONE = np.array([0.34, 0.235, 0.165]), np.array([0.90, 0.85, 0.735])  # sRGB: in hollows, outside
-COLOURS = {
-    "nose": (np.array([0.50, 0.42, 0.40]), np.array([0.80, 0.82, 0.80])),
-    "throat": (np.array([0.10, 0.035, 0.035]), np.array([0.36, 0.13, 0.12])),
-}
-BROWS = slice(17, 27)  # landmarks
-CROWN, OCCIPUT, EARS = 55.0, -20.0, 65.0  # [mm] above and behind there are none; ears lie aside
-NAPE = -40.0  # [mm] below it lies no cranium
-WITHIN = np.array([0.0, 40.0, 0.0])  # [mm] over the condyles, from where directions are told
-BACK, COVERED, BESIDE = 28.0, 2.0, 40.0  # [mm] behind condyles; skin on bone; to skin that tells
-AROUND, SOFT, ASIDE = 6, 10.0, 0.01  # vertices near by; [mm] of a soft edge; 1 - cosine
-FAT, FLESH = np.array([0.82, 0.62, 0.42]), np.array([0.50, 0.17, 0.15])
-RINGS = (0.0, FLESH), (0.5, FLESH), (0.93, FLESH), (0.95, FAT), (1.0, FAT)  # how far out; colour
+FAT = np.array([0.82, 0.62, 0.42])
+FLESH = np.array([0.50, 0.17, 0.15])
 
 
 def build_skull(
-    head: Any, pivots: Mapping[str, FloatArray], names: Collection[str] = NAMES
+    head: Any,
+    pivots: Mapping[str, FloatArray],
+    names: Collection[str] = ("cranium", "mandible", "spine", "nose", "throat"),
 ) -> dict[str, Part]:
-    """Parts under the skin at rest, which move with their bones; names: of NAMES, all unless told.
+    """Parts under the skin at rest, which move with their bones; all unless names says which.
 
     head: with vertices, faces and landmarks. pivots: what "mandible" turns about, (3,).
     Raises AssetError where the file is missing or broken.
     """
-    arrays = read_arrays(FILE)
+    file = Path(__file__).parents[1] / "data" / "skull.npz"
+    arrays = read_arrays(file)
     known = arrays["skin"]
-    kept, own = load("head").landmarks, head.landmarks
+    kept = load("head").landmarks
+    own = head.landmarks
     bare = np.arange(len(head.vertices))
-    is_far = (known[:, 1] > CROWN) | (known[:, 2] < OCCIPUT) & (abs(known[:, 0]) < EARS)
-    if hasattr(head, "anatomy"):  # made of the built-in head's vertices
+    # Above and behind these there are no landmarks; the ears lie aside [mm].
+    is_behind = (known[:, 2] < -20.0) & (abs(known[:, 0]) < 65.0)
+    is_far = (known[:, 1] > 55.0) | is_behind
+    if hasattr(head, "anatomy"):  # it has the built-in head's vertices
         ears = [row for name, row in load("head").rings.items() if "ear_" in name]
         bare = np.setdiff1d(bare, np.concatenate(ears))  # bone lies under no ear
         named = [at for name, at in head.anatomy.items() if not name.startswith("tragion")]
         kept = own = np.concatenate([own, named, np.flatnonzero(is_far)])
-    else:  # what lies in the same directions from within its cranium
-        far = np.flatnonzero(is_far & (known[:, 1] > NAPE))
-        ways, seen = known[far] - arrays["condyles"], head.vertices - pivots["mandible"]
-        apart = scipy.spatial.distance.cdist(ways - WITHIN, seen - WITHIN, "cosine")
-        is_seen = apart.min(axis=1) < ASIDE
-        kept, own = np.append(kept, far[is_seen]), np.append(own, apart.argmin(axis=1)[is_seen])
+    else:
+        far = np.flatnonzero(is_far & (known[:, 1] > -40.0))  # [mm]: no cranium lies below
+        ways = known[far] - arrays["condyles"]
+        is_seen, nearest = _same_directions(ways, head.vertices - pivots["mandible"])
+        kept = np.append(kept, far[is_seen])
+        own = np.append(own, nearest[is_seen])
     warp = ThinPlateSpline(
         np.vstack([known[kept], arrays["condyles"]]),
         np.vstack([head.vertices[own], pivots["mandible"]]),
     )
-    skin, normals = head.vertices[bare], vertex_normals(head.vertices, head.faces)[bare]
+    normals = vertex_normals(head.vertices, head.faces)[bare]
     parts = {}
+    # In sRGB: in hollows, outside.
+    bone_colours = np.array([0.34, 0.235, 0.165]), np.array([0.90, 0.85, 0.735])
+    colours = {
+        "nose": (np.array([0.50, 0.42, 0.40]), np.array([0.80, 0.82, 0.80])),
+        "throat": (np.array([0.10, 0.035, 0.035]), np.array([0.36, 0.13, 0.12])),
+    }
+    brows = head.vertices[head.landmarks[17:27], 1].max()
+    back = pivots["mandible"][2] - 28.0  # [mm] behind the condyles the cranium is free, too
     for name in names:
         faces = arrays[f"{name}_faces"].T.astype(np.int32)  # steps from the first corners
         faces[:, 0] = np.cumsum(faces[:, 0])
         faces[:, 1:] += faces[:, :1]
-        points = warp.points(STEP * arrays[f"{name}_vertices"].T)
-        if name == "cranium":  # what is named says little of its top, back and sides
-            away, near = scipy.spatial.cKDTree(skin).query(points, k=AROUND)
-            shares = 1.0 / np.maximum(away, 1.0) ** 2
-            above = points[:, 1] - head.vertices[head.landmarks[BROWS], 1].max()
-            behind = pivots["mandible"][2] - BACK - points[:, 2]
-            free = np.clip(np.maximum(above, behind) / SOFT, 0.0, 1.0) * (away[:, 0] < BESIDE)
-            shares *= (free / shares.sum(axis=1))[:, None]
-            out = ((points[:, None] - skin[near]) * normals[near]).sum(axis=2) + COVERED
-            points -= np.einsum("nk,nkc->nc", shares * np.maximum(out, 0.0), normals[near])
-        dark, bright = COLOURS.get(name, BONE)
+        points = warp.points(0.02 * arrays[f"{name}_vertices"].T)  # integers to mm
+        if name == "cranium":  # landmarks say little of its top, back and sides
+            free = np.maximum(points[:, 1] - brows, back - points[:, 2])
+            points = _under_skin(points, free, head.vertices[bare], normals)
+        dark, bright = colours.get(name, bone_colours)
         light = arrays[f"{name}_light"][:, None] / 255.0
         title = name if name == "throat" else f"skull_{name}"
         parts[name] = _part(title, points, faces, dark + light * (bright - dark), name)
     return parts
 
 
+def _same_directions(ways: FloatArray, seen: FloatArray) -> tuple[Any, Any]:
+    """Find vertices in the same directions from within the cranium.
+
+    ways: (n, 3), seen: (m, 3), places from the condyles [mm]. Returns whether each way has a
+    vertex, (n,), and the number of the nearest one, (n,).
+    """
+    centre = np.array([0.0, 40.0, 0.0])  # [mm] over the condyles
+    apart = scipy.spatial.distance.cdist(ways - centre, seen - centre, "cosine")
+    return apart.min(axis=1) < 0.01, apart.argmin(axis=1)
+
+
+def _under_skin(
+    points: FloatArray, free: FloatArray, skin: FloatArray, normals: FloatArray
+) -> FloatArray:
+    """Push points of bone in where they would leave the skin.
+
+    points: (n, 3) [mm]. free: (n,) how far each lies in the part that is pushed [mm]. skin,
+    normals: (m, 3) its vertices and their normals.
+    """
+    neighbour_count = 6
+    away, near = scipy.spatial.cKDTree(skin).query(points, k=neighbour_count)
+    shares = 1.0 / np.maximum(away, 1.0) ** 2
+    fade_depth = 10.0  # [mm] of a soft edge
+    most_distance = 40.0  # [mm] of skin that counts
+    pushed = np.clip(free / fade_depth, 0.0, 1.0) * (away[:, 0] < most_distance)
+    shares *= (pushed / shares.sum(axis=1))[:, None]
+    skin_thickness = 2.0  # [mm] on bone
+    out = ((points[:, None] - skin[near]) * normals[near]).sum(axis=2) + skin_thickness
+    inward = np.einsum("nk,nkc->nc", shares * np.maximum(out, 0.0), normals[near])
+    return np.asarray(points - inward)
+
+
 def neck_sections(head: Any) -> list[Part]:
     """What closes the ends of a neck, seen from above; head: with vertices, faces, landmarks."""
     chin = head.vertices[head.landmarks[8], 1]
     parts = []
+    # How far out, and colour.
+    rings = (0.0, FLESH), (0.5, FLESH), (0.93, FLESH), (0.95, FAT), (1.0, FAT)
     for loop in boundary_loops(head.faces):
         edge = head.vertices[loop]
         if edge[:, 1].max() < chin:
             middle = edge.mean(axis=0)
-            points = np.concatenate([middle + share * (edge - middle) for share, _ in RINGS])
-            faces = grid_faces(np.arange(len(points)).reshape(len(RINGS), -1), closed=True)
-            colours = np.repeat([colour for _, colour in RINGS], len(loop), axis=0)
+            points = np.concatenate([middle + share * (edge - middle) for share, _ in rings])
+            faces = grid_faces(np.arange(len(points)).reshape(len(rings), -1), closed=True)
+            colours = np.repeat([colour for _, colour in rings], len(loop), axis=0)
             parts.append(_part("neck_section", points, faces, colours, "neck"))
     return parts
 
@@ -113,4 +139,7 @@ def _part(name: str, points: FloatArray, faces: Any, colours: FloatArray, bone: 
     places, normals, inks = (
         each.astype(np.float32) for each in (points, vertex_normals(points, faces), colours)
     )
-    return Part(name, places, normals, faces, inks, BONES.get(bone, bone), SHINE)
+    # Other parts move with the bone of their name.
+    bone_of_part = {"nose": "cranium", "throat": "cranium", "spine": "neck"}
+    bone_shine = 0.28
+    return Part(name, places, normals, faces, inks, bone_of_part.get(bone, bone), bone_shine)

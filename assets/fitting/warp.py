@@ -22,8 +22,6 @@ from risorius.geometry.read_only import make_read_only
 
 from ..model import FloatArray, IndexArray
 
-WRONG_SIDE = 12.0  # [mm] that a point seems farther away where the surface faces the other way
-
 
 @dataclass(frozen=True, eq=False)
 class Similarity:
@@ -42,8 +40,10 @@ class Similarity:
 
         That happens where `target` is the mirror image of `source`.
         """
-        middle, wanted = source.mean(axis=0), target.mean(axis=0)
-        a, b = source - middle, target - wanted
+        middle = source.mean(axis=0)
+        wanted = target.mean(axis=0)
+        a = source - middle
+        b = target - wanted
         u, stretch, v = np.linalg.svd(b.T @ a)
         rotation = u @ v
         scale = float(stretch.sum() / (a * a).sum())
@@ -98,4 +98,5 @@ def nearest_on(
 
     So the lower lip's points find the lower lip though the upper one is nearer.
     """
-    return closest_points(points, vertices, faces, normals, WRONG_SIDE)
+    wrong_side_distance = 12.0  # [mm] that a point seems farther off where the surface faces away
+    return closest_points(points, vertices, faces, normals, wrong_side_distance)

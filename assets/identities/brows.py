@@ -20,20 +20,7 @@ from ..loading import load
 from ..model import FloatArray, SingleArray
 from ..smooth import smooth_step
 
-FINER = 4  # times finer than the texture, hairs are drawn
-AROUND = 24.0  # [mm] about a brow, vertices that say where it lies on the texture
-DENSITY = 2.0  # hairs for each square millimetre
-PARTS, LONGEST = 5, 6.5  # of each hair, and [mm]
-SOFT = 3.0  # [texels] by which what is between hairs is blurred
-# Along a brow, its thickness as a share of the greatest.
-PROFILE = (0.0, 0.6), (0.1, 0.85), (0.3, 1.0), (0.6, 0.8), (0.85, 0.5), (1.0, 0.25)
-UNDER = 0.9  # of a brow's darkness, that is left between its hairs
-
-# Thickness, inner end, rise, fall, peak, density of women and men: means, and deviations.
-DRAWN = (
-    np.array([(5.8, 12.0, 4.6, 6.4, 41.0, 0.95), (0.9, 1.2, 1.2, 1.4, 2.0, 0.15)]),
-    np.array([(8.2, 10.5, 2.8, 5.6, 39.0, 0.95), (1.4, 1.6, 1.2, 1.6, 2.5, 0.22)]),
-)
+PARTS = 5  # of each hair, and [mm]
 
 
 @dataclass(frozen=True)
@@ -60,12 +47,18 @@ class Brows:
 
 def drawn_brows(is_man: bool, years: float, random: np.random.Generator) -> Brows:
     """Brows of somebody of a sex and age."""
-    mean, deviation = DRAWN[is_man]
+    # Thickness, inner end, rise, fall, peak, density of women and men: means, and deviations.
+    drawn = (
+        np.array([(5.8, 12.0, 4.6, 6.4, 41.0, 0.95), (0.9, 1.2, 1.2, 1.4, 2.0, 0.15)]),
+        np.array([(8.2, 10.5, 2.8, 5.6, 39.0, 0.95), (1.4, 1.6, 1.2, 1.6, 2.5, 0.22)]),
+    )
+    mean, deviation = drawn[is_man]
     values = mean + deviation * np.clip(random.normal(size=len(mean)), -2.0, 2.0)
     late = float(np.clip((years - 45.0) / 30.0, 0.0, 1.0))
     values[[0, 5]] *= 1.0 - late * np.array([0.0 if is_man else 0.15, 0.3])
     thickness, inner, rise, fall, peak, density = values.tolist()
-    unruly, seed = 0.35 + 0.5 * late if is_man else 0.1, int(random.integers(2**31))
+    unruly = 0.35 + 0.5 * late if is_man else 0.1
+    seed = int(random.integers(2**31))
     return Brows(thickness, inner, rise, fall, peak, density, unruly, seed)
 
 
@@ -83,24 +76,32 @@ def _hairs(brows: Brows, random: np.random.Generator) -> FloatArray:
     """Places along each hair root to tip, seen from the front [mm], shape (n, PARTS + 1, 2)."""
     head = load("head")  # where they begin and end
     inner, outer = head.vertices[head.landmarks[[22, 26]]]
-    first, base, last = brows.inner, inner[1] - 4.5, outer[0] - 1.5
+    first = brows.inner
+    base = inner[1] - 4.5
+    last = outer[0] - 1.5
     middle = 0.45 * first + 0.55 * brows.peak
     rises = np.array([0.0, 0.72 * brows.rise, brows.rise, brows.rise - brows.fall])
     line = scipy.interpolate.PchipInterpolator([first, middle, brows.peak, last], base + rises)
-    count = round(DENSITY * brows.density * (last - first) * brows.thickness)
-    along, across = random.uniform(0.0, 1.0, count), 0.24 * random.normal(size=count)
+    density = 2.0  # hairs for each square millimetre
+    count = round(density * brows.density * (last - first) * brows.thickness)
+    along = random.uniform(0.0, 1.0, count)
+    across = 0.24 * random.normal(size=count)
     # They stand sparsely at both ends.
     kept = random.random(count) < np.interp(along, (0.0, 0.22, 0.6, 1.05), (0.3, 1.0, 1.0, 0.0))
-    along, across = along[kept], np.clip(across[kept], -0.55, 0.55)
+    along = along[kept]
+    across = np.clip(across[kept], -0.55, 0.55)
     x = first + (last - first) * along
-    root = line(x) + across * brows.thickness * np.interp(along, *np.array(PROFILE).T)
+    # Along a brow, its thickness as a share of the greatest.
+    profile = (0.0, 0.6), (0.1, 0.85), (0.3, 1.0), (0.6, 0.8), (0.85, 0.5), (1.0, 0.25)
+    root = line(x) + across * brows.thickness * np.interp(along, *np.array(profile).T)
     # Hairs stand up at the inner end and turn outward, until they lie along the brow; those above
     # its middle lean down to it.
     turn = np.radians(78.0) * np.exp(-along / 0.2) + np.radians(14.0)
     turn -= np.radians(38.0) * smooth_step(0.08, 0.45, along) * smooth_step(-0.15, 0.3, across)
     turn += (0.1 + 0.4 * brows.unruly * (1.0 - 0.6 * along)) * random.normal(size=len(along))
     bend = np.linspace(1.0, 0.35, PARTS) * turn[:, None] + np.arctan(line(x, 1))[:, None]
-    long = LONGEST * random.uniform(0.55, 1.0, len(along)) * (1.0 - 0.35 * along)
+    longest_hair = 6.5  # [mm]
+    long = longest_hair * random.uniform(0.55, 1.0, len(along)) * (1.0 - 0.35 * along)
     long *= np.clip(brows.thickness / 7.0, 0.7, 1.15) * (1.0 + 0.3 * brows.unruly)
     steps = np.stack([np.cos(bend), np.sin(bend)], axis=-1) * (long / PARTS)[:, None, None]
     start = np.stack([x, root], axis=-1)[:, None] - 0.3 * steps.sum(axis=1, keepdims=True)
@@ -111,19 +112,25 @@ def _paint(cover: SingleArray, hairs: FloatArray, side: float, tones: FloatArray
     """Paint hairs, which get thin and faint to their tips, on one side, 1 the subject's left."""
     from PIL import Image, ImageDraw
 
-    places = FINER * len(cover) * _on_texture(hairs.reshape(-1, 2), side).reshape(hairs.shape)
-    low = np.floor(places.min(axis=(0, 1)) / FINER).astype(int) - 8
-    wide, high = np.ceil(places.max(axis=(0, 1)) / FINER).astype(int) + 8 - low
-    image = Image.new("L", (FINER * int(wide), FINER * int(high)))
+    fineness = 4  # times finer than the texture, hairs are drawn
+    places = fineness * len(cover) * _on_texture(hairs.reshape(-1, 2), side).reshape(hairs.shape)
+    low = np.floor(places.min(axis=(0, 1)) / fineness).astype(int) - 8
+    wide, high = np.ceil(places.max(axis=(0, 1)) / fineness).astype(int) + 8 - low
+    image = Image.new("L", (fineness * int(wide), fineness * int(high)))
     pen = ImageDraw.Draw(image)
     for part in range(PARTS)[::-1]:  # the tips first, so that roots cover them
         drawn = (tones * (1.0 - 0.75 * part / PARTS)).astype(int)
-        for ends, tone in zip(places[:, part : part + 2] - FINER * low, drawn, strict=True):
+        for ends, tone in zip(places[:, part : part + 2] - fineness * low, drawn, strict=True):
             pen.line(ends.ravel().tolist(), fill=int(tone), width=2 if part < PARTS / 2 else 1)
-    fine = np.asarray(image, np.float32).reshape(high, FINER, wide, FINER).mean(axis=(1, 3)) / 255.0
-    soft = scipy.ndimage.gaussian_filter(fine, SOFT)
+    fine = (
+        np.asarray(image, np.float32).reshape(high, fineness, wide, fineness).mean(axis=(1, 3))
+        / 255.0
+    )
+    blur = 3.0  # [texels] of the colour between hairs
+    soft = scipy.ndimage.gaussian_filter(fine, blur)
     covered = cover[low[1] : low[1] + high, low[0] : low[0] + wide]
-    np.maximum(covered, np.clip(fine + UNDER * soft, 0.0, 0.92), out=covered)
+    share_between = 0.9  # of a brow's darkness
+    np.maximum(covered, np.clip(fine + share_between * soft, 0.0, 0.92), out=covered)
 
 
 def _on_texture(places: FloatArray, side: float) -> npt.NDArray[np.float64]:
@@ -137,7 +144,8 @@ def _map() -> scipy.interpolate.RBFInterpolator:
     """From places (x, y) about the left brow to texture coordinates."""
     head = load("head")
     brow = scipy.spatial.cKDTree(head.vertices[head.landmarks[22:27]])
-    near = np.flatnonzero(brow.query(head.vertices)[0] < AROUND)
+    radius = 24.0  # [mm] about a brow: vertices that give its place on the texture
+    near = np.flatnonzero(brow.query(head.vertices)[0] < radius)
     hidden = np.concatenate([head.rings[f"eye_{row}_left"] for row in range(3)])
     near = near[~np.isin(near, hidden) & (head.vertices[near, 2] > 30.0)]
     return scipy.interpolate.RBFInterpolator(head.vertices[near, :2], head.uv[near].astype(float))
@@ -149,7 +157,8 @@ def stubble(size: int) -> SingleArray:
     random = np.random.default_rng(0).random((size, size), np.float32)
     hairs = scipy.ndimage.gaussian_filter(random, (1.4, 0.55))
     hairs = np.clip((hairs - hairs.mean()) / hairs.std() + 0.6, 0.0, 2.0) / 2.0
-    across, down = np.abs(np.linspace(-0.5, 0.5, size)), np.linspace(0.0, 1.0, size)[:, None]
+    across = np.abs(np.linspace(-0.5, 0.5, size))
+    down = np.linspace(0.0, 1.0, size)[:, None]
     # The map of the beard goes on around the neck.
     front = (1.0 - smooth_step(0.26, 0.3, across)) * (1.0 - smooth_step(0.84, 0.93, down))
     return np.asarray(hairs * front, dtype=np.float32)

@@ -1,7 +1,7 @@
 """The skin of the built-in head in any tone, from one number, in a tenth of a second.
 
-A tone is told by its individual typology angle, ITA = arctan((L* - 50) / b*) [deg], by which skin
-is called very light (above 55), light (above 41), intermediate (above 28), tan (above 10), brown
+The individual typology angle, ITA = arctan((L* - 50) / b*) [deg], measures a tone. By it skin is
+called very light (above 55), light (above 41), intermediate (above 28), tan (above 10), brown
 (above -30) or dark (Chardon, Cretois, Hourseau 1991, "Skin colour typology and suntanning
 pathways", Int. J. Cosmetic Science 13:191-208). It is that of the bare skin of the face in the
 picture; lips and cheeks follow, for all that changes are amounts of melanin and blood
@@ -35,26 +35,17 @@ from .long_hair import falling_hair, tied_hair
 from .person import Person
 from .space import Identity, Sex
 
-LIGHTEST, DARKEST = 70.0, -55.0  # ITA [deg]
-LEAST, MOST = 0.05, 3.4  # of melanin, among which a tone is looked for
-DARK_MELANIN = np.array([0.80, 0.88, 0.90])  # beyond the darkest complexion; chosen by eye
+LIGHTEST = 70.0  # ITA [deg]
+DARKEST = -55.0
+MOST = 3.4
 ONLY_BROWN = 28.0  # ITA below which eyes are brown, as nearly all are there
 IRIS_SHARES = {"brown": 0.4, "hazel": 0.15, "green": 0.12, "blue": 0.2, "grey": 0.13}
-FAIR_HAIR, GREY_HAIR = (0.58, 0.44, 0.29), (0.54, 0.52, 0.49)  # sRGB
-GREY_BROWS = 0.12  # of how grey hair on the scalp is; lashes are not told from brows
-FAIR_SKIN = 45.0  # ITA above which hair may be fair
-DARK_SKIN, LATER_GREY = -30.0, 10.0  # ITA below which hair turns grey so much later [years]
+GREY_HAIR = (0.54, 0.52, 0.49)
 LOCKS_LIGHTER = 1.2  # than painted hair, which no other hair shades
-BEARD_SHADOW = 0.12  # density of shaved hair in the shipped picture
-BEHIND, IN_FRONT = 30.0, 10.0  # [mm] of the scalp, in the map of it: from the hairline back
-GROWN, COVERED = 0.99, 22.0  # share that dense hair covers; [mm] behind the hairline it is dense
-ROOTS = 0.5  # of the light, between them where they are dense
-BEARD_BLUR = 14.0  # [texels]
-BROW_BLUR, BROW_COVER = 3.0, 0.2  # [texels] and share of hairs, from which skin is called brow
-DETAIL = 9  # [texels] below which relief is told from colour
+BEHIND = 30.0  # [mm] of the scalp, in the map of it: from the hairline back
+IN_FRONT = 10.0
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
 LEVELS = 4096  # of the table from light to bytes
-TO_YZ = np.array([[0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])  # CIE, of linear sRGB (D65)
 
 
 @dataclass(frozen=True)
@@ -83,7 +74,7 @@ PLAIN = Features()
 
 @dataclass(frozen=True)
 class _Tints:
-    """What is needed to recolour the picture: its maps are in `data/head_tints.npz`."""
+    """The maps that recolour the picture, from `data/head_tints.npz`."""
 
     light: SingleArray  # the picture, linear, without hair (H, W, 3)
     melanin: SingleArray  # (H, W)
@@ -106,7 +97,9 @@ class _Tints:
 
 def typology_angle(light: npt.ArrayLike) -> FloatArray:
     """ITA [deg] of linear light 0..1, shape (..., 3), by L* and b* of CIE 1976."""
-    relative = np.asarray(light, dtype=np.float64) @ TO_YZ.T / TO_YZ.sum(axis=1)
+    # CIE, of linear sRGB (D65).
+    to_yz = np.array([[0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+    relative = np.asarray(light, dtype=np.float64) @ to_yz.T / to_yz.sum(axis=1)
     root = np.where(relative > 0.008856, np.cbrt(relative), 7.787 * relative + 16.0 / 116.0)
     y, z = np.moveaxis(root, -1, 0)
     return np.asarray(np.degrees(np.arctan2(116.0 * y - 66.0, 200.0 * (y - z))))
@@ -126,16 +119,20 @@ def recoloured(
     tints = _tints()
     density, redness, _ = _changes(tints.melanin_of(angle), blood)
     hair = _hair_light(angle if haired_as is None else haired_as, features)
-    grey = features.grey * np.where(tints.scalp > 0.01, np.float32(1.0), np.float32(GREY_BROWS))
+    grey_share = 0.12  # of how grey hair on the scalp is; lashes have the segment of brows
+    grey = features.grey * np.where(tints.scalp > 0.01, np.float32(1.0), np.float32(grey_share))
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
-    kept, covered = _kept_hair(tints, features), np.zeros_like(tints.hair)
+    kept = _kept_hair(tints, features)
+    covered = np.zeros_like(tints.hair)
     if haired_as is not None:
         kept = np.where(tints.scalp > 0.01, np.float32(0.0), kept)
         covered = _grown_over(tints, features)
-    shaded = 1.0 - (1.0 - ROOTS) * covered
+    root_light = 0.5  # share between hairs where they are dense
+    shaded = 1.0 - (1.0 - root_light) * covered
     light = np.empty_like(tints.light)
     relief = features.relief * tints.detail
-    lips, beard = features.lips * BLOOD, features.beard * SHADOW
+    lips = features.lips * BLOOD
+    beard = features.beard * SHADOW
     # In double precision it takes twice as long.
     density, redness, hair, skin, lips, beard = np.array(
         [density, redness, hair, skin, lips, beard], dtype=np.float32
@@ -155,7 +152,8 @@ def recoloured(
 def _hair_light(angle: float, features: Features) -> FloatArray:
     """Linear light of somebody's hair that is not grey, shape (3,); angle: ITA [deg]."""
     hair = _changes(_tints().melanin_of(angle), 1.0)[2]
-    return np.asarray(hair + features.fair * (to_linear(np.array(FAIR_HAIR)) - hair))
+    fair_hair = (0.58, 0.44, 0.29)  # sRGB
+    return np.asarray(hair + features.fair * (to_linear(np.array(fair_hair)) - hair))
 
 
 def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
@@ -174,7 +172,9 @@ def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
 def _grown_over(tints: _Tints, features: Features) -> SingleArray:
     """The share of each texel that is covered by the hair standing on the scalp, (size, size)."""
     behind = _behind(tints, features).astype(np.float64)
-    return np.asarray(GROWN * smooth_step(0.0, COVERED, behind), np.float32)
+    most_cover = 0.99  # share that dense hair covers
+    dense_depth = 22.0  # [mm] behind the hairline, where hair is dense
+    return np.asarray(most_cover * smooth_step(0.0, dense_depth, behind), np.float32)
 
 
 def coloured(
@@ -213,15 +213,18 @@ def _with_irises(parts: Sequence[Part], name: str) -> tuple[Part, ...]:
 
 def _haired_segments(segments: Image, features: Features) -> Image:
     """What texels belong to, with brows and the hairline of a person."""
-    tints, brows = _tints(), (Segment.RIGHT_BROW, Segment.LEFT_BROW)
+    tints = _tints()
+    brows = (Segment.RIGHT_BROW, Segment.LEFT_BROW)
     is_bald = (segments == Segment.HAIR) & (_grown_over(tints, features) < 0.5)
     found = np.where(is_bald, np.uint8(Segment.SKIN), segments)
     if features.brows is not None:
         found[np.isin(found, brows)] = Segment.SKIN
-        covered = scipy.ndimage.gaussian_filter(painted(features.brows, len(found)), BROW_BLUR)
+        blur = 3.0  # [texels]
+        covered = scipy.ndimage.gaussian_filter(painted(features.brows, len(found)), blur)
         left = np.arange(found.shape[1]) > found.shape[1] / 2
         sides = np.where(left, np.uint8(Segment.LEFT_BROW), np.uint8(Segment.RIGHT_BROW))
-        found = np.where((covered > BROW_COVER) & (found == Segment.SKIN), sides, found)
+        least_cover = 0.2  # share of hairs from which skin is called brow
+        found = np.where((covered > least_cover) & (found == Segment.SKIN), sides, found)
     return found
 
 
@@ -231,9 +234,11 @@ def _with_hair(
     """The parts of a person with the hair of its cut; angle: ITA [deg]."""
     others = tuple(part for part in parts if not part.name.startswith(HAIR))
     cut = CUTS[person.identity.cut]
-    uv, behind = person.uv.astype(np.float64), _behind(_tints(), features)
+    uv = person.uv.astype(np.float64)
+    behind = _behind(_tints(), features)
     scalp = scalp_of(person.vertices, person.faces, uv, behind)
-    light, length = _hair_light(angle, features), person.identity.hair
+    light = _hair_light(angle, features)
+    length = person.identity.hair
     colour = to_screen(LOCKS_LIGHTER * (light + features.grey * (GREY_LIGHT - light)))
     if isinstance(cut, Fall):
         return (*others, *falling_hair(cut, scalp, person, colour, length))
@@ -249,7 +254,8 @@ def built_in_hair(head: Head) -> tuple[Part, ...]:
 
 def _behind(tints: _Tints, features: Features) -> SingleArray:
     """How far texels lie behind somebody's hairline [mm]; half as far if the top is bald."""
-    lies, line = BEHIND * tints.scalp - IN_FRONT, features.hairline
+    lies = BEHIND * tints.scalp - IN_FRONT
+    line = features.hairline
     moved = (lies - line.shift(len(tints.scalp))) / (1.0 + line.crown)
     return np.where(tints.scalp > 0.01, moved, lies).astype(np.float32)
 
@@ -272,16 +278,18 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
     is_man = identity.sex is Sex.MAN
     years = identity.age
     beard, lips, fair, grey, line, hairs = random.uniform(0.0, 1.0, 6)
+    fair_skin = 45.0  # ITA above which hair may be fair
+    shaved_density = 0.12  # of hair in the shipped picture
     return Features(
         brows=drawn_brows(is_man, years, random),
         lid_line=0.2 * line if is_man else 0.5 + 0.4 * line,
         stubble=float(is_man) * max(2.0 * hairs - 1.1, 0.0),
-        beard=0.1 + 0.8 * beard**1.3 if is_man else -BEARD_SHADOW,
+        beard=0.1 + 0.8 * beard**1.3 if is_man else -shaved_density,
         lips=-0.12 + 0.1 * lips
         if is_man
         else (0.25 + 0.45 * lips) * (1.0 - 0.006 * (years - 20.0)),
         relief=(0.15 if is_man else -0.6) + 0.02 * (years - 30.0),
-        fair=fair if angle > FAIR_SKIN else 0.0,
+        fair=fair if angle > fair_skin else 0.0,
         grey=_share_of_grey(years, angle, grey),
         hairline=drawn_hairline(is_man, years, random),
     )
@@ -293,7 +301,9 @@ def _share_of_grey(years: float, angle: float, early: float) -> float:
     From 45 to 65 years it is 0.27 in the mean, with dark skin it comes later (Panhard, Lozano,
     Loussouarn 2012, "Greying of the human hair", Br. J. Dermatology 167:865-873).
     """
-    later = LATER_GREY * float(np.clip((ONLY_BROWN - angle) / (ONLY_BROWN - DARK_SKIN), 0.0, 1.0))
+    dark_skin = -30.0  # ITA below which hair turns grey later
+    delay = 10.0  # [years]
+    later = delay * float(np.clip((ONLY_BROWN - angle) / (ONLY_BROWN - dark_skin), 0.0, 1.0))
     past = float(np.clip((years - 46.0 + 16.0 * early - later) / 34.0, 0.0, 1.0))
     return min(past * past, 0.95)
 
@@ -323,7 +333,8 @@ def _changes(melanin: float, blood: float) -> tuple[FloatArray, FloatArray, Floa
         for channel in to_linear(np.array([complexion.hair for complexion in COMPLEXIONS])).T
     ]
     more = max(melanin - amounts[-1], 0.0)
-    density = (melanin - more - OWN.melanin) * MELANIN + more * DARK_MELANIN
+    dark_melanin = np.array([0.80, 0.88, 0.90])  # beyond the darkest complexion; chosen by eye
+    density = (melanin - more - OWN.melanin) * MELANIN + more * dark_melanin
     return density, (blood * usual - OWN.blood) * BLOOD, np.array(hair)
 
 
@@ -339,16 +350,20 @@ def _tints() -> _Tints:
         coarse = Pictures.fromarray(arrays[name].astype(np.float32) / 100.0)
         finer = coarse.resize((width, height), Pictures.Resampling.BILINEAR)
         soft[name] = np.asarray(finer, dtype=np.float32)
-    soft["beard"] = scipy.ndimage.gaussian_filter(soft["beard"], BEARD_BLUR) * (1.0 - soft["lips"])
+    beard_blur = 14.0  # [texels]
+    soft["beard"] = scipy.ndimage.gaussian_filter(soft["beard"], beard_blur) * (1.0 - soft["lips"])
     hair = (arrays["hair"] / 100.0).astype(np.float32)
     light = to_linear(np.arange(256) / 255.0).astype(np.float32)[head.albedo]
     bare = np.maximum(light - hair[..., None] * to_linear(OWN.hair).astype(np.float32), 0.0)
-    skin, weights = arrays["skin"][:3], arrays["skin"][3:]
-    melanins = np.linspace(MOST, LEAST, 200)
+    skin = arrays["skin"][:3]
+    weights = arrays["skin"][3:]
+    least_melanin = 0.05
+    melanins = np.linspace(MOST, least_melanin, 200)
     changes = [_changes(float(melanin), 1.0) for melanin in melanins]
     tones = [skin * np.exp(-weights[0] * more - weights[1] * red) for more, red, _ in changes]
     lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3))
-    detail = (lightness - scipy.ndimage.uniform_filter(lightness, DETAIL)) * (hair < 0.02)
+    detail_size = 9  # [texels]: finer changes of colour are relief
+    detail = (lightness - scipy.ndimage.uniform_filter(lightness, detail_size)) * (hair < 0.02)
     return _Tints(
         bare,
         **soft,

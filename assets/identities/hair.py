@@ -1,7 +1,7 @@
 """Hair that stands off the head: short, shells over the scalp (render/shaders/shells.glsl).
 
-One surface tells the renderer where hair grows, how dense it is, and how far and which way each
-strand goes; it moves with the skin. Strands run away from a whorl: one at the crown combs hair
+One surface gives the renderer the place and density of hair, and the length and direction of each
+strand; it moves with the skin. Strands run away from a whorl: one at the crown combs hair
 forward and down, one in front brushes it back, one at a temple sweeps it aside.
 After Lengyel, Praun, Finkelstein, Hoppe 2001, "Real-time fur over arbitrary surfaces".
 """
@@ -23,19 +23,10 @@ from ..smooth import Points, Values, smooth_step, unit
 from ..topology import grid_faces, quarter
 
 HAIR = "hair"  # the name of the part
-SHINE, SLEEK = 0.13, 0.4  # of short and of long hair
+SLEEK = 0.4
 FINE = 0.22  # of the way along long strands, in which they change less than short ones
-SHADED = 0.6  # how light hair is inside, where lamps do not get
-BALD = 40.0  # [mm] behind which the hairline lies where the top is bald
-LEVELS = 2  # how often triangles of the scalp are cut into four
-BULGE = 0.75  # of what the planes of an edge's ends would make of it
 MEAN = 0.6  # of the strands' way, where the part's own vertices lie
-LOOSE, LOOSE_STEPS, LOOSE_LENGTH, THIN = 160, 5, 22.0, 0.045  # single hairs; [mm] length, radius
-RISE, STRAY, DROOP = (0.05, 0.4), 0.2, 0.2  # how far off, aside and down, of their length
-CLEAR, SUNK = 0.7, 0.3  # [mm] over the skin, and down for each from 4 before the hairline on
-FLAT = 0.0, 45.0  # [mm] behind the hairline hair lies flat, and stands as its cut says
-PAINTED, HEM = 1.0, 20.0  # [mm] behind the hairline only hairs on the skin; until hair is dense
-BARE, FLAT_TOP = 5.0, 0.8  # [mm] the same where hair is drawn back; of normals up: none sees below
+LOOSE_LENGTH = 22.0
 
 
 @dataclass(frozen=True)
@@ -46,7 +37,7 @@ class Cut:
     sides, top: how long strands are [mm], on both sides and behind, and on top of the head.
     lift: the sine of the angle at which they stand off the head.
     behind: how far behind the hairline they are as long as that [mm].
-    knot: half the width of what they are tied to where they come together [mm]; 0: nothing.
+    knot: half the width of the knot or tail that they are tied to [mm]; 0: none.
     tail: how long that hangs down [mm]; 0: it is wound to a knot.
     """
 
@@ -102,12 +93,14 @@ class Hairline:
 
     def shift(self, size: int) -> SingleArray:
         """How far it lies behind the built-in head's [mm], (size, size)."""
-        across, up = np.linspace(-0.5, 0.5, size), np.linspace(1.0, 0.0, size)[:, None]
+        across = np.linspace(-0.5, 0.5, size)
+        up = np.linspace(1.0, 0.0, size)[:, None]
         row = self.front * np.exp(-((across / 0.17) ** 4))
         row += self.temples * np.exp(-(((np.abs(across) - 0.12) / 0.05) ** 2))
         ahead = 1.0 - smooth_step(0.74, 0.82, up)
         top = np.exp(-((across / 0.14) ** 2) - ((up - 0.78) / 0.15) ** 2)
-        return (row * ahead + self.crown * BALD * top).astype(np.float32)
+        bald_depth = 40.0  # [mm] to the hairline where the top is bald
+        return (row * ahead + self.crown * bald_depth * top).astype(np.float32)
 
 
 def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> Hairline:
@@ -147,29 +140,43 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[
     beside = unit(np.cross([[0.0, 0.3, 1.0]], whorl))[0]
     out = points - middle
     angle = np.arctan2(out @ np.cross(whorl, beside), out @ beside)
-    faces = faces[(behind[faces] > PAINTED).any(axis=1)]
+    painted_depth = 1.0  # [mm] behind the hairline, where hairs lie on the skin only
+    faces = faces[(behind[faces] > painted_depth).any(axis=1)]
     # Where angles begin anew strands do not cross from one side to the other.
     crosses = np.ptp(angle[faces], axis=1) > np.pi
     again, number = np.unique(faces[crosses], return_inverse=True)
     faces[crosses] = len(points) + number.reshape(-1, 3)
     angle = np.concatenate([angle, angle[again] + 2.0 * np.pi * (angle[again] < 0.0)])
     used, number = np.unique(faces, return_inverse=True)
-    faces, angle = number.reshape(-1, 3).astype(np.int32), angle[used]
+    faces = number.reshape(-1, 3).astype(np.int32)
+    angle = angle[used]
     rows = np.concatenate([np.arange(len(points)), again])[used]
-    points, normals, behind, out = points[rows], normals[rows], behind[rows], unit(out[rows])
+    points = points[rows]
+    normals = normals[rows]
+    behind = behind[rows]
+    out = unit(out[rows])
     away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
     radius = np.linalg.norm(scalp.points - middle, axis=1).mean()
     comb = unit(np.cross(np.cross(whorl, out), normals))
     long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
     long = length * long * smooth_step(0.0, cut.behind, behind)
-    lift = cut.lift * smooth_step(*FLAT, behind)[:, None]
+    # [mm] behind the hairline, where hair lies flat, and where it stands as its cut says.
+    flat_depths = 0.0, 45.0
+    lift = cut.lift * smooth_step(*flat_depths, behind)[:, None]
     way = long[:, None] * (lift * normals + np.sqrt(1.0 - lift**2) * comb)
-    off = CLEAR * smooth_step(-2.0, 8.0, behind) + SUNK * np.minimum(behind + 4.0, 0.0)
+    clearance = 0.7  # [mm] over the skin
+    sinking = 0.3  # [mm] down for each from 4 before the hairline on
+    off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
     points = points + off[:, None] * normals
     uneven = 2.0 * np.sin(0.22 * radius * angle) + 1.5 * np.sin(0.57 * radius * angle + 1.0)
-    dense = np.minimum((behind - (BARE if cut.knot else PAINTED) + uneven) / HEM, 2.0)
+    hem_depth = 20.0  # [mm] behind the hairline, until hair is dense
+    bare_depth = 5.0  # [mm] the same where hair is drawn back
+    dense = np.minimum(
+        (behind - (bare_depth if cut.knot else painted_depth) + uneven) / hem_depth, 2.0
+    )
     along = (FINE if cut.knot else 1.0) * radius * away
     striation = np.column_stack([radius * angle, along, way, dense])
+    short_shine = 0.13
     hair = Part(
         name=HAIR,
         vertices=(points + MEAN * way).astype(np.float32),
@@ -177,11 +184,12 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[
         faces=faces,
         colours=np.tile(colour, (len(points), 1)).astype(np.float32),
         bone="cranium",
-        shine=SLEEK if cut.knot else SHINE,
+        shine=SLEEK if cut.knot else short_shine,
         striation=striation.astype(np.float32),
     )
     loose = loose_hairs(hair, min(0.5 * length * cut.top, LOOSE_LENGTH))
-    hangs = (points[:, 2] > middle[2]) & (normals[:, 1] < FLAT_TOP)  # over the skin
+    upward_share = 0.8  # of normals: nothing below is seen
+    hangs = (points[:, 2] > middle[2]) & (normals[:, 1] < upward_share)  # over the skin
     return from_within(hair, faces[hangs[faces].all(axis=1)]), loose, hair
 
 
@@ -189,28 +197,40 @@ def from_within(hair: Part, faces: IndexArray) -> Part:
     """Some faces of hair as they are seen from the head: below what hangs over, and at tips."""
     used, number = np.unique(faces[:, ::-1], return_inverse=True)
     rows = {n: getattr(hair, n)[used] for n in ("vertices", "normals", "colours", "striation")}
-    rows |= {"faces": number.reshape(-1, 3).astype(np.int32), "colours": SHADED * rows["colours"]}
+    inner_light = 0.6  # share inside, where lamps do not reach
+    rows |= {
+        "faces": number.reshape(-1, 3).astype(np.int32),
+        "colours": inner_light * rows["colours"],
+    }
     return replace(hair, name=HAIR + "_inside" + hair.name.removeprefix(HAIR), **rows)
 
 
 def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
     """Single hairs, as long [mm], that stand off the smooth outline of a part."""
     assert hair.striation is not None
-    random, t = np.random.default_rng(0), np.linspace(0.0, 1.0, LOOSE_STEPS)[:, None, None]
+    random = np.random.default_rng(0)
+    step_count = 5
+    t = np.linspace(0.0, 1.0, step_count)[:, None, None]
     is_dense = (hair.striation[hair.faces, 5] > 0.5).all(axis=1)
-    corners = random.choice(hair.faces[is_dense], LOOSE)
-    shares = random.dirichlet((1.0, 1.0, 1.0), LOOSE)[:, :, None]
+    hair_count = 160
+    corners = random.choice(hair.faces[is_dense], hair_count)
+    shares = random.dirichlet((1.0, 1.0, 1.0), hair_count)[:, :, None]
     columns = hair.vertices, hair.normals, hair.colours, hair.striation[:, 2:5]
     root, normal, colour, way = ((shares * each[corners]).sum(axis=1) for each in columns)
     normal = unit(normal)
     across = unit(np.cross(normal, way))
-    off, aside = random.uniform(*RISE, (LOOSE, 1)), random.normal(0.0, STRAY, (LOOSE, 1))
+    rise = (0.05, 0.4)  # least and most, share of the length
+    off = random.uniform(*rise, (hair_count, 1))
+    stray = 0.2  # share of the length, aside
+    aside = random.normal(0.0, stray, (hair_count, 1))
     along = longest * (np.cross(across, normal) + off * normal + aside * across)
-    bent = longest * DROOP * (normal + np.array([0.0, 1.0, 0.0]))
+    droop = 0.2  # share of the length, down
+    bent = longest * droop * (normal + np.array([0.0, 1.0, 0.0]))
     turn = np.radians([0.0, 120.0, 240.0])[:, None]
     ring = np.cos(turn) * normal[:, None] + np.sin(turn) * across[:, None]
     places = root[:, None, None] + t * along[:, None, None] - t * t * bent[:, None, None]
-    places = places + THIN * ring[:, None]
+    radius = 0.045  # [mm]
+    places = places + radius * ring[:, None]
     numbers = np.arange(places.size // 3).reshape(places.shape[:3])
     return replace(
         hair,
@@ -218,8 +238,8 @@ def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
         vertices=places.reshape(-1, 3).astype(np.float32),
         normals=np.broadcast_to(ring[:, None], places.shape).reshape(-1, 3).astype(np.float32),
         faces=np.concatenate([grid_faces(each, closed=True) for each in numbers]),
-        colours=np.repeat(colour, LOOSE_STEPS * 3, axis=0).astype(np.float32),
-        strand_radius=THIN,
+        colours=np.repeat(colour, step_count * 3, axis=0).astype(np.float32),
+        strand_radius=radius,
         striation=None,
     )
 
@@ -239,14 +259,18 @@ def scalp_of(vertices: Points, faces: IndexArray, uv: Points, behind: SingleArra
 
     used, number = np.unique(faces[(far(uv) > 0.0)[faces].any(axis=1)], return_inverse=True)
     faces, normals = number.reshape(-1, 3).astype(np.int32), vertex_normals(vertices, faces)[used]
-    points, uv = vertices[used], uv[used]
-    for _ in range(LEVELS):
+    points = vertices[used]
+    uv = uv[used]
+    level_count = 2  # cuts of the scalp's triangles into four
+    bulge_share = 0.75  # of the way to the planes of an edge's ends
+    for _ in range(level_count):
         cut = quarter(faces, len(points))
-        faces, ends = cut.faces, points[cut.edges]
+        faces = cut.faces
+        ends = points[cut.edges]
         middle = ends.mean(axis=1, keepdims=True)
         # Where skin is hollow its triangles, which may be seen, lie over it.
         above = ((middle - ends) * normals[cut.edges]).sum(axis=2, keepdims=True)
-        bulge = -BULGE * (np.minimum(above, 0.0) * normals[cut.edges]).mean(axis=1)
+        bulge = -bulge_share * (np.minimum(above, 0.0) * normals[cut.edges]).mean(axis=1)
         points = np.vstack([points, middle[:, 0] + bulge])
         normals = np.vstack([normals, unit(normals[cut.edges].mean(axis=1))])
         uv = np.vstack([uv, uv[cut.edges].mean(axis=1)])

@@ -30,27 +30,14 @@ from ..norms import measures_of
 from ..smooth import smooth_step
 from .space import Identity, Sex, person_space, scores_of
 
-NEARER = (1.0, 0.85, 0.7, 0.5, 0.25, 0.0)  # shares of the weights, tried in turn
-MIDDLE = 20.0  # [mm] beside the middle, where an uneven face comes to its own side
-GIVE = 0.2  # of the warp of what lies in the head
-MOST_RESTING = {Sex.WOMAN: 0.45, Sex.MAN: 0.5}
-FROWN = np.array([15.0, 18.0, 30.0])  # [mm] about the glabella, that furrows of age leave out
-NARROWER_NECK, NECK_AXIS = 0.12, np.array([0.0, 0.0, -8.0])  # share, of women's; [mm]
-STEEP, BACK, SOON = 0.35, 20.0, 30.0  # the jaw's line rises to there [mm]; below it the neck begins
-LOWER = -0.96  # of the iris' radius, that the lower lid lies at
-ROWS_OF_LIDS = (1.0, 1.0, 1.0, 0.7, 0.25)  # how far rows around the eye go with the lid's edge
-CORNER, BROW = 9.0, 11.0  # [mm] about corners of the mouth and brows, that go with them
-MOST_TURNED = 1.8  # [mm] that the corners of the mouth are moved
-LID_SHARES = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far rows around the eye are laid on it
-
 
 @dataclass(frozen=True)
 class Person(FittedHead):
-    """A head with the triangles of the built-in one; beside what a fitted head has:
+    """A head with the triangles of the built-in one. It has the fields of a fitted head, and:
 
     mandible_weight, jaw_axis, anatomy, mirror: as of `Head`. `mirror` is that of the built-in head
         where left and right differ, too.
-    identity: what it was made from.
+    identity: the weights and features that it was made from.
     called: its number or name, "" for none.
     in_tone: makes the texture in another tone, from the angle of `recoloured` [deg].
     """
@@ -78,23 +65,27 @@ def make_person(identity: Identity) -> Person:
     """The head of an identity; the same numbers give the same head.
 
     Where its skin would be turned over or cut itself, all of it is brought nearer to the mean;
-    the person's `identity` says what was made.
+    the person's `identity` has the weights that were used.
     """
-    for share in NEARER[:-1]:
+    shares = (1.0, 0.85, 0.7, 0.5, 0.25, 0.0)  # of the weights, tried in turn
+    for share in shares[:-1]:
         with contextlib.suppress(AssetError):
             return _made(identity if share == 1.0 else identity.scaled(share))
-    return _made(identity.scaled(NEARER[-1]))
+    return _made(identity.scaled(shares[-1]))
 
 
 def _made(identity: Identity) -> Person:
     """The head of an identity; AssetError where its skin would be turned over or cut itself."""
-    known, space = load("head"), person_space()
+    known = load("head")
+    space = person_space()
     beside = known.vertices[:, :1]
-    askew = space.moved(np.array(identity.unevenness)) * beside / np.hypot(beside, MIDDLE)
+    middle_width = 20.0  # [mm] beside the middle, over which an uneven face goes to its own side
+    askew = space.moved(np.array(identity.unevenness)) * beside / np.hypot(beside, middle_width)
     bent = space.mean + space.moved(np.array(identity.weights)) + askew
     eyes = tuple(_eye(known, eye, bent) for eye in known.eyes)
     bent = _resting_face(known, bent, eyes, identity)
-    vertices = lids_on_eyes(known, bent, eyes, LID_SHARES)
+    lid_shares = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far rows around the eye are laid on it
+    vertices = lids_on_eyes(known, bent, eyes, lid_shares)
     neck = vertices[known.anatomy["menton"]], identity.sex
     vertices = _on_neck(vertices, *neck)
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
@@ -104,8 +95,10 @@ def _made(identity: Identity) -> Person:
     named = _named(known)
     spread, usual = (np.var(x[named], 0).sum() for x in (vertices, known.vertices))
     larger = float(np.sqrt(spread / usual))
-    warp = ThinPlateSpline(known.vertices[named], vertices[named], GIVE)
-    normals, landmarks = vertex_normals(vertices, known.faces), vertices[known.landmarks]
+    give = 0.2  # share of the warp that organs in the head follow
+    warp = ThinPlateSpline(known.vertices[named], vertices[named], give)
+    normals = vertex_normals(vertices, known.faces)
+    landmarks = vertices[known.landmarks]
     skin = FittedSkin(vertices, normals, known.faces, landmarks, known.mandible_weight)
     return Person(
         vertices=vertices,
@@ -140,9 +133,14 @@ def _made(identity: Identity) -> Person:
 
 def _on_neck(points: FloatArray, chin: FloatArray, sex: Sex) -> FloatArray:
     """Points of a skin or a shirt, of which those below the jaw lie on the neck of that sex."""
-    below = chin[1] - points[:, 1:2] + STEEP * (chin[2] - np.maximum(points[:, 2:], BACK))
-    narrower = NARROWER_NECK * (sex is Sex.WOMAN) * smooth_step(0.0, SOON, below)
-    return np.asarray(points - narrower * [1.0, 0.0, 1.0] * (points - NECK_AXIS))
+    jaw_slope = 0.35  # of the jaw's line, up to the back
+    jaw_depth = 20.0  # [mm] where it ends
+    below = chin[1] - points[:, 1:2] + jaw_slope * (chin[2] - np.maximum(points[:, 2:], jaw_depth))
+    narrowing = 0.12  # share, of women's
+    fade_height = 30.0  # [mm] below it, where the neck begins
+    narrower = narrowing * (sex is Sex.WOMAN) * smooth_step(0.0, fade_height, below)
+    neck_axis = np.array([0.0, 0.0, -8.0])  # [mm]
+    return np.asarray(points - narrower * [1.0, 0.0, 1.0] * (points - neck_axis))
 
 
 def _resting_face(
@@ -150,12 +148,14 @@ def _resting_face(
 ) -> FloatArray:
     """Vertices with the lids, the corners of the mouth, and the brows of an identity at rest."""
     x = vertices.copy()
+    lower_lid_height = -0.96  # share of the iris' radius
+    row_shares = (1.0, 1.0, 1.0, 0.7, 0.25)  # how far rows around the eye go with the lid's edge
     for eye in eyes:
         upper = 1.0 - identity.covered / eye.iris_radius
-        for lid, height in (("superius", upper), ("inferius", LOWER)):
+        for lid, height in (("superius", upper), ("inferius", lower_lid_height)):
             middle = vertices[known.anatomy[f"palpebrale_{lid}_{eye.name}"]]
             moved = eye.centre[1] + height * eye.iris_radius - middle[1]
-            for row, share in enumerate(ROWS_OF_LIDS):
+            for row, share in enumerate(row_shares):
                 ring = known.rings[f"eye_{row}_{eye.name}"]
                 inner, outer = vertices[ring[[0, len(ring) // 2]]]
                 along = (vertices[ring, 0] - inner[0]) / (outer[0] - inner[0])
@@ -163,14 +163,16 @@ def _resting_face(
                 open_ = np.sqrt(np.clip(1.0 - (2.0 * along - 1.0) ** 2, 0.0, 1.0))
                 x[ring, 1] += share * moved * open_ * (is_above == (lid == "superius"))
     # Brows slide over the forehead; lips, which touch, go one way.
-    normals, up = vertex_normals(vertices, known.faces), np.array([0.0, 1.0, 0.0])
+    normals = vertex_normals(vertices, known.faces)
+    up = np.array([0.0, 1.0, 0.0])
     line = vertices[known.landmarks[[48, 54, 62, 66]], 1]
-    turned = np.clip(
-        identity.corners - line[:2].mean() + line[2:].mean(), -MOST_TURNED, MOST_TURNED
-    )
+    most_turn = 1.8  # [mm] of the corners of the mouth
+    turned = np.clip(identity.corners - line[:2].mean() + line[2:].mean(), -most_turn, most_turn)
+    corner_radius = 9.0  # [mm] about corners of the mouth, which go with them
+    brow_radius = 11.0  # [mm] about brows
     for points, way, wide in (
-        (known.landmarks[48:55:6], turned * up, CORNER),
-        (known.landmarks[17:27], identity.brows * (up - normals[:, 1:2] * normals), BROW),
+        (known.landmarks[48:55:6], turned * up, corner_radius),
+        (known.landmarks[17:27], identity.brows * (up - normals[:, 1:2] * normals), brow_radius),
     ):
         away = scipy.spatial.cKDTree(vertices[points]).query(vertices)[0]
         x += np.exp(-((away / wide) ** 2))[:, None] * way
@@ -181,8 +183,11 @@ def _resting(known: Head, identity: Identity) -> SingleArray:
     """How far furrows show in a face at rest, 0 to 1, shape (V,): between the brows they frown."""
     past = float(np.clip((identity.age - 30.0) / 45.0, 0.0, 1.0))
     off = known.vertices - known.vertices[known.anatomy["glabella"]]
-    frowned = np.exp(-((off / FROWN) ** 2).sum(axis=1))
-    return np.asarray(MOST_RESTING[identity.sex] * past * past * (1.0 - frowned), np.float32)
+    # [mm] about the glabella, which furrows of age leave out.
+    frown_radii = np.array([15.0, 18.0, 30.0])
+    frowned = np.exp(-((off / frown_radii) ** 2).sum(axis=1))
+    most_resting = {Sex.WOMAN: 0.45, Sex.MAN: 0.5}
+    return np.asarray(most_resting[identity.sex] * past * past * (1.0 - frowned), np.float32)
 
 
 def _named(known: Head) -> IndexArray:

@@ -1,4 +1,4 @@
-"""How people differ, on the vertices of the built-in head: modes, and who is drawn from them.
+"""How people differ, on the vertices of the built-in head: modes, and persons drawn from them.
 
 A person is the mean with a weight for each mode; a weight of 1 is one deviation of people. The
 modes were fitted to those of ICT-FaceKit as the head's form was (docs/head.md), and turned so that
@@ -7,9 +7,9 @@ the first ones move the face most (principal components). They know neither sex 
 So weights are drawn under two laws at once: those of the modes, in which all have the mean 0 and
 the deviation 1, and those of a sex' published measures (`assets.norms`). Both are normal
 distributions, and so is their product (Bishop 2006, "Pattern recognition and machine learning",
-section 2.3.3). What the measures do not tell follows from how people are: who has a long face has a
-long nose. Sex and age push points as softly (brow ridge, jaw and chin of men; skin that sags); how
-far is chosen by eye, after what anatomists name.
+section 2.3.3). The modes correlate the measures with other forms: a person with a long face has
+a long nose. Sex and age push points as softly (brow ridge, jaw, chin of men; skin that sags); how
+far is chosen by eye, after anatomists.
 Source: Blanz, Vetter 1999, "A morphable model for the synthesis of 3D faces".
 
 Three widths were taken with calipers, which press on the skin over the bone (`norms`). A surface is
@@ -34,18 +34,7 @@ from ..norms import NORMS, Sample, measures_of
 
 MOST = 2.5  # deviations
 PRESSED = {"go-go": 10.0, "zy-zy": 4.0, "ft-ft": 2.0}  # [mm] by calipers, both sides together
-APART = 1.0  # by how much of their published difference women and men lie apart
-MEANS, SPREADS = 4.0, 0.25  # how strongly published means, and deviations, count beside the modes
-FIRMLY = MappingProxyType({"sn-prn": 5.0, "ft-ft": 1.5})  # more so: else noses come too far forward
-# How wide the first mode is drawn, and from the seventh on all: persons that are drawn from the law
-# alone deviate less in what is measured than published, and more in the size of the face.
-NARROW, WIDE, SIXTH = 0.7, 1.1, 6
-FARTHEST = 4.0  # [deviations] that any weight is drawn
 YOUNG = 30.0  # [years] from which on age is seen
-# What ten years do to measures, in deviations.
-AGED_MEASURES = MappingProxyType(
-    {"sn-ls": 0.25, "ls-sto": -0.3, "sto-li": -0.25, "n-prn": 0.1, "al-al": 0.15, "ch-ch": 0.1}
-)
 # Points of the left half, an anatomical name or the number of a landmark, a way that they go, and
 # how far ten years take them, and how far a man's lie from a person's of no sex [mm].
 POINTS: tuple[tuple[str | int, tuple[float, float, float], float, float], ...] = (
@@ -56,11 +45,6 @@ POINTS: tuple[tuple[str | int, tuple[float, float, float], float, float], ...] =
     ("labiale_inferius", (0, 0, -1), 0.2, 1.0), (9, (1, 0, 0), 0.0, 2.6), (10, (1, 0, 0), 0.0, 3.0),
     (11, (1, -1, 0), 0.35, 2.0), (12, (1, -1, 0), 0.35, 2.0), ("pogonion", (0, -1, 1), 0.0, 1.6),
 )  # fmt: skip
-POINT = 0.7  # [mm]: how exactly points are pushed
-
-HAIR = 0.8, 1.2  # how long it is, beside its cut
-AGES = 20.0, 75.0  # [years]
-UNEVENNESS = 0.1  # deviations, by which a face is another person's on the left than on the right
 
 
 class Sex(Enum):
@@ -68,20 +52,6 @@ class Sex(Enum):
 
     WOMAN = "woman"
     MAN = "man"
-
-
-CUT_SHARES: Mapping[Sex, Mapping[str, float]] = MappingProxyType(
-    {
-        Sex.WOMAN: {
-            "parted": 0.2, "centred": 0.2, "aside": 0.22, "knotted": 0.14, "topknot": 0.08,
-            "tailed": 0.16,
-        },
-        Sex.MAN: {
-            "short": 0.38, "cropped": 0.3, "brushed": 0.14, "swept": 0.12, "knotted": 0.03,
-            "tailed": 0.03,
-        },
-    }
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -149,28 +119,55 @@ class PersonSpace:
     def draw(self, sex: Sex, age: float, random: np.random.Generator) -> FloatArray:
         """The weights of somebody of that sex and age [years], shape (k,)."""
         rows, off = self._measured(sex)
-        told, unit = rows.T @ rows, np.eye(len(self.modes))
-        firmly = np.array([FIRMLY.get(code, 1.0) for code in NORMS])[:, None]
-        held = MEANS * rows.T @ (firmly * rows)
-        mean = np.linalg.solve(unit + held, MEANS * rows.T @ (firmly[:, 0] * off))
+        measured = rows.T @ rows
+        unit = np.eye(len(self.modes))
+        # Higher, because noses come too far forward without it.
+        firmness_of = MappingProxyType({"sn-prn": 5.0, "ft-ft": 1.5})
+        firmly = np.array([firmness_of.get(code, 1.0) for code in NORMS])[:, None]
+        mean_firmness = 4.0  # of published means, beside the modes
+        held = mean_firmness * rows.T @ (firmly * rows)
+        mean = np.linalg.solve(unit + held, mean_firmness * rows.T @ (firmly[:, 0] * off))
         decades = max(age - YOUNG, 0.0) / 10.0
         side = 1.0 if sex is Sex.MAN else -1.0
         far = np.array([decades * older + side * male for _, _, older, male in POINTS])
-        scores = decades * np.array([AGED_MEASURES.get(code, 0.0) for code in NORMS])
-        pushes = MEANS * rows.T @ scores + self.pushed.T @ far / POINT**2
-        mean += np.linalg.solve(unit + held + self.pushed.T @ self.pushed / POINT**2, pushes)
+        # What ten years do to measures, in deviations.
+        aged_measures = MappingProxyType(
+            {
+                "sn-ls": 0.25,
+                "ls-sto": -0.3,
+                "sto-li": -0.25,
+                "n-prn": 0.1,
+                "al-al": 0.15,
+                "ch-ch": 0.1,
+            }
+        )
+        scores = decades * np.array([aged_measures.get(code, 0.0) for code in NORMS])
+        tolerance = 0.7  # [mm] in pushed points
+        pushes = mean_firmness * rows.T @ scores + self.pushed.T @ far / tolerance**2
+        mean += np.linalg.solve(unit + held + self.pushed.T @ self.pushed / tolerance**2, pushes)
         chance = np.clip(random.normal(size=len(unit)), -MOST, MOST)
-        wide = np.interp(np.arange(len(unit)), (0, SIXTH), (NARROW, WIDE))
-        spread = np.linalg.cholesky(np.linalg.inv(np.diag(wide**-2.0) + SPREADS * told))
-        return np.clip(mean + spread @ chance, -FARTHEST, FARTHEST)
+        # Width of the draw in the first mode, and from the seventh on in all: persons of the plain
+        # law deviate less in their measures than published, and more in the size of the face.
+        narrow_share = 0.7
+        wide_share = 1.1
+        size_mode = 6
+        wide = np.interp(np.arange(len(unit)), (0, size_mode), (narrow_share, wide_share))
+        deviation_firmness = 0.25  # of published deviations
+        spread = np.linalg.cholesky(
+            np.linalg.inv(np.diag(wide**-2.0) + deviation_firmness * measured)
+        )
+        most_deviations = 4.0  # of any weight that is drawn
+        return np.clip(mean + spread @ chance, -most_deviations, most_deviations)
 
     def _measured(self, sex: Sex) -> tuple[FloatArray, FloatArray]:
-        """What the norms ask of weights: rows (m, k), and the right side (m,), in deviations."""
-        found, norms = measures_of(self.mean, self.anatomy), norms_of(sex)
+        """The norms as equations for weights: rows (m, k), right side (m,), in deviations."""
+        found = measures_of(self.mean, self.anatomy)
+        norms = norms_of(sex)
         off = []
+        sex_share = 1.0  # of the published difference between women and men
         for code, norm in NORMS.items():
             middle = 0.5 * (norm.women.mean + norm.men.mean)
-            asked = middle + APART * (norms[code].mean - middle)
+            asked = middle + sex_share * (norms[code].mean - middle)
             off.append(asked + PRESSED.get(code, 0.0) - found[code])
         deviations = np.array([sample.deviation for sample in norms.values()])
         return self.slopes / deviations[:, None], np.array(off) / deviations
@@ -205,16 +202,40 @@ def sample_identity(
     random = np.random.default_rng([seed, 17])
     drawn = Sex.WOMAN if random.random() < 0.5 else Sex.MAN
     sex = drawn if sex is None else sex
-    years = float(random.uniform(*AGES))
+    ages = 20.0, 75.0  # [years]
+    years = float(random.uniform(*ages))
     age = years if age is None else age
-    hair = float(random.uniform(*HAIR))
-    cuts = CUT_SHARES[sex]
+    hair_lengths = 0.8, 1.2  # least and most, times those of the cut
+    hair = float(random.uniform(*hair_lengths))
+    cut_shares = MappingProxyType(
+        {
+            Sex.WOMAN: {
+                "parted": 0.2,
+                "centred": 0.2,
+                "aside": 0.22,
+                "knotted": 0.14,
+                "topknot": 0.08,
+                "tailed": 0.16,
+            },
+            Sex.MAN: {
+                "short": 0.38,
+                "cropped": 0.3,
+                "brushed": 0.14,
+                "swept": 0.12,
+                "knotted": 0.03,
+                "tailed": 0.03,
+            },
+        }
+    )
+    cuts = cut_shares[sex]
     cut = str(random.choice(list(cuts), p=list(cuts.values())))
     weights = person_space().draw(sex, age, random)
     sides = np.clip(random.normal(size=len(weights)), -MOST, MOST)
-    uneven = (0.0 if is_even else UNEVENNESS) * sides
+    unevenness = 0.1  # deviations that the left side has of another person
+    uneven = (0.0 if is_even else unevenness) * sides
     covered, corners, brows = np.clip(random.normal(size=3), -2.0, 2.0)
-    late, is_woman = max(age - YOUNG, 0.0) / 10.0, sex is Sex.WOMAN
+    late = max(age - YOUNG, 0.0) / 10.0
+    is_woman = sex is Sex.WOMAN
     return Identity(
         sex,
         age,

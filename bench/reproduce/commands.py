@@ -19,12 +19,6 @@ from ..report import processor, say_progress, table
 from .experiments import EXPERIMENTS, Result
 
 PATH = click.Path(path_type=Path)
-PAGE = "index.html"
-TITLE = "Dynamically refined animated triangle meshes, repeated"
-ABOUT = """\
-Kähler, Haber, Seidel 2003 (doi 10.1007/s00371-002-0185-8), in the order of the paper: its numbers,
-and those that this program measures. Times are medians."""
-STYLE = "body { max-width: 80rem; margin: auto } img { max-width: 100% } pre { overflow-x: auto }"
 
 
 NAMES = [experiment.name for experiment in EXPERIMENTS]
@@ -46,7 +40,8 @@ def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
     from risorius.app.pictures import save_png
 
     chosen = [each for each in EXPERIMENTS if each.name in names or "all" in names]
-    for name in (PAGE, *(f"{each.name}.png" for each in chosen if each.picture)):
+    page = "index.html"
+    for name in (page, *(f"{each.name}.png" for each in chosen if each.picture)):
         check_file(folder / name)
     results = []
     for experiment in chosen:
@@ -56,8 +51,8 @@ def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
         if result.outcome.picture is not None:
             save_png(folder / f"{result.experiment.name}.png", result.outcome.picture)
         click.echo(f"\n{result.experiment.title} ({result.experiment.place})\n{_text(result)}")
-    save_text(folder / PAGE, _page(results))
-    click.echo(f"\n{in_one_line(folder / PAGE)}: written")
+    save_text(folder / page, _page(results))
+    click.echo(f"\n{in_one_line(folder / page)}: written")
     missed = [each for result in results for each in result.missed]
     for claim, measured in missed:
         text = f"{claim.value} is {claim.ours(measured)}, allowed: {claim.allowed}"
@@ -86,9 +81,16 @@ def _page(results: Sequence[Result]) -> str:
         f"{datetime.datetime.now().astimezone():%Y-%m-%d %H:%M %Z}, "
         f"{os.cpu_count()} cores of {processor()}, {platform.system()} {platform.machine()}"
     )
+    title = "Dynamically refined animated triangle meshes, repeated"
+    about = """\
+Kähler, Haber, Seidel 2003 (doi 10.1007/s00371-002-0185-8), in the order of the paper: its numbers,
+and those that this program measures. Times are medians."""
+    style = (
+        "body { max-width: 80rem; margin: auto } img { max-width: 100% } pre { overflow-x: auto }"
+    )
     lines = [
-        f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{TITLE}</title>',
-        f"<style>{STYLE}</style><h1>{TITLE}</h1><p>{escape(ABOUT)}</p>",
+        f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{title}</title>',
+        f"<style>{style}</style><h1>{title}</h1><p>{escape(about)}</p>",
         f"<p>{met} of {len(findings)} statements are met. {escape(made)}</p>",
     ]
     for result in results:

@@ -28,17 +28,13 @@ from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table
 from ..subjects import SETTLE, Points, fine_simulation, settled_positions
 from .experiments import Outcome
 
-SEEN_CHANGE = 8.0  # levels of 255: a change that is seen
-LEVEL = 2  # of the finer head: 16 times the triangles
 FINER = 2  # pixels are drawn so many times as fine
 SMOOTH = replace(GOURAUD, albedo=render.SKIN)
 SKIN, MOUTH, BACKGROUND = range(3)  # channels of a picture of kinds
 BLUE = render.Background((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 GREEN = np.array([0.0, 1.0, 0.0], np.float32)
 KINDS = replace(FLAT, albedo=(1.0, 0.0, 0.0), gloss=0.0, background=BLUE)
-AT_LIDS = "lashes", "wet_edges"  # not near lips
 OPENING = np.array([(233, 222, 214), (52, 40, 42), (255, 255, 255)], np.uint8)  # by kind
-WRONG = (225, 30, 30)
 
 
 @dataclass(frozen=True)
@@ -99,7 +95,8 @@ class Cell:
     def opening(self, truth: Cell) -> Image:
         """The picture of the opening."""
         picture = OPENING[self.kinds]
-        picture[self.wrong(truth)] = WRONG
+        wrong_colour = (225, 30, 30)
+        picture[self.wrong(truth)] = wrong_colour
         return _smaller(picture)
 
 
@@ -109,12 +106,13 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
     left = []
     outline = []
     rows = []
+    seen_change = 8.0  # levels of 255: a change that is seen
     for expression, cells in _drawn(size):
         named = {cell.title: cell for cell in cells}
         truth = cells[-1]
         static = named[STATIC.title]
         refined = named[CUBIC.title]
-        changed.append(100.0 * (refined.off(static) > SEEN_CHANGE).mean())
+        changed.append(100.0 * (refined.off(static) > seen_change).mean())
         left.append(refined.rms(truth) / static.rms(truth))
         outline.append(refined.wrong(truth).sum() / static.wrong(truth).sum())
         smooth = [
@@ -138,7 +136,8 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     """Every expression in every variant; the cell of the dense mesh is the last of each."""
     scene = FaceScene()
     head = assets.load("head")
-    fine = head.finer(LEVEL)
+    level = 2  # of the finer head: 16 times the triangles
+    fine = head.finer(level)
     simulation = fine_simulation(head, fine)
     refiners = []
     for variant in VARIANTS:
@@ -149,13 +148,14 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     dense = refine.create("none", fine.faces, fine.vertices)
     refiners.append(("dense mesh", dense, len(fine.vertices)))
     with Canvas((FINER * size[0], FINER * size[1])) as canvas:
+        parts_at_lids = "lashes", "wet_edges"  # not near lips
         for viewpoint in VIEWPOINTS:
             now = settled_positions(simulation, {viewpoint.expression: 1.0}, SETTLE)
             lips = now[head.landmarks[48:68]]
             camera = camera_for(scene, viewpoint.view)
             camera.target = 0.5 * (lips.min(axis=0) + lips.max(axis=0))
             camera.pan(*viewpoint.aside)
-            parts = tuple(part for part in scene.parts if part.name not in AT_LIDS)
+            parts = tuple(part for part in scene.parts if part.name not in parts_at_lids)
             bones = simulation.bones.transforms()
             green = tuple(
                 replace(part, colours=np.tile(GREEN, (len(part.colours), 1)), shine=0.0)

@@ -27,14 +27,7 @@ from .experiments import Outcome
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
-BENT_ANGLE = 0.2  # [rad] that the normal turns across a triangle of a fold, at least
-# Of the curvature across, at most: a triangle that bends along, too, is in a dome.
-ALONG_SHARE = 0.4
-RED = (0.85, 0.1, 0.1)
 WIRE = replace(FLAT, wireframe=True, wire_opacity=0.55)
-LIFT = 0.1  # mean edges that lines float over the surface
-LENGTH = 0.5  # mean edges, of a line along a fold
-SETTLED = 1.5  # [s] after which the face stands still
 
 
 def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
@@ -44,7 +37,8 @@ def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
     """
     scene = build_scene("face")
     scene.pose({"disgust": 1.0})
-    scene.step(SETTLED)
+    settling_time = 1.5  # [s] after which the face stands still
+    scene.step(settling_time)
     static, refined = (
         refine.create(name, scene.faces, scene.rest_positions) for name in ("none", "kahler")
     )
@@ -57,7 +51,8 @@ def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
     camera = camera_for(scene, "-30,-5,4.6")
     camera.pan(0.12, 0.05)
     wire = Drawing(camera, WIRE, scene.parts, scene.bone_transforms())
-    along = render.Lines(lines_along(scene), RED, width=2.0, hidden_opacity=0.0)
+    red = (0.85, 0.1, 0.1)
+    along = render.Lines(lines_along(scene), red, width=2.0, hidden_opacity=0.0)
     with Canvas(size) as canvas:
         cells = [
             (title, canvas.draw_image(refiner, scene.positions, drawing))
@@ -77,8 +72,10 @@ def lines_along(scene: Scene) -> list[Points]:
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     unit = float(np.sqrt(np.median(np.linalg.norm(normals, axis=1))))
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    middles = corners.mean(axis=1) + LIFT * unit * normals
-    half = 0.5 * LENGTH * unit * directions
+    lift = 0.1  # mean edges that lines float over the surface
+    middles = corners.mean(axis=1) + lift * unit * normals
+    line_length = 0.5  # mean edges, of a line along a fold
+    half = 0.5 * line_length * unit * directions
     return list(np.stack([middles - half, middles + half], axis=1)[is_fold])
 
 
@@ -126,7 +123,10 @@ def find_folds(faces: Faces, positions: Points) -> tuple[Points, npt.NDArray[np.
     least = np.abs(values).argmin(axis=1)
     directions = (axes @ vectors[np.arange(len(faces)), :, least][..., None])[..., 0]
     low, high = np.sort(np.abs(values), axis=1).T
-    return directions, (high * np.sqrt(2.0 * areas) > BENT_ANGLE) & (low < ALONG_SHARE * high)
+    bent_angle = 0.2  # [rad] that the normal turns across a triangle of a fold, at least
+    # Of the curvature across, at most: a triangle that bends along, too, is in a dome.
+    along_share = 0.4
+    return directions, (high * np.sqrt(2.0 * areas) > bent_angle) & (low < along_share * high)
 
 
 def _shapes(corners: Points, directions: Points) -> Shapes:

@@ -23,9 +23,6 @@ from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table
 from .experiments import Outcome
 from .figure_10 import Variant
 
-PHASES = (0.0, 0.33, 0.66)  # moments of the wave
-VIEW = "28,-30,0.796"  # from here no corner shows its underside, which no light reaches
-FINENESS = 24  # cells of the true sine in each cell of the plane, each way: smaller than pixels
 BACKGROUND = 250.0  # grey level; pictures stand on white, and no part of the plane is as light
 SHADINGS = (("flat", FLAT), ("Gouraud", GOURAUD))
 
@@ -47,12 +44,13 @@ def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
     rows = []
     with Canvas(size) as canvas:
         plane = Waving(canvas)
-        true = [plane.true_image(phase) for phase in PHASES]
+        phases = (0.0, 0.33, 0.66)  # moments of the wave
+        true = [plane.true_image(phase) for phase in phases]
         for shading, style in SHADINGS:
             for variant in VARIANTS:
                 cells = []
                 levels = []
-                for phase, truth in zip(PHASES, true, strict=True):
+                for phase, truth in zip(phases, true, strict=True):
                     image, count = plane.image(variant, style, phase)
                     off = levels_apart(image, truth)
                     outline = outline_apart(image, truth)
@@ -77,8 +75,11 @@ class Waving:
     def __init__(self, canvas: Canvas) -> None:
         self._canvas = canvas
         self._scene = PlaneScene()
-        self._camera = camera_for(self._scene, VIEW)
-        self._dense = make_grid(COLUMNS * FINENESS, ROWS * FINENESS, CELL / FINENESS)
+        view = "28,-30,0.796"  # from here no corner shows its underside, which no light reaches
+        self._camera = camera_for(self._scene, view)
+        # Cells of the true sine in each cell of the plane, each way: smaller than pixels.
+        fineness = 24
+        self._dense = make_grid(COLUMNS * fineness, ROWS * fineness, CELL / fineness)
 
     def image(self, variant: Variant, style: render.Style, phase: float) -> tuple[Image, int]:
         """The picture of a variant, and the number of its triangles."""

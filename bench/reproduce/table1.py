@@ -35,10 +35,8 @@ from .experiments import Outcome
 
 Points = npt.NDArray[np.float64]
 
-FRAMES_PER_SECOND = 30.0
 SIZE = (1280, 720)  # [pixels] of the picture
 SMALL_SIZE = (64, 36)  # where pixels cost next to nothing
-QUICK_ROUNDS = 10  # rounds of a way that draws nothing, for one of the others
 DRAWN, DRAWN_SMALL = (f"all of it, {width}x{height}" for width, height in (SIZE, SMALL_SIZE))
 ALONE = "refinement alone"
 WAYS = (DRAWN, DRAWN_SMALL, ALONE)
@@ -93,7 +91,8 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
     for way, size in ((DRAWN, SIZE), (DRAWN_SMALL, SMALL_SIZE)):
         with Canvas(size) as canvas:
             seconds[way] = timed(partial(draw, canvas), rounds)
-    seconds[ALONE] = timed(lambda refiner: refiner.refine(positions), QUICK_ROUNDS * rounds)
+    quick_rounds = 10  # rounds of a way that draws nothing, for one of the others
+    seconds[ALONE] = timed(lambda refiner: refiner.refine(positions), quick_rounds * rounds)
     return [Row.of(f"{scene.name}, {way}", len(scene.faces), count, seconds[way]) for way in WAYS]
 
 
@@ -103,9 +102,10 @@ def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
     fullest = scene.positions
     script = script_for(None, scene.name)
     scene.reset()
-    for number in range(round(script.duration * FRAMES_PER_SECOND) + 1):
-        scene.take(script.values(number / FRAMES_PER_SECOND, scene.limits))
-        scene.step(1.0 / FRAMES_PER_SECOND)
+    frames_per_second = 30.0
+    for number in range(round(script.duration * frames_per_second) + 1):
+        scene.take(script.values(number / frames_per_second, scene.limits))
+        scene.step(1.0 / frames_per_second)
         count = len(refiner.refine(scene.positions).triangles)
         if count > best:
             best = count

@@ -23,11 +23,6 @@ LAYERS = {  # by file: the layer, and how many columns leave few cells of the la
     "arkit": ("ARKit shapes", 4),
 }
 SHOWN_OVER = {"mouthClose": {"mouthClose": 0.5, "jawOpen": 0.5}}  # a share shows nothing alone
-CELL = (150, 168)  # [pixels] of one view
-VIEWS = ("0,0,1.7", "-34,3,1.7")  # front and three-quarter
-RAISED = 11.0  # [mm] that these look higher than at the landmarks: foreheads wrinkle
-FAR_VIEWS = ("0,0,1.1", "-34,3,1.1")  # of a head that turns
-TURNING = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
 
 
 def without_sides(names: Sequence[str]) -> list[str]:
@@ -43,12 +38,16 @@ def without_sides(names: Sequence[str]) -> list[str]:
 
 def portrait(scene: Scene, name: str, size: tuple[int, int]) -> Image:
     """All views of a control at full value, side by side."""
-    is_turned = name.removesuffix("_left") in TURNING
-    target = None if is_turned else scene.focus + np.array([0.0, RAISED, 0.0])
+    turning_units = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
+    is_turned = name.removesuffix("_left") in turning_units
+    raised = 11.0  # [mm] that these look higher than at the landmarks: foreheads wrinkle
+    target = None if is_turned else scene.focus + np.array([0.0, raised, 0.0])
     pose = SHOWN_OVER.get(name, {name: 1.0})
+    views = ("0,0,1.7", "-34,3,1.7")  # front and three-quarter
+    far_views = ("0,0,1.1", "-34,3,1.1")  # of a head that turns
     images = [
         figures.shoot(scene, pose, CaptureOptions(size, camera=view), target)
-        for view in (FAR_VIEWS if is_turned else VIEWS)
+        for view in (far_views if is_turned else views)
     ]
     return np.concatenate(images, axis=1)
 
@@ -60,7 +59,7 @@ def title_of(scene: Scene, name: str) -> str:
     return f"{title}  {action}" if name[:2] == "AU" else title.replace("_", " ")
 
 
-def layer(title: str, columns: int, size: tuple[int, int] = CELL) -> Image:
+def layer(title: str, columns: int, size: tuple[int, int] = (150, 168)) -> Image:
     """A labelled portrait of each control of a layer."""
     scene = FaceScene()
     names = without_sides(scene.groups[title])

@@ -27,9 +27,6 @@ from risorius.app.stopping import handle_signals
 
 Figure = Callable[[], Image]
 FOLDER = Path("docs/pictures")
-SETTLED = 1.5  # [s] after which a pose stands still
-QUALITY = 96  # of 100: no difference is seen at full size
-LARGER = 1.5  # times, that a picture without any loss may be: line art is smaller so
 
 
 def shoot(
@@ -41,7 +38,8 @@ def shoot(
     """Hold a pose until it stands still, and draw it. target: of the camera [mm]."""
     scene.reset()
     scene.pose(pose)
-    scene.step(SETTLED)
+    settling_time = 1.5  # [s] after which a pose stands still
+    scene.step(settling_time)
     with Capture(scene, options) as capture:
         if target is not None:
             capture.camera.target = np.asarray(target, dtype=np.float64)
@@ -60,8 +58,11 @@ def webp(image: Image) -> bytes:
     near = io.BytesIO()
     page = PIL.Image.fromarray(image)
     page.save(exact, "WEBP", lossless=True, quality=80)
-    page.save(near, "WEBP", quality=QUALITY)
-    is_small = len(exact.getvalue()) <= LARGER * len(near.getvalue())
+    # of 100: no difference is seen at full size
+    page.save(near, "WEBP", quality=96)
+    # How many times larger a picture without any loss may be: line art is smaller so.
+    most_growth = 1.5
+    is_small = len(exact.getvalue()) <= most_growth * len(near.getvalue())
     return (exact if is_small else near).getvalue()
 
 

@@ -22,30 +22,11 @@ from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
 
 CELL = (260, 320)  # [pixels] of one portrait: a contact sheet stays below 600 kB
-VIEWS = ("front", "three-quarter", "profile", "below")
 STYLES = {
     "painted": render.Style(),
     "clay": render.Style(textured=False, albedo=render.CLAY),
     "flat": render.Style(textured=False, albedo=render.CLAY, shading=render.Shading.FLAT),
 }
-WRINKLED = (270, 250)  # [pixels] of one picture of wrinkles
-# Pose, camera, its target [mm].
-WRINKLES = (
-    ("surprise", "-22,2,2.1", (0.0, 20.0, 80.0)),
-    ("anger", "-12,2,3.0", (0.0, 12.0, 90.0)),
-    ("joy", "-40,2,2.5", (-30.0, -26.0, 75.0)),
-    ("disgust", "-20,2,2.8", (-4.0, -6.0, 90.0)),
-    ("AU17", "-20,2,2.8", (0.0, -78.0, 90.0)),
-    ("kiss", "-12,2,4.5", (0.0, -64.0, 95.0)),
-)
-# Persons; and some more, with pose, light and camera.
-AT_EASE: tuple[int | str, ...] = ("ada", "kofi", "maria", 19, 40, 43, 47, 10)
-IN_LIGHT = (
-    (30, "joy", "window", "-24,2,0.9"),
-    (5, "surprise", "overcast", "0,0,0.9"),
-    (18, "anger", "hard", "18,0,0.9"),
-    (12, "fear", "side", "-10,0,0.9"),
-)
 
 
 def system() -> Image:
@@ -70,21 +51,32 @@ def head_views(size: tuple[int, int] = CELL) -> Image:
     """The head at rest, a row for each style."""
     scene = FaceScene()
     cells = []
+    views = ("front", "three-quarter", "profile", "below")
     for title, style in STYLES.items():
-        for view in VIEWS:
+        for view in views:
             look = Refinement(refiner=STATIC if title == "flat" else None)
             options = CaptureOptions(size, refinement=look, style=style, camera=view)
             cells.append((f"{view}, {title}", figures.shoot(scene, {}, options)))
-    return figures.sheet(cells, len(VIEWS))
+    return figures.sheet(cells, len(views))
 
 
 def wrinkles() -> Image:
     """Some poses, side by side without and with wrinkles."""
     scene = FaceScene()
     cells = []
-    for pose, view, target in WRINKLES:
+    cell_size = (270, 250)  # [pixels] of one picture of wrinkles
+    # Pose, camera, its target [mm].
+    rows = (
+        ("surprise", "-22,2,2.1", (0.0, 20.0, 80.0)),
+        ("anger", "-12,2,3.0", (0.0, 12.0, 90.0)),
+        ("joy", "-40,2,2.5", (-30.0, -26.0, 75.0)),
+        ("disgust", "-20,2,2.8", (-4.0, -6.0, 90.0)),
+        ("AU17", "-20,2,2.8", (0.0, -78.0, 90.0)),
+        ("kiss", "-12,2,4.5", (0.0, -64.0, 95.0)),
+    )
+    for pose, view, target in rows:
         for strength, how in ((0.0, "without"), (1.0, "with wrinkles")):
-            options = CaptureOptions(WRINKLED, camera=view, style=render.Style(bumps=strength))
+            options = CaptureOptions(cell_size, camera=view, style=render.Style(bumps=strength))
             cells.append((f"{pose}, {how}", figures.shoot(scene, {pose: 1.0}, options, target)))
     return figures.sheet(cells, 4)
 
@@ -92,8 +84,16 @@ def wrinkles() -> Image:
 def persons() -> Image:
     """Other persons than the built-in head, at rest and in some expression and light."""
     cells = []
-    front = ((seed, "", "studio", "0,0,0.9") for seed in AT_EASE)
-    for seed, pose, light, view in (*front, *IN_LIGHT):
+    # Persons; and some more, with pose, light and camera.
+    at_ease = ("ada", "kofi", "maria", 19, 40, 43, 47, 10)
+    front = ((seed, "", "studio", "0,0,0.9") for seed in at_ease)
+    in_light = (
+        (30, "joy", "window", "-24,2,0.9"),
+        (5, "surprise", "overcast", "0,0,0.9"),
+        (18, "anger", "hard", "18,0,0.9"),
+        (12, "fear", "side", "-10,0,0.9"),
+    )
+    for seed, pose, light, view in (*front, *in_light):
         style = render.Style(light=render.LIGHTS[light])
         options = CaptureOptions(size=CELL, camera=view, style=style)
         name = f"{seed}: {pose}, {light}" if pose else str(seed)

@@ -21,20 +21,8 @@ from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
 
-SIZE = (440, 500)
 POSE = {"AU12": 0.75, "AU6": 0.4, "AU1": 0.5, "jaw_open": 0.3, "head_yaw": -0.15}
-TURN = (-24.0, 4.0)  # [degrees] of the camera
-SETTLED = 1.0  # [s]
-MARGIN = 0.04  # of the picture, free on each side
-# Samples of a seed as `risorius dataset` makes them; of some their labels are shown, too.
-SEED = 21
-CELL = 192
-COLUMNS = 6
-ROWS = 4
-LABELLED = (2, 3, 10, 11, 14, 22)  # numbers of samples
 EDGE = np.array((255, 255, 255), np.uint8)
-SEEN = (40, 230, 60)
-HIDDEN = (235, 60, 40)
 COLOURS = {
     Segment.SKIN: (221, 176, 152), Segment.NOSE: (240, 145, 45), Segment.RIGHT_EYE: (40, 85, 225),
     Segment.LEFT_EYE: (40, 195, 225), Segment.RIGHT_BROW: (10, 100, 40),
@@ -45,14 +33,17 @@ COLOURS = {
 }  # fmt: skip
 
 
-def passes(size: tuple[int, int] = SIZE) -> Image:
+def passes(size: tuple[int, int] = (440, 500)) -> Image:
     """One smile, and all that is known of each of its pixels."""
     scene = FaceScene()
     with Capture(scene, CaptureOptions(size=size, camera="front")) as studio:
-        studio.camera.orbit(*TURN)
-        studio.camera.fit(scene.extent, MARGIN)
+        turn = (-24.0, 4.0)  # [degrees] of the camera
+        studio.camera.orbit(*turn)
+        margin = 0.04  # share of the picture, free on each side
+        studio.camera.fit(scene.extent, margin)
         scene.pose(POSE)
-        scene.step(SETTLED)
+        settling_time = 1.0  # [s]
+        scene.step(settling_time)
         picture = studio.draw_image()
         known = labelled(Passes(studio.pipeline, studio.viewports[-1].drawn), studio.camera, NAMES)
     images = known.images
@@ -105,18 +96,29 @@ def dotted(picture: Image, labels: dict[str, Any], radius: float) -> Image:
     page = PIL.Image.fromarray(picture)
     draw = ImageDraw.Draw(page)
     landmarks = labels["landmarks"]
+    seen_colour = (40, 230, 60)
+    hidden_colour = (235, 60, 40)
     for (x, y), is_visible in zip(landmarks["pixels"], landmarks["visible"], strict=True):
         place = (x - radius, y - radius, x + radius, y + radius)
-        draw.ellipse(place, fill=SEEN if is_visible else HIDDEN)
+        draw.ellipse(place, fill=seen_colour if is_visible else hidden_colour)
     return np.asarray(page)
 
 
 def dataset() -> Image:
     """Samples row by row, and below them some of these with landmarks and classes."""
-    studio = Studio(request_of(Path(), seed=SEED, size=(CELL, CELL), passes=("segmentation",)))
-    shots = [studio.shoot(index) for index in range(COLUMNS * ROWS)]
-    images = [shot.image for shot in shots] + [_labelled(shots[index]) for index in LABELLED]
-    rows = [np.hstack(images[k : k + COLUMNS]) for k in range(0, len(images), COLUMNS)]
+    # Samples of a seed as `risorius dataset` makes them; of some their labels are shown, too.
+    cell_side = 192
+    studio = Studio(
+        request_of(Path(), seed=21, size=(cell_side, cell_side), passes=("segmentation",))
+    )
+    columns = 6
+    row_count = 4
+    shots = [studio.shoot(index) for index in range(columns * row_count)]
+    labelled_samples = (2, 3, 10, 11, 14, 22)  # numbers of samples
+    images = [shot.image for shot in shots] + [
+        _labelled(shots[index]) for index in labelled_samples
+    ]
+    rows = [np.hstack(images[k : k + columns]) for k in range(0, len(images), columns)]
     return np.vstack(rows)
 
 

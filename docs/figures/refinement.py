@@ -26,7 +26,6 @@ Places = npt.NDArray[np.float64]
 SCALE = 3
 PAPER = (255, 255, 255)
 INK = (32, 34, 40)
-FAINT = (150, 154, 162)
 FILL = (236, 240, 245)
 NEW = (0, 114, 178)
 SECOND = (213, 94, 0)
@@ -133,10 +132,14 @@ def lookup() -> Image:
         diagram.disc(point, colour)
         outward = point - centre
         diagram.text(point + 13 * outward / np.linalg.norm(outward), str(number), colour, 12)
+    faint_grey = (150, 154, 162)
     for edge in range(3):
         inward = centre - points[3 + 3 * edge]
         diagram.text(
-            points[3 + 3 * edge] + 22 * inward / np.linalg.norm(inward), f"edge {edge}", FAINT, 11
+            points[3 + 3 * edge] + 22 * inward / np.linalg.norm(inward),
+            f"edge {edge}",
+            faint_grey,
+            11,
         )
     splits = (2, 0, 1)
     lines = [

@@ -22,13 +22,11 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import Display
 from risorius.assets.fitting.guess import FIRST
 
-SIZE = (1160, 700)
-MOST_FRAMES = 400
-
 
 def wait_until_settled(viewer: Viewer) -> None:
     """Let the face come to rest, and the picture be drawn in full."""
-    for frame in range(MOST_FRAMES):
+    most_frames = 400
+    for frame in range(most_frames):
         if frame > 8 and viewer.is_idle:
             return
         if viewer.messages.is_fading:
@@ -102,7 +100,8 @@ def landmarks(viewer: Viewer) -> None:
 
 def draw_image(stop: Callable[[Viewer], None]) -> Image:
     """A window, brought to a stop of the tour."""
-    with Viewer(script_for(None, "face"), SIZE) as viewer:
+    size = (1160, 700)
+    with Viewer(script_for(None, "face"), size) as viewer:
         viewer.settings.is_alive = False  # the same picture every time
         # Wherever the mouse happens to be, it points at nothing: no hint comes up.
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse

@@ -26,8 +26,11 @@ from risorius.app.script.script_file import parse_script
 from risorius.app.stopping import handle_signals
 
 FILE = Path("docs/pictures/wipe.webp")
-LINE = (255, 255, 255)  # colour of the line between both sides
-SCRIPT = """
+
+
+def frames(size: tuple[int, int], frames_per_second: float) -> Iterator[Image]:
+    """The pictures of the film, each of shape (height, width, 3)."""
+    script_text = """
 title = "Wipe"
 duration = 5.0
 [[pose]]
@@ -51,11 +54,7 @@ head_yaw = -0.1
 [[pose]]
 time = 4.3
 """
-
-
-def frames(size: tuple[int, int], frames_per_second: float) -> Iterator[Image]:
-    """The pictures of the film, each of shape (height, width, 3)."""
-    script = parse_script(SCRIPT, source="the script")
+    script = parse_script(script_text, source="the script")
     scene = FaceScene()
     clay = render.Style(textured=False, albedo=render.CLAY)
     wire = replace(clay, wireframe=True, shading=render.Shading.FLAT)
@@ -64,12 +63,13 @@ def frames(size: tuple[int, int], frames_per_second: float) -> Iterator[Image]:
     with Capture(scene, skin) as right, Capture(scene, mesh) as left:
         for capture in (right, left):
             capture.camera.target = scene.focus + np.array([0.0, -4.0, 0.0])
+        line_colour = (255, 255, 255)
         for time in right.play(script, progress=False):
             turn = math.cos(2.0 * math.pi * time / script.duration)
             column = round((0.5 - 0.36 * turn) * size[0])
             image = right.draw_image()
             image[:, :column] = left.draw_image()[:, :column]
-            image[:, column - 1 : column + 1] = LINE
+            image[:, column - 1 : column + 1] = line_colour
             yield image
 
 

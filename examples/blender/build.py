@@ -16,8 +16,6 @@ from pathlib import Path
 
 ADD_ON = Path(__file__).parent / "risorius_refine"
 CHECKOUT = Path(__file__).parents[2]
-PYTHON = "3.11"  # of Blender 5.0
-NUMPY = "numpy==1.26.4"  # of Blender 5.0
 PASSED_OVER = shutil.ignore_patterns(".*", "__pycache__", "build", "dist", "out", "*.egg-info")
 WHEELS_FOR = {  # by Blender's name of a platform: tags of wheels that run there
     "linux-x64": ("manylinux_2_28_x86_64", "manylinux_2_27_x86_64", "manylinux2014_x86_64"),
@@ -38,8 +36,10 @@ def collect_wheels(platform: str, folder: Path) -> list[Path]:
     wheels = ["--no-deps", "--wheel-dir", str(folder), str(copy)]
     subprocess.run([*pip, "wheel", *wheels], check=True)
     tags = [f"--platform={tag}" for tag in WHEELS_FOR[platform]]
-    chosen = ["--only-binary=:all:", f"--python-version={PYTHON}", *tags, "--dest", str(folder)]
-    subprocess.run([*pip, "download", *chosen, "numba>=0.62", NUMPY], check=True)
+    python = "3.11"  # of Blender 5.0
+    chosen = ["--only-binary=:all:", f"--python-version={python}", *tags, "--dest", str(folder)]
+    numpy = "numpy==1.26.4"  # of Blender 5.0
+    subprocess.run([*pip, "download", *chosen, "numba>=0.62", numpy], check=True)
     return sorted(file for file in folder.glob("*.whl") if not file.name.startswith("numpy-"))
 
 

@@ -19,12 +19,9 @@ from .normals import cross_products
 Doubles = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
-SAME_WAY = 0.3
 """Cosine between two normals above which they look the same way: 73 degrees."""
 LEAF_SIZE = 4
 """Triangles in a box of the lowest level (chosen by timing)."""
-STACK_SIZE = 64
-CURVE_BITS = 20
 """Of the grid along one axis that the curve runs through; 3 x 20 fit a number of 64."""
 
 
@@ -83,10 +80,11 @@ def places_on_curve(positions: Doubles) -> Integers:
         return np.zeros(0, dtype=np.int64)
     low = positions.min(axis=0)
     size = float((positions.max(axis=0) - low).max())
-    scale = (2**CURVE_BITS - 1) / size if size > 0.0 else 0.0
+    curve_bits = 20
+    scale = (2**curve_bits - 1) / size if size > 0.0 else 0.0
     cells = ((positions - low) * scale).astype(np.int64)
     places = np.zeros(len(positions), dtype=np.int64)
-    for bit in range(CURVE_BITS):  # of x, y and z in turn
+    for bit in range(curve_bits):  # of x, y and z in turn
         for axis in range(3):
             places |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
     return places
@@ -124,8 +122,10 @@ def _box_distance(box, point):  # type: ignore[no-untyped-def]
 def _search(queries, wanted, corners, ways, boxes, wrong_side, distances, triangles, weights):  # type: ignore[no-untyped-def]
     """Write the closest place to each query: distance, triangle, barycentric coordinates."""
     leaf_count = boxes.shape[0] // 2
-    stack = np.empty(STACK_SIZE, np.int64)
-    reach = np.empty(STACK_SIZE)
+    stack_size = 64
+    stack = np.empty(stack_size, np.int64)
+    reach = np.empty(stack_size)
+    least_cosine = 0.3
     for q in range(queries.shape[0]):
         point = queries[q]
         way = wanted[q]
@@ -149,7 +149,7 @@ def _search(queries, wanted, corners, ways, boxes, wrong_side, distances, triang
                         squared += (u * a[i] + v * b[i] + w * c[i] - point[i]) ** 2
                         facing += ways[t, i] * way[i]
                     distance = np.sqrt(squared)
-                    turned = 0.0 if any_way else min(max(SAME_WAY - facing, 0.0), 1.0)
+                    turned = 0.0 if any_way else min(max(least_cosine - facing, 0.0), 1.0)
                     if distance + wrong_side * turned < least:
                         least = distance + wrong_side * turned
                         distances[q] = distance

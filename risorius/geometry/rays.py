@@ -10,7 +10,6 @@ import numpy.typing as npt
 from .normals import Doubles, cross_products
 
 PARALLEL = 1e-12  # below it a triangle is seen from its edge, and nothing is met
-CONE_SLACK = 1e-9  # of a cosine, for rounding
 
 
 def crossings(origins: Doubles, directions: Doubles, corners: Doubles) -> tuple[Doubles, ...]:
@@ -46,17 +45,21 @@ def exits(
     normals = cross_products(vertices, faces)
     corners = vertices[faces] - origin
     is_seen = (normals * corners[:, 0]).sum(axis=1) > 0.0  # its inner side
-    normals, corners = normals[is_seen], corners[is_seen]
+    normals = normals[is_seen]
+    corners = corners[is_seen]
     ways = corners / np.maximum(np.linalg.norm(corners, axis=2, keepdims=True), PARALLEL)
     middle = ways.sum(axis=1)
     middle /= np.maximum(np.linalg.norm(middle, axis=1, keepdims=True), PARALLEL)
     # A triangle lies in the cone around its middle that its corners span, unless that is blunt.
     cone = np.einsum("fik,fk->fi", ways, middle).min(axis=1)
-    cone = np.where(cone > 0.0, cone - CONE_SLACK, -2.0)
+    cone_slack = 1e-9  # of a cosine, for rounding
+    cone = np.where(cone > 0.0, cone - cone_slack, -2.0)
     ray, face = np.nonzero(directions @ middle.T >= cone)
     _, u, v, distance = crossings(np.zeros(3), directions[ray], corners[face])
     is_met = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (distance > 0.0)
-    ray, face, distance = ray[is_met], face[is_met], distance[is_met]
+    ray = ray[is_met]
+    face = face[is_met]
+    distance = distance[is_met]
     length = np.linalg.norm(normals[face], axis=1)
     cosine = (directions[ray] * normals[face]).sum(axis=1) / length
     return ray, distance, cosine

@@ -12,7 +12,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 def read_only(array: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
     """View an array so that it cannot be written through the view.
 
-    Compiled code reads by numbers of vertices that were checked once. Whoever changed one of them
+    Compiled code reads by numbers of vertices that were checked once. A change of one of them
     afterwards would let it read beyond the end of an array.
     """
     view = array.view()

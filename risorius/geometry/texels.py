@@ -12,7 +12,6 @@ from ..jit import njit
 Doubles = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
-MOST_TRIED = 60_000_000
 """Texels tried for all triangles: a fair layout needs two for each that it has."""
 
 
@@ -42,7 +41,8 @@ class Texels:
         low = np.ceil(places.min(axis=1) - margin).clip(0, [width, height]).astype(np.int64)
         high = np.floor(places.max(axis=1) + margin).clip(-1, [width - 1, height - 1])
         boxes = np.concatenate([low, high.astype(np.int64)], axis=1)
-        if np.maximum(boxes[:, 2:] - boxes[:, :2] + 1, 0).prod(axis=1).sum() > MOST_TRIED:
+        most_tries = 60_000_000
+        if np.maximum(boxes[:, 2:] - boxes[:, :2] + 1, 0).prod(axis=1).sum() > most_tries:
             raise ValueError("texture coordinates cover the picture many times over")
         found = np.empty((0, 3), np.int64)
         weights = np.empty((0, 3))

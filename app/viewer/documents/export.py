@@ -154,14 +154,12 @@ class Exporter:
 
 
 TITLE = "Export"
-LABEL_WIDTH = 7.5  # [em] of words at the left
 DIALOG_WIDTH = 31.0  # [em] of the dialog
 BUTTON_WIDTH = 6.5  # [em] of a button
 PICTURE_SIZES = {
     **{(640, 480): "VGA", (1280, 720): "HD", (1920, 1080): "Full HD", (3840, 2160): "4K"},
     **{(1080, 1080): "Square", (1080, 1920): "Upright"},
 }
-RATES = (12, 15, 24, 25, 30, 48, 50, 60, 120)
 Value = TypeVar("Value")
 
 
@@ -173,7 +171,8 @@ class ExportDialog:
         self._exporter = exporter
         self._files = files
         self._view = view
-        self._rows = LabelledRows(gui, LABEL_WIDTH / DIALOG_WIDTH, {})
+        label_width = 7.5  # [em] of words at the left
+        self._rows = LabelledRows(gui, label_width / DIALOG_WIDTH, {})
         self._was_focused = False  # in the frame before: no list was open over it
 
     def draw(self) -> Message:
@@ -209,7 +208,8 @@ class ExportDialog:
             words = {size: f"{name}: {size[0]} x {size[1]}" for size, name in sizes.items()}
             choices.size = self._pick("Size", choices.size, words)
         choices.rate = min(choices.rate, kind.fastest)
-        rates = [choices.rate, *(float(rate) for rate in RATES if rate <= kind.fastest)]
+        frame_rates = (12, 15, 24, 25, 30, 48, 50, 60, 120)
+        rates = [choices.rate, *(float(rate) for rate in frame_rates if rate <= kind.fastest)]
         shown = {rate: f"{rate:g}" for rate in sorted(rates)}
         choices.rate = self._pick("Frames a second", choices.rate, shown)
         if kind.can_be_transparent:

@@ -21,7 +21,6 @@ from ..messages import Message, Task
 from ..session.session import Session
 from .file_dialogs import SCRIPT_SUFFIX, FileDialogs
 
-RECORDING_SUFFIXES = (".csv", ".json", ".tsv", ".txt")  # ends of names; the content decides
 SOUND_SUFFIXES = (
     *(".wav", ".mp3", ".m4a", ".aac", ".flac", ".ogg", ".opus", ".aif", ".aiff", ".wma"),
     *(".mov", ".mp4", ".mkv", ".webm"),  # films that are heard: a phone's, beside its take
@@ -100,7 +99,8 @@ class ScriptCommands:
     def ask_open(self) -> None:
         """Ask for a script, a pose or a recording, and show it."""
         title = "Open script, pose or recording"
-        ends = (SCRIPT_SUFFIX, *RECORDING_SUFFIXES)
+        recording_suffixes = (".csv", ".json", ".tsv", ".txt")  # ends of names; the content decides
+        ends = (SCRIPT_SUFFIX, *recording_suffixes)
         self._files.ask(title, self.open, saving=False, suffixes=ends)
 
     def open(self, path: Path, remark: str = "") -> Message:

@@ -14,10 +14,6 @@ from .widgets import button, muted
 _MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Shift": imgui.Key.mod_shift, "Alt": imgui.Key.mod_alt}
 _KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
          if imgui.Key.tab <= key < imgui.Key.gamepad_start}  # fmt: skip
-# Ctrl keys that a line of text takes for itself while one writes.
-_TEXT_KEYS = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
-# Menus of commands that wait until the mouse lets go.
-_CHANGING_MENUS = ("Edit", "Keys", "Expression")
 
 
 @dataclass
@@ -48,12 +44,16 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
     if gui.has_popup:  # whose keys they are
         return
     is_writing = imgui.get_io().want_text_input
+    # Ctrl keys that a line of text takes for itself while one writes.
+    text_keys = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
+    # Menus of commands that wait until the mouse lets go.
+    changing_menus = ("Edit", "Keys", "Expression")
     for command in commands:
         for key in command.keys:
-            is_for_text = is_writing and ("Ctrl" not in key or key in _TEXT_KEYS)
+            is_for_text = is_writing and ("Ctrl" not in key or key in text_keys)
             if is_for_text or not imgui.is_key_chord_pressed(chord(key)):
                 continue
-            is_in_the_way = command.menu in _CHANGING_MENUS and imgui.is_any_mouse_down()
+            is_in_the_way = command.menu in changing_menus and imgui.is_any_mouse_down()
             if command.can_run() and not is_in_the_way:
                 messages.carry_out(command.run)
 

@@ -35,7 +35,6 @@ LEFT = 0
 RIGHT = 1
 MIDDLE = 2
 MOUSE_BUTTON_KEY = -1  # in place of a key: one of the mouse was pressed
-FOCUS_TURNS = 3  # turns of the GUI in which a window that a press opened gets the focus
 MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
 # Of a window that is a note over the picture: as large as its words, and it takes no keys.
 NOTE_FLAGS = (
@@ -195,6 +194,7 @@ class Gui:
         queue.clear()
         cuts = [(0, None), *self._presses, (waiting.size(), 0)]
         self._presses = []
+        focus_turns = 3  # turns of the GUI in which a window that a press opened gets the focus
         for (start, pressed), (end, following) in pairwise(cuts):
             for index in range(start, end):
                 queue.push_back(waiting[index])
@@ -202,7 +202,7 @@ class Gui:
                 yield
             # A press may open a line to type in; keys that follow wait until it has the focus.
             is_settling = pressed is not None and following not in (None, MOUSE_BUTTON_KEY)
-            for _ in range(FOCUS_TURNS * is_settling):
+            for _ in range(focus_turns * is_settling):
                 if not io.want_text_input:
                     yield
 

@@ -33,7 +33,6 @@ from ..session.document import History
 
 LANDMARKS_SUFFIX = ".json"
 INNER_LIPS = range(60, 68)
-NEIGHBOUR_COUNT = 4  # vertices: the nearest one alone may be behind a lid's edge, and look aside
 
 FloatArray = npt.NDArray[np.float64]
 Place = tuple[float, float, float]  # in the mesh's own coordinates
@@ -162,7 +161,9 @@ class Marking:
         chosen = list(numbers)
         places = [self.marks.places[number] for number in chosen]
         points = self.placing.points(np.reshape(places, (-1, 3)))
-        nearest = range(1, min(NEIGHBOUR_COUNT, len(self.positions)) + 1)
+        # Vertices: the nearest one alone may be behind a lid's edge, and look aside.
+        neighbour_count = 4
+        nearest = range(1, min(neighbour_count, len(self.positions)) + 1)
         normals = self._normals[self._nearest.query(points, nearest)[1]]
         if self.is_upright:  # skin between lips that touch looks up or down, and is seen from ahead
             normals[[number in INNER_LIPS for number in chosen]] = (0.0, 0.0, 1.0)

@@ -30,7 +30,6 @@ from ..picture.stage import Painter, Stage, View
 from ..settings import Display, Settings
 from .marking import GROUP_OF, GROUPS, FloatArray, Marking
 
-LEAST_FACING_COSINE = 0.15  # cosine to the line of sight beyond which a mark is seen
 DARK = (0.08, 0.08, 0.10)
 WHITE = (1.0, 1.0, 1.0)
 POINT_NAMES = {  # of the first points
@@ -42,15 +41,6 @@ SIDE_NAMES = {
     0.0: "in the middle of the face",
     1.0: "the person's left: on your right as the face looks at you",
 }
-FIRST_ADVICE = (
-    "Click the point on the skin that the guide shows. Where the head does not look at you, drag "
-    "it with the mouse until it does, and press Turn until it stands upright. The wheel zooms, the "
-    "middle button moves."
-)
-LATER_ADVICE = (
-    "Drag points that are not where they belong; a click on the skin moves this one. White inside: "
-    "guessed, and not moved yet."
-)
 
 Spot = tuple[float, float]  # [window units]
 
@@ -104,7 +94,8 @@ class MarkingView(View):
         to_eye = self.camera.eye - points
         toward = np.einsum("nki,ni->nk", normals, to_eye).max(axis=1)
         toward /= np.linalg.norm(to_eye, axis=1)
-        faces = toward > LEAST_FACING_COSINE
+        least_facing_cosine = 0.15  # cosine to the line of sight beyond which a mark is seen
+        faces = toward > least_facing_cosine
         return {n: spots[index] for index, n in enumerate(numbers) if faces[index]}
 
 
@@ -171,7 +162,16 @@ class MarkingPanel:
         side = 0.0 if MIRRORED[number] == number else float(np.sign(self._guide[number, 0]))
         muted(self._gui, SIDE_NAMES[side])
         imgui.spacing()
-        imgui.text_wrapped(LATER_ADVICE if is_complete else FIRST_ADVICE)
+        first_advice = (
+            "Click the point on the skin that the guide shows. Where the head does not look at "
+            "you, drag it with the mouse until it does, and press Turn until it stands upright. "
+            "The wheel zooms, the middle button moves."
+        )
+        later_advice = (
+            "Drag points that are not where they belong; a click on the skin moves this one. "
+            "White inside: guessed, and not moved yet."
+        )
+        imgui.text_wrapped(later_advice if is_complete else first_advice)
         imgui.spacing()
 
     def _draw_guide(self) -> None:
@@ -225,9 +225,6 @@ def places_in(
     return [(left + x, top + y) for x, y in seen.tolist()]
 
 
-SHARED_COMMANDS = ("Quit", "Dark theme", "Larger text", "Smaller text", "Usual size")
-MARK_REACH = 0.8  # [em] around a mark in which the mouse takes it
-SIDE_VIEW_YAW = 40.0  # [degrees] from which a landmark is seen that the front hides
 # Of the picture, about the line of sight.
 QUARTER_TURN = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
@@ -289,7 +286,8 @@ class MarkingMouse(CameraMouse):
             for number, spot in self._seen.places().items()
         }
         nearest = min(off, key=lambda number: off[number], default=0)
-        return nearest if off.get(nearest, math.inf) < em(MARK_REACH) else None
+        mark_reach = 0.8  # [em] around a mark in which the mouse takes it
+        return nearest if off.get(nearest, math.inf) < em(mark_reach) else None
 
 
 class MarkingMode:
@@ -316,7 +314,8 @@ class MarkingMode:
         self.painter = Painter(stage, self.view, messages)
         self.mouse = MarkingMouse(self.view, stage, marking, messages)
         own = self._commands()
-        shared = [each for each in others if each.label in SHARED_COMMANDS]
+        shared_commands = ("Quit", "Dark theme", "Larger text", "Smaller text", "Usual size")
+        shared = [each for each in others if each.label in shared_commands]
         self.commands = (*own, *shared)
         menus = MenuBar(gui, messages, self.commands, lambda: app.session.work.unsaved)
         self.panel = MarkingPanel(gui, messages, marking, menus, own)
@@ -352,7 +351,8 @@ class MarkingMode:
         number = self.marking.current
         camera = self.view.camera
         if number not in self.view.places():
-            aside = 0.0 if MIRRORED[number] == number else SIDE_VIEW_YAW
+            side_view_yaw = 40.0  # [degrees] from which a landmark is seen that the front hides
+            aside = 0.0 if MIRRORED[number] == number else side_view_yaw
             camera.yaw = float(np.copysign(aside, self.marking.seen([number])[0][0, 0]))
             camera.pitch = 0.0
 

@@ -41,9 +41,6 @@ def draw_message(gui: Gui, messages: Messages, view: View) -> None:
     gui.places["message"] = (place.x, place.y, place.x + size.x, place.y + size.y)
 
 
-PANEL_WIDTHS = 12.0, 60.0  # [em] between which the left panel may be drawn wider
-
-
 class Layout:
     """Draws everything around the picture, and gives the picture its place."""
 
@@ -67,7 +64,8 @@ class Layout:
         view.pointed = {}
         display = imgui.get_io().display_size
         top = self._menus.draw()
-        least, most = PANEL_WIDTHS
+        panel_widths = 12.0, 60.0  # [em] between which the left panel may be drawn wider
+        least, most = panel_widths
         wanted = em(min(max(self._settings.panel_width, least), most))
         left = round(min(wanted, 0.45 * display.x))
         below = round(self._timeline.height())

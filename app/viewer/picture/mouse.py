@@ -22,9 +22,6 @@ from .stage import Stage, View
 Grab = Callable[..., SkinDrag]
 Select = Callable[[str], None]
 
-ZOOM_PER_NOTCH = 1.1
-CLICK_DISTANCE = 4.0  # [window units] a press that moves less is a click, not a drag
-
 
 class CameraMouse:
     """Turns and moves a camera by the mouse, from press to release; the left button may do more."""
@@ -90,7 +87,8 @@ class CameraMouse:
 
     def _has_moved(self, io: Any) -> bool:
         x, y = self._pressed_at
-        return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > CLICK_DISTANCE)
+        click_distance = 4.0  # [window units] a press that moves less is a click, not a drag
+        return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > click_distance)
 
     def _ray(self, io: Any) -> Ray:
         """The ray through the mouse, in the viewport under it."""
@@ -115,7 +113,8 @@ class CameraMouse:
             point = self._ray(io).at_depth_of(camera.target, camera.axes()[2])
         closest = 0.15 * camera.scene_radius  # lest a moving head comes too near
         room = float(np.linalg.norm(camera.eye - point)) / closest
-        camera.zoom(min(ZOOM_PER_NOTCH**io.mouse_wheel, max(room, 1.0)))
+        zoom_per_notch = 1.1
+        camera.zoom(min(zoom_per_notch**io.mouse_wheel, max(room, 1.0)))
         camera.target = point + (camera.target - point) * (camera.distance / before)
 
 

@@ -22,8 +22,6 @@ from ..session.session import Session
 from ..settings import Settings
 
 Array = npt.NDArray[np.float64]
-# A ray that meets an edge must not slip between its two triangles by the last bit.
-ROUNDING = 1e-9  # of a triangle; [mm] too
 
 
 @dataclass(frozen=True)
@@ -59,22 +57,18 @@ def skin_under(ray: Ray, positions: Array, faces: npt.NDArray[Any]) -> Array | N
     Only triangles whose corners lie around the ray are asked.
     """
     axes = np.linalg.svd(ray.direction[None])[2][1:]  # across the ray
+    # A ray that meets an edge must not slip between its two triangles by the last bit.
+    rounding = 1e-9  # of a triangle; [mm] too
     for aside in ((positions - ray.origin) @ axis for axis in axes):
         corners = aside[faces]
-        faces = faces[(corners.min(axis=1) < ROUNDING) & (corners.max(axis=1) > -ROUNDING)]
+        faces = faces[(corners.min(axis=1) < rounding) & (corners.max(axis=1) > -rounding)]
     volume, u, v, distance = crossings(ray.origin, ray.direction, positions[faces])
-    inside = (u >= -ROUNDING) & (v >= -ROUNDING) & (u + v <= 1.0 + ROUNDING)
+    inside = (u >= -rounding) & (v >= -rounding) & (u + v <= 1.0 + rounding)
     hit = (volume > PARALLEL) & inside & (distance > 0.0)
     if not hit.any():
         return None
     point: Array = ray.origin + distance[hit].min() * ray.direction
     return point
-
-
-FINGER_RADIUS = 16.0  # [mm] the finger's radius
-MOST_DRAG_DISTANCE = 45.0  # [mm] that a finger drags, lest the skin turns inside out
-# Of controls that no finger on the skin moves.
-UNPULLED_PREFIXES = ("gaze_", "head_", "tongue_", "lips_closed")
 
 
 class SkinDrag:
@@ -90,18 +84,19 @@ class SkinDrag:
         self._simulation: sim.Simulation = session.scene.simulation  # type: ignore[attr-defined]
         positions = self._simulation.positions
         distance = np.linalg.norm(positions - point, axis=1)
-        self._vertices = np.flatnonzero(distance < FINGER_RADIUS)
+        finger_radius = 16.0  # [mm] the finger's radius
+        self._vertices = np.flatnonzero(distance < finger_radius)
         if not len(self._vertices):
             self._vertices = distance.argmin(keepdims=True)
         self._from = positions[self._vertices].copy()
-        near = np.minimum(distance[self._vertices] / FINGER_RADIUS, 1.0)
+        near = np.minimum(distance[self._vertices] / finger_radius, 1.0)
         self._firmness = np.maximum((1.0 - near**2) ** 2, 0.02 if near.max() < 1.0 else 1.0)
         self.offset = np.zeros(3)
         self._solved = np.zeros(3)
         self._due = 0.0
         poses = poses and not session.live_override.is_on  # which poses the face itself
         rest = self._simulation.rest_positions[self._vertices]
-        is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > FINGER_RADIUS
+        is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > finger_radius
         self._candidates = (
             _candidates(session, linked=settings.is_linked, is_aside=is_aside) if poses else []
         )
@@ -113,7 +108,8 @@ class SkinDrag:
         self.offset = offset = point - self.point
         if not self._candidates:
             length = float(np.linalg.norm(offset))
-            shortened = MOST_DRAG_DISTANCE * np.tanh(length / MOST_DRAG_DISTANCE)
+            most_drag_distance = 45.0  # [mm] that a finger drags, lest the skin turns inside out
+            shortened = most_drag_distance * np.tanh(length / most_drag_distance)
             offset = offset * (shortened / max(length, 1e-9))
             self._simulation.touch.drag(self._vertices, self._from + offset, self._firmness)
             return None
@@ -172,10 +168,12 @@ def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple
     found = list[tuple[str, ...]]()
     values = session.values
     lowest = session.scene.simulation.controls.lowest  # type: ignore[attr-defined]
+    # Of controls that no finger on the skin moves.
+    unpulled_prefixes = ("gaze_", "head_", "tongue_", "lips_closed")
     for name in lowest:
         twin = twin_of(name)
         is_whole = f"{name}_left" in lowest
-        if is_whole or name.startswith(UNPULLED_PREFIXES):
+        if is_whole or name.startswith(unpulled_prefixes):
             continue
         if linked and is_aside and (name in TURNED or parted(name)[0] in OPPOSITE):
             continue

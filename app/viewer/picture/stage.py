@@ -30,8 +30,6 @@ from ..session.physics import CALM_SECONDS, FrameTimes
 from ..session.session import Session
 from ..settings import BACKGROUNDS, SKINS, TONES, Display, Settings
 
-WHITE = (1.0, 1.0, 1.0)
-
 
 class View:
     """One view of a session's scene.
@@ -111,12 +109,12 @@ class View:
         y = bottom + height // 2
         line = (x - unit // 2, bottom, unit, height)
         grip = (x - unit // 2 - unit, y - 10 * unit, 3 * unit, 20 * unit)
-        rules = [(line, WHITE), (grip, THEMES[self._settings.theme].accent)]
+        white = (1.0, 1.0, 1.0)
+        rules = [(line, white), (grip, THEMES[self._settings.theme].accent)]
         return rules if self.display.compare == "wipe" else rules[:1]
 
 
 FULL_DETAIL = render.Detail(samples=4, scale=1.0)
-LEAST_SHARE = 0.08  # of the picture that each side of a comparison keeps
 
 
 class Stage:
@@ -161,7 +159,8 @@ class Stage:
         left, bottom, width, height = area
         if display.compare == "off" or width < 2:  # less than a pixel for each
             return [Viewport(self.refined if display.is_refined else self.static, area)]
-        share = min(max(display.share, LEAST_SHARE), 1.0 - LEAST_SHARE)
+        least_share = 0.08  # of the picture that each side of a comparison keeps
+        share = min(max(display.share, least_share), 1.0 - least_share)
         middle = min(max(round(share * width), 1), width - 1)
         first = (left, bottom, middle, height)
         second = (left + middle, bottom, width - middle, height)
@@ -256,8 +255,6 @@ LEVELS = (
     render.Detail(samples=0, scale=0.6),
 )
 FIRST_SOFTWARE_LEVEL = 1  # lest the first second stutters
-SLOW_SECONDS = 0.045  # [s] a frame; more than 20 a second are promised
-AMPLE_SECONDS = 0.024  # [s] a frame at which the next finer level is safe
 PATIENCE_FRAMES = 4  # frames in a row that decide
 
 
@@ -287,8 +284,10 @@ class LevelOfDetail:
 
     def note(self, seconds: float) -> None:
         """Note the whole time of a frame of a moving scene [s]."""
-        self._slow = self._slow + 1 if seconds > SLOW_SECONDS else 0
-        self._fast = self._fast + 1 if seconds < AMPLE_SECONDS else 0
+        slow_seconds = 0.045  # [s] a frame; more than 20 a second are promised
+        self._slow = self._slow + 1 if seconds > slow_seconds else 0
+        ample_seconds = 0.024  # [s] a frame at which the next finer level is safe
+        self._fast = self._fast + 1 if seconds < ample_seconds else 0
         if self._slow >= PATIENCE_FRAMES and self.level < len(LEVELS) - 1:
             self.level += 1
             self._slow = 0

@@ -29,15 +29,8 @@ MOST_STEPS = 6  # a tenth of a second, which a stalled window catches up
 # Of a step that may be taken before it is due: a screen of 60 Hz that is now a little late and now
 # early gets one step for each of its frames, and motion does not judder.
 EARLY_SHARE = 0.25
-URGENT_EARLY_SHARE = 0.95  # the same for a packet of a live face, which must not wait a frame
 CALM_SECONDS = 0.15  # [s] without change before physics rests and the scene is drawn in full
-STILL_DISTANCE = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
-LEFT_ALONE_SECONDS = 0.5  # [s] after which a face that nobody moved any more only lives
-SEEN_DISTANCE = 0.2  # [mm] of motion that is drawn while it only lives: about half a pixel
-EYE_RADIUS = 12.0  # [mm] about: of how far a turning eye moves
 PHASES = ("simulation", "refinement", "upload", "draw")  # of the paper's Figure 1
-KEPT_FRAMES = 60  # of which the times are known
-SMOOTHING = 0.9  # of the frame rate, from frame to frame
 
 Life = Callable[[float], Mapping[str, float]]  # values to add to controls, so much [s] later
 
@@ -46,7 +39,8 @@ class FrameTimes:
     """Milliseconds by phase and by frame, and the rate of frames, for the window and benchmarks."""
 
     def __init__(self) -> None:
-        self.milliseconds = {name: deque([0.0] * KEPT_FRAMES, KEPT_FRAMES) for name in PHASES}
+        kept_frames = 60  # of which the times are known
+        self.milliseconds = {name: deque([0.0] * kept_frames, kept_frames) for name in PHASES}
         self.frames_per_second = 0.0
 
     @contextmanager
@@ -65,7 +59,8 @@ class FrameTimes:
         """Note a frame `elapsed` seconds after the one before it; 0 where nothing moves."""
         # The mean of times, not of rates: a few quick frames must not outweigh the slow ones.
         mean = 1.0 / self.frames_per_second if self.frames_per_second else elapsed
-        smooth = SMOOTHING * mean + (1.0 - SMOOTHING) * elapsed
+        smoothing = 0.9  # of the frame rate, from frame to frame
+        smooth = smoothing * mean + (1.0 - smoothing) * elapsed
         self.frames_per_second = 1.0 / smooth if elapsed > 0.0 else 0.0
 
 
@@ -115,7 +110,8 @@ class Physics:
     @property
     def is_left_alone(self) -> bool:
         """Whether nobody has moved the face for some time, and it does no more than live."""
-        return self._left_for > LEFT_ALONE_SECONDS
+        left_alone_seconds = 0.5  # [s] after which a face that nobody moved any more only lives
+        return self._left_for > left_alone_seconds
 
     def advance(
         self,
@@ -130,7 +126,9 @@ class Physics:
         is_skin_dragged: whether the mouse drags the skin. is_urgent: whether a live face has just
         moved. UserError where the simulation gave up.
         """
-        steps = self._clock.steps(seconds, URGENT_EARLY_SHARE if is_urgent else EARLY_SHARE)
+        # The same for a packet of a live face, which must not wait a frame.
+        urgent_early_share = 0.95
+        steps = self._clock.steps(seconds, urgent_early_share if is_urgent else EARLY_SHARE)
         session = self._session
         scene = self._session.scene
         wanted = session.current
@@ -144,8 +142,9 @@ class Physics:
             return
         self._posed = wanted
         moved = self._step(steps, life)
+        still_distance = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
         # Muscles follow late: a face that has not moved yet may be about to.
-        is_moving = is_driven or moved > STILL_DISTANCE
+        is_moving = is_driven or moved > still_distance
         self._still_for = 0.0 if is_moving else self._still_for + steps * STEP
         self.has_moved = not self.is_left_alone or self._is_to_be_seen()
         if self.has_moved:
@@ -173,13 +172,15 @@ class Physics:
     def _is_to_be_seen(self) -> bool:
         """Whether the face has moved enough since it was last seen to move."""
         scene = self._session.scene
-        if float(np.abs(scene.positions - self._seen).max(initial=0.0)) > SEEN_DISTANCE:
+        seen_distance = 0.2  # [mm] of motion that is drawn while it only lives: about half a pixel
+        if float(np.abs(scene.positions - self._seen).max(initial=0.0)) > seen_distance:
             return True
         turns = (
             float(np.abs(matrix[:3, :3] - self._seen_bones[name][:3, :3]).max())
             for name, matrix in scene.bone_transforms().items()
         )
-        return max(turns, default=0.0) * EYE_RADIUS > SEEN_DISTANCE
+        eye_radius = 12.0  # [mm] about: of how far a turning eye moves
+        return max(turns, default=0.0) * eye_radius > seen_distance
 
 
 SLEEP_DELAY = 600.0  # [s] without input: the user has gone, and the machine may rest

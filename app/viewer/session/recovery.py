@@ -24,7 +24,6 @@ from ...stopping import cleaned_up_if_stopped
 from .session import Session
 
 INTERVAL = 2.0  # [s] after a change, in which further ones may come
-PAUSE_FACTOR = 30.0  # or so many times the time of writing, lest a long recording stutters
 
 
 class Recovery:
@@ -61,6 +60,7 @@ class Recovery:
         """
         if self._path is None:
             return
+        pause_factor = 30.0  # or so many times the time of writing, lest a long recording stutters
         if not self._session.work.unsaved:
             if self._safe is not None:
                 self.discard()
@@ -70,7 +70,7 @@ class Recovery:
             if self.due_in() <= 0.0:
                 self.save()
         elif _state(self._session) != self._safe:
-            self._due = self._clock() + max(INTERVAL, PAUSE_FACTOR * self._writing_took)
+            self._due = self._clock() + max(INTERVAL, pause_factor * self._writing_took)
 
     def due_in(self) -> float:
         """How long until the file is to be written [s]; infinite without a change."""

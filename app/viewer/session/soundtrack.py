@@ -15,9 +15,7 @@ from ...sound.player import NoDeviceError, Player
 from .physics import MOST_STEPS, STEP
 from .session import Session
 
-MOST_LAG = 0.05  # [s] by which the picture is late before it skips
 LONGEST_FRAME = (MOST_STEPS + 1) * STEP  # [s] of the script at most; more was not the script's own
-CATCH_UP_SECONDS = 0.3  # [s] in which most of a drift is gone
 
 
 class Soundtrack:
@@ -87,11 +85,13 @@ class Soundtrack:
         if player.is_stuck:
             return seconds
         late = (player.position - session.time) / session.speed - seconds
-        if late > MOST_LAG and session.time < session.script.duration:  # a recording goes beyond
+        most_lag = 0.05  # [s] by which the picture is late before it skips
+        if late > most_lag and session.time < session.script.duration:  # a recording goes beyond
             session.time = min(session.time + late * session.speed, session.script.duration)
             self._time = session.time
             return seconds
-        return max(seconds + late * min(seconds / CATCH_UP_SECONDS, 1.0), 0.0)
+        catch_up_seconds = 0.3  # [s] in which most of a drift is gone
+        return max(seconds + late * min(seconds / catch_up_seconds, 1.0), 0.0)
 
     def rest(self) -> None:
         """Be silent, as long as the window waits."""

@@ -30,13 +30,7 @@ from .time_axis import TimeAxis
 
 ROW_HEIGHT = 1.35  # [em] of a row's height
 RULER_HEIGHT = 1.45  # [em] of the ruler's height
-MOST_ROWS = 6  # that are seen at once; the rest is scrolled to
-KEY_REACH = 0.5  # [em] beside a key that still mean it
 CLICK_DISTANCE = 4.0  # [window units] a press that moves less is a click, not a drag
-ZOOM_PER_NOTCH = 0.8
-SCROLL_PER_NOTCH = 0.12  # of the visible time
-GRAPH_HEIGHT = 14.0  # [em] of its height, as long as nobody changes that
-MOST_CURVES = 24  # that are displayed at once, unless somebody wants more
 
 
 @dataclass
@@ -83,14 +77,17 @@ class DopeSheet:
 
     def _is_open(self, name: str) -> bool:
         """Whether the rows folded into this one are displayed; at first, of many groups one."""
-        is_few = len(self._session.script.tracks) <= MOST_CURVES or name == self._all[1].name
+        most_curves = 24  # that are displayed at once, unless somebody wants more
+        is_few = len(self._session.script.tracks) <= most_curves or name == self._all[1].name
         return self.settings.folds.get(name, is_few if ":" in name else self.settings.shows_curves)
 
     def height(self, room: float) -> float:
         """The height of ruler and rows [window units], no more than there is room for."""
         self._refresh()
-        rows = em(ROW_HEIGHT) * sum(track.height for track in self.rows[:MOST_ROWS])
-        wanted = em(GRAPH_HEIGHT) if self.settings.shows_curves else rows
+        most_rows = 6  # that are seen at once; the rest is scrolled to
+        rows = em(ROW_HEIGHT) * sum(track.height for track in self.rows[:most_rows])
+        graph_height = 14.0  # [em] of its height, as long as nobody changes that
+        wanted = em(graph_height) if self.settings.shows_curves else rows
         above = em(RULER_HEIGHT) + self._waveform.height
         return above + max(min(wanted, room - above), em(ROW_HEIGHT))
 
@@ -225,12 +222,13 @@ class DopeSheet:
                     selection.places = track.places
             imgui.set_scroll_y(imgui.get_scroll_y() - em(ROW_HEIGHT) * io.mouse_wheel)
             return
+        key_reach = 0.5  # [em] beside a key that still mean it
         if self.settings.shows_curves:
             graph.handle = graph.handle_at(x, y)
             hit = None if graph.handle else graph.at(x, y)
             under = hit.key if hit else NOWHERE
         elif track is not None:
-            under = track.places.near(axis.time(x), axis.seconds(em(KEY_REACH)))
+            under = track.places.near(axis.time(x), axis.seconds(em(key_reach)))
         if (under or hit) and not imgui.is_mouse_down(LEFT):
             value = f"{hit.curve.label} {hit.value:.2f}" if hit else ""
             imgui.set_tooltip(f"{under.first:.2f} s  {value}".rstrip() if under else value)
@@ -285,10 +283,12 @@ class DopeSheet:
         if self._drag is None and imgui.is_mouse_clicked(MIDDLE):
             self._begin("pan", io)
         sideways = io.mouse_wheel_h or (io.mouse_wheel if io.key_shift else 0.0)
+        zoom_per_notch = 0.8
         if sideways:
-            self.axis.scroll(-SCROLL_PER_NOTCH * self.axis.span * sideways)
+            scroll_per_notch = 0.12  # of the visible time
+            self.axis.scroll(-scroll_per_notch * self.axis.span * sideways)
         elif io.mouse_wheel:
-            self.axis.zoom(ZOOM_PER_NOTCH**io.mouse_wheel, io.mouse_pos.x)
+            self.axis.zoom(zoom_per_notch**io.mouse_wheel, io.mouse_pos.x)
 
     def _follow(self, io: Any, drag: Drag) -> None:
         """Carry out the drag until the mouse lets go; Escape undoes the drag."""

@@ -21,11 +21,8 @@ from .key_marks import Point, draw_line
 from .keys import KeySelection, Track
 from .time_axis import TimeAxis
 
-PADDING = 0.8  # [em] between the highest value and the edge
-LABEL_ROOM = 1.6  # [em] between two labels of values
 VALUE_STEPS = tuple(digit * 10.0**power for power in range(-4, 6) for digit in (1.0, 2.0, 5.0))
 MOUSE_REACH = 0.55  # [em] from a key or a curve that still mean it
-MOST_POINTS = 4000  # of all curves, in columns
 KEY_RADIUS = 0.27  # [em] from a key's middle to its corners
 
 
@@ -178,7 +175,8 @@ class Graph:
         self._draw_ground((left, edges[0]), (right, edges[1]), axis.x(duration))
         self._draw_values(left, right)
         lines.push_clip_rect((left, edges[0]), (right, edges[1]), True)
-        columns = round(min(0.5 * (right - left), MOST_POINTS / (len(self.curves) + 1)))
+        most_points = 4000  # of all curves, in columns
+        columns = round(min(0.5 * (right - left), most_points / (len(self.curves) + 1)))
         for curve in self.curves:
             is_front = self._is_selected(curve) or not self._is_selected(self.curves[-1])
             ink = self.colour(curve, 1.0 if is_front else 0.3)
@@ -193,8 +191,9 @@ class Graph:
         ends = [0.0, 1.0, *(end for curve in self.curves for end in curve.channel.ends)]
         self._low = min(ends)
         self._high = max(ends)
-        self._bottom = edges[1] - em(PADDING)
-        height = max(self._bottom - edges[0] - em(PADDING), 1.0)
+        padding = 0.8  # [em] between the highest value and the edge
+        self._bottom = edges[1] - em(padding)
+        height = max(self._bottom - edges[0] - em(padding), 1.0)
         self.slope = -height / (self._high - self._low)
 
     def _draw_ground(self, low: Point, high: Point, script_end: float) -> None:
@@ -209,7 +208,8 @@ class Graph:
         """Draw lines at round values, with numbers at their left."""
         theme = self._gui.theme
         lines = imgui.get_window_draw_list()
-        wide = (each for each in VALUE_STEPS if -each * self.slope >= em(LABEL_ROOM))
+        label_room = 1.6  # [em] between two labels of values
+        wide = (each for each in VALUE_STEPS if -each * self.slope >= em(label_room))
         step = next(wide, VALUE_STEPS[-1])
         first = int(np.ceil(self._low / step - SAME))
         last = int(self._high / step + SAME)

@@ -17,12 +17,8 @@ from ..session.soundtrack import Soundtrack
 from .keys import Track
 from .time_axis import TimeAxis
 
-LABEL_ROOM = 4.2  # [em] between two labels of the ruler
 FLAG_SIZE = 0.7  # [em] of the handle at the script's end
 KEY_RADIUS = 0.36  # [em] from a key's middle to its corners
-LEAST_NAME_WIDTH = 2.4  # [em] of a pose's name: less would be no name
-LEAST_KEY_DISTANCE = 2.0  # [window units] keys nearer than that are drawn as one
-MOST_COVERED_SHARE = 0.5  # of a row by keys that are drawn one by one
 
 Point = tuple[float, float]
 
@@ -37,7 +33,8 @@ def draw_ruler(
     lines = imgui.get_window_draw_list()
     (top, bottom) = edges
     ink = ink_of(theme.muted)
-    for at, has_label in axis.ticks(em(LABEL_ROOM)):
+    label_room = 4.2  # [em] between two labels of the ruler
+    for at, has_label in axis.ticks(em(label_room)):
         x = round(axis.x(at)) + 0.5
         height = em(0.45) if has_label else em(0.22)
         lines.add_line((x, bottom - height), (x, bottom), ink)
@@ -98,7 +95,8 @@ class TrackPainter:
         self._low = axis.x(axis.start) - em(0.5)
         self._high = axis.x(axis.end) + em(0.5)
         margin = axis.seconds(em(0.5))
-        count = max(round((self._high - self._low) / LEAST_KEY_DISTANCE), 2)
+        least_key_distance = 2.0  # [window units] keys nearer than that are drawn as one
+        count = max(round((self._high - self._low) / least_key_distance), 2)
         self._edges = np.linspace(axis.start - margin, axis.end + margin, count + 1)  # of columns
         self._script_end = min(max(axis.x(duration), self._low), self._high)
 
@@ -138,7 +136,8 @@ class TrackPainter:
             self._axis.x(places.latest_in(self._edges, names))
             for places in (track.places, self._selected)
         )
-        is_dense = len(marks) * 2.0 * size > MOST_COVERED_SHARE * (self._high - self._low)
+        most_covered_share = 0.5  # of a row by keys that are drawn one by one
+        is_dense = len(marks) * 2.0 * size > most_covered_share * (self._high - self._low)
         seen = marks[:0] if is_dense and len(track.channel) else marks
         accent = ink_of(self._theme.accent)
         for xs, reach, fill in ((seen, size, ink), (chosen, 1.2 * size, accent)):
@@ -151,11 +150,12 @@ class TrackPainter:
         axis = self._axis
         ink = ink_of(self._theme.muted)
         ends = [axis.x(time) - em(0.6) for time, _ in track.names[1:]] + [self._high]
+        least_name_width = 2.4  # [em] of a pose's name: less would be no name
         for (time, name), end in zip(track.names, ends, strict=False):
             if axis.start <= time <= axis.end:
                 x = axis.x(time) - em(KEY_RADIUS)
                 room = min(end, self._high) - x
-                if room >= min(em(LEAST_NAME_WIDTH), imgui.calc_text_size(name).x):
+                if room >= min(em(least_name_width), imgui.calc_text_size(name).x):
                     self._lines.add_text((x, top), ink, shortened(name, room))
 
 
@@ -172,7 +172,6 @@ def draw_box(theme: Theme, first: Point, last: Point) -> None:
     lines.add_rect(first, last, ink_of(theme.accent, 0.8))
 
 
-LEAST_AMPLITUDE = 0.5  # [window units] from the middle: silence is a thin line
 peaks_of = functools.lru_cache(maxsize=1)(Peaks)
 
 
@@ -220,8 +219,9 @@ class Waveform:
         inside = ink_of(theme.muted)
         outside = ink_of(theme.muted, 0.35)
         ends = axis.x(duration)
-        uppers = (middle - LEAST_AMPLITUDE - reach * high).tolist()
-        lowers = (middle + LEAST_AMPLITUDE - reach * low).tolist()
+        least_amplitude = 0.5  # [window units] from the middle: silence is a thin line
+        uppers = (middle - least_amplitude - reach * high).tolist()
+        lowers = (middle + least_amplitude - reach * low).tolist()
         for x, (upper, lower) in enumerate(zip(uppers, lowers, strict=True), start=first):
             lines.add_rect_filled((x, upper), (x + 1.0, lower), inside if x < ends else outside)
         draw_playhead(theme, axis, time, (top, bottom + 1.0))

@@ -16,9 +16,6 @@ from ...script.places import NOWHERE, Places
 from ..messages import Message
 from ..session.session import Session
 
-TRACKS_ROW = "Tracks"  # name of a row
-WHOLE_POSES_ROW = "Whole poses"  # name of a row
-
 
 @dataclass(frozen=True)
 class Track:
@@ -49,23 +46,25 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
     if script.poses or not script.tracks:
         names = tuple((pose.time, pose.name) for pose in script.poses if pose.name)
         poses = Places({POSES: times.pop(POSES, np.empty(0))})
-        whole = Track(WHOLE_POSES_ROW, "Poses", poses, names=names, is_whole=True)
+        whole_poses_row = "Whole poses"  # name of a row
+        whole = Track(whole_poses_row, "Poses", poses, names=names, is_whole=True)
         rows.append(replace(whole, is_sum=bool(script.posed_names)))
         for name in script.posed_names:
             channel = script.posed_channel(name)
-            above = (WHOLE_POSES_ROW,)
+            above = (whole_poses_row,)
             row = Track(f"pose {name}", called(name), poses, channel, name, POSES, above)
             rows.append(row)
+    tracks_row = "Tracks"  # name of a row
     if script.tracks:
-        rows.append(Track(TRACKS_ROW, TRACKS_ROW, Places(times), is_sum=True))
+        rows.append(Track(tracks_row, tracks_row, Places(times), is_sum=True))
     for title, controls in groups.items():
         inside = {name: times[name] for name in controls if name in script.tracks}
-        parents: tuple[str, ...] = (TRACKS_ROW,)
+        parents: tuple[str, ...] = (tracks_row,)
         if 0 < len(inside) < len(script.tracks):
-            name = f"{TRACKS_ROW}: {title}"
+            name = f"{tracks_row}: {title}"
             group = Track(name, title, Places(inside), parents=parents, is_sum=True)
             rows.append(group)
-            parents = TRACKS_ROW, group.name
+            parents = tracks_row, group.name
         for name in inside:
             alone = Places({name: times[name]})
             channel = script.tracks[name]

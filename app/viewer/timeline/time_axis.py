@@ -7,9 +7,7 @@ from typing import TypeVar
 from ...script import Floats
 from ...script.keyframes import FRAME
 
-MARGIN_FACTOR = 1.06  # of the script: room behind its end, to drag keys there
 LEAST_SPAN = 8.0 * FRAME  # [s] as far as one may zoom in
-LEAST_TICK_SHARE = 0.12  # of the room for a label
 TICK_STEPS = (FRAME, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0, 3600.0, 86_400.0)
 
 Number = TypeVar("Number", float, Floats)
@@ -36,7 +34,8 @@ class TimeAxis:
 
     def fit(self, end: float) -> None:
         """Keep the visible part inside a script that ends at `end` [s]."""
-        whole = max(end * MARGIN_FACTOR, LEAST_SPAN)
+        margin_factor = 1.06  # of the script: room behind its end, to drag keys there
+        whole = max(end * margin_factor, LEAST_SPAN)
         self.is_whole = self.is_whole or self.span >= whole
         if self.is_whole:
             self.start = 0.0
@@ -80,7 +79,8 @@ class TimeAxis:
         """The times of marks that are visible [s], and whether each has room for a label."""
         wide = (step for step in TICK_STEPS[1:] if step >= self.seconds(label_width))
         labelled = next(wide, TICK_STEPS[-1])
-        least = self.seconds(LEAST_TICK_SHARE * label_width)
+        least_tick_share = 0.12  # of the room for a label
+        least = self.seconds(least_tick_share * label_width)
         parts = ((s, labelled / s) for s in TICK_STEPS if least <= s < labelled)
         finer = [s for s, count in parts if abs(count - round(count)) < 1e-6]  # none is left over
         marked = finer[0] if finer else labelled

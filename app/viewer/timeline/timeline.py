@@ -13,9 +13,6 @@ from ..interface.gui import colour, em
 from ..interface.widgets import choose, hint, shortened, stay_in_line
 from .dope_sheet import DopeSheet
 
-SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0)
-BUTTON_WIDTH = 4.0  # [em]
-SPEED_WIDTH = 4.6  # [em]
 # By the label of the command: the button's text while that is on, and a hint.
 BUTTON_TEXTS = {
     "Play": ("Pause", "play the script ([Play])"),
@@ -78,7 +75,8 @@ class Timeline:
         (label_on, meaning) = BUTTON_TEXTS[label]
         is_on = command.is_on is not None and command.is_on()
         text = label_on if is_on else label
-        width = em(BUTTON_WIDTH)
+        button_width = 4.0  # [em]
+        width = em(button_width)
         if label != "Play":
             stay_in_line(width)
         command_button(
@@ -87,9 +85,11 @@ class Timeline:
         )  # fmt: skip
 
     def _draw_speed(self) -> None:
-        stay_in_line(em(SPEED_WIDTH))
-        imgui.set_next_item_width(em(SPEED_WIDTH))
-        speeds = {f"{speed:g} x": speed for speed in SPEEDS}
+        speed_width = 4.6  # [em]
+        stay_in_line(em(speed_width))
+        imgui.set_next_item_width(em(speed_width))
+        speed_choices = (0.1, 0.25, 0.5, 1.0, 2.0)
+        speeds = {f"{speed:g} x": speed for speed in speed_choices}
         chosen = choose(self._gui, "speed", f"{self._session.speed:g} x", speeds)
         if chosen is not None:
             self._session.speed = speeds[chosen]

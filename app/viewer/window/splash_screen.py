@@ -20,7 +20,6 @@ from ..settings import Settings, load_settings
 
 LOADING_TEXT = "Loading the face ..."
 COMPILING_TEXT = "Compiling, once for each kind of work: up to half a minute ..."
-FIRST_SIZE = 1280, 800  # [units of a screen of ordinary density]
 LOG = logging.getLogger("risorius.jit")  # reports each function that is compiled
 Result = TypeVar("Result")
 
@@ -41,7 +40,8 @@ class SplashScreen(logging.Handler):
         known = size or self.settings.size
         self._text = LOADING_TEXT
         self._drawn = ((0, 0), "")
-        size = known or FIRST_SIZE
+        first_size = 1280, 800  # [units of a screen of ordinary density]
+        size = known or first_size
         self.surface = render.open_window(size, "Risorius", is_scaled=known is None)
         LOG.addHandler(self)
         self._show()

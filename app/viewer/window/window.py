@@ -25,10 +25,6 @@ from ..picture.stage import Painter
 from ..session.live_commands import PACKET_WAIT
 from .application import Application
 
-REFRESH_INTERVAL = 0.1  # [s] that a picture of the panels may be old while the face moves
-IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
-WATCHFUL_WAIT = 0.1  # [s] the same while a file dialog is open, or words are typed
-LIFE_WAIT = 1.0 / 30.0  # [s] from one frame to the next while the face does no more than live
 FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
 
 
@@ -37,7 +33,7 @@ class Viewer(Application):
 
     _last: float  # when the last frame began [s]
     _awake: int  # frames that are drawn in any case
-    refresh = REFRESH_INTERVAL
+    refresh = 0.1  # [s] that a picture of the panels may be old while the face moves
     # Of the panels as they were drawn last: age [s], size of the window [pixels], over the scene?
     _panels_age = math.inf
     _panels_size = (0, 0)
@@ -167,11 +163,13 @@ class Viewer(Application):
         The latter half of the time at least, however long a frame takes. A live face that has just
         been shown is waited for: a frame that begins with its packet shows it at once.
         """
+        # [s] from one frame to the next while the face does no more than live.
+        life_wait = 1.0 / 30.0
         if self.is_idle:
             self._wait()
         elif self.is_left_alone:
             spent = time.perf_counter() - self._last
-            self.gui.look(max(LIFE_WAIT - spent, spent))
+            self.gui.look(max(life_wait - spent, spent))
         elif self.live.is_receiving and not self.live.has_frame:
             self.gui.look(PACKET_WAIT)
 
@@ -179,7 +177,9 @@ class Viewer(Application):
         """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
         is_watching = self.files.is_waiting or imgui.get_io().want_text_input  # a cursor blinks
         is_watching |= self.file_drop.making is not None or self.exporter.job is not None
-        patience = WATCHFUL_WAIT if is_watching else IDLE_WAIT
+        idle_wait = 2.0  # [s] between two frames while nothing happens
+        watchful_wait = 0.1  # [s] the same while a file dialog is open, or words are typed
+        patience = watchful_wait if is_watching else idle_wait
         due_in = min(self.recovery.due_in(), self.live.due_in())
         patience = min(patience, max(due_in, 0.0))
         self.soundtrack.rest()
