@@ -52,6 +52,17 @@ def test_links_lead_somewhere(page):
             assert heading in [anchor(title) for title in titles], target
 
 
+def test_the_paper_is_where_the_page_says():
+    """Every file and name beside a statement of the paper is there."""
+    page = (ROOT / "docs" / "the_paper_in_code.md").read_text("utf-8")
+    places = re.findall(r"\| `([\w/.]+)(?:: (\w+))?`", page)
+    assert len(places) > 20
+    for file, name in places:
+        code = (ROOT / file).read_text("utf-8")
+        defined = rf"^ *(?:def|class) {name}\b|^{name} = " if name else ""
+        assert re.search(defined, code, re.MULTILINE), (file, name)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_commands_are_known(page):
     """Every command that a page shows has the options that it is shown with."""

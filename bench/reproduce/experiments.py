@@ -29,7 +29,8 @@ class Claim:
     low: float = -math.inf
     high: float = math.inf
     style: str = "g"
-    differs: bool = False
+    differs: str = ""
+    """Why our number is not as the paper says; "" where it should be."""
 
     def verdict(self, number: float) -> str:
         """Whether the number agrees; NaN misses, too."""
@@ -45,7 +46,10 @@ class Claim:
         if low == high:
             return f"exactly {low}"
         bounds = [f"at least {low}"] if self.low > -math.inf else []
-        return ", ".join(bounds + ([f"at most {high}"] if self.high < math.inf else []))
+        if self.high < math.inf:
+            bounds.append(f"at most {high}")
+        text = ", ".join(bounds)
+        return f"(expected here: {text})" if self.differs else text
 
     def ours(self, number: float) -> str:
         """A number as it is written."""
