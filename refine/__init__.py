@@ -9,8 +9,8 @@ Visual Computer 2003. It needs numpy and numba, and jit.py and geometry/ beside 
 
 Refiners by name: `none` hands the mesh through, `kahler` is the paper's, `loop` subdivides the
 whole mesh for comparison. `refine(positions, out=stream)` writes straight into lent arrays.
-`Shortening` measures how far the skin is. `check` is for tests: it names the relation that a
-refined mesh breaks.
+`Shortening` measures how far the skin is. `Embedding` carries a fine mesh with a coarse one.
+`check` is for tests: it names the relation that a refined mesh breaks.
 
 `kahler` follows the paper by default. Its options: `scheme` says where points go,
 `criterion` which edges are split, `blend` that nothing pops, `coherent` that no triangulation
@@ -27,6 +27,7 @@ all, and geometry/, which lie beside this folder:
     beyond/     its options (options.py), other criteria and schemes, blending
     others.py   refiners to compare with
     strain.py   how far the skin is stretched
+    embedding/  a fine mesh that follows the smooth surface of a coarse one
     hosts.py    meshes as other programs keep them
 
 Read border/plugin.py first, then kahler/. docs/refinement.md shows it with pictures.
@@ -46,6 +47,7 @@ from .border.corner_values import Values
 from .border.plugin import GpuRefiner, GpuStream, Origins, RefinedMesh, Refiner, Stream, View
 from .border.registry import Registry, create, parameters, refiners
 from .border.stream import StreamArrays
+from .embedding.embedding import EmbeddedPoints, Embedding
 from .hosts import WeldedRefiner
 from .kahler.coherence import Coherent
 from .kahler.criterion import (
@@ -74,6 +76,8 @@ __all__ = [
     "Connectivity",
     "Criterion",
     "Displacement",
+    "EmbeddedPoints",
+    "Embedding",
     "FrameBuffers",
     "GpuRefiner",
     "GpuStream",

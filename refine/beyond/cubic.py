@@ -48,6 +48,7 @@ from ..mesh.vectors import (
     THREE_QUARTERS,
     TINY,
     ZERO,
+    Rows,
     Vector,
     between,
     cross,
@@ -176,7 +177,7 @@ class CubicScheme(Scheme):
 
 
 @njit
-def weigh_corners(positions: Doubles, faces: Unsigned, weights: Floats) -> None:
+def weigh_corners(positions: Doubles, faces: Unsigned, weights: Rows) -> None:
     """Write sqrt(angle / |cross product|) of every corner, shape (F, 3); 0 without an area."""
     for t in range(faces.shape[0]):
         for i in range(3):

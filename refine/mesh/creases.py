@@ -95,10 +95,28 @@ def sectors_of(mesh: Connectivity) -> Sectors:
     if not mesh.is_sharp.any():
         every_edge = np.arange(edge_count, dtype=np.uint32)
         return Sectors(mesh.faces, mesh.edges.view(np.uint32), every_edge, mesh.vertex_count)
+    corners, sector_count = corner_sectors(mesh, mesh.is_sharp)
+    sharp = np.flatnonzero(mesh.is_sharp)
+    first = _ends_on_side(mesh, corners, mesh.edge_sides[:, 0], np.arange(edge_count))
+    second = _ends_on_side(mesh, corners, mesh.edge_sides[sharp, 1], sharp)
+    return Sectors(
+        corners,
+        np.concatenate([first, second]).astype(np.uint32),
+        np.concatenate([np.arange(edge_count), sharp]).astype(np.uint32),
+        sector_count,
+    )
+
+
+def corner_sectors(mesh: Connectivity, is_parting: Flags) -> tuple[Unsigned, int]:
+    """The sector of each corner, shape (F, 3), and the number of sectors.
+
+    `is_parting`: edges that sectors end at, shape (E,). Vertex v has sector v, others come after
+    all V.
+    """
     on_crease = np.zeros(mesh.vertex_count, dtype=np.bool_)
-    on_crease[mesh.edges[mesh.is_sharp]] = True
+    on_crease[mesh.edges[is_parting]] = True
     groups = _joined_corners(
-        mesh.faces, mesh.edges, mesh.edge_sides, mesh.more_sides, mesh.is_sharp, on_crease
+        mesh.faces, mesh.edges, mesh.edge_sides, mesh.more_sides, is_parting, on_crease
     )
     # The first group of corners at a vertex is its sector v; others are numbered after all of them.
     vertices = mesh.faces.ravel().astype(np.int64)
@@ -112,16 +130,7 @@ def sectors_of(mesh: Connectivity) -> Sectors:
     more = order[~is_first]
     number_of_root[more] = mesh.vertex_count + np.arange(len(more))
     corners = number_of_root[np.searchsorted(roots, groups)].astype(np.uint32).reshape(-1, 3)
-
-    sharp = np.flatnonzero(mesh.is_sharp)
-    first = _ends_on_side(mesh, corners, mesh.edge_sides[:, 0], np.arange(edge_count))
-    second = _ends_on_side(mesh, corners, mesh.edge_sides[sharp, 1], sharp)
-    return Sectors(
-        corners,
-        np.concatenate([first, second]).astype(np.uint32),
-        np.concatenate([np.arange(edge_count), sharp]).astype(np.uint32),
-        mesh.vertex_count + len(more),
-    )
+    return corners, mesh.vertex_count + len(more)
 
 
 def _ends_on_side(

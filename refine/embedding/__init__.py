@@ -1,0 +1,1 @@
+"""A fine mesh that follows the smooth surface of a coarse one."""

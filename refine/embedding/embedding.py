@@ -1,0 +1,280 @@
+"""A fine mesh that follows the smooth surface of a coarse one: a wrap deformer.
+
+Each fine vertex is bound once to a place on the surface at rest (places.py), with its offset from
+there. In a frame the offset turns with the surface: by the mean of the rotations of the patch's
+corners (patches.py), weighted as the place is. All of that is continuous over the edges of the
+coarse mesh, and nothing is refined.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ...geometry.read_only import read_only
+from ...jit import njit
+from ..beyond.cubic import SLIVER_SINE
+from ..mesh.arrays import Doubles, Floats, Indices, Wide
+from ..mesh.connectivity import connect_writable
+from ..mesh.creases import with_creases
+from ..mesh.threads import share
+from ..mesh.validation import (
+    LARGEST_COORDINATE,
+    as_array,
+    checked_mesh,
+    take_positions,
+    used_vertices,
+)
+from ..mesh.vectors import cross, plus, row_of, times, write_row
+from .frames import FRAME_NUMBERS
+from .patches import FRAMES, SmoothSurface, place_on
+from .places import across_edges, has_area, nearest_places, settle
+
+
+class EmbeddedPoints(NamedTuple):
+    """The fine mesh in a frame."""
+
+    positions: Doubles
+    """Shape (N, 3)."""
+    normals: Floats | None
+    """Those that were given, turned with the surface, of length one, shape (N, 3)."""
+
+
+class Embedding:
+    """Carries a fine mesh with a coarse one that deforms.
+
+        embedding = refine.Embedding(faces, rest_positions, points)    # once
+        fine = embedding.evaluate(positions).positions                 # every frame
+
+    The coarse mesh is not refined for it and may be any triangles: with borders, edges of three
+    triangles, or several pieces. Where it is as it was at rest, fine vertices are where they were,
+    to rounding; a rigid motion carries them along exactly.
+
+    triangles: coarse triangle that each fine vertex is bound to, shape (N,), read only.
+    weights: its barycentric coordinates there, shape (N, 3), read only.
+    offsets: from the smooth surface to it at rest, shape (N, 3), read only.
+    """
+
+    def __init__(
+        self,
+        faces: npt.ArrayLike,
+        rest_positions: npt.ArrayLike,
+        points: npt.ArrayLike,
+        *,
+        normals: npt.ArrayLike | None = None,
+        labels: npt.ArrayLike | None = None,
+        face_labels: npt.ArrayLike | None = None,
+        crease_angle: float | None = None,
+        stretch_offsets: bool = False,
+    ) -> None:
+        """Bind `points` at rest, shape (N, 3), to `faces`, (F, 3), of `rest_positions`, (V, 3).
+
+        `normals`: which way the fine surface looks, of any length, shape (N, 3), zero for any way.
+        A triangle that looks the other way counts as ten mean edges farther away, so that lips that
+        touch do not take each other's vertices. `labels`, integers of shape (N,), `face_labels`,
+        (F,): a fine vertex is bound to triangles of its own label alone. `crease_angle`: edges that
+        are sharper at rest [degrees] stay sharp. `stretch_offsets`: whether offsets grow as the
+        surface around them does, and not only turn.
+        Raises ValueError for arrays that do not fit together, points that are not finite, and
+        labels that no triangle with an area has.
+        """
+        rest, triangles = checked_mesh(rest_positions, faces)
+        fine = checked_vectors("points", points, None)
+        ways = None if normals is None else checked_vectors("normals", normals, len(fine))
+        self._is_used = used_vertices(triangles, len(rest))
+        self._positions = rest.copy()
+        self._points = rest.astype(np.float32)  # of no use here, but finite in one pass
+        self._faces = triangles
+        self._stretch = 1.0 if stretch_offsets else 0.0
+        mesh = with_creases(connect_writable(triangles, len(rest)), rest, crease_angle)
+        is_proper = has_area(rest, triangles, SLIVER_SINE)
+        groups, label_of = _groups(labels, face_labels, len(fine), is_proper)
+        self.triangles, self.weights = nearest_places(fine, ways, rest, triangles, groups)
+        surface = SmoothSurface(mesh, rest, np.arange(len(triangles)))
+        across = across_edges(mesh, label_of)
+        settle(fine, surface, across, self.triangles, self.weights)
+        used, numbers = np.unique(self.triangles, return_inverse=True)
+        self._numbers = numbers.reshape(-1).astype(np.int32)
+        self._surface = SmoothSurface(mesh, rest, used)
+        self.offsets = np.zeros_like(fine)
+        self._normals: Floats | None = None
+        on_surface = np.empty_like(fine)
+        self._place(self.offsets, on_surface)
+        self.offsets = fine - on_surface
+        if ways is not None:
+            lengths = np.linalg.norm(ways, axis=1, keepdims=True)
+            self._normals = (ways / np.where(lengths > 0.0, lengths, 1.0)).astype(np.float32)
+        self.triangles = read_only(self.triangles)
+        self.weights = read_only(self.weights)
+        self.offsets = read_only(self.offsets)
+
+    def evaluate(self, positions: npt.NDArray[np.floating]) -> EmbeddedPoints:
+        """Where the fine mesh is when the coarse one is at `positions`, shape (V, 3).
+
+        Raises ValueError for another shape and for positions that are not finite.
+        """
+        given = np.asarray(positions)
+        if given.shape != self._positions.shape or given.dtype.kind != "f":
+            raise ValueError(
+                f"positions must be floats of shape {self._positions.shape} like the rest "
+                f"positions, got {given.dtype} of shape {given.shape}"
+            )
+        take_positions(given, self._is_used, self._positions, self._points)
+        self._surface.move(self._positions)
+        moved = np.empty_like(self.offsets)
+        self._place(self.offsets, moved)
+        if self._normals is None:
+            return EmbeddedPoints(moved, None)
+        turned = np.empty_like(self._normals)
+        given_places = self._surface.rows, self._numbers, self.weights
+        share(turn_vectors, len(turned), *given_places, self._normals, turned)
+        return EmbeddedPoints(moved, turned)
+
+    def carry(self, values: npt.ArrayLike) -> Doubles:
+        """Values at coarse vertices, shape (V,) or (V, k), at the fine ones: (N,) or (N, k).
+
+        They are linear in each triangle. Raises ValueError for another number of values.
+        """
+        table = np.asarray(values, dtype=np.float64)
+        if table.ndim == 0 or len(table) != len(self._positions):
+            raise ValueError(
+                f"values must be one for each of {len(self._positions)} coarse vertices, got "
+                f"shape {table.shape}"
+            )
+        carried: Doubles = np.einsum(
+            "nc,nc...->n...", self.weights, table[self._faces[self.triangles]]
+        )
+        return carried
+
+    def _place(self, offsets: Doubles, moved: Doubles) -> None:
+        places = self._surface.rows, self._numbers, self.weights
+        share(place_points, len(moved), *places, offsets, self._stretch, moved)
+
+
+def checked_vectors(name: str, given: npt.ArrayLike, count: int | None) -> Doubles:
+    """A copy of finite vectors, shape (count, 3), or of any number where that is None."""
+    rows = "N" if count is None else str(count)
+    array = as_array(name, given, f"numbers of shape ({rows}, 3)")
+    is_shaped = array.ndim == 2 and array.shape[1] == 3 and count in (None, len(array))
+    if not is_shaped or array.dtype.kind not in "fiu":
+        raise ValueError(
+            f"{name} must be numbers of shape ({rows}, 3), got {array.dtype} of shape {array.shape}"
+        )
+    vectors = np.array(array, dtype=np.float64, order="C")
+    bad = np.flatnonzero(~(np.abs(vectors) < LARGEST_COORDINATE).all(axis=1))
+    if len(bad) > 0:
+        raise ValueError(
+            f"{name} must be finite and below {LARGEST_COORDINATE:g}, but row {bad[0]} is "
+            f"{vectors[bad[0]]} ({len(bad)} such rows in all); leave them out before binding"
+        )
+    return vectors
+
+
+def _groups(
+    labels: npt.ArrayLike | None,
+    face_labels: npt.ArrayLike | None,
+    count: int,
+    is_proper: npt.NDArray[np.bool_],
+) -> tuple[list[tuple[Wide, Wide]], Wide]:
+    """Fine points with the triangles that they may lie on; label of each triangle, -1 for none."""
+    if (labels is None) != (face_labels is None):
+        raise ValueError("labels and face_labels go together: give both or none of them")
+    label_of = np.where(is_proper, 0, -1).astype(np.int64)
+    wanted = np.zeros(count, dtype=np.int64)
+    names = np.zeros(1, dtype=np.int64)
+    if labels is not None and face_labels is not None:
+        fine = _checked_labels("labels", labels, count)
+        coarse = _checked_labels("face_labels", face_labels, len(is_proper))
+        names, numbers = np.unique(np.concatenate([fine, coarse]), return_inverse=True)
+        numbers = numbers.reshape(-1)
+        wanted = numbers[:count]
+        label_of = np.where(is_proper, numbers[count:], -1).astype(np.int64)
+    groups = []
+    for number in np.unique(wanted):
+        allowed = np.flatnonzero(label_of == number)
+        if len(allowed) == 0:
+            which = f" with label {names[number]}" if labels is not None else ""
+            raise ValueError(f"faces must have a triangle{which} with an area to bind points to")
+        groups.append((np.flatnonzero(wanted == number), allowed))
+    return groups, label_of
+
+
+def _checked_labels(name: str, given: npt.ArrayLike, count: int) -> Wide:
+    array = as_array(name, given, f"integers of shape ({count},)")
+    if array.shape != (count,) or array.dtype.kind not in "iub":
+        raise ValueError(
+            f"{name} must be integers of shape ({count},), got {array.dtype} of shape {array.shape}"
+        )
+    return array.astype(np.int64)
+
+
+@njit
+def rotation_at(
+    rows: Doubles, t: int, u: float, v: float, w: float
+) -> tuple[float, float, float, float, float]:
+    """Unit quaternion w, x, y, z and stretch at a place on patch t; no turn where it has none."""
+    at = (u, v, w)
+    q0 = q1 = q2 = q3 = stretch = 0.0
+    for i in range(3):
+        column = FRAMES + FRAME_NUMBERS * i
+        q0 += at[i] * rows[t, column]
+        q1 += at[i] * rows[t, column + 1]
+        q2 += at[i] * rows[t, column + 2]
+        q3 += at[i] * rows[t, column + 3]
+        stretch += at[i] * rows[t, column + 4]
+    squared = q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3
+    if squared == 0.0:
+        return 1.0, 0.0, 0.0, 0.0, stretch
+    scale = 1.0 / np.sqrt(squared)
+    return scale * q0, scale * q1, scale * q2, scale * q3, stretch
+
+
+@njit
+def place_points(
+    first: int,
+    last: int,
+    rows: Doubles,
+    numbers: Indices,
+    weights: Doubles,
+    offsets: Doubles,
+    stretched: float,
+    moved: Doubles,
+) -> None:
+    """Write fine points, shape (N, 3): places on patches `numbers`, and their turned offsets.
+
+    `stretched`: share of the surface's stretch that offsets have.
+    """
+    for k in range(first, last):
+        t = numbers[k]
+        u = weights[k, 0]
+        v = weights[k, 1]
+        w = weights[k, 2]
+        place = place_on(rows, t, u, v, w)
+        q0, x, y, z, stretch = rotation_at(rows, t, u, v, w)
+        offset = row_of(offsets, k)
+        axis = x, y, z
+        twice = times(2.0, cross(axis, offset))
+        turned = plus(plus(offset, times(q0, twice)), cross(axis, twice))
+        size = 1.0 + stretched * (stretch - 1.0)
+        write_row(moved, k, plus(place, times(size, turned)))
+
+
+@njit
+def turn_vectors(
+    first: int,
+    last: int,
+    rows: Doubles,
+    numbers: Indices,
+    weights: Doubles,
+    vectors: Floats,
+    turned: Floats,
+) -> None:
+    """Write vectors at fine points as the surface turns them, shape (N, 3)."""
+    for k in range(first, last):
+        t = numbers[k]
+        q0, x, y, z, _ = rotation_at(rows, t, weights[k, 0], weights[k, 1], weights[k, 2])
+        axis = x, y, z
+        vector = row_of(vectors, k)
+        twice = times(2.0, cross(axis, vector))
+        result = plus(plus(vector, times(q0, twice)), cross(axis, twice))
+        write_row(turned, k, result)

@@ -1,0 +1,202 @@
+r"""How a coarse surface turns at its vertices.
+
+The *axes* of a vertex are its normal, and two directions that lay across it at rest, as the
+triangles around carry them along. A *frame* is the rotation of the axes since rest: the one nearest
+to what the plane across the normal went through (its polar decomposition), so no edge is preferred.
+Rotations are unit quaternions, because those can be mixed.
+
+Where a vertex has several sectors (mesh/creases.py) each has axes of its own.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...geometry.normals import cross_products
+from ...jit import njit
+from ..beyond.cubic import SLIVER_SINE, weigh_corners
+from ..mesh.arrays import Doubles, Unsigned, Wide
+from ..mesh.connectivity import Connectivity
+from ..mesh.creases import corner_sectors
+from ..mesh.vectors import Vector, cross, difference, dot, less, plus, times, write_row
+
+FRAME_NUMBERS = 5
+"""Numbers of a frame: a quaternion and how far the surface is stretched."""
+AXES_NUMBERS = 16
+"""Numbers of the axes of a sector."""
+LEAST_SIDE = 0.1
+"""Share of the areas around a vertex that must be left of their sum for it to have a side."""
+
+
+class Fans(NamedTuple):
+    """What lies around S sectors, K corners in all; compiled code takes it as it is."""
+
+    starts: Unsigned
+    """Corners of sector s are from `starts[s]` to `starts[s + 1]` in what follows, (S + 1,)."""
+    corners: Unsigned
+    """Vertices of their triangles, that of the sector first, shape (K, 3)."""
+    shares: Doubles
+    """What a triangle adds to the axes, shape (K, 5): the weight of its cross product; then how
+    much of its first and second edge, for each of two directions that lie in the surface."""
+
+
+def sound_sectors(mesh: Connectivity, rest: Doubles) -> Wide:
+    """Sector of each corner, shape (F, 3): parted at borders and creases, and where it has no side.
+
+    Where the normals of a sector cancel each other, as on a sheet with two faces that lie on one
+    another, each corner is one of its own.
+    """
+    joined, count = corner_sectors(mesh, ~mesh.around.is_interior)
+    sectors = joined.astype(np.int64)
+    weights = np.zeros(mesh.faces.shape)
+    weigh_corners(rest, mesh.faces, weights)
+    crosses = cross_products(rest, mesh.faces)
+    areas = np.linalg.norm(crosses, axis=1)
+    is_unsound = np.zeros(count, dtype=np.bool_)
+    for share_of in (weights, np.ones_like(weights)):
+        vectors = (share_of[:, :, None] * crosses[:, None]).reshape(-1, 3)
+        sums = np.linalg.norm(_sums(sectors.ravel(), vectors, count), axis=1)
+        sizes = _sums(sectors.ravel(), (share_of * areas[:, None]).reshape(-1, 1), count)[:, 0]
+        is_unsound |= sums < LEAST_SIDE * sizes
+    corners = np.flatnonzero(is_unsound[sectors])
+    sectors.ravel()[corners] = count + np.arange(len(corners))
+    return sectors
+
+
+def fans_of_sectors(mesh: Connectivity, rest: Doubles, corner_sector: Wide, used: Wide) -> Fans:
+    """The fans of the sectors `used`; `corner_sector`: of each corner, shape (F, 3)."""
+    around = np.flatnonzero(np.isin(corner_sector, used))  # corners, 3 x triangle + i
+    number = np.searchsorted(used, corner_sector.ravel()[around])
+    order = np.argsort(number, kind="stable")
+    around = around[order]
+    number = number[order]
+    counts = np.bincount(number, minlength=len(used))
+    triangle = around // 3
+    fans = np.stack([mesh.faces[triangle, (around + step) % 3] for step in range(3)], axis=1)
+    weights = np.zeros(mesh.faces.shape)
+    weigh_corners(rest, mesh.faces, weights)
+    shares = _shares(rest, fans, number, weights.ravel()[around])
+    starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.uint32)
+    return Fans(starts, np.ascontiguousarray(fans), shares)
+
+
+def _shares(rest: Doubles, fans: Unsigned, sector: Wide, weights: Doubles) -> Doubles:
+    """`Fans.shares`; `sector`: of each corner, (K,); `weights`: of cross products, (K,)."""
+    first = rest[fans[:, 1]] - rest[fans[:, 0]]
+    second = rest[fans[:, 2]] - rest[fans[:, 0]]
+    crosses = np.cross(first, second)
+    areas = np.linalg.norm(crosses, axis=1)
+    count = int(sector.max(initial=-1)) + 1
+    normals = _sums(sector, weights[:, None] * crosses, count)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    across = np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)])
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-300)
+    longest = np.maximum(np.linalg.norm(first, axis=1), np.linalg.norm(second, axis=1))
+    is_proper = areas > SLIVER_SINE * longest**2
+    totals = _sums(sector, np.where(is_proper, areas, 0.0)[:, None], count)[:, 0]
+    share_of = np.where(is_proper, areas / np.maximum(totals[sector], 1e-300), 0.0)
+    squared = np.where(is_proper, areas, 1.0) ** 2
+    # A direction d lies in the triangle as x first + y second; x and y by the dual of its edges.
+    dual_of_first = np.cross(second, crosses) / squared[:, None]
+    dual_of_second = np.cross(crosses, first) / squared[:, None]
+    shares = [weights]
+    for direction in (across, np.cross(normals, across)):
+        for dual in (dual_of_first, dual_of_second):
+            shares.append(share_of * np.einsum("ki,ki->k", dual, direction[sector]))
+    return np.stack(shares, axis=1)
+
+
+def _sums(numbers: Wide, values: Doubles, count: int) -> Doubles:
+    """Sums of rows with the same number, shape (count, k)."""
+    columns = [np.bincount(numbers, column, minlength=count) for column in values.T]
+    return np.stack(columns, axis=1)
+
+
+@njit
+def unit_of(v: Vector) -> Vector:
+    """Normalise a vector of doubles; zero stays zero."""
+    length = np.sqrt(dot(v, v))
+    if length == 0.0:
+        return 0.0, 0.0, 0.0
+    return v[0] / length, v[1] / length, v[2] / length
+
+
+@njit
+def find_axes(first: int, last: int, positions: Doubles, fans: Fans, axes: Doubles) -> None:
+    """Write the axes of sectors, shape (S, 16).
+
+    Rows normal, across, beside of length one; the stretch; and where the two directions that lie in
+    the surface at rest are, of any length. All zero where triangles have no normal or direction.
+    """
+    for s in range(first, last):
+        normal = across = beside = 0.0, 0.0, 0.0
+        for k in range(fans.starts[s], fans.starts[s + 1]):
+            v = fans.corners[k, 0]
+            u = difference(positions, v, fans.corners[k, 1])
+            w = difference(positions, v, fans.corners[k, 2])
+            normal = plus(normal, times(fans.shares[k, 0], cross(u, w)))
+            across = plus(across, times(fans.shares[k, 1], u))
+            across = plus(across, times(fans.shares[k, 2], w))
+            beside = plus(beside, times(fans.shares[k, 3], u))
+            beside = plus(beside, times(fans.shares[k, 4], w))
+        normal = unit_of(normal)
+        across = less(across, dot(across, normal), normal)
+        beside = less(beside, dot(beside, normal), normal)
+        along = plus(across, cross(beside, normal))
+        axes[s, 9] = 0.5 * np.sqrt(dot(along, along)) if dot(normal, normal) > 0.0 else 0.0
+        along = unit_of(along)
+        write_row(axes, s, normal, 0)
+        write_row(axes, s, along, 3)
+        write_row(axes, s, cross(normal, along), 6)
+        write_row(axes, s, across, 10)
+        write_row(axes, s, beside, 13)
+
+
+@njit
+def find_frames(first: int, last: int, rest: Doubles, axes: Doubles, frames: Doubles) -> None:
+    """Write frames of sectors, (S, 5): how far `axes`, (S, 16), have turned since `rest`.
+
+    A quaternion is zero where a frame is none, now or at rest: then it counts for nothing.
+    """
+    turn = np.zeros((3, 3))
+    for s in range(first, last):
+        for i in range(3):
+            for j in range(3):
+                turn[i, j] = 0.0
+                for k in range(3):
+                    turn[i, j] += axes[s, 3 * k + i] * rest[s, 3 * k + j]
+        frames[s, :] = 0.0
+        frames[s, 4] = 1.0
+        if axes[s, 9] > 0.0 and rest[s, 9] > 0.0:
+            write_quaternion(turn, frames[s])
+            frames[s, 4] = axes[s, 9] / rest[s, 9]
+
+
+@njit
+def write_quaternion(turn: Doubles, quaternion: Doubles) -> None:
+    """Write the quaternion w, x, y, z of a rotation, a matrix (3, 3).
+
+    From its largest number, as Shepperd does (1978, "Quaternion from rotation matrix").
+    """
+    trace = turn[0, 0] + turn[1, 1] + turn[2, 2]
+    largest = 3
+    most = trace
+    for i in range(3):
+        if turn[i, i] > most:
+            most = turn[i, i]
+            largest = i
+    if largest == 3:
+        root = np.sqrt(1.0 + trace)
+        quaternion[0] = 0.5 * root
+        quaternion[1] = 0.5 * (turn[2, 1] - turn[1, 2]) / root
+        quaternion[2] = 0.5 * (turn[0, 2] - turn[2, 0]) / root
+        quaternion[3] = 0.5 * (turn[1, 0] - turn[0, 1]) / root
+        return
+    i = largest
+    j = (i + 1) % 3
+    k = (i + 2) % 3
+    root = np.sqrt(1.0 + turn[i, i] - turn[j, j] - turn[k, k])
+    quaternion[1 + i] = 0.5 * root
+    quaternion[0] = 0.5 * (turn[k, j] - turn[j, k]) / root
+    quaternion[1 + j] = 0.5 * (turn[j, i] + turn[i, j]) / root
+    quaternion[1 + k] = 0.5 * (turn[k, i] + turn[i, k]) / root

@@ -1,0 +1,260 @@
+r"""The smooth surface of a coarse mesh: one cubic patch over each triangle, and how it has turned.
+
+Curved PN triangles (Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN triangles"), whose border
+curves are those of the scheme `cubic` (beyond/cubic.py): across the normals of vertices inside, and
+along the border curve on borders and creases. Two patches share the curve between them.
+
+           a_c
+          /   \          corners        a, b, c
+       ca      bc        near a on ab   a + tangent / 3
+      /    m     \       m              mean of the corners, and 3/2 of how far the other six
+    a ---ab---ba--- b                   stand out of the flat triangle, on average
+
+At rest the tangent is d = b - a less what of it is upright at a. In a frame the tangents at rest
+are carried along as the triangles around carry the plane at a: so a point keeps its place on the
+surface where that is stretched unevenly, and every affine map of the plane is exact. Where carried
+tangents differ from those of the mesh as it is now by more than half, which in a fold would make
+loops, they go so far and no farther.
+
+Differs from the refined mesh: nothing here is flat, so curves are displaced as far as the cubic is,
+and normals are those of vertices, not steeper ones.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...jit import njit
+from ..beyond.cubic import follow_borders
+from ..mesh.arrays import Doubles, Unsigned, Wide
+from ..mesh.connectivity import Connectivity
+from ..mesh.threads import share
+from ..mesh.vectors import Vector, cross, difference, dot, less, plus, row_of, times, write_row
+from .frames import (
+    AXES_NUMBERS,
+    FRAME_NUMBERS,
+    fans_of_sectors,
+    find_axes,
+    find_frames,
+    sound_sectors,
+)
+
+POINTS = 10
+"""Control points of a patch: corners a, b, c; near a towards b and c; near b towards c and a; near
+c towards a and b; and the middle."""
+FRAMES = 3 * POINTS
+"""First column of the frames of a patch's corners: a quaternion and a stretch for each."""
+WIDTH = FRAMES + 3 * FRAME_NUMBERS
+"""Numbers of a patch."""
+MOST_CARRIED = 0.5
+"""How far a carried tangent may be from that of the mesh as it is now, in lengths of the latter.
+Chosen: at one and more a curve may turn back."""
+NO_VERTEX = np.uint32(2**32 - 1)
+"""Where an edge is inside, and no border runs on."""
+
+
+class Patches(NamedTuple):
+    """What patches go by; compiled code takes it as it is.
+
+    T patches, D directed edges and S sectors of vertices (frames.py).
+    """
+
+    corners: Unsigned
+    """Vertices of each patch, shape (T, 3)."""
+    sectors: Unsigned
+    """Sectors that its corners belong to, shape (T, 3)."""
+    near: Unsigned
+    """Directed edges from each corner to the next one and to the one before, shape (T, 6)."""
+    ways: Unsigned
+    """Of directed edges: the vertices a and b from which and to which they run; the vertex before
+    a on a border that runs on, or NO_VERTEX inside; the sector at a; shape (D, 4)."""
+    slopes: Doubles
+    """How much of both directions of the sector their tangent at rest is, shape (D, 2); on a
+    border, the edge's share of the chord across a."""
+    rest: Doubles
+    """Axes of sectors at rest, shape (S, 16), as `find_axes` writes them."""
+
+
+class SmoothSurface:
+    """The patches over some triangles of a mesh, in the positions of a frame."""
+
+    def __init__(self, mesh: Connectivity, rest: Doubles, triangles: Wide) -> None:
+        """Bind to `rest`, positions (V, 3), and the patches of `triangles`, shape (T,)."""
+        corner_sector = sound_sectors(mesh, rest)
+        used, numbers = np.unique(corner_sector[triangles], return_inverse=True)
+        self.sectors = numbers.reshape(-1, 3).astype(np.uint32)
+        near, ways = _directed_edges(mesh, rest, triangles, self.sectors)
+        self._fans = fans_of_sectors(mesh, rest, corner_sector, used)
+        self._patches = Patches(
+            corners=np.ascontiguousarray(mesh.faces[triangles]),
+            sectors=self.sectors,
+            near=near,
+            ways=ways,
+            slopes=np.zeros((len(ways), 2)),
+            rest=np.zeros((len(used), AXES_NUMBERS)),
+        )
+        axes = self._patches.rest
+        share(find_axes, len(used), rest, self._fans, axes)
+        share(find_slopes, len(ways), rest, self._patches)
+        self._axes = axes.copy()
+        self._frames = np.zeros((len(used), FRAME_NUMBERS))
+        self._tangents = np.zeros((len(ways), 3))
+        self.rows = np.zeros((len(triangles), WIDTH))
+        """Control points and frames of each patch, shape (T, 45)."""
+        self.move(rest)
+
+    @property
+    def normals(self) -> Doubles:
+        """Unit normals of sectors, shape (S, 3); zero where triangles have none."""
+        return np.ascontiguousarray(self._axes[:, :3])
+
+    def move(self, positions: Doubles) -> None:
+        """Find the patches over `positions`, shape (V, 3)."""
+        patches = self._patches
+        share(find_axes, len(self._axes), positions, self._fans, self._axes)
+        share(find_frames, len(self._axes), patches.rest, self._axes, self._frames)
+        share(find_tangents, len(self._tangents), positions, patches, self._axes, self._tangents)
+        given = patches, self._tangents, self._frames
+        share(write_patches, len(self.rows), positions, *given, self.rows)
+
+
+def _directed_edges(
+    mesh: Connectivity, rest: Doubles, triangles: Wide, sectors: Unsigned
+) -> tuple[Unsigned, Unsigned]:
+    """`Patches.near` and `Patches.ways` of some triangles, whose corners have `sectors`."""
+    borders = follow_borders(mesh, rest)
+    faces = mesh.faces[triangles]
+    names = np.zeros((len(triangles), 6), dtype=np.int64)
+    for i in range(3):
+        for k, side in enumerate((i, (i + 2) % 3)):
+            edges = mesh.triangle_edges[triangles, side]
+            names[:, 2 * i + k] = 2 * edges + (mesh.edges[edges, 0] != faces[:, i])
+    # A triangle that names a vertex twice has no edges, and nothing is ever bound to it.
+    used, first, near = np.unique(np.maximum(names, 0), return_index=True, return_inverse=True)
+    edge = used >> 1
+    end = used & 1
+    before = np.where(mesh.around.is_interior[edge], NO_VERTEX, borders[edge, end])
+    there = mesh.edges[edge, 1 - end]
+    sector = np.repeat(sectors, 2, axis=1).ravel()[first]
+    ways = np.stack([mesh.edges[edge, end], there, before, sector], axis=1)
+    return near.reshape(-1, 6).astype(np.uint32), ways.astype(np.uint32)
+
+
+@njit
+def find_slopes(first: int, last: int, rest: Doubles, patches: Patches) -> None:
+    """Write `patches.slopes`, from the axes at rest."""
+    for k in range(first, last):
+        a, b, before, s = patches.ways[k]
+        if before != NO_VERTEX:
+            patches.slopes[k, 0] = share_of_chord(rest, before, a, b)
+            continue
+        d = difference(rest, a, b)
+        normal = row_of(patches.rest, s)
+        across = row_of(patches.rest, s, 10)
+        beside = row_of(patches.rest, s, 13)
+        whole = dot(normal, cross(across, beside))
+        if whole > 0.0:
+            patches.slopes[k, 0] = dot(normal, cross(d, beside)) / whole
+            patches.slopes[k, 1] = dot(normal, cross(across, d)) / whole
+
+
+@njit
+def share_of_chord(positions: Doubles, before: np.uint32, a: np.uint32, b: np.uint32) -> float:
+    """The part of a border's length from the vertex before a to b that is the edge from a to b."""
+    length = distance(positions, a, b)
+    whole = length + distance(positions, before, a)
+    return length / whole if whole > 0.0 else 0.0
+
+
+@njit
+def distance(positions: Doubles, a: np.uint32, b: np.uint32) -> float:
+    """Length of an edge."""
+    d = difference(positions, a, b)
+    return float(np.sqrt(dot(d, d)))
+
+
+@njit
+def find_tangents(
+    first: int, last: int, positions: Doubles, patches: Patches, axes: Doubles, tangents: Doubles
+) -> None:
+    """Write a third of the tangents of directed edges, shape (D, 3)."""
+    for k in range(first, last):
+        a, b, before, s = patches.ways[k]
+        along = patches.slopes[k, 0]
+        if before != NO_VERTEX:
+            chord = difference(positions, before, b)
+            now = times(share_of_chord(positions, before, a, b), chord)
+            carried = times(along, chord)
+        else:
+            d = difference(positions, a, b)
+            normal = row_of(axes, s)
+            now = less(d, dot(d, normal), normal)
+            carried = times(along, row_of(axes, s, 10))
+            carried = plus(carried, times(patches.slopes[k, 1], row_of(axes, s, 13)))
+        if axes[s, 9] > 0.0 and patches.rest[s, 9] > 0.0:
+            change = less(carried, 1.0, now)
+            squared = dot(change, change)
+            most = MOST_CARRIED**2 * dot(now, now)
+            now = plus(now, times(np.sqrt(most / squared) if squared > most else 1.0, change))
+        write_row(tangents, k, times(1.0 / 3.0, now))
+
+
+@njit
+def write_patches(
+    first: int,
+    last: int,
+    positions: Doubles,
+    patches: Patches,
+    tangents: Doubles,
+    frames: Doubles,
+    rows: Doubles,
+) -> None:
+    """Write the control points and frames of patches, shape (T, 45)."""
+    for t in range(first, last):
+        middle = outs = 0.0, 0.0, 0.0
+        for i in range(3):
+            here = row_of(positions, patches.corners[t, i])
+            write_row(rows, t, here, 3 * i)
+            middle = plus(middle, here)
+            for k in range(2 * i, 2 * i + 2):
+                near = row_of(tangents, patches.near[t, k])
+                outs = plus(outs, near)
+                write_row(rows, t, plus(here, near), 9 + 3 * k)
+        centre = plus(times(1.0 / 3.0, middle), times(0.25, outs))
+        write_row(rows, t, centre, 27)
+        for i in range(3):
+            s = patches.sectors[t, i]
+            along = 0.0
+            for j in range(4):
+                along += frames[s, j] * frames[patches.sectors[t, 0], j]
+            sign = -1.0 if along < 0.0 else 1.0  # both signs are the same rotation
+            column = FRAMES + FRAME_NUMBERS * i
+            for j in range(4):
+                rows[t, column + j] = sign * frames[s, j]
+            rows[t, column + 4] = frames[s, 4]
+
+
+@njit
+def place_on(rows: Doubles, t: int, u: float, v: float, w: float) -> Vector:
+    """The place on patch t with barycentric coordinates u, v, w."""
+    uu = u * u
+    vv = v * v
+    ww = w * w
+    x = y = z = 0.0
+    shares = (
+        uu * u,
+        vv * v,
+        ww * w,
+        3.0 * uu * v,
+        3.0 * uu * w,
+        3.0 * vv * w,
+        3.0 * vv * u,
+        3.0 * ww * u,
+        3.0 * ww * v,
+        6.0 * u * v * w,
+    )
+    for k in range(POINTS):
+        x += shares[k] * rows[t, 3 * k]
+        y += shares[k] * rows[t, 3 * k + 1]
+        z += shares[k] * rows[t, 3 * k + 2]
+    return x, y, z

@@ -1,0 +1,254 @@
+"""Where a fine mesh lies on the smooth surface of a coarse one, at rest.
+
+The nearest place on the flat triangles begins. From there a point slides over the surface until it
+stands upright on it: x = p + h n, with p on the cubic patch and n the mean of the vertex normals
+there, by Newton's method, from patch to patch through the edges inside. Vertex normals have no jump
+at an edge, so places that are neighbours on the fine mesh are neighbours on the surface (Panozzo,
+Baran, Diamanti, Sorkine-Hornung 2013, "Weighted averages on surfaces", who call it Phong
+projection). What no place is upright below, such as a point beyond a border, keeps the best place
+found; its offset is the rest.
+"""
+
+import numpy as np
+
+from ...geometry.closest import closest_points
+from ...geometry.normals import cross_products
+from ...jit import njit
+from ..mesh.arrays import Doubles, Flags, Unsigned, Wide
+from ..mesh.connectivity import Connectivity
+from ..mesh.threads import share
+from ..mesh.vectors import Vector, dot, less, plus, row_of, times
+from .frames import unit_of
+from .patches import SmoothSurface, place_on
+
+WRONG_SIDE = 10.0
+"""How much farther away, in mean edge lengths, a triangle seems that looks the other way."""
+STEPS = 16
+"""Of Newton's method; four are enough on most surfaces."""
+FARTHEST = 1.25
+"""How much farther a place may be than the one that was begun with. Chosen: an upright place is
+rarely the nearest one, but one much farther away belongs to another part of the surface."""
+ROUNDING = 1e-14
+"""A step in barycentric coordinates, or the square of an angle's sine, that counts for nothing."""
+INSIDE, STUCK = 3, 4
+"""What a step came to, if not to the edge opposite of corner 0, 1 or 2 and beyond it."""
+UPRIGHT = 1e-12
+"""What may stand aside, in distances from the surface."""
+
+
+def nearest_places(
+    points: Doubles,
+    normals: Doubles | None,
+    rest: Doubles,
+    faces: Wide,
+    groups: list[tuple[Wide, Wide]],
+) -> tuple[Wide, Doubles]:
+    """The nearest places on flat triangles: their numbers, shape (N,), and coordinates, (N, 3).
+
+    `groups`: points, and the triangles that these may lie on.
+    """
+    triangles = np.zeros(len(points), dtype=np.int64)
+    weights = np.zeros((len(points), 3))
+    edges = rest[faces[:, [1, 2, 0]]] - rest[faces]
+    away = WRONG_SIDE * float(np.linalg.norm(edges, axis=2).mean())
+    for members, allowed in groups:
+        ways = None if normals is None else normals[members]
+        found = closest_points(points[members], rest, faces[allowed], ways, away)
+        triangles[members] = allowed[found.triangles]
+        weights[members] = found.weights
+    return triangles, weights
+
+
+def has_area(rest: Doubles, faces: Wide, sliver: float) -> Flags:
+    """Flag triangles that have a direction, shape (F,)."""
+    areas = np.linalg.norm(cross_products(rest, faces), axis=1)
+    edges = rest[faces[:, [1, 2, 0]]] - rest[faces]
+    longest = np.linalg.norm(edges, axis=2).max(axis=1, initial=0.0)
+    return np.asarray(areas > sliver * longest**2)
+
+
+def across_edges(mesh: Connectivity, label: Wide) -> Wide:
+    """The side beyond each side of triangles, 4 x triangle + i, shape (F, 3); -1 for none.
+
+    Only through edges inside, between triangles of one label, shape (F,); -1 for no label.
+    """
+    across = np.full(mesh.faces.shape, -1, dtype=np.int64)
+    edges = np.flatnonzero(mesh.around.is_interior)
+    first, second = mesh.edge_sides[edges].astype(np.int64).T
+    is_one = (label[first >> 2] == label[second >> 2]) & (label[first >> 2] >= 0)
+    first = first[is_one]
+    second = second[is_one]
+    across[first >> 2, first & 3] = second
+    across[second >> 2, second & 3] = first
+    return across
+
+
+def settle(
+    points: Doubles, surface: SmoothSurface, across: Wide, triangles: Wide, weights: Doubles
+) -> None:
+    """Slide places, (N,) and (N, 3), until points, shape (N, 3), stand upright on them."""
+    given = surface.rows, surface.normals, surface.sectors, across
+    share(slide, len(points), points, *given, triangles, weights)
+
+
+@njit
+def slide(
+    first: int,
+    last: int,
+    points: Doubles,
+    rows: Doubles,
+    normals: Doubles,
+    sectors: Unsigned,
+    across: Wide,
+    triangles: Wide,
+    weights: Doubles,
+) -> None:
+    """Do that for some of the points."""
+    place = np.zeros(3)
+    best = np.zeros(3)
+    columns = np.zeros((3, 3))
+    for k in range(first, last):
+        point = row_of(points, k)
+        t = triangles[k]
+        best_t = t
+        place[:] = weights[k]
+        best[:] = place
+        least = farthest = np.inf
+        for _ in range(STEPS):
+            apart, aside = linearise(point, rows, normals, sectors, t, place, columns)
+            size = dot(aside, aside)
+            if farthest == np.inf:
+                farthest = FARTHEST * apart
+            if size < least and apart <= farthest:
+                least = size
+                best_t = t
+                best[:] = place
+            if size <= (UPRIGHT * apart) ** 2:
+                break
+            hit = advance(aside, columns, across, t, place)
+            if hit == STUCK:
+                break
+            if hit != INSIDE:
+                t = cross_edge(across, t, hit, place)
+        triangles[k] = best_t
+        weights[k] = best
+
+
+@njit
+def linearise(
+    point: Vector,
+    rows: Doubles,
+    normals: Doubles,
+    sectors: Unsigned,
+    t: int,
+    place: Doubles,
+    columns: Doubles,
+) -> tuple[float, Vector]:
+    """Distance from a place on patch t, and what of the way there lies aside of its normal.
+
+    `columns`: how that shrinks as each barycentric coordinate grows, rows of (3, 3), written.
+    """
+    u, v, w = place[0], place[1], place[2]
+    away = less(point, 1.0, place_on(rows, t, u, v, w))
+    mean = 0.0, 0.0, 0.0
+    for i in range(3):
+        mean = plus(mean, times(place[i], row_of(normals, sectors[t, i])))
+    length = np.sqrt(dot(mean, mean))
+    normal = unit_of(mean)
+    height = dot(away, normal)
+    for i in range(3):
+        along = slope(rows, t, u, v, w, i)
+        if length > 0.0:
+            along = plus(along, times(height / length, row_of(normals, sectors[t, i])))
+        along = less(along, dot(along, normal), normal)
+        for j in range(3):
+            columns[i, j] = along[j]
+    return np.sqrt(dot(away, away)), less(away, height, normal)
+
+
+@njit
+def slope(rows: Doubles, t: int, u: float, v: float, w: float, i: int) -> Vector:
+    """How a place on patch t moves as its coordinate i grows and the others stay."""
+    at = (u, v, w)
+    j = (i + 1) % 3
+    k = (i + 2) % 3
+    total = times(3.0 * at[i] * at[i], row_of(rows, t, 3 * i))
+    total = plus(total, times(6.0 * at[i] * at[j], row_of(rows, t, 9 + 6 * i)))
+    total = plus(total, times(6.0 * at[i] * at[k], row_of(rows, t, 12 + 6 * i)))
+    total = plus(total, times(3.0 * at[j] * at[j], row_of(rows, t, 12 + 6 * j)))
+    total = plus(total, times(3.0 * at[k] * at[k], row_of(rows, t, 9 + 6 * k)))
+    return plus(total, times(6.0 * at[j] * at[k], row_of(rows, t, 27)))
+
+
+@njit
+def advance(aside: Vector, columns: Doubles, across: Wide, t: int, place: Doubles) -> int:
+    """Move a place on patch t by one step of Newton's method, to its edge at most.
+
+    Returns the corner opposite of the edge that is to be crossed, INSIDE, or STUCK.
+    """
+    step = newton_step(aside, columns)
+    for m in range(3):
+        if place[m] <= 0.0 and step[m] < 0.0 and across[t, (m + 1) % 3] < 0:
+            step = step_along(aside, columns, (m + 1) % 3, (m + 2) % 3)
+    share_of = 1.0
+    hit = INSIDE
+    for m in range(3):
+        if step[m] < 0.0 and place[m] + share_of * step[m] < 0.0:
+            share_of = max(place[m], 0.0) / -step[m]
+            hit = m
+    moved = 0.0
+    for m in range(3):
+        place[m] += share_of * step[m]
+        moved += share_of * abs(step[m])
+    if hit == INSIDE:
+        return INSIDE if moved > ROUNDING else STUCK
+    place[hit] = 0.0
+    if across[t, (hit + 1) % 3] >= 0:
+        return hit
+    return INSIDE if moved > ROUNDING else STUCK
+
+
+@njit
+def newton_step(aside: Vector, columns: Doubles) -> Vector:
+    """The step in barycentric coordinates that takes `aside` away, by least squares."""
+    first = less(row_of(columns, 1), 1.0, row_of(columns, 0))
+    second = less(row_of(columns, 2), 1.0, row_of(columns, 0))
+    a = dot(first, first)
+    b = dot(first, second)
+    c = dot(second, second)
+    whole = a * c - b * b
+    if whole <= ROUNDING * a * c:
+        return 0.0, 0.0, 0.0
+    along_first = dot(first, aside)
+    along_second = dot(second, aside)
+    v = (c * along_first - b * along_second) / whole
+    w = (a * along_second - b * along_first) / whole
+    longest = max(abs(v), abs(w), abs(v + w), 1.0)
+    return -(v + w) / longest, v / longest, w / longest
+
+
+@njit
+def step_along(aside: Vector, columns: Doubles, i: int, j: int) -> Vector:
+    """The step along the edge from corner i to corner j that takes most of `aside` away."""
+    way = less(row_of(columns, j), 1.0, row_of(columns, i))
+    squared = dot(way, way)
+    size = dot(way, aside) / squared if squared > 0.0 else 0.0
+    size = min(max(size, -1.0), 1.0)
+    u = -size if i == 0 else (size if j == 0 else 0.0)
+    v = -size if i == 1 else (size if j == 1 else 0.0)
+    w = -size if i == 2 else (size if j == 2 else 0.0)
+    return u, v, w
+
+
+@njit
+def cross_edge(across: Wide, t: int, hit: int, place: Doubles) -> int:
+    """Carry a place on the edge opposite of corner `hit` of patch t to the patch beyond it."""
+    side = (hit + 1) % 3
+    beyond = across[t, side]
+    j = beyond & 3
+    start = place[side]
+    end = place[(side + 1) % 3]
+    place[j] = end
+    place[(j + 1) % 3] = start
+    place[(j + 2) % 3] = 0.0
+    return int(beyond >> 2)

@@ -1,0 +1,1 @@
+"""Tests of fine meshes that follow a coarse one."""

@@ -1,0 +1,193 @@
+"""A fine mesh that follows a coarse one: rest, rigid motion, continuity, filters and errors."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from risorius import refine
+from tests import meshes
+
+Points = npt.NDArray[np.float64]
+
+
+def around(mesh: meshes.Mesh, count: int = 300, away: float = 0.2) -> Points:
+    """Points near the triangles of a mesh, on both sides and beyond borders."""
+    rng = np.random.default_rng(5)
+    corners = mesh.vertices[mesh.faces[rng.integers(len(mesh.faces), size=count)]]
+    shares = rng.dirichlet([1.0, 1.0, 1.0], size=count)
+    return np.einsum("nc,nci->ni", shares, corners) + away * rng.normal(size=(count, 3))
+
+
+def turned(points: Points) -> Points:
+    """A rigid motion: half a turn and more about a slanted axis, and away."""
+    axis = np.array([1.0, 2.0, -0.5]) / np.sqrt(5.25)
+    angle = 3.3
+    upright = np.outer(points @ axis, axis)
+    aside = points - upright
+    moved = upright + np.cos(angle) * aside + np.sin(angle) * np.cross(axis, aside)
+    return np.asarray(moved + np.array([3.0, -2.0, 5.0]))
+
+
+SURFACES = {
+    "ball": meshes.ball(),
+    "fan": meshes.fan(),
+    "tetrahedron": meshes.tetrahedron(),
+    "three sheets on an edge": meshes.Mesh(
+        np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, -1, 0.3], [0.2, 0.1, 1]], dtype=float),
+        np.array([[0, 1, 2], [1, 0, 3], [0, 1, 4]], dtype=np.int32),
+    ),
+    "both sides of a triangle": meshes.Mesh(
+        meshes.triangle().vertices, np.array([[0, 1, 2], [0, 2, 1]], dtype=np.int32)
+    ),
+}
+
+
+@pytest.mark.parametrize("mesh", SURFACES.values(), ids=SURFACES)
+def test_rest_is_rest_and_rigid_motion_is_exact(mesh: meshes.Mesh) -> None:
+    """A fine mesh is where it was when the coarse one is, and goes along with it as one piece."""
+    fine = around(mesh)
+    embedding = refine.Embedding(mesh.faces, mesh.vertices, fine, normals=fine)
+    rest = embedding.evaluate(mesh.vertices)
+    assert rest.normals is not None
+    np.testing.assert_allclose(rest.positions, fine, atol=1e-12)
+    unit = fine / np.linalg.norm(fine, axis=1, keepdims=True)
+    np.testing.assert_allclose(rest.normals, unit, atol=1e-6)
+    moved = embedding.evaluate(turned(mesh.vertices))
+    assert moved.normals is not None
+    np.testing.assert_allclose(moved.positions, turned(fine), atol=1e-10)
+    origin = turned(np.zeros((1, 3)))
+    np.testing.assert_allclose(moved.normals, turned(unit) - origin, atol=1e-6)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_any_soup_is_carried(seed: int) -> None:
+    """Soups of any triangles, degenerate ones too: rest is rest, motions are rigid, all finite."""
+    rng = np.random.default_rng(seed)
+    vertices = rng.normal(size=(8, 3))
+    faces = rng.integers(6, size=(rng.integers(2, 12), 3)).astype(np.int32)
+    faces[0] = 0, 1, 2
+    fine = rng.normal(size=(40, 3))
+    embedding = refine.Embedding(faces, vertices, fine)
+    np.testing.assert_allclose(embedding.evaluate(vertices).positions, fine, atol=1e-9)
+    np.testing.assert_allclose(
+        embedding.evaluate(turned(vertices)).positions, turned(fine), atol=1e-7
+    )
+    assert np.isfinite(embedding.evaluate(rng.normal(size=(8, 3))).positions).all()
+    assert np.isfinite(embedding.evaluate(np.zeros((8, 3))).positions).all()
+
+
+def test_continuous_over_coarse_edges() -> None:
+    """Fine vertices that are neighbours stay neighbours, on whichever triangle they are."""
+    mesh = meshes.ball(2)
+    angle = np.linspace(0.0, 2.0 * np.pi, 20_001)
+    ring = np.stack([np.cos(angle), np.sin(angle), 0.3 * np.cos(3 * angle)], axis=1)
+    ring *= 1.03 / np.linalg.norm(ring, axis=1, keepdims=True)
+    embedding = refine.Embedding(mesh.faces, mesh.vertices, ring)
+    assert len(np.unique(embedding.triangles)) > 20
+    rng = np.random.default_rng(1)
+    moved = mesh.vertices * [1.5, 0.7, 1.0] + 0.05 * rng.normal(size=mesh.vertices.shape)
+    steps = np.linalg.norm(np.diff(embedding.evaluate(moved).positions, axis=0), axis=1)
+    assert steps.max() < 4.0 * np.linalg.norm(np.diff(ring, axis=0), axis=1).max()
+
+
+def two_lips() -> tuple[meshes.Mesh, Points, Points]:
+    """Two sheets that nearly touch and look at each other; fine points on the wrong side of both.
+
+    The points lie nearer to the other sheet than to their own, and look as their own does.
+    """
+    sheet = meshes.fan()
+    upper = sheet.vertices + np.array([0.0, 0.0, 0.01])
+    faces = np.concatenate([sheet.faces, sheet.faces[:, ::-1] + len(upper)])
+    both = meshes.Mesh(np.concatenate([sheet.vertices, upper]), faces)
+    fine = np.array([[0.3, 0.1, 0.007], [0.2, 0.2, 0.003]])
+    return both, fine, np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
+
+
+def test_normals_and_labels_keep_lips_apart() -> None:
+    """Normals, or labels, bind to the own surface where another one is nearer."""
+    lips, fine, normals = two_lips()
+    is_upper = np.arange(len(lips.faces)) >= len(lips.faces) // 2
+    nearest = refine.Embedding(lips.faces, lips.vertices, fine)
+    assert is_upper[nearest.triangles].tolist() == [True, False]
+    looking = refine.Embedding(lips.faces, lips.vertices, fine, normals=normals)
+    assert is_upper[looking.triangles].tolist() == [False, True]
+    named = refine.Embedding(
+        lips.faces, lips.vertices, fine, labels=[7, 9], face_labels=np.where(is_upper, 9, 7)
+    )
+    assert is_upper[named.triangles].tolist() == [False, True]
+
+
+def test_unused_points_and_triangles_without_area_do_no_harm() -> None:
+    """A point that no triangle uses need not be a number; nothing is bound to a sliver."""
+    mesh = meshes.fan()
+    vertices = np.vstack([mesh.vertices, [[np.nan, 0.0, 0.0]], [[2.0, 0.0, 0.0]]])
+    faces = np.vstack([mesh.faces, [[0, 1, 8], [0, 1, 1]]]).astype(np.int32)
+    fine = np.array([[1.5, 0.0, 0.1], [0.5, 0.0, 0.1]])
+    embedding = refine.Embedding(faces, vertices, fine)
+    assert (embedding.triangles < len(mesh.faces)).all()
+    vertices[7] = np.inf
+    np.testing.assert_allclose(embedding.evaluate(vertices).positions, fine, atol=1e-12)
+
+
+def test_offsets_keep_their_length_or_are_stretched() -> None:
+    """A larger surface carries offsets as they are, or, where that is wished, as large as it is."""
+    mesh = meshes.ball(2)
+    fine = 1.3 * mesh.vertices
+    larger = 2.0 * mesh.vertices
+    as_they_are = refine.Embedding(mesh.faces, mesh.vertices, fine)
+    found = np.linalg.norm(as_they_are.evaluate(larger).positions, axis=1)
+    np.testing.assert_allclose(found, 2.3, atol=2e-3)
+    stretched = refine.Embedding(mesh.faces, mesh.vertices, fine, stretch_offsets=True)
+    np.testing.assert_allclose(stretched.evaluate(larger).positions, 2.0 * fine, atol=1e-9)
+
+
+def test_inputs_stay_and_values_are_carried() -> None:
+    """Not a byte of what is given changes; values at coarse vertices are linear in triangles."""
+    mesh = meshes.ball(1)
+    fine = around(mesh)
+    before = [each.tobytes() for each in (mesh.vertices, mesh.faces, fine)]
+    embedding = refine.Embedding(mesh.faces, mesh.vertices, fine, normals=fine)
+    embedding.evaluate(mesh.vertices)
+    assert [each.tobytes() for each in (mesh.vertices, mesh.faces, fine)] == before
+    np.testing.assert_allclose(embedding.carry(np.ones(len(mesh.vertices))), 1.0)
+    assert embedding.carry(mesh.vertices).shape == fine.shape
+    for table in (embedding.triangles, embedding.weights, embedding.offsets):
+        assert not table.flags.writeable
+
+
+BAD: dict[str, tuple[dict[str, Any], str]] = {
+    "no points": ({"points": [[0.0, 0.0]]}, "points must be numbers of shape (N, 3)"),
+    "not finite": ({"points": [[0.0, np.nan, 0.0]]}, "points must be finite"),
+    "few normals": ({"normals": np.ones((3, 3))}, "normals must be numbers of shape (2, 3)"),
+    "one label": ({"labels": [1, 1]}, "labels and face_labels go together"),
+    "few labels": ({"labels": [1], "face_labels": [1]}, "labels must be integers of shape (2,)"),
+    "unknown label": ({"labels": [1, 2], "face_labels": [1]}, "faces must have a triangle with la"),
+    "no triangle": ({"faces": np.zeros((0, 3), dtype=int)}, "faces must have a triangle with an"),
+    "no area": ({"faces": [[0, 1, 1]]}, "faces must have a triangle with an area"),
+    "an angle": ({"crease_angle": 200}, "crease_angle must be None or"),
+}
+
+
+@pytest.mark.parametrize(("changes", "message"), BAD.values(), ids=BAD)
+def test_errors_say_what_is_allowed(changes: dict[str, Any], message: str) -> None:
+    """Bad input is one clear message, and nothing is bound."""
+    mesh = meshes.triangle()
+    good = {"faces": mesh.faces, "rest_positions": mesh.vertices, "points": np.zeros((2, 3))}
+    with pytest.raises(ValueError, match="^" + message.replace("(", r"\(").replace(")", r"\)")):
+        refine.Embedding(**{**good, **changes})
+
+
+def test_a_bad_frame_is_refused() -> None:
+    """Another number of vertices, and positions that are not finite, are refused."""
+    mesh = meshes.triangle()
+    embedding = refine.Embedding(mesh.faces, mesh.vertices, np.zeros((2, 3)))
+    with pytest.raises(ValueError, match="positions must be floats of shape"):
+        embedding.evaluate(mesh.vertices[:2])
+    with pytest.raises(ValueError, match="positions must be finite"):
+        embedding.evaluate(mesh.vertices * np.nan)
+    with pytest.raises(ValueError, match="values must be one for each of 3"):
+        embedding.carry(np.ones(2))
