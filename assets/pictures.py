@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import io
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -51,7 +51,7 @@ def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple
     """
     by_material: dict[str, MaterialPicture] = {}
     missing = []
-    for name in _libraries(surface.libraries, folder):
+    for name in libraries_of(surface.libraries, folder):
         library = beside(folder, name)
         if library.exists():
             by_material.update(pictures_of(read_file(library, kind="material", most=1)))
@@ -83,12 +83,16 @@ def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple
 def _picture_of(
     material: str, by_material: Mapping[str, MaterialPicture]
 ) -> MaterialPicture | None:
-    """The picture of a material; behind its name may stand a remark."""
-    name = material if material in by_material else material.rpartition(" #")[0].rstrip()
-    return by_material.get(name)
+    """The picture of a material."""
+    return by_material.get(material_key(material, by_material))
 
 
-def _libraries(lines: Sequence[str], folder: Path) -> list[str]:
+def material_key(material: str, known: Container[str]) -> str:
+    """The name under which a material is known; behind its name may stand a remark."""
+    return material if material in known else material.rpartition(" #")[0].rstrip()
+
+
+def libraries_of(lines: Sequence[str], folder: Path) -> list[str]:
     """The libraries of `mtllib` lines: one name with blanks in it, or several names."""
     found = []
     for line in lines:

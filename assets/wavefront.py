@@ -14,7 +14,7 @@ import io
 import math
 import re
 from array import array
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -40,6 +40,7 @@ class ObjSurface:
 
     vertices: shape (V, 3), in the order of the file. faces: shape (F, 3); polygons become fans.
     uv: texture coordinates, shape (U, 2). face_uv: their numbers, -1 for none, shape (F, 3).
+    normals: as written, shape (N, 3). face_normals: their numbers, -1 for none, shape (F, 3).
     material: place in `materials` of each triangle, -1 for none, shape (F,).
     libraries: names of files that define materials.
     """
@@ -48,6 +49,8 @@ class ObjSurface:
     faces: npt.NDArray[np.int64]
     uv: npt.NDArray[np.float64]
     face_uv: npt.NDArray[np.int64]
+    normals: npt.NDArray[np.float64]
+    face_normals: npt.NDArray[np.int64]
     material: npt.NDArray[np.int64]
     materials: tuple[str, ...]
     libraries: tuple[str, ...]
@@ -60,11 +63,11 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
     """
     coordinates = array("d")
     places = array("d")
-    corners = array("q")
-    corner_places = array("q")
+    normals = array("d")
+    corners = array("q")  # vertex, texture coordinates and normal of each
     material = array("q")
-    materials = dict[str, int]()
-    libraries = list[str]()
+    materials: dict[str, int] = {}
+    libraries: list[str] = []
     current = -1
     excerpt_length = 30  # bytes of a faulty line in a message
     for number, line in enumerate(io.BytesIO(_joined(content)), start=1):
@@ -75,12 +78,15 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
                 coordinates.extend((float(x), float(y), float(z)))
             elif word == b"vt":
                 places.extend((float(fields[0]), float(fields[1]) if fields[1:] else 0.0))
+            elif word == b"vn":
+                x, y, z = fields[:3]
+                normals.extend((float(x), float(y), float(z)))
             elif word == b"f":
-                polygon = _polygon(fields, len(coordinates) // 3, len(places) // 2)
+                counts = (len(coordinates) // 3, len(places) // 2, len(normals) // 3)
+                polygon = _polygon(fields, counts)
                 for second, third in pairwise(polygon[1:]):
-                    for vertex, place in (polygon[0], second, third):
-                        corners.append(vertex)
-                        corner_places.append(place)
+                    for corner in (polygon[0], second, third):
+                        corners.extend(corner)
                     material.append(current)
             elif word == b"usemtl":  # names may hold blanks and number signs
                 current = materials.setdefault(_parted(line.decode())[1], len(materials))
@@ -92,38 +98,47 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
                 f"line {number}: '{shown}' cannot be used; right are 'v x y z', 'vt u v', and 'f' "
                 "with three or more vertex numbers, from 1 on, or from -1 back"
             ) from None
-        if max(len(coordinates), len(corners), len(places)) > 3 * most:
+        if max(len(coordinates), len(normals), len(corners) // 3, len(places)) > 3 * most:
             raise AssetError(
                 f"line {number}: more than {most} vertices or triangles; reduce it in a modelling "
                 "program"
             )
+    numbers = np.frombuffer(corners, np.int64).reshape(-1, 3, 3)
     return ObjSurface(
         np.frombuffer(coordinates, np.float64).reshape(-1, 3),
-        np.frombuffer(corners, np.int64).reshape(-1, 3),
+        np.ascontiguousarray(numbers[:, :, 0]),
         np.frombuffer(places, np.float64).reshape(-1, 2),
-        np.frombuffer(corner_places, np.int64).reshape(-1, 3),
+        np.ascontiguousarray(numbers[:, :, 1]),
+        np.frombuffer(normals, np.float64).reshape(-1, 3),
+        np.ascontiguousarray(numbers[:, :, 2]),
         np.frombuffer(material, np.int64),
         tuple(materials),
         tuple(libraries),
     )
 
 
-def _polygon(fields: list[bytes], vertices: int, places: int) -> list[tuple[int, int]]:
-    """Each corner's numbers of its vertex and, -1 for none, of its texture coordinates.
+def _polygon(fields: list[bytes], counts: tuple[int, int, int]) -> list[tuple[int, int, int]]:
+    """Each corner's numbers of its vertex and, -1 for none, of its texture coordinates and normal.
 
-    In the file they count from 1, or back from the last of so many. Raises ValueError for others.
+    counts: of these so far. In the file numbers count from 1, or back from the last of so many.
+    Raises ValueError for others.
     """
     if len(fields) < 3:
         raise ValueError
     polygon = []
     for field in fields:
-        vertex, place = (int(part or 0) for part in (*field.split(b"/"), b"")[:2])
-        if not vertex or vertex < -vertices:
+        written = [*field.split(b"/"), b"", b""][:3]
+        vertex, place, normal = (int(part or 0) for part in written)
+        if not vertex or vertex < -counts[0]:
             raise ValueError
-        vertex = vertex - 1 if vertex > 0 else vertices + vertex
-        place = place - 1 if place >= 0 else max(places + place, -1)
-        polygon.append((vertex, place))
+        vertex = vertex - 1 if vertex > 0 else counts[0] + vertex
+        polygon.append((vertex, _optional(place, counts[1]), _optional(normal, counts[2])))
     return polygon
+
+
+def _optional(number: int, count: int) -> int:
+    """A number of texture coordinates or of a normal, from 0 on; -1 for none."""
+    return number - 1 if number >= 0 else max(count + number, -1)
 
 
 @dataclass(frozen=True, order=True)
@@ -142,6 +157,33 @@ class Placing:
         """Texture coordinates (U, 2) of the file in this picture."""
         placed = uv * self.scale + self.offset
         return placed.clip(0.0, 1.0) if self.is_clamped else placed
+
+
+@dataclass(frozen=True)
+class MaterialLook:
+    """Numbers of a material: its colour in linear light, 0 to 1, and its opacity."""
+
+    colour: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    opacity: float = 1.0
+
+
+def looks_of(content: bytes) -> dict[str, MaterialLook]:
+    """The colours and opacities in a material library (MTL), by material; wrong numbers count 1."""
+    looks: dict[str, MaterialLook] = {}
+    material = ""
+    for line in _joined(content).decode().split("\n"):
+        word, rest = _parted(line)
+        numbers = [float(each) for each in rest.split() if _is_number(each)]
+        look = looks.get(material, MaterialLook())
+        if word == "newmtl":
+            material = rest
+            looks[material] = MaterialLook()
+        elif word == "Kd" and len(numbers) >= 3:
+            red, green, blue = (min(max(each, 0.0), 1.0) for each in numbers[:3])
+            looks[material] = replace(look, colour=(red, green, blue))
+        elif word == "d" and numbers:
+            looks[material] = replace(look, opacity=min(max(numbers[-1], 0.0), 1.0))
+    return looks
 
 
 @dataclass(frozen=True, order=True)

@@ -33,6 +33,7 @@ from .options import (
     played,
     with_playback,
 )
+from .rig import rig
 
 if TYPE_CHECKING:
     from risorius.assets.fitting import FittedHead
@@ -279,4 +280,4 @@ def doctor(offscreen: bool, quiet: bool) -> None:
     sys.exit(int(health))
 
 
-ALL = (capture, export, batch, dataset, view, replay, convert, send, demo, controls, doctor)
+ALL = (capture, export, rig, batch, dataset, view, replay, convert, send, demo, controls, doctor)

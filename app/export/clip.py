@@ -11,7 +11,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import refine
 from risorius.geometry.normals import vertex_normals
@@ -21,47 +20,9 @@ from ..motion import play, scene_of
 from ..refining.plug_ins import plug_ins_of, reported
 from ..refining.presets import Refinement
 from ..refining.refiners import refiner_for
+from ..rig.surface import Floats, Indices, Singles, Surface
 from ..scenes import FaceScene, Scene
 from ..script import Script
-
-Floats = npt.NDArray[np.float64]
-Singles = npt.NDArray[np.float32]
-Indices = npt.NDArray[np.int32]
-METRES = 0.001  # a millimetre; programs for animation take bare numbers for metres
-
-
-@dataclass(frozen=True)
-class Surface:
-    """One triangle mesh of a clip over all of its N frames; vertices and triangles never change.
-
-    name: unique within the clip: "skin", or that of the part.
-    rest: vertices where nothing moves, shape (V, 3), float64.
-    faces: counter-clockwise from the visible side, shape (F, 3), int32.
-    shapes: vertices in each frame, before `matrices`, shape (N, V, 3), float32; None: as at rest.
-    matrices: move the whole of it in each frame, shape (N, 4, 4), float64; None: not moved.
-    uv, face_uv: texture coordinates, shape (U, 2), and which of them each corner has, shape (F, 3).
-    colours: sRGB 0..1 of the vertices, shape (V, 3), float32; None where a texture has them.
-    shine: 0 dull, 1 wet.
-    """
-
-    name: str
-    rest: Floats
-    faces: Indices
-    shapes: Singles | None = None
-    matrices: Floats | None = None
-    uv: Singles | None = None
-    face_uv: Indices | None = None
-    colours: Singles | None = None
-    shine: float = 0.0
-
-    def at(self, frame: int) -> Floats:
-        """Where the vertices are in a frame, shape (V, 3)."""
-        points = self.rest if self.shapes is None else self.shapes[frame].astype(np.float64)
-        if self.matrices is None:
-            return points
-        matrix = self.matrices[frame]
-        moved: Floats = points @ matrix[:3, :3].T + matrix[:3, 3]
-        return moved
 
 
 @dataclass(frozen=True)

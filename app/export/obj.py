@@ -15,7 +15,8 @@ import numpy as np
 import numpy.typing as npt
 import PIL.Image
 
-from .clip import METRES, Clip, FrameSurface, Indices, frame_surfaces
+from ..rig.surface import METRES, Indices
+from .clip import Clip, FrameSurface, frame_surfaces
 from .formats import FRAME, Request
 
 

@@ -19,7 +19,8 @@ from ..recordings.conversion import lead_of
 from ..recordings.named_columns import OUTWARD
 from ..recordings.names import ARKIT
 from ..recordings.playback import LEAD
-from .clip import Clip, Floats
+from ..rig.surface import Floats
+from .clip import Clip
 from .formats import Request
 
 OTHER_ORDER = {  # its columns are in ARKit's order but for these

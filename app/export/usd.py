@@ -20,7 +20,8 @@ from risorius.geometry.colour import to_linear
 from risorius.geometry.normals import vertex_normals
 
 from ..errors import as_text, needed
-from .clip import METRES, Clip, Surface
+from ..rig.surface import METRES, Surface
+from .clip import Clip
 from .formats import Request
 
 Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils, Vt = (

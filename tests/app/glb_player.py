@@ -26,12 +26,38 @@ class Player:
     def values(self, number: int) -> Array:
         """The rows of an accessor."""
         accessor = self.file.accessors[number]
-        view = self.file.bufferViews[accessor.bufferView]
         width = WIDTHS[accessor.type]
         kind = COMPONENTS[accessor.componentType]
-        start = (view.byteOffset or 0) + (accessor.byteOffset or 0)
-        rows = np.frombuffer(self.blob, kind, accessor.count * width, start)
-        return rows.reshape(accessor.count, width) if width > 1 else rows
+        shape = (accessor.count, width) if width > 1 else (accessor.count,)
+        rows = np.zeros(shape, kind)
+        if accessor.bufferView is not None:
+            rows = self._rows(accessor.bufferView, accessor.byteOffset, kind, shape)
+        if accessor.sparse is not None:
+            sparse = accessor.sparse
+            count = sparse.count
+            numbers = COMPONENTS[sparse.indices.componentType]
+            view = sparse.indices.bufferView
+            where = self._rows(view, sparse.indices.byteOffset, numbers, (count,))
+            assert (np.diff(where.astype(int)) > 0).all()
+            view = sparse.values.bufferView
+            rows = rows.copy()
+            rows[where] = self._rows(view, sparse.values.byteOffset, kind, (count, *shape[1:]))
+        return rows
+
+    def _rows(self, view: int, offset: int | None, kind: Any, shape: tuple[int, ...]) -> Array:
+        """Numbers in a part of the buffer."""
+        start = (self.file.bufferViews[view].byteOffset or 0) + (offset or 0)
+        return np.frombuffer(self.blob, kind, int(np.prod(shape)), start).reshape(shape)
+
+    def shapes(self, name: str, attribute: str = "POSITION") -> dict[str, Array]:
+        """The named targets of a node's mesh."""
+        mesh = self.file.meshes[self.file.nodes[self.numbers[name]].mesh]
+        targets = mesh.primitives[0].targets or []
+        names = (mesh.extras or {}).get("targetNames", [])
+        return {
+            each: self.values(target[attribute])
+            for each, target in zip(names, targets, strict=True)
+        }
 
     @property
     def times(self) -> Array:
@@ -52,9 +78,10 @@ class Player:
         return None
 
     def primitive(self, name: str) -> Any:
-        """The only primitive of a node's mesh."""
+        """The first primitive of a node's mesh; all of them share its vertices."""
         mesh = self.file.meshes[self.file.nodes[self.numbers[name]].mesh]
-        assert len(mesh.primitives) == 1
+        first = mesh.primitives[0].attributes.POSITION
+        assert {each.attributes.POSITION for each in mesh.primitives} == {first}
         return mesh.primitives[0]
 
     def attribute(self, name: str, attribute: str) -> Array:

@@ -27,24 +27,39 @@ ALIGNMENT = 4  # [bytes] of chunks, and of the arrays in them
 
 
 class Glb:
-    """The content of one file, in the order in which it is added."""
+    """The content of one file, in the order in which it is added.
 
-    def __init__(self, times: npt.NDArray[np.float64]) -> None:
-        """Times of the keyframes [s], shape (N,); between them values change evenly."""
-        self._times = times
+    parts: the document of a file that is there already, which is added to, and its binary chunk;
+    None for a new one. times: of the keyframes [s], shape (N,); values change evenly between them.
+    """
+
+    def __init__(
+        self,
+        times: npt.NDArray[np.float64] | None = None,
+        parts: dict[str, Any] | None = None,
+        numbers: bytes = b"",
+    ) -> None:
+        self._times = np.zeros(0) if times is None else times
         self._input: int | None = None
         self._tracks: dict[str, list[dict[str, Any]]] = {"channels": [], "samplers": []}
-        self._parts: dict[str, Any] = {
+        self.parts: dict[str, Any] = parts or {
             "asset": {"version": "2.0", "generator": f"Risorius {risorius.__version__}"},
             "scene": 0,
         }
-        self._numbers = bytearray()
+        self._numbers = bytearray(numbers)
+        self._zeros: dict[int, int] = {}
 
     def add(self, kind: str, item: dict[str, Any]) -> int:
         """Add a node, mesh, material, ... to the list called `kind`; return its number there."""
-        items = self._parts.setdefault(kind, [])
+        items = self.parts.setdefault(kind, [])
         items.append(item)
         return len(items) - 1
+
+    def use(self, extension: str) -> None:
+        """Name an extension that the file uses."""
+        used = self.parts.setdefault("extensionsUsed", [])
+        if extension not in used:
+            used.append(extension)
 
     def accessor(
         self, values: npt.NDArray[Any], target: int | None = None, *, is_bounded: bool = False
@@ -64,6 +79,46 @@ class Glb:
             accessor["max"] = np.atleast_1d(values.max(axis=0)).tolist()
         return self.add("accessors", accessor)
 
+    def sparse(self, vectors: npt.NDArray[np.float32]) -> int:
+        """Add vectors (V, 3) of which most are 0, so that the others alone take room."""
+        count = len(vectors)
+        places = np.flatnonzero(vectors.any(axis=1))
+        if not len(places):
+            return self._nothing(count)
+        if len(places) > 0.8 * count:  # numbers of places would take more room than they save
+            return self.accessor(vectors, ARRAY_BUFFER, is_bounded=True)
+        short = np.uint16 if count <= 65535 else np.uint32
+        numbers = places.astype(short)
+        indices = {
+            "bufferView": self._view(numbers.tobytes(), None),
+            "componentType": COMPONENT_TYPES[numbers.dtype.name],
+        }
+        values = {"bufferView": self._view(np.ascontiguousarray(vectors[places]).tobytes(), None)}
+        accessor = {
+            "componentType": COMPONENT_TYPES["float32"],
+            "count": count,
+            "type": "VEC3",
+            "min": vectors.min(axis=0).tolist(),
+            "max": vectors.max(axis=0).tolist(),
+            "sparse": {"count": len(places), "indices": indices, "values": values},
+        }
+        return self.add("accessors", accessor)
+
+    def _nothing(self, count: int) -> int:
+        """An array of so many vectors that are 0, the same for all that ask for it."""
+        if count not in self._zeros:
+            self._zeros[count] = self.add(
+                "accessors",
+                {
+                    "componentType": COMPONENT_TYPES["float32"],
+                    "count": count,
+                    "type": "VEC3",
+                    "min": [0.0, 0.0, 0.0],
+                    "max": [0.0, 0.0, 0.0],
+                },
+            )
+        return self._zeros[count]
+
     def texture(self, image: npt.NDArray[np.uint8], kind: str = "jpeg") -> dict[str, int]:
         """Add a picture (H, W) or (H, W, 3), top row first, as a texture.
 
@@ -74,9 +129,12 @@ class Glb:
         file = io.BytesIO()
         # Quality by eye: no blocks in skin, a sixth of the PNG.
         PIL.Image.fromarray(image).save(file, kind, quality=92, subsampling=0)
-        view = self._view(file.getvalue(), None)
-        source = self.add("images", {"bufferView": view, "mimeType": f"image/{kind}"})
-        return {"index": self.add("textures", {"source": source})}
+        return {"index": self.add("textures", {"source": self.image(file.getvalue(), kind)})}
+
+    def image(self, content: bytes, kind: str) -> int:
+        """Add the content of a picture's file, "png" or "jpeg", as it is; return its number."""
+        view = self._view(content, None)
+        return self.add("images", {"bufferView": view, "mimeType": f"image/{kind}"})
 
     def animate(self, node: int, path: str, values: npt.NDArray[np.float64]) -> None:
         """Add the "translation", "rotation" or "weights" of a node at each time, first axis N."""
@@ -90,12 +148,17 @@ class Glb:
         self._tracks["channels"].append(channel)
 
     def to_bytes(self, title: str, roots: Sequence[int]) -> bytes:
-        """The whole file; title: of its motion. roots: nodes that hang on no other."""
+        """The whole file; title: of its motion. roots: nodes, added here, that hang on no other."""
         if self._input is not None:
             self.add("animations", {"name": title, **self._tracks})
-        self.add("scenes", {"nodes": roots})
+        if "scenes" not in self.parts:
+            self.add("scenes", {"nodes": []})
+        scene = self.parts["scenes"][self.parts.get("scene", 0)]
+        if roots:
+            scene["nodes"] = [*scene.get("nodes", []), *roots]
         numbers = _padded(bytes(self._numbers), b"\0")
-        parts = {**self._parts, "buffers": [{"byteLength": len(numbers)}]}
+        first = self.parts.get("buffers", [{}])[0]
+        parts = {**self.parts, "buffers": [{**first, "byteLength": len(numbers)}]}
         text = json.dumps(parts, separators=(",", ":"), allow_nan=False).encode()
         chunks = ((b"JSON", _padded(text, b" ")), (b"BIN\0", numbers))
         body = b"".join(struct.pack("<I4s", len(data), kind) + data for kind, data in chunks)

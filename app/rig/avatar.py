@@ -1,0 +1,159 @@
+"""`risorius rig`: a head with named shapes, from the simulation to a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from risorius.assets.fitting import FittedHead
+from risorius.assets.painted import PaintedMesh, read_painted
+
+from ..errors import UserError
+from ..scenes import FaceScene, build_scene, own_head
+from .bodies import Body, Shaped, Skin, bodies_of_parts, moving, poses_of
+from .file_body import FileBody, is_exact, merged_vertices, with_own_tongue
+from .linearity import corrected as corrected_shapes
+from .linearity import corrective_poses, table, worth_correcting
+from .pieces import FilePiece, corrected, described, find_pieces
+from .poses import shape_names
+
+GLTF = (".glb", ".gltf")
+
+
+@dataclass(frozen=True)
+class RigRequest:
+    """Options of a rig.
+
+    kinds: of shapes, as in `poses.KINDS`. eyes: "nodes", "targets", or None as suits the file.
+    corrections: of the roles of pieces. adds_parts: built-in eyes, teeth and tongue are added where
+    the file has none. correctives: shapes of pairs, at most. progress: a bar is shown.
+    """
+
+    kinds: tuple[str, ...] = ("arkit",)
+    eyes: str | None = None
+    corrections: tuple[str, ...] = ()
+    adds_parts: bool = False
+    correctives: int = 0
+    progress: bool = True
+
+
+@dataclass(frozen=True)
+class FileHead:
+    """A head of a file: what is written again, and what moves it."""
+
+    painted: PaintedMesh
+    head: FittedHead
+    body: FileBody
+    pieces: tuple[FilePiece, ...]
+
+
+@dataclass(frozen=True)
+class Avatar:
+    """A head with its named shapes.
+
+    file: of a file; None: the built-in head or a person. shapes: the file's body or the skin first.
+    names: of the shapes, those of `pairs` last.
+    """
+
+    scene: FaceScene
+    file: FileHead | None
+    shapes: tuple[Shaped, ...]
+    names: tuple[str, ...]
+    pairs: tuple[tuple[str, str], ...]
+    eyes_are_nodes: bool
+
+    @property
+    def extras(self) -> dict[str, Any]:
+        """The rule of the correctives, for the extras of a file."""
+        rules = [
+            {"name": f"{first}_{second}", "product": [first, second]}
+            for first, second in self.pairs
+        ]
+        return {"correctives": rules} if rules else {}
+
+
+Say = Callable[[str], None]
+
+
+def avatar_of(
+    head: FittedHead | None, request: RigRequest, say: Say, *, file: FileHead | None = None
+) -> Avatar:
+    """The avatar of a head, None for the built-in one; lines on it go to `say`."""
+    scene = build_scene("face", head)
+    assert isinstance(scene, FaceScene)
+    eyes_are_nodes = request.eyes != "targets"
+    bodies: list[Body] = []
+    if file is None:
+        bodies.append(Skin(np.array(scene.rest_positions), scene.faces))
+        bodies += bodies_of_parts(scene, eyes_are_nodes=eyes_are_nodes)
+    else:
+        bodies.append(file.body)
+        if request.adds_parts:
+            missing = _missing(file)
+            bodies += bodies_of_parts(
+                scene, eyes_are_nodes=eyes_are_nodes, wanted=lambda part: part.name in missing
+            )
+    names = shape_names(scene, request.kinds)
+    poses = dict(poses_of(scene, names, progress=request.progress))
+    for difference in table(scene, poses):
+        say(f"sum of shapes off the simulation: {difference}")
+    pairs: list[tuple[str, str]] = []
+    if request.correctives:
+        pairs = worth_correcting(scene, poses, request.correctives, progress=request.progress)
+        poses.update(corrective_poses(scene, pairs))
+        names = tuple(poses)
+    shapes = tuple(_without_sums(each, pairs, names) for each in moving(bodies, poses))
+    return Avatar(scene, file, shapes, names, tuple(pairs), eyes_are_nodes)
+
+
+def _without_sums(shaped: Shaped, pairs: list[tuple[str, str]], names: tuple[str, ...]) -> Shaped:
+    return corrected_shapes(shaped, pairs, names) if pairs else shaped
+
+
+def read_file_head(path: Path, landmarks: Path, request: RigRequest, say: Say) -> FileHead:
+    """A head of a file that is no glTF, fitted, and its pieces.
+
+    Raises AssetError for files that cannot be used, and UserError for wrong options.
+    """
+    painted = read_painted(path)
+    head = own_head(path, landmarks)
+    mesh = painted.mesh
+    if not is_exact(mesh, head):
+        raise UserError(
+            f"{path}: has too many triangles to be simulated as it is; reduce it to "
+            "50000 in a modelling program"
+        )
+    rest = head.to_millimetres.points(mesh.vertices)
+    same = merged_vertices(mesh, head)
+    faces = same[mesh.faces].astype(np.int32)
+    pieces = corrected(find_pieces(rest, faces, head.file_vertices, head), request.corrections)
+    tongues = [piece.vertices for piece in pieces if piece.role == "tongue"]
+    if tongues:
+        parts = with_own_tongue(head, rest, np.concatenate(tongues), faces)
+        head = replace(head, parts=parts)
+    body = FileBody(mesh, head, pieces, eyes_are_nodes=request.eyes != "targets")
+    say(f"skin: {len(head.vertices)} of {len(rest)} vertices, simulated")
+    if len(body.in_bag):
+        say(f"skin behind the lips: {len(body.in_bag)} vertices, stretches between both jaws")
+    for line in described(pieces):
+        say(line)
+    return FileHead(painted, head, body, tuple(pieces))
+
+
+def _missing(file: FileHead) -> set[str]:
+    """The names of built-in parts that a file has nothing like."""
+    roles = {piece.role for piece in file.pieces}
+    found: set[str] = set()
+    if not roles & {"eye_left", "eye_right"}:
+        found |= {"eyeball_left", "eyeball_right", "eye_corners"}
+    if not roles & {"upper_teeth", "lower_teeth"}:
+        found |= {"teeth_upper", "teeth_lower", "gums_upper", "gums_lower"}
+    if "tongue" not in roles:
+        found.add("tongue")
+    if "mouth" not in roles and not len(file.body.in_bag):
+        found |= {"oral_cavity_upper", "oral_cavity_lower"}
+    return found

@@ -1,0 +1,220 @@
+"""The mesh of a file as one body: every vertex follows the simulated skin, a bone, or stands still.
+
+The skin is simulated on the file's own vertices, where it has not too many, so these have exactly
+the places of the simulation. A bag behind the lips, which is not simulated, is stretched between
+their edge and both jaws: it is harmonic, as a soap film.
+
+Source: for the bag, the Laplace equation with uniform weights on the mesh's edges.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from risorius.assets import Part
+from risorius.assets.fitting import FittedHead
+from risorius.assets.fitting.mesh_validation import pieces_of, with_seams_joined
+from risorius.assets.meshes import Mesh
+from risorius.geometry.closest import closest_points
+from risorius.geometry.normals import vertex_normals
+
+from ..scenes.surface_attachment import SurfaceAttachment
+from .bodies import EYES
+from .pieces import FilePiece, sphere_of
+from .poses import CRANIUM, Pose
+from .surface import Floats, Indices
+
+Numbers = npt.NDArray[np.integer[Any]]
+EXACT = 1e-6  # [mm] between a simulated vertex and that of the file
+LIP_HEIGHT = (
+    10.0  # [mm] of the mouth in which what lies between the jaws goes from one to the other
+)
+ROOTED = 1.5  # [mm] that roots of lashes may be farther from the skin than the nearest one
+TONGUE = "tongue"  # name of a part
+TONGUE_COLOUR = (0.75, 0.42, 0.4)  # sRGB; a tongue of the file has its own
+
+
+class FileBody:
+    """All vertices of a file [mm], in its order.
+
+    pivots: where the eyeballs turn, name of the bone -> (3,) [mm]. in_bag: which vertices lie
+    behind the lips and are not simulated, shape (n,).
+    """
+
+    name = "head"
+
+    def __init__(
+        self,
+        mesh: Mesh,
+        head: FittedHead,
+        pieces: Sequence[FilePiece],
+        *,
+        eyes_are_nodes: bool,
+    ) -> None:
+        self.rest: Floats = head.to_millimetres.points(mesh.vertices)
+        same = merged_vertices(mesh, head)
+        self.faces: Indices = same[mesh.faces].astype(np.int32)
+        self._place = places_in_skin(head, same)
+        is_simulated = np.zeros(len(same), np.bool_)
+        is_simulated[head.file_vertices] = True
+        self._same = np.where(is_simulated, np.arange(len(same)), same)
+        self._pieces = {
+            role: np.concatenate([piece.vertices for piece in pieces if piece.role == role])
+            for role in {piece.role for piece in pieces}
+        }
+        self._eyes_are_nodes = eyes_are_nodes
+        self.pivots = {
+            f"eye_{eye.name}": sphere_of(
+                self.rest[self._pieces[f"eye_{eye.name}"]], eye.centre, eye.radius
+            )[0]
+            for eye in head.eyes
+            if f"eye_{eye.name}" in self._pieces
+        }
+        piece = pieces_of(self.faces, len(self.rest))
+        own = piece == piece[same[head.file_vertices[head.landmarks[0]]]]
+        own &= np.isin(np.arange(len(own)), self.faces)
+        self.in_bag = np.flatnonzero(own & (self._place < 0))
+        lips = head.vertices[head.landmarks[60:68]].mean(axis=0)
+        self._lip_height = float(lips[1])
+        self._bag = _Bag(self.in_bag, self.faces, self.rest) if len(self.in_bag) else None
+        self._lashes = self._attached(head) if "on_skin" in self._pieces else None
+
+    def at(self, pose: Pose) -> Floats:
+        """Where the vertices are in a pose, shape (V, 3)."""
+        moved = self.rest.copy()
+        is_skin = self._place >= 0
+        moved[is_skin] = pose.skin[self._place[is_skin]]
+        mandible = pose.matrices["mandible"]
+        for role, numbers in self._pieces.items():
+            if role in EYES and not self._eyes_are_nodes:
+                pivot = self.pivots[role]
+                turned = (self.rest[numbers] - pivot) @ pose.matrices[role][:3, :3].T
+                moved[numbers] = pivot + turned
+            elif role == "lower_teeth":
+                moved[numbers] = _by(mandible, self.rest[numbers])
+            elif role == "mouth":
+                moved[numbers] = self._between_jaws(numbers, mandible)
+            elif role == TONGUE:
+                moved[numbers] = _by(mandible, pose.parts[TONGUE].astype(np.float64))
+        if self._lashes is not None:
+            self._lashes.follow(pose.skin, pose.matrices[CRANIUM])
+            moved[self._pieces["on_skin"]] = self._lashes.vertices
+        if self._bag is not None:
+            deep = self._bag.deep
+            moved[deep] = self._between_jaws(deep, mandible)
+            self._bag.stretch(moved, self.rest)
+        spread: Floats = moved[self._same]
+        return spread
+
+    def normals_at(self, points: Floats) -> Floats:
+        """Unit normals where the vertices are at `points` (V, 3)."""
+        normals: Floats = vertex_normals(points, self.faces)[self._same]
+        return normals
+
+    def _between_jaws(self, numbers: Numbers, mandible: Floats) -> Floats:
+        """Where vertices are that go with the jaw the more, the lower they lie in the mouth."""
+        points = self.rest[numbers]
+        share = np.clip((self._lip_height - points[:, 1]) / LIP_HEIGHT + 0.5, 0.0, 1.0)
+        moved: Floats = points + share[:, None] * (_by(mandible, points) - points)
+        return moved
+
+    def _attached(self, head: FittedHead) -> SurfaceAttachment:
+        """Lashes and brows on the skin: each vertex turns with the nearest root of its piece."""
+        numbers = self._pieces["on_skin"]
+        points = self.rest[numbers]
+        distance = closest_points(points, head.vertices, head.faces).distances
+        piece = pieces_of(self.faces, len(self.rest))[numbers]
+        roots = np.zeros(len(numbers), np.int32)
+        for each in np.unique(piece):
+            members = np.flatnonzero(piece == each)
+            near = members[distance[members] < distance[members].min() + ROOTED]
+            roots[members] = near[scipy.spatial.cKDTree(points[near]).query(points[members])[1]]
+        place = np.full(len(self.rest), -1, np.int32)
+        place[numbers] = np.arange(len(numbers))
+        faces = place[self.faces]
+        part = _part("on_skin", points, faces[(faces >= 0).all(axis=1)], CRANIUM, roots)
+        return SurfaceAttachment(part, head.vertices, head.faces)
+
+
+class _Bag:
+    """Skin that is not simulated, behind the lips: its deep half goes with the jaws."""
+
+    def __init__(self, numbers: Numbers, faces: Indices, rest: Floats) -> None:
+        depth = rest[numbers, 2]
+        is_deep = depth < np.median(depth)
+        self.deep = numbers[is_deep]
+        self._free = numbers[~is_deep]
+        sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+        count = len(rest)
+        links = scipy.sparse.coo_array((np.ones(len(sides)), sides.T), (count, count)).tocsr()
+        links = (links + links.T).astype(bool).astype(np.float64)
+        degree = scipy.sparse.diags_array(np.asarray(links.sum(axis=1)).ravel())
+        laplacian = (degree - links).tocsr()[self._free]
+        self._others = np.setdiff1d(np.arange(count), self._free)
+        self._solver = None
+        if len(self._free):
+            self._to_others = laplacian[:, self._others]
+            self._solver = scipy.sparse.linalg.splu(laplacian[:, self._free].tocsc())
+
+    def stretch(self, moved: Floats, rest: Floats) -> None:
+        """Write where the other half is, between all that is in its place in `moved` (V, 3)."""
+        if self._solver is not None:
+            ways = (moved - rest)[self._others]
+            moved[self._free] = rest[self._free] - self._solver.solve(self._to_others @ ways)
+
+
+def merged_vertices(mesh: Mesh, head: FittedHead) -> Numbers:
+    """For each vertex of a file the one that stands for all in its place, shape (V,)."""
+    same = np.arange(len(mesh.vertices)) if mesh.same is None else np.array(mesh.same, np.int64)
+    landmarks = head.file_vertices[head.landmarks]
+    joined, _ = with_seams_joined(mesh.vertices, mesh.faces, landmarks)
+    first = np.arange(len(same))
+    first[mesh.faces] = joined
+    return first[same]
+
+
+def places_in_skin(head: FittedHead, same: Numbers) -> Numbers:
+    """The place of each vertex of a file among those of the skin, -1 for others, shape (V,)."""
+    place = np.full(len(same), -1, np.int64)
+    place[head.file_vertices] = np.arange(len(head.file_vertices))
+    return np.where(place >= 0, place, place[same])
+
+
+def is_exact(mesh: Mesh, head: FittedHead) -> bool:
+    """Whether the skin is simulated on the file's own vertices."""
+    points = head.to_millimetres.points(mesh.vertices[head.file_vertices])
+    return bool(np.abs(points - head.vertices).max() < EXACT)
+
+
+def with_own_tongue(
+    head: FittedHead, rest: Floats, numbers: Numbers, faces: Indices
+) -> tuple[Part, ...]:
+    """The parts of a head, its tongue that of the file: so it is bent as the built-in one is.
+
+    rest: all vertices of the file [mm]. numbers: those of the tongue. faces: of the file.
+    """
+    place = np.full(len(rest), -1, np.int32)
+    place[numbers] = np.arange(len(numbers))
+    own = place[faces]
+    tongue = _part(TONGUE, rest[numbers], own[(own >= 0).all(axis=1)], "mandible", None)
+    return tuple(tongue if part.name == TONGUE else part for part in head.parts)
+
+
+def _part(
+    name: str, points: Floats, faces: Indices, bone: str, roots: npt.NDArray[np.int32] | None
+) -> Part:
+    """Vertices of the file as a part."""
+    colours = np.tile(np.array(TONGUE_COLOUR, np.float32), (len(points), 1))
+    normals = vertex_normals(points, faces).astype(np.float32)
+    return Part(name, points.astype(np.float32), normals, faces, colours, bone, 0.5, roots)
+
+
+def _by(matrix: Floats, points: Floats) -> Floats:
+    """Points (n, 3) moved by a matrix (4, 4)."""
+    moved: Floats = points @ matrix[:3, :3].T + matrix[:3, 3]
+    return moved

@@ -1,0 +1,260 @@
+"""A mesh file that is no glTF, OBJ or PLY say, as a glTF file: its vertices in their order.
+
+A vertex with several texture coordinates or normals is several in glTF: the first keeps its number,
+the others follow behind the last. Coordinates keep the file's numbers; the root node brings them to
+metres, y up. Polygons are the triangles that they were read as.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.assets.fitting.warp import Similarity
+from risorius.assets.painted import Material, PaintedMesh
+from risorius.assets.pictures import decoded
+from risorius.geometry.colour import to_linear
+
+from .bodies import Shaped
+from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
+from .surface import METRES, Floats
+
+Numbers = npt.NDArray[np.integer[Any]]
+# Units that files have [mm], and how far off one may seem where a face is large or small.
+UNITS = (1.0, 10.0, 25.4, 100.0, 304.8, 1000.0)
+MOST_OFF = 1.25
+CLAMP_TO_EDGE = 33071
+SHORT = 65535  # vertices that 16 bits can number
+
+
+@dataclass(frozen=True)
+class SplitVertices:
+    """The vertices of a file as glTF has them; n of them, the first V as in the file.
+
+    vertex: number in the file, shape (n,). uv, normal: numbers, -1 for none, shape (n,).
+    corners: of the triangles, shape (F, 3).
+    """
+
+    vertex: Numbers
+    uv: Numbers
+    normal: Numbers
+    corners: Numbers
+
+
+def split_vertices(painted: PaintedMesh) -> SplitVertices:
+    """Split vertices where texture coordinates or normals do not agree."""
+    mesh = painted.mesh
+    count = len(mesh.vertices)
+    columns = (mesh.faces.ravel(), painted.face_uv.ravel(), painted.face_normals.ravel())
+    found, number = np.unique(np.column_stack(columns), axis=0, return_inverse=True)
+    is_first = np.diff(found[:, 0], prepend=-1) > 0
+    slot = np.where(is_first, found[:, 0], count - 1 + np.cumsum(~is_first))
+    total = count + int((~is_first).sum())
+    vertex = np.arange(total)
+    uv = np.full(total, -1)
+    normal = np.full(total, -1)
+    vertex[slot] = found[:, 0]
+    uv[slot] = found[:, 1]
+    normal[slot] = found[:, 2]
+    return SplitVertices(vertex, uv, normal, slot[number.reshape(-1, 3)])
+
+
+class FileMeshWriter:
+    """Adds the mesh of a file to a glTF file."""
+
+    def __init__(
+        self, glb: Glb, painted: PaintedMesh, to_millimetres: Similarity, shaped: Shaped
+    ) -> None:
+        self._glb = glb
+        self._painted = painted
+        self._shaped = shaped
+        self._split = split_vertices(painted)
+        self._to_file = to_millimetres.inverse
+        self._materials: dict[int, int] = {}
+
+    def add(self, names: tuple[str, ...], chosen: npt.NDArray[np.bool_]) -> int:
+        """Add the mesh with those of its triangles that are chosen, (F,); return its number."""
+        split = self._split
+        attributes = self._attributes()
+        short = np.uint16 if len(split.vertex) <= SHORT else np.uint32
+        targets = self._targets()
+        primitives = []
+        for material in np.unique(self._painted.material[chosen]):
+            corners = split.corners[chosen & (self._painted.material == material)]
+            primitive: dict[str, Any] = {
+                "attributes": attributes,
+                "indices": self._glb.accessor(corners.astype(short).ravel(), ELEMENT_ARRAY_BUFFER),
+                "material": self._material(int(material)),
+            }
+            if targets:
+                primitive["targets"] = targets
+            primitives.append(primitive)
+        mesh: dict[str, Any] = {"name": self._shaped.body.name, "primitives": primitives}
+        if targets:
+            mesh["weights"] = [0.0] * len(targets)
+            mesh["extras"] = {"targetNames": list(names)}
+        return self._glb.add("meshes", mesh)
+
+    def add_rigid(self, name: str, chosen: npt.NDArray[np.bool_], pivot: Floats) -> int:
+        """Add a mesh of chosen triangles (F,) alone, around a pivot (3,) of the file's."""
+        split = self._split
+        corners = split.corners[chosen]
+        used, number = np.unique(corners, return_inverse=True)
+        normals = self._painted_normals()[used]
+        points = self._painted.mesh.vertices[split.vertex[used]] - pivot
+        attributes = {
+            "POSITION": self._glb.accessor(_singles(points), ARRAY_BUFFER, is_bounded=True),
+            "NORMAL": self._glb.accessor(_singles(normals), ARRAY_BUFFER),
+        }
+        attributes.update(self._paint(used))
+        short = np.uint16 if len(used) <= SHORT else np.uint32
+        primitives = []
+        number = number.reshape(-1, 3)
+        materials = self._painted.material[chosen]
+        for material in np.unique(materials):
+            indices = number[materials == material].astype(short).ravel()
+            primitives.append(
+                {
+                    "attributes": attributes,
+                    "indices": self._glb.accessor(indices, ELEMENT_ARRAY_BUFFER),
+                    "material": self._material(int(material)),
+                }
+            )
+        return self._glb.add("meshes", {"name": name, "primitives": primitives})
+
+    def _attributes(self) -> dict[str, int]:
+        """The vertices at rest: places, normals, and what paints them."""
+        split = self._split
+        points = self._painted.mesh.vertices[split.vertex]
+        return {
+            "POSITION": self._glb.accessor(_singles(points), ARRAY_BUFFER, is_bounded=True),
+            "NORMAL": self._glb.accessor(_singles(self._painted_normals()), ARRAY_BUFFER),
+            **self._paint(np.arange(len(split.vertex))),
+        }
+
+    def _painted_normals(self) -> Floats:
+        """Unit normals at rest: those of the file, or smooth ones where it has none, (n, 3)."""
+        split = self._split
+        normals = (self._shaped.normals @ self._to_file.rotation.T)[split.vertex]
+        has_own = split.normal >= 0
+        if has_own.any():
+            own = self._painted.normals[split.normal[has_own]]
+            length = np.linalg.norm(own, axis=1, keepdims=True)
+            normals[has_own] = np.where(
+                length > 1e-6, own / np.maximum(length, 1e-6), normals[has_own]
+            )
+        length = np.linalg.norm(normals, axis=1)
+        normals[length < 0.5] = (0.0, 0.0, 1.0)  # of vertices without a triangle
+        unit: Floats = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        return unit
+
+    def _paint(self, chosen: Numbers) -> dict[str, int]:
+        """Texture coordinates, v down, and colours of chosen vertices, where the file has any."""
+        painted = self._painted
+        split = self._split
+        found = {}
+        if len(painted.uv):
+            uv = painted.uv[np.maximum(split.uv[chosen], 0)]
+            uv[split.uv[chosen] < 0] = 0.0
+            top_down = np.column_stack([uv[:, 0], 1.0 - uv[:, 1]])
+            found["TEXCOORD_0"] = self._glb.accessor(_singles(top_down), ARRAY_BUFFER)
+        if painted.mesh.colours is not None:
+            colours = to_linear(painted.mesh.colours[split.vertex[chosen]] / 255.0)
+            found["COLOR_0"] = self._glb.accessor(_singles(colours), ARRAY_BUFFER)
+        return found
+
+    def _targets(self) -> list[dict[str, int]]:
+        """The shapes, in the file's unit and axes."""
+        vertex = self._split.vertex
+        turn = self._to_file.rotation.astype(np.float32)
+        scale = np.float32(self._to_file.scale)
+        return [
+            {
+                "POSITION": self._glb.sparse((scale * (moved @ turn.T))[vertex]),
+                "NORMAL": self._glb.sparse((bent @ turn.T)[vertex]),
+            }
+            for moved, bent in zip(self._shaped.targets, self._shaped.bends, strict=True)
+        ]
+
+    def _material(self, number: int) -> int:
+        """The number of a material of the file, -1 for none, in the glTF file."""
+        if number not in self._materials:
+            rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.6}
+            material: dict[str, Any] = {"name": "skin", "pbrMetallicRoughness": rough}
+            material["doubleSided"] = True
+            if number >= 0:
+                self._look(self._painted.materials[number], material)
+            self._materials[number] = self._glb.add("materials", material)
+        return self._materials[number]
+
+    def _look(self, source: Material, material: dict[str, Any]) -> None:
+        """Write colour, opacity and picture of a material."""
+        rough = material["pbrMetallicRoughness"]
+        material["name"] = source.name
+        if source.look.opacity < 1.0:
+            material["alphaMode"] = "BLEND"
+        rough["baseColorFactor"] = [*source.look.colour, source.look.opacity]
+        if source.picture is None:
+            return
+        # What tints a picture in old programs is no colour of the material, but often black.
+        rough["baseColorFactor"] = [1.0, 1.0, 1.0, source.look.opacity]
+        content, name = source.picture
+        kind = _kind_of(content)
+        if kind is None:
+            file = io.BytesIO()
+            import PIL.Image
+
+            PIL.Image.fromarray(decoded(content, name)).save(file, "png")
+            content = file.getvalue()
+            kind = "png"
+        texture: dict[str, Any] = {"source": self._glb.image(content, kind)}
+        if source.placing.is_clamped:
+            clamped = {"wrapS": CLAMP_TO_EDGE, "wrapT": CLAMP_TO_EDGE}
+            texture["sampler"] = self._glb.add("samplers", clamped)
+        info: dict[str, Any] = {"index": self._glb.add("textures", texture)}
+        scale = source.placing.scale
+        offset = source.placing.offset
+        if scale != (1.0, 1.0) or offset != (0.0, 0.0):
+            # The file counts v up.
+            down = 1.0 - scale[1] - offset[1]
+            placing = {"scale": list(scale), "offset": [offset[0], down]}
+            info["extensions"] = {"KHR_texture_transform": placing}
+            self._glb.use("KHR_texture_transform")
+        rough["baseColorTexture"] = info
+
+
+def root_matrix(to_millimetres: Similarity) -> Floats:
+    """The matrix (4, 4) that brings the coordinates of a file to metres, y up, face along z.
+
+    Axes are turned by right angles alone, and the unit is a usual one, where one is near.
+    """
+    rotation = to_millimetres.rotation
+    axes = np.zeros((3, 3))
+    axes[np.abs(rotation).argmax(axis=0), np.arange(3)] = 1.0
+    axes *= np.sign(rotation)
+    is_turn = abs(np.linalg.det(axes)) > 0.5
+    unit = unit_of(to_millimetres.scale)
+    matrix = np.eye(4)
+    matrix[:3, :3] = METRES * unit * (axes if is_turn else rotation)
+    return matrix
+
+
+def unit_of(scale: float) -> float:
+    """The unit of a file [mm] of which a face of usual size makes `scale`."""
+    unit = min(UNITS, key=lambda each: abs(np.log(scale / each)))
+    return unit if max(scale / unit, unit / scale) < MOST_OFF else scale
+
+
+def _kind_of(content: bytes) -> str | None:
+    """The kind of a picture that glTF knows, "png" or "jpeg"; None for others."""
+    if content.startswith(b"\x89PNG"):
+        return "png"
+    return "jpeg" if content.startswith(b"\xff\xd8") else None
+
+
+def _singles(values: Floats) -> npt.NDArray[np.float32]:
+    return values.astype(np.float32)

@@ -1,0 +1,146 @@
+"""How far sums of shapes are from the simulation, and pairs that are worth a shape of their own.
+
+Programs add shapes up. Skin does not: an open mouth puckers less, a lid that is shut already is not
+shut again. A corrective shape of two makes that good: it is added times the product of their
+weights.
+
+Source: for correctives, Lewis, Anjyo, Rhee, Zhang, Pighin, Deng 2014, "Practice and theory of
+blendshape facial models", section 4 (combination shapes).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from tqdm import tqdm
+
+from ..control_names import twin_of
+from ..scenes import FaceScene
+from ..stopping import cleaned_up_if_stopped
+from .bodies import Shaped
+from .poses import Pose, rest_in
+from .surface import Floats
+
+PAIRS = (  # in each of which two motions share skin
+    ("jawOpen", "mouthPucker"),
+    ("jawOpen", "mouthSmileLeft", "mouthSmileRight"),
+    ("eyeBlinkLeft", "eyeLookDownLeft"),
+    ("noseSneerLeft", "mouthUpperUpLeft"),
+)
+TRIED = 4  # pairs that are simulated for each one that is taken
+OPPOSITE = (("jawLeft", "jawRight"), ("mouthLeft", "mouthRight"))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """How far a sum of shapes is from the simulation [mm].
+
+    names: of the shapes. most: of any vertex. mean: root of the mean square over skin that the
+    simulation moves.
+    """
+
+    names: tuple[str, ...]
+    most: float
+    mean: float
+
+    def __str__(self) -> str:
+        return f"{' + '.join(self.names)}: at most {self.most:.1f} mm, RMS {self.mean:.1f}"
+
+
+class Sums:
+    """Sums of the shapes of a scene's skin, compared with its simulation."""
+
+    def __init__(self, scene: FaceScene, poses: Mapping[str, tuple[Pose, Pose]]) -> None:
+        self._scene = scene
+        self._areas = np.asarray(scene.simulation.areas)
+        self._ways = {name: pose.skin - base.skin for name, (pose, base) in poses.items()}
+
+    def difference(self, names: Sequence[str]) -> Difference:
+        """Of a sum of some shapes at 1."""
+        together = rest_in(self._scene, dict.fromkeys(names, 1.0)).skin
+        way = together - self._scene.rest_positions
+        return self._difference(tuple(names), self.sum(dict.fromkeys(names, 1.0)), way)
+
+    def sum(self, weights: Mapping[str, float]) -> Floats:
+        """The ways of the skin's vertices that weights add up to, shape (V, 3)."""
+        total = np.zeros_like(self._scene.rest_positions)
+        for name, weight in weights.items():
+            total += weight * self._ways[name]
+        return total
+
+    def _difference(self, names: tuple[str, ...], summed: Floats, way: Floats) -> Difference:
+        off = np.linalg.norm(summed - way, axis=1)
+        length = np.linalg.norm(way, axis=1)
+        is_moved = length > 0.2 * length.max(initial=0.0)
+        areas = self._areas * is_moved
+        square = float((areas * off**2).sum() / max(float(areas.sum()), 1e-12))
+        return Difference(names, float(off.max(initial=0.0)), float(np.sqrt(square)))
+
+    def shared(self, first: str, second: str) -> float:
+        """How much skin both shapes move, a number to compare pairs by [mm4]."""
+        lengths = [np.linalg.norm(self._ways[name], axis=1) for name in (first, second)]
+        return float((self._areas * lengths[0] * lengths[1]).sum())
+
+
+def table(scene: FaceScene, poses: Mapping[str, tuple[Pose, Pose]]) -> list[Difference]:
+    """The differences of PAIRS, as far as there are such shapes."""
+    sums = Sums(scene, poses)
+    return [sums.difference(names) for names in PAIRS if set(names) <= set(poses)]
+
+
+def worth_correcting(
+    scene: FaceScene, poses: Mapping[str, tuple[Pose, Pose]], count: int, *, progress: bool
+) -> list[tuple[str, str]]:
+    """The pairs of shapes whose sums are farthest off, at most `count`, farthest first.
+
+    Those are simulated that share the most skin, TRIED for each one that is wanted. Opposites, such
+    as an eye that looks up and down, and shapes that are shares of others, are left out.
+    """
+    sums = Sums(scene, poses)
+    shares = scene.simulation.controls.tables.share_of
+    names = [name for name in poses if name not in shares]
+    pairs = [pair for pair in combinations(names, 2) if not _are_opposite(*pair)]
+    pairs.sort(key=lambda pair: -sums.shared(*pair))
+    tried = pairs[: TRIED * count]
+    bar = tqdm(tried, "Pairs", unit="pair", disable=not progress or None, leave=False)
+    with cleaned_up_if_stopped(bar.close):
+        found = [(sums.difference(pair), pair) for pair in bar]
+    found.sort(key=lambda each: -each[0].mean * each[0].most)
+    return [pair for _, pair in found[:count]]
+
+
+def corrective_poses(
+    scene: FaceScene, pairs: Sequence[tuple[str, str]]
+) -> dict[str, tuple[Pose, Pose]]:
+    """For each pair the pose of both at 1, and rest; see `corrected`."""
+    rest = rest_in(scene, {})
+    return {
+        f"{first}_{second}": (rest_in(scene, {first: 1.0, second: 1.0}), rest)
+        for first, second in pairs
+    }
+
+
+def corrected(shaped: Shaped, pairs: Sequence[tuple[str, str]], names: Sequence[str]) -> Shaped:
+    """A body whose last shapes, which are of pairs, are less the sum of the two of each."""
+    if not len(shaped.targets):
+        return shaped
+    targets = shaped.targets.copy()
+    bends = shaped.bends.copy()
+    first_pair = len(names) - len(pairs)
+    for number, pair in enumerate(pairs, start=first_pair):
+        for name in pair:
+            targets[number] -= shaped.targets[names.index(name)]
+            bends[number] -= shaped.bends[names.index(name)]
+    return Shaped(shaped.body, shaped.normals, targets, bends)
+
+
+def _are_opposite(first: str, second: str) -> bool:
+    """Whether nobody makes both at once, or both are the sides of one that hardly meet."""
+    if (first, second) in OPPOSITE or (second, first) in OPPOSITE:
+        return True
+    if twin_of(first) == second and not first.startswith("mouth"):
+        return True
+    return first.startswith("eyeLook") and second.startswith("eyeLook")

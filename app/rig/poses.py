@@ -1,0 +1,114 @@
+"""Poses in which a face rests, and the names of the shapes that are made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import UserError
+from ..motion.curves import ACTION_UNITS, sided
+from ..recordings.names import ARKIT, VISEMES
+from ..scenes import FaceScene
+from .surface import Floats, Singles
+
+KINDS = ("arkit", "units", "visemes", "expressions")
+STILL = 0.001  # [mm] in a step: a face that moves less rests
+CRANIUM = "cranium"  # name of a bone
+HEAD_CONTROLS = frozenset(("head_yaw", "head_pitch", "head_roll"))
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A face at one moment, seen from its cranium [mm].
+
+    skin: its vertices, shape (V, 3). matrices: of the bones, name -> (4, 4), for columns.
+    parts: the vertices of each part as its bone finds them, name -> (n, 3).
+    """
+
+    skin: Floats
+    matrices: Mapping[str, Floats]
+    parts: Mapping[str, Singles]
+
+
+def pose_of(scene: FaceScene) -> Pose:
+    """The pose that a scene has now."""
+    bones = scene.bone_transforms()
+    to_cranium = np.linalg.inv(bones[CRANIUM])
+    share = scene.simulation.bones.head_weight
+    return Pose(
+        without_head_pose(np.array(scene.positions), bones[CRANIUM], share),
+        {name: to_cranium @ matrix for name, matrix in bones.items()},
+        {part.name: part.vertices for part in scene.parts},
+    )
+
+
+def without_head_pose(skin: Floats, cranium: Floats, share: Floats) -> Floats:
+    """The skin (V, 3) as it is before the bone of the head, of which it has shares (V,), turns."""
+    if np.array_equal(cranium, np.eye(4)):
+        return skin
+    turns = np.eye(3) + share[:, None, None] * (cranium[:3, :3] - np.eye(3))
+    unmoved = (skin - share[:, None] * cranium[:3, 3])[:, :, None]
+    return np.asarray(np.linalg.solve(turns, unmoved)[:, :, 0])
+
+
+def rest_in(scene: FaceScene, values: Mapping[str, float]) -> Pose:
+    """The pose in which a face comes to rest with these controls set, all others at 0.
+
+    The face starts from rest each time, so a pose does not depend on the one before.
+    """
+    scene.reset()
+    scene.pose(values)
+    scene.simulation.jump(scene.values)
+    before = np.array(scene.positions)
+    calm = 0
+    for _ in range(120):  # after a fifth of these most faces rest
+        scene.step(1.0 / 60.0)
+        moved = float(np.abs(scene.positions - before).max())
+        calm = calm + 1 if moved < STILL else 0
+        if calm == 3:  # a face that turns back stands still for one step
+            break
+        before[:] = scene.positions
+    return pose_of(scene)
+
+
+def shape_names(scene: FaceScene, kinds: Sequence[str]) -> tuple[str, ...]:
+    """The controls that become shapes, in the order of `kinds`; ARKit's as Apple counts them.
+
+    Turns of the head are left out: they are those of the node "cranium". Raises UserError for a
+    kind that there is not.
+    """
+    found: list[str] = []
+    for kind in kinds:
+        if kind == "arkit":
+            found += ARKIT
+        elif kind == "visemes":
+            found += VISEMES
+        elif kind == "expressions":
+            found += scene.expressions
+        elif kind == "units":
+            units = sided(scene, ACTION_UNITS)
+            found += [name for name in units if not set(scene.moved_by(name)) <= HEAD_CONTROLS]
+        else:
+            raise UserError(f"--shapes: '{kind}' is not there; it takes {', '.join(KINDS)}")
+    return tuple(dict.fromkeys(found))
+
+
+def settings_of(scene: FaceScene, name: str) -> tuple[dict[str, float], dict[str, float]]:
+    """The controls of a shape, and those of the pose that it is counted from.
+
+    A control that is a share of another, as `mouthClose` of `jawOpen`, adds to that one at 1.
+    """
+    whole = scene.simulation.controls.tables.share_of.get(name)
+    base: dict[str, float] = {} if whole is None else {whole: 1.0}
+    return {**base, name: 1.0}, base
+
+
+def moved_part(part: Any, pose: Pose) -> Floats:
+    """Where the vertices of a part are in a pose, seen from the cranium, shape (n, 3)."""
+    matrix = pose.matrices[part.bone]
+    points = pose.parts[part.name].astype(np.float64)
+    moved: Floats = points @ matrix[:3, :3].T + matrix[:3, 3]
+    return moved

@@ -1,0 +1,56 @@
+"""The built-in head and made persons as an avatar: a scene's own surfaces, with named shapes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..scenes import FaceScene
+from .bodies import PartBody, Shaped
+from .glb import Glb
+from .scene_meshes import Piece, add_mesh
+from .skeleton import Skeleton
+from .surface import Surface
+
+
+def surface_of(scene: FaceScene, shaped: Shaped) -> Surface:
+    """The surface of a body of a scene."""
+    body = shaped.body
+    if isinstance(body, PartBody):
+        part = body.part
+        return Surface(body.name, body.rest, body.faces, colours=part.colours, shine=part.shine)
+    return Surface(body.name, body.rest, body.faces, uv=scene.uv, face_uv=scene.face_uv)
+
+
+def add_pieces(glb: Glb, scene: FaceScene, pieces: list[Piece], skeleton: Skeleton) -> list[int]:
+    """Add pieces to a file, below the nodes of their bones; return those that hang on none."""
+    roots = []
+    for piece in pieces:
+        node: dict[str, Any] = {"name": piece.surface.name}
+        share = None
+        if piece.bone is None:
+            node["skin"] = skeleton.skin
+            share = scene.simulation.bones.head_weight
+        node["mesh"] = add_mesh(glb, scene, piece, skeleton.pivot(piece.bone), share)
+        number = glb.add("nodes", node)
+        if piece.bone is None:
+            roots.append(number)
+        else:
+            skeleton.hang(number, piece.bone)
+        if len(piece.targets) and len(piece.weights):
+            glb.animate(number, "weights", piece.weights)
+    return roots
+
+
+def piece_of(scene: FaceScene, shaped: Shaped, names: tuple[str, ...]) -> Piece:
+    """A body of a scene with its shapes, as a piece that does not move by itself."""
+    body = shaped.body
+    bone = None
+    normals = shaped.normals
+    if isinstance(body, PartBody):
+        bone = body.bone
+        normals = body.part.normals.astype(np.float64)
+    none = np.zeros((0, 0))
+    surface = surface_of(scene, shaped)
+    return Piece(surface, bone, normals, names, shaped.targets, shaped.bends, none)

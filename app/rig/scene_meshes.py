@@ -1,0 +1,136 @@
+"""Surfaces of a scene as meshes of a glTF file, with their materials and their morph targets."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import assets, render
+from risorius.geometry.colour import to_linear
+from risorius.geometry.texels import Texels, rates
+
+from ..scenes import Scene
+from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
+from .surface import METRES, Floats, Surface
+
+# Roughness, chosen by eye; parts go from dull to wet by their shine.
+DULL = 0.75
+WET = 0.12
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A surface with its morph targets.
+
+    bone: moves the whole of it; None: no bone, or the skin's own weights.
+    normals: at rest, of unit length, shape (V, 3).
+    names: of the targets, K of them.
+    targets, bends: changes of vertices [mm] and normals by each target, shape (K, V, 3).
+    weights: of each target in each frame, shape (N, K).
+    """
+
+    surface: Surface
+    bone: str | None
+    normals: Floats
+    names: tuple[str, ...]
+    targets: npt.NDArray[np.floating]
+    bends: npt.NDArray[np.floating]
+    weights: Floats
+
+
+def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats, share: Floats | None) -> int:
+    """Add a mesh whose vertices are relative to `origin`; return its number.
+
+    share: of each vertex, how far it goes with the head, shape (V,); None: there is no head.
+    """
+    surface = piece.surface
+    faces: npt.NDArray[Any] = surface.faces
+    vertices = coordinates = np.arange(len(surface.rest))
+    if surface.face_uv is not None:  # where there are seams, vertices are split
+        corners = np.column_stack([faces.ravel(), surface.face_uv.ravel()]).astype(np.int64)
+        pairs, numbers = np.unique(corners, axis=0, return_inverse=True)
+        (vertices, coordinates) = pairs.T
+        faces = numbers.reshape(-1, 3)
+
+    def changes_of(values: npt.NDArray[Any]) -> int:
+        return glb.sparse(values[vertices].astype(np.float32))
+
+    def of_vertices(values: npt.NDArray[Any], *, is_bounded: bool = False) -> int:
+        rows = values[vertices].astype(values.dtype if values.dtype == np.uint8 else np.float32)
+        return glb.accessor(rows, ARRAY_BUFFER, is_bounded=is_bounded)
+
+    attributes = {
+        "POSITION": of_vertices(METRES * (surface.rest - origin), is_bounded=True),
+        "NORMAL": of_vertices(piece.normals),
+    }
+    if surface.uv is not None:
+        top_down = np.column_stack([surface.uv[:, 0], 1.0 - surface.uv[:, 1]])
+        texels = top_down[coordinates].astype(np.float32)
+        attributes["TEXCOORD_0"] = glb.accessor(texels, ARRAY_BUFFER)
+    if surface.colours is not None:
+        attributes["COLOR_0"] = of_vertices(to_linear(surface.colours))
+    if share is not None:
+        none = np.zeros_like(share)
+        joints = np.column_stack([none, share > 0.0, none, none]).astype(np.uint8)
+        attributes["JOINTS_0"] = of_vertices(joints)
+        attributes["WEIGHTS_0"] = of_vertices(np.column_stack([1.0 - share, share, none, none]))
+    # 16 bits can number so many vertices.
+    short = np.uint16 if len(vertices) <= 65535 else np.uint32
+    primitive: dict[str, Any] = {
+        "attributes": attributes,
+        "indices": glb.accessor(faces.astype(short).ravel(), ELEMENT_ARRAY_BUFFER),
+        "material": _add_material(glb, scene, surface),
+    }
+    mesh: dict[str, Any] = {"name": surface.name, "primitives": [primitive]}
+    if len(piece.targets):
+        primitive["targets"] = [
+            {"POSITION": changes_of(METRES * moved), "NORMAL": changes_of(bent)}
+            for moved, bent in zip(piece.targets, piece.bends, strict=True)
+        ]
+        mesh["weights"] = [0.0] * len(piece.targets)
+        mesh["extras"] = {"targetNames": list(piece.names)}  # where all readers look for names
+    return glb.add("meshes", mesh)
+
+
+def _add_material(glb: Glb, scene: Scene, surface: Surface) -> int:
+    """Add the material of a surface; return its number."""
+    rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.55}  # by eye
+    material: dict[str, Any] = {"name": surface.name, "pbrMetallicRoughness": rough}
+    if surface.colours is not None:
+        rough["roughnessFactor"] = DULL + surface.shine * (WET - DULL)
+        return glb.add("materials", material)
+    material["doubleSided"] = True
+    if scene.albedo is None or surface.uv is None:
+        rough["baseColorFactor"] = [*to_linear(render.CLAY), 1.0]
+        return glb.add("materials", material)
+    rough["baseColorTexture"] = glb.texture(scene.albedo)
+    ambient_occlusion = scene.ambient_occlusion
+    if ambient_occlusion is not None:
+        material["occlusionTexture"] = glb.texture(ambient_occlusion)
+    if scene.fine_shape is not None:
+        material["normalTexture"] = glb.texture(_normal_map(surface, scene.fine_shape), "png")
+    return glb.add("materials", material)
+
+
+def _normal_map(surface: Surface, fine: assets.FineShape) -> npt.NDArray[np.uint8]:
+    """Normals of the fine shape (H, W, 3): along u, across it in the surface, and out of that."""
+    assert surface.uv is not None and surface.face_uv is not None
+    places = surface.uv[surface.face_uv]
+    texels = Texels.within(places.astype(np.float64), fine.slopes.shape[:2], margin=1.0)
+    # Slopes are for a unit of u and of v; here they are for a millimetre along u, and across it.
+    along, aside = rates(places, surface.rest[surface.faces]).swapaxes(0, 1)
+    length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
+    shear = (along * aside).sum(axis=1) / length
+    height = np.maximum(np.linalg.norm(np.cross(along, aside), axis=1) / length, 1e-9)
+    steps = fine.slopes[texels.rows, texels.columns] - 128.0
+    slope_u, slope_v = steps.T * (fine.steepest / 127.0)
+    slope_u /= length[texels.faces]
+    slope_v = (slope_v - shear[texels.faces] * slope_u) / height[texels.faces]
+    normals = np.column_stack([-slope_u, -slope_v, np.ones_like(slope_u)])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    image = np.full((*fine.slopes.shape[:2], 3), (128, 128, 255), np.uint8)
+    image[texels.rows, texels.columns] = np.rint(127.5 + 127.5 * normals)
+    return image

@@ -1,0 +1,113 @@
+"""Bones of a scene as nodes of a glTF file, each of which stands where its bone turns.
+
+    neck ── cranium ─┬─ eye_left, eye_right ── eyeballs
+                     ├─ mandible
+                     └─ teeth, tongue, hair, ...
+
+The skin hangs on cranium and neck; the neck does not move.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import scipy
+
+from ..scenes import FaceScene, Scene
+from .glb import Glb
+from .poses import CRANIUM
+from .surface import METRES, Floats
+
+NECK = "neck"  # name of a bone
+MANDIBLE = "mandible"  # name of a bone
+STILL = 1e-7  # [m, or of a quaternion] by which a node that does not move may be off
+
+
+class Skeleton:
+    """The nodes of the bones that something hangs on.
+
+    roots: numbers of the nodes that hang on no other.
+    skin: number of the glTF skin of a face, None for a scene without a face.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        used: set[str],
+        glb: Glb,
+        motion: Mapping[str, Floats] | None = None,
+        *,
+        skins: bool = True,
+    ) -> None:
+        """used: bones that something hangs on. motion: the matrices of each bone, (N, 4, 4);
+        None: they stand still. skins: whether a surface is bent by cranium and neck.
+        """
+        self._glb = glb
+        still = np.eye(4)[None]
+        self._motion = motion or {}
+        count = len(next(iter(self._motion.values()), still))
+        self._still = np.broadcast_to(still, (count, 4, 4))
+        self._nodes: dict[str, dict[str, Any]] = {}
+        self._pivots: dict[str, Floats] = {}
+        self.skin: int | None = None
+        if not isinstance(scene, FaceScene):
+            self.roots = [self._add(bone, None) for bone in sorted(used)]
+            return
+        pivots = scene.simulation.bones.pivots()
+        self._pivots = {NECK: pivots[CRANIUM], **pivots}
+        self.roots = [self._add(NECK, None)]
+        head = self._add(CRANIUM, NECK)
+        # Nothing of the head hangs on the mandible: shapes move it. A beard may.
+        for bone in sorted((used | {MANDIBLE}) - {CRANIUM, NECK}):
+            self._add(bone, CRANIUM)
+        if not skins:
+            return
+        to_bone = np.eye(4, dtype=np.float32)
+        to_bone[3, :3] = -METRES * pivots[CRANIUM]  # columns first
+        matrices = glb.accessor(np.stack([to_bone, to_bone]))
+        joints = {"joints": [*self.roots, head], "inverseBindMatrices": matrices}
+        self.skin = glb.add("skins", joints)
+
+    def pivot(self, bone: str | None) -> Floats:
+        """Where a bone's node stands at rest [mm], shape (3,); the origin for None."""
+        return np.zeros(3) if bone is None else self._pivots.get(bone, np.zeros(3))
+
+    def hang(self, node: int, bone: str) -> None:
+        """Let a node hang on a bone."""
+        self._nodes[bone].setdefault("children", []).append(node)
+
+    def note(self, bone: str, extras: dict[str, Any]) -> None:
+        """Give a bone's node some extras."""
+        self._nodes[bone]["extras"] = extras
+
+    def _add(self, bone: str, parent: str | None) -> int:
+        """Add a bone's node, with its motion against the parent's."""
+        local = self._places(bone)
+        if parent is not None:
+            local = np.linalg.inv(self._places(parent)) @ local
+        shift = METRES * (self.pivot(bone) - self.pivot(parent))
+        self._nodes[bone] = {"name": bone, "translation": shift.tolist()}
+        node = self._glb.add("nodes", self._nodes[bone])
+        translations = METRES * local[:, :3, 3]
+        if np.abs(translations - shift).max() > STILL:
+            self._glb.animate(node, "translation", translations)
+        rotations = scipy.spatial.transform.Rotation.from_matrix(local[:, :3, :3]).as_quat(
+            canonical=True
+        )
+        if np.abs(rotations[:, :3]).max() > STILL:
+            # q and -q turn alike, but values between two keyframes do not.
+            is_opposite = (rotations[1:] * rotations[:-1]).sum(axis=1) < 0.0
+            rotations[1:] *= np.cumprod(np.where(is_opposite, -1.0, 1.0))[:, None]
+            self._glb.animate(node, "rotation", rotations)
+        if parent is not None:
+            self.hang(node, parent)
+        return node
+
+    def _places(self, bone: str) -> Floats:
+        """Matrices (N, 4, 4) from a bone's node to the scene [mm]."""
+        to_pivot = np.eye(4)
+        to_pivot[:3, 3] = self.pivot(bone)
+        places: Floats = self._motion.get(bone, self._still) @ to_pivot
+        return places

@@ -1,0 +1,116 @@
+"""An avatar as a binary glTF file, metres, y up, or as a folder of OBJs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy
+
+from .avatar import Avatar, FileHead
+from .bodies import EYES
+from .file_mesh import FileMeshWriter, root_matrix
+from .glb import Glb
+from .poses import rest_in
+from .scene_file import add_pieces, piece_of
+from .skeleton import Skeleton
+from .surface import METRES, Floats
+
+LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")  # of each eye, by its side
+
+
+def avatar_glb(avatar: Avatar, title: str) -> bytes:
+    """The whole file. title: of the head."""
+    glb = Glb()
+    if avatar.file is None:
+        roots = _add_scene(glb, avatar)
+    else:
+        roots = [_add_file(glb, avatar, avatar.file, title)]
+    if avatar.extras:
+        glb.parts["extras"] = {**glb.parts.get("extras", {}), **avatar.extras}
+        for mesh in glb.parts["meshes"]:
+            if "targetNames" in mesh.get("extras", {}):
+                mesh["extras"].update(avatar.extras)
+    return glb.to_bytes(title, roots)
+
+
+def _add_scene(glb: Glb, avatar: Avatar) -> list[int]:
+    """Add the surfaces of the built-in head or a person; return the nodes of the scene."""
+    pieces = [piece_of(avatar.scene, each, avatar.names) for each in avatar.shapes]
+    used = {piece.bone for piece in pieces if piece.bone is not None}
+    skeleton = Skeleton(avatar.scene, used, glb)
+    for eye in used & set(EYES):
+        skeleton.note(eye, looks_of(avatar, eye, np.eye(3)))
+    roots = add_pieces(glb, avatar.scene, pieces, skeleton)
+    return [*skeleton.roots, *roots]
+
+
+def _add_file(glb: Glb, avatar: Avatar, file: FileHead, title: str) -> int:
+    """Add the mesh of a file, and built-in parts; return the number of its root."""
+    to_millimetres = file.head.to_millimetres
+    matrix = root_matrix(to_millimetres)
+    children = _add_file_mesh(glb, avatar, file)
+    if len(avatar.shapes) > 1:
+        children.append(_add_parts(glb, avatar, file))
+    return glb.add(
+        "nodes", {"name": title, "matrix": matrix.T.ravel().tolist(), "children": children}
+    )
+
+
+def _add_file_mesh(glb: Glb, avatar: Avatar, file: FileHead) -> list[int]:
+    """Add the mesh of a file, its eyeballs as nodes of their own; return the nodes."""
+    writer = FileMeshWriter(glb, file.painted, file.head.to_millimetres, avatar.shapes[0])
+    faces = file.body.faces
+    is_left = np.ones(len(faces), np.bool_)
+    nodes = []
+    back = file.head.to_millimetres.inverse
+    for eye, pivot in file.body.pivots.items() if avatar.eyes_are_nodes else ():
+        own = np.concatenate([each.vertices for each in file.pieces if each.role == eye])
+        is_own = np.isin(faces[:, 0], own)
+        is_left &= ~is_own
+        centre = back.points(pivot)
+        node = {
+            "name": eye,
+            "mesh": writer.add_rigid(eye, is_own, centre),
+            "translation": centre.tolist(),
+            "extras": looks_of(avatar, eye, back.rotation),
+        }
+        nodes.append(glb.add("nodes", node))
+    mesh = writer.add(avatar.names, is_left)
+    return [glb.add("nodes", {"name": "head", "mesh": mesh}), *nodes]
+
+
+def _add_parts(glb: Glb, avatar: Avatar, file: FileHead) -> int:
+    """Add built-in parts, in metres of the face's own space; return their node."""
+    pieces = [piece_of(avatar.scene, each, avatar.names) for each in avatar.shapes[1:]]
+    used = {piece.bone for piece in pieces if piece.bone is not None}
+    skeleton = Skeleton(avatar.scene, used, glb, skins=False)
+    for eye in used & set(EYES):
+        skeleton.note(eye, looks_of(avatar, eye, np.eye(3)))
+    add_pieces(glb, avatar.scene, pieces, skeleton)
+    back = file.head.to_millimetres.inverse
+    matrix = np.eye(4)
+    matrix[:3, :3] = back.scale / METRES * back.rotation
+    matrix[:3, 3] = back.shift
+    node = {
+        "name": "parts",
+        "matrix": matrix.T.ravel().tolist(),
+        "children": skeleton.roots,
+    }
+    return glb.add("nodes", node)
+
+
+def looks_of(avatar: Avatar, eye: str, turn: Floats) -> dict[str, Any]:
+    """How the node of an eye turns for each of its shapes at 1: quaternions x, y, z, w.
+
+    turn: from the face's axes to those of the node, a matrix (3, 3).
+    """
+    side = eye.removeprefix("eye_").capitalize()
+    found = {}
+    for look in LOOKS:
+        name = look + side
+        if name in avatar.names:
+            matrix = rest_in(avatar.scene, {name: 1.0}).matrices[eye][:3, :3]
+            turned = scipy.spatial.transform.Rotation.from_matrix(turn @ matrix @ turn.T)
+            found[name] = turned.as_quat(canonical=True).round(6).tolist()
+    return {"rotations": found}

@@ -1,0 +1,104 @@
+"""A mesh file with all that shows: what a writer needs to give it back as another kind of file.
+
+`read_mesh` leaves away what a simulation needs not: normals as the file has them, texture
+coordinates without a picture, materials, the bytes of pictures.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .meshes import MOST_MEGABYTES, Mesh, read_mesh
+from .pictures import libraries_of, material_key
+from .user_files import MOST_VERTICES, beside, read_file
+from .wavefront import MaterialLook, ObjSurface, Placing, looks_of, pictures_of, read_obj
+
+Numbers = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Material:
+    """How a part of a surface looks.
+
+    picture: the content of its file, and its name; None where none is there.
+    placing: how the picture lies in the texture coordinates.
+    """
+
+    name: str
+    look: MaterialLook
+    picture: tuple[bytes, str] | None
+    placing: Placing
+
+
+@dataclass(frozen=True)
+class PaintedMesh:
+    """A mesh file with all that shows.
+
+    mesh: as `read_mesh` has it; V vertices in the file's order, F triangles.
+    uv: texture coordinates, v up, shape (U, 2). face_uv: their numbers, -1 for none, shape (F, 3).
+    normals: shape (N, 3). face_normals: their numbers, -1 for none, shape (F, 3).
+    material: place in `materials` of each triangle, -1 for none, shape (F,).
+    """
+
+    mesh: Mesh
+    uv: npt.NDArray[np.float64]
+    face_uv: Numbers
+    normals: npt.NDArray[np.float64]
+    face_normals: Numbers
+    material: Numbers
+    materials: tuple[Material, ...]
+
+
+def read_painted(path: Path) -> PaintedMesh:
+    """Read a mesh file that is no glTF: OBJ with its materials, PLY with its colours, or a form.
+
+    Raises AssetError as `read_mesh` does.
+    """
+    mesh = read_mesh(path)
+    if path.suffix.lower() == ".obj":
+        surface = read_obj(read_file(path, kind="mesh", most=MOST_MEGABYTES), most=MOST_VERTICES)
+        return PaintedMesh(
+            mesh,
+            surface.uv,
+            _within(surface.face_uv, len(surface.uv)),
+            surface.normals,
+            _within(surface.face_normals, len(surface.normals)),
+            surface.material,
+            tuple(_materials(surface, path.parent)),
+        )
+    none = np.full(mesh.faces.shape, -1, np.int64)
+    return PaintedMesh(mesh, np.zeros((0, 2)), none, np.zeros((0, 3)), none, none[:, 0], ())
+
+
+def _within(numbers: Numbers, count: int) -> Numbers:
+    """Numbers of which those beyond the last count as none."""
+    return np.where(numbers < count, numbers, -1)
+
+
+def _materials(surface: ObjSurface, folder: Path) -> list[Material]:
+    """The materials of a surface, from the libraries beside it that are there."""
+    looks: dict[str, MaterialLook] = {}
+    pictures: dict[str, Any] = {}
+    for name in libraries_of(surface.libraries, folder):
+        library = beside(folder, name)
+        if library.exists():
+            content = read_file(library, kind="material", most=1)
+            looks.update(looks_of(content))
+            pictures.update(pictures_of(content))
+    found = []
+    for name in surface.materials:
+        painted = pictures.get(material_key(name, pictures))
+        look = looks.get(material_key(name, looks), MaterialLook())
+        picture = None
+        if painted is not None:
+            path = beside(folder, painted.name)
+            if path.exists():
+                picture = (read_file(path, kind="picture", most=MOST_MEGABYTES), path.name)
+        placing = Placing() if painted is None else painted.placing
+        found.append(Material(name, look, picture, placing))
+    return found

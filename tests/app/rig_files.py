@@ -1,0 +1,51 @@
+"""A head as somebody would bring it: an OBJ with eyes, teeth, tongue, lashes, hair and shirt."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import PIL.Image
+
+from risorius.app.scenes import FaceScene
+
+CENTIMETRES = 0.1
+FIRST = ("eyeball_left", "tongue")  # parts that stand in front of the skin in the file
+
+
+def write_whole_head(folder: Path, scene: FaceScene) -> tuple[Path, Path, dict[str, slice]]:
+    """Write the built-in head with its parts, in centimetres; where each one's vertices are.
+
+    The skin has texture coordinates, normals and a material with a picture.
+    """
+    scene.reset()
+    parts = {part.name: part for part in scene.parts if part.name != "wet_edges"}
+    names = [*FIRST, "skin", *(name for name in parts if name not in FIRST)]
+    lines = ["mtllib whole.mtl"]
+    places: dict[str, slice] = {}
+    count = 0
+    for name in names:
+        is_skin = name == "skin"
+        points = scene.rest_positions if is_skin else np.float64(parts[name].vertices)
+        faces = scene.faces if is_skin else parts[name].faces
+        lines.append(f"g {name}\nusemtl {'skin' if is_skin else 'parts'}")
+        lines += [f"v {x:.7f} {y:.7f} {z:.7f}" for x, y, z in points * CENTIMETRES]
+        if is_skin:
+            assert scene.uv is not None and scene.face_uv is not None
+            lines += [f"vt {u:.6f} {v:.6f}" for u, v in scene.uv]
+            for corners, uv in zip(faces + 1 + count, scene.face_uv + 1, strict=True):
+                pairs = zip(corners, uv, strict=True)
+                lines.append("f " + " ".join(f"{vertex}/{place}" for vertex, place in pairs))
+        else:
+            lines += [f"f {a} {b} {c}" for a, b, c in faces + 1 + count]
+        places[name] = slice(count, count + len(points))
+        count += len(points)
+    mesh = folder / "whole.obj"
+    mesh.write_text("\n".join(lines))
+    picture = np.full((8, 8, 3), (200, 150, 130), np.uint8)
+    PIL.Image.fromarray(picture).save(folder / "skin.png")
+    library = "newmtl skin\nKd 1 1 1\nmap_Kd skin.png\nnewmtl parts\nKd 0.2 0.4 0.8\n"
+    (folder / "whole.mtl").write_text(library)
+    landmarks = folder / "whole.json"
+    numbers = np.asarray(scene.landmarks) + places["skin"].start
+    landmarks.write_text(json.dumps({"landmarks": numbers.tolist()}))
+    return mesh, landmarks, places
