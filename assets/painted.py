@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .meshes import MOST_MEGABYTES, Mesh, read_mesh
+from .meshes import Mesh, read_mesh
 from .pictures import libraries_of, material_key
 from .user_files import MOST_VERTICES, beside, read_file
 from .wavefront import MaterialLook, ObjSurface, Placing, looks_of, pictures_of, read_obj
@@ -61,7 +61,7 @@ def read_painted(path: Path) -> PaintedMesh:
     """
     mesh = read_mesh(path)
     if path.suffix.lower() == ".obj":
-        surface = read_obj(read_file(path, kind="mesh", most=MOST_MEGABYTES), most=MOST_VERTICES)
+        surface = read_obj(read_file(path, kind="mesh", most=100), most=MOST_VERTICES)
         return PaintedMesh(
             mesh,
             surface.uv,
@@ -98,7 +98,7 @@ def _materials(surface: ObjSurface, folder: Path) -> list[Material]:
         if painted is not None:
             path = beside(folder, painted.name)
             if path.exists():
-                picture = (read_file(path, kind="picture", most=MOST_MEGABYTES), path.name)
+                picture = (read_file(path, kind="picture", most=100), path.name)
         placing = Placing() if painted is None else painted.placing
         found.append(Material(name, look, picture, placing))
     return found

@@ -16,10 +16,6 @@ from ..scenes import Scene
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
 from .surface import METRES, Floats, Surface
 
-# Roughness, chosen by eye; parts go from dull to wet by their shine.
-DULL = 0.75
-WET = 0.12
-
 
 @dataclass(frozen=True)
 class Piece:
@@ -100,7 +96,10 @@ def _add_material(glb: Glb, scene: Scene, surface: Surface) -> int:
     rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.55}  # by eye
     material: dict[str, Any] = {"name": surface.name, "pbrMetallicRoughness": rough}
     if surface.colours is not None:
-        rough["roughnessFactor"] = DULL + surface.shine * (WET - DULL)
+        # Roughness, chosen by eye; parts go from dull to wet by their shine.
+        dull_roughness = 0.75
+        wet_roughness = 0.12
+        rough["roughnessFactor"] = dull_roughness + surface.shine * (wet_roughness - dull_roughness)
         return glb.add("materials", material)
     material["doubleSided"] = True
     if scene.albedo is None or surface.uv is None:

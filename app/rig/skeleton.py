@@ -22,7 +22,6 @@ from .surface import METRES, Floats
 
 NECK = "neck"  # name of a bone
 MANDIBLE = "mandible"  # name of a bone
-STILL = 1e-7  # [m, or of a quaternion] by which a node that does not move may be off
 
 
 class Skeleton:
@@ -91,12 +90,13 @@ class Skeleton:
         self._nodes[bone] = {"name": bone, "translation": shift.tolist()}
         node = self._glb.add("nodes", self._nodes[bone])
         translations = METRES * local[:, :3, 3]
-        if np.abs(translations - shift).max() > STILL:
+        still_motion = 1e-7  # [m, or of a quaternion]: a node that moves less stands still
+        if np.abs(translations - shift).max() > still_motion:
             self._glb.animate(node, "translation", translations)
         rotations = scipy.spatial.transform.Rotation.from_matrix(local[:, :3, :3]).as_quat(
             canonical=True
         )
-        if np.abs(rotations[:, :3]).max() > STILL:
+        if np.abs(rotations[:, :3]).max() > still_motion:
             # q and -q turn alike, but values between two keyframes do not.
             is_opposite = (rotations[1:] * rotations[:-1]).sum(axis=1) < 0.0
             rotations[1:] *= np.cumprod(np.where(is_opposite, -1.0, 1.0))[:, None]
