@@ -12,11 +12,12 @@ whole mesh for comparison. `refine(positions, out=stream)` writes straight into 
 `Shortening` measures how far the skin is. `Embedding` carries a fine mesh with a coarse one.
 `check` is for tests: it names the relation that a refined mesh breaks.
 
-`kahler` follows the paper by default. Its options: `scheme` says where points go,
-`criterion` which edges are split, `blend` that nothing pops, `coherent` that no triangulation
-turns, `attributes` what rides along, `crease_angle` what stays sharp. Schemes, criteria and
-refiners of somebody else join by name: `schemes.register`, `criteria.register`,
-`refiners.register`, or an entry point; `Scheme`, `Criterion` and `BaseRefiner` are to derive from.
+`kahler` follows the paper by default. Its options: `scheme` says where points go, `criterion` which
+edges are split, `splits` that they are the same in every frame, `blend` that nothing pops,
+`coherent` that no triangulation turns, `attributes` what rides along, `crease_angle` what stays
+sharp. Schemes, criteria and refiners of somebody else join by name: `schemes.register`,
+`criteria.register`, `refiners.register`, or an entry point; `Scheme`, `Criterion` and `BaseRefiner`
+are to derive from.
 
 One room for each subject; each may import from those above it, and from jit.py, which compiles it
 all, and geometry/, which lie beside this folder:
@@ -58,6 +59,7 @@ from .kahler.criterion import (
     criteria,
 )
 from .kahler.frame import FrameBuffers
+from .kahler.given_splits import splits_of_clip
 from .kahler.refiner import Kahler
 from .kahler.smoothing import LoopScheme, Scheme, schemes
 from .mesh.connectivity import Connectivity, connect
@@ -107,6 +109,7 @@ __all__ = [
     "parameters",
     "refiners",
     "schemes",
+    "splits_of_clip",
     "weld",
 ]
 

@@ -8,7 +8,8 @@ import numpy.typing as npt
 from ..geometry.read_only import read_only
 from .border.plugin import RefinedMesh, View
 from .border.registry import create
-from .mesh.arrays import Doubles, Flags, Wide
+from .kahler.refiner import Kahler
+from .mesh.arrays import Doubles, Flags, Indices, Small, Wide
 from .mesh.seams import weld as weld_vertices
 from .mesh.validation import checked_mesh
 
@@ -46,7 +47,8 @@ class WeldedRefiner:
         None for 1e-9, or the last bits of the points' type where that is more. `seams`: whether
         welded vertices part again in the output, which they need only if they carry data.
         `options`: those of `create_kahler`, but for texture coordinates and attributes: `carry`
-        does that. Raises ValueError as `create` does.
+        does that. With `splits`, of the welded `edges`, all frames have the same triangles.
+        Raises ValueError as `create` does.
         """
         rest, given = checked_mesh(points, triangles, ("points", "triangles"))
         self.triangles = read_only(given)
@@ -61,15 +63,26 @@ class WeldedRefiner:
         self._parts = seams and len(self._kept) < len(rest)
         # The number of a doubled vertex stands for its texture coordinate.
         numbers = {"uv": np.zeros((len(rest), 2)), "face_uv": self.triangles}
-        self._refiner = create(
-            "kahler",
-            self._faces,
-            rest[self._kept],
-            **(numbers if self._parts else {}),
-            **{**SMOOTH, **options},
+        chosen = {**SMOOTH, **options}
+        if options.get("splits") is not None and "criterion" not in options:
+            del chosen["criterion"]
+        refiner = create(
+            "kahler", self._faces, rest[self._kept], **(numbers if self._parts else {}), **chosen
         )
+        assert isinstance(refiner, Kahler)
+        self._refiner = refiner
         self._mesh: RefinedMesh | None = None
         self._origins: tuple[Wide, Doubles] | None = None
+
+    @property
+    def edges(self) -> Indices:
+        """End points of each edge, shape (E, 2), among the welded vertices."""
+        return self._refiner.edges
+
+    @property
+    def splits(self) -> Small:
+        """How often each edge was split in the last frame, shape (E,), read only."""
+        return self._refiner.splits
 
     def refine(self, points: npt.ArrayLike, view: View | None = None) -> RefinedMesh:
         """Turn a frame of all points, shape (V, 3), into triangles, as `Refiner.refine` does.
@@ -84,7 +97,8 @@ class WeldedRefiner:
             )
         frame = frame if frame.dtype.kind == "f" else frame.astype(np.float64)
         self._mesh = self._refiner.refine(frame[self._kept], view=view)
-        self._origins = None
+        if self._refiner.topology is None:
+            self._origins = None
         return self._mesh
 
     def carry(self, values: npt.ArrayLike) -> npt.NDArray[Any]:

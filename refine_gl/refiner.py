@@ -50,6 +50,7 @@ def create_kahler_gl(
     threshold_once: float = THRESHOLD_ONCE,
     threshold_twice: float = THRESHOLD_TWICE,
     criterion: str | Criterion | Sequence[str | Criterion] = "normal",
+    splits: npt.ArrayLike | None = None,
     scheme: Literal["loop", "cubic"] = "loop",
     blend: bool | None = None,
     coherent: bool = False,
@@ -61,6 +62,8 @@ def create_kahler_gl(
       split once or twice, for the paper's criterion, "normal".
     - `criterion`: "normal", "rest", "displacement", several as "normal+rest"; others, named or as
       objects, are measured by the processor in every frame.
+    - `splits`: 0, 1 or 2 for every edge, shape (E,), in place of a criterion: all frames have the
+      same vertices and triangles.
     - `scheme`: "loop", the paper's, with its normals, or "cubic", with those of its own surface.
     - `blend`: whether points grow out of their edges, so that nothing pops. None, the default,
       chooses True for "cubic", unless it is `coherent`, and False for "loop", which has no other.
@@ -80,7 +83,7 @@ def create_kahler_gl(
         raise ValueError('blend=True needs scheme="cubic" in kahler-gl, and coherent=False')
     if blend is None:
         blend = scheme == "cubic" and not coherent
-    decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
+    decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice), splits)
     settings = Settings(scheme, decides, blend, bool(coherent))
     if scheme == "cubic" and values.get("crease_angle") is not None:
         _warn_once("kahler-gl: cubic edges beside creases are refined by the processor (kahler)")

@@ -17,7 +17,6 @@ from risorius.refine import (
     Displacement,
     Maximum,
     NormalDrop,
-    RestCurvature,
     View,
 )
 from risorius.refine.beyond.blending import FANS, RAMP_WIDTH
@@ -81,7 +80,7 @@ class Rules:
             )
         self._drop = next((each for each in parts if type(each) is NormalDrop), None)
         self._displacement = next((each for each in parts if type(each) is Displacement), None)
-        still = [each for each in parts if type(each) is RestCurvature]
+        still = [each for each in parts if each.is_constant]
         taken = [self._drop, self._displacement, *still]
         others = [each for each in parts if not any(each is one for one in taken)]
         self.others = Maximum(others) if others else None

@@ -13,7 +13,7 @@ import numpy.typing as npt
 import pyvista
 from tqdm import tqdm
 
-from .refine import View, WeldedRefiner
+from .refine import View, WeldedRefiner, splits_of_clip
 from .refine.mesh.arrays import Wide
 
 NORMALS = "Normals"  # what PyVista's own filters call them
@@ -26,6 +26,7 @@ class PolyDataRefiner:
     def __init__(self, mesh: pyvista.PolyData, **options: Any) -> None:
         """Bind to a mesh at rest; see `RisoriusAccessor.refiner`."""
         self._rest = mesh.copy()
+        self._options = options
         triangles, self._cells = triangles_of(mesh)
         if len(triangles) == 0:
             raise pyvista.MissingDataError("mesh has no faces, so there is nothing to refine")
@@ -81,8 +82,37 @@ class PolyDataRefiner:
             refined.set_active_scalars(active, preference=field)  # type: ignore[arg-type]
         return refined
 
+    def with_one_topology(
+        self,
+        frames: Iterable[pyvista.PolyData | npt.ArrayLike],
+        *,
+        view: View | None = None,
+    ) -> "PolyDataRefiner":
+        """Make a refiner whose frames all have the same points and cells, in the same order.
+
+        Parameters
+        ----------
+        frames : iterable of pyvista.PolyData or array_like
+            The frames of a clip. Each edge is split as often as the frame that needs it most.
+        view : risorius.refine.View, optional
+            As for `refine`.
+
+        Returns
+        -------
+        PolyDataRefiner
+            It refines other frames, too, with the same points and cells.
+        """
+        points = (each.points if isinstance(each, pyvista.PolyData) else each for each in frames)
+        splits = splits_of_clip(self._refiner, map(np.asarray, points), view)
+        options = {name: value for name, value in self._options.items() if name != "criterion"}
+        return PolyDataRefiner(self._rest, **{**options, "splits": splits})
+
     def refine_all(
-        self, frames: Iterable[pyvista.PolyData | npt.ArrayLike], *, progress_bar: bool = False
+        self,
+        frames: Iterable[pyvista.PolyData | npt.ArrayLike],
+        *,
+        fixed: bool = False,
+        progress_bar: bool = False,
     ) -> Iterator[pyvista.PolyData]:
         """Refine many frames as they are asked for, each as `refine` does.
 
@@ -90,11 +120,18 @@ class PolyDataRefiner:
         ----------
         frames : iterable of pyvista.PolyData or array_like
             Meshes or points.
+        fixed : bool, default: False
+            Whether all frames get the same points and cells in the same order. All of `frames` are
+            read before the first result then; see `with_one_topology`.
         progress_bar : bool, default: False
             Display a progress bar to indicate progress.
         """
+        refiner = self
+        if fixed:
+            frames = list(frames)
+            refiner = self.with_one_topology(frames)
         for frame in tqdm(frames, desc="Refining", disable=not progress_bar):
-            yield self.refine(frame)
+            yield refiner.refine(frame)
 
 
 class Cells(NamedTuple):

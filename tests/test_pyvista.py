@@ -209,6 +209,21 @@ def test_many_frames(capsys):
     assert not capsys.readouterr().err
 
 
+def test_one_topology_for_all_frames():
+    """`fixed=True` gives all frames the same points and cells, in the order of the same places."""
+    mesh = plane()
+    frames = [wavy(mesh, height) for height in (0.0, 0.1, 0.3)]
+    refiner = mesh.risorius.refiner(scheme="loop", criterion="normal")
+    changing = list(refiner.refine_all(frames))
+    fixed = list(refiner.refine_all(iter(frames), fixed=True))
+    assert len({each.n_cells for each in changing}) == 3
+    for each in fixed:
+        np.testing.assert_array_equal(each.regular_faces, fixed[0].regular_faces)
+        np.testing.assert_array_equal(each.cell_data["number"], fixed[0].cell_data["number"])
+        np.testing.assert_array_equal(each.point_data["speed"], fixed[0].point_data["speed"])
+    assert fixed[0].n_cells >= max(each.n_cells for each in changing)
+
+
 def test_mistakes_are_reported():
     """As PyVista does: its own errors for missing cells, ValueError with both sizes otherwise."""
     mesh = plane()

@@ -48,10 +48,10 @@ class Diagram:
         """The finished picture, shape (height, width, 3)."""
         return np.asarray(self._image.resize(self.size, PIL.Image.Resampling.LANCZOS))
 
-    def line(self, points: Sequence[Place]) -> None:
-        """A polyline."""
+    def line(self, points: Sequence[Place], colour: Colour = INK, width: float = 1.2) -> None:
+        """A polyline; its width in pixels."""
         places = [self._place(point) for point in points]
-        self._draw.line(places, fill=INK, width=round(1.2 * SCALE), joint="curve")
+        self._draw.line(places, fill=colour, width=round(width * SCALE), joint="curve")
 
     def polygon(self, points: Sequence[Place], fill: Colour) -> None:
         """A filled area."""

@@ -117,9 +117,9 @@ class Blended(Kahler):
         self._metric = np.zeros(len(self.connectivity.edges), dtype=np.float32)
 
     @property
-    def vertex_capacity(self) -> int:
+    def _most_vertices(self) -> int:
         """Most output vertices: one in the middle of every triangle, too."""
-        return super().vertex_capacity + len(self.connectivity.faces)
+        return super()._most_vertices + len(self.connectivity.faces)
 
     def _mark(self, view: View | None) -> None:
         """Decide how far the points of every edge have grown, and so how often it is split."""

@@ -33,6 +33,7 @@ class RestCurvature(Measuring):
     """
 
     uses_normals = False
+    is_constant = True
 
     def __init__(self, once: float = 0.00077, twice: float = 0.0053) -> None:
         """`once`, `twice`: measures in sizes of the mesh, so a fine mesh is left as it is.

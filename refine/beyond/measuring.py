@@ -51,6 +51,7 @@ class Maximum(Criterion):
             raise ValueError("criterion: an empty list decides nothing; name at least one")
         self.parts = tuple(criteria)
         self.uses_normals = any(part.uses_normals for part in criteria)
+        self.is_constant = all(part.is_constant for part in criteria)
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ..border.corner_values import Values
 from ..kahler.criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, NormalDrop, criteria
+from ..kahler.given_splits import GivenSplits
 from ..kahler.refiner import Kahler
 from ..kahler.smoothing import Scheme, schemes
 from .blending import Blended
@@ -19,13 +20,14 @@ from .measuring import Maximum
 from .surface_normals import RefinedNormals
 
 
-def create_kahler(
+def create_kahler(  # noqa: PLR0913 - one argument for each option
     faces: npt.ArrayLike,
     rest_positions: npt.ArrayLike,
     *,
     threshold_once: float = THRESHOLD_ONCE,
     threshold_twice: float = THRESHOLD_TWICE,
     criterion: str | Criterion | Sequence[str | Criterion] = "normal",
+    splits: npt.ArrayLike | None = None,
     scheme: str | Scheme = "loop",
     detail: FinerMesh | None = None,
     blend: bool | None = None,
@@ -40,6 +42,8 @@ def create_kahler(
     - `criterion`: "normal", "rest", "silhouette", "border", "displacement", another
       name of `refine.criteria`, an object, or a list of them, of which the one counts that asks for
       most; "normal+rest" is such a list.
+    - `splits`: 0, 1 or 2 for every edge, shape (E,), in place of a criterion: all frames have the
+      same vertices and triangles (`splits_of_clip`).
     - `scheme`: "loop", the paper's, "cubic", "detail", another name of `refine.schemes`, or an
       object.
     - `detail`: for "detail" the finer mesh at rest, its positions and its triangles.
@@ -52,7 +56,7 @@ def create_kahler(
     - `values`: `uv`, `face_uv`, `attributes` and `crease_angle`, as `create` takes them.
     """
     chosen = with_normals(scheme_of(scheme, detail), normals)
-    decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
+    decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice), splits)
     for name, flag in (("blend", blend), ("coherent", coherent)):
         if flag not in (None, True, False):
             raise ValueError(f"{name} must be True or False, got {flag!r}")
@@ -100,9 +104,21 @@ def with_normals(chosen: Scheme, normals: str | None) -> Scheme:
 
 
 def criterion_of(
-    chosen: str | Criterion | Sequence[str | Criterion], normal_drop: NormalDrop
+    chosen: str | Criterion | Sequence[str | Criterion],
+    normal_drop: NormalDrop,
+    splits: npt.ArrayLike | None = None,
 ) -> Criterion:
-    """Return the criterion of a name, of several, or of an object; `normal_drop` for "normal"."""
+    """Return the criterion of a name, of several, of an object, or of given splits, shape (E,).
+
+    `normal_drop`: for "normal".
+    """
+    if splits is not None:
+        if not (isinstance(chosen, str) and chosen == "normal"):
+            raise ValueError(
+                "splits= says how often each edge is split, and so does criterion=; pass one of "
+                f"the two, got criterion={chosen!r} as well"
+            )
+        return GivenSplits(splits)
     if isinstance(chosen, str) and "+" in chosen:
         chosen = chosen.split("+")
     if isinstance(chosen, str):

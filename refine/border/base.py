@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...geometry.read_only import read_only
-from ..mesh.arrays import Doubles, Floats, Indices, Small
+from ..mesh.arrays import Doubles, Floats, Indices, Small, Unsigned
 from ..mesh.connectivity import Connectivity, connect_writable
 from ..mesh.creases import with_creases
 from ..mesh.normals import vertex_normals
@@ -97,7 +97,7 @@ class BaseRefiner(Refiner):
             own.reserve(vertex_count, triangle_count)
             seen = self._accepted
             if seen.vertices is not own.vertices or seen.triangles is not own.triangles:
-                self._accept(own, vertex_count, triangle_count)
+                self._take_arrays(own.vertices, own.triangles, own.source)
         return self._accepted
 
     def find_normals(self) -> None:
@@ -222,11 +222,15 @@ class BaseRefiner(Refiner):
         check_lent("vertices", vertices, np.float32, (vertex_count, self.vertex_columns))
         check_lent("triangles", triangles, np.uint32, (triangle_count, 3))
         check_lent("source", source, np.int32, (triangle_count,))
+        self._take_arrays(vertices, triangles, source)
+
+    def _take_arrays(self, vertices: Floats, triangles: Unsigned, source: Indices) -> None:
         self._accepted = StreamArrays(vertices, triangles, source)
         self._geometry = vertices[:, 0:3], vertices[:, 3:6]
 
     @cached_property
     def _own_stream(self) -> OwnStream:
+        """The stream of frames that are lent none."""
         return OwnStream(self.vertex_columns, self.vertex_capacity, self.triangle_capacity)
 
     def values_in(self, vertices: Floats) -> tuple[Floats | None, Mapping[str, Floats]]:

@@ -27,8 +27,19 @@ class OwnStream:
     def __init__(self, columns: int, vertex_capacity: int, triangle_capacity: int) -> None:
         self._most = vertex_capacity, triangle_capacity
         self.vertices = np.zeros((0, columns), dtype=np.float32)
-        self.triangles = np.zeros((0, 3), dtype=np.uint32)
-        self.source = np.zeros(0, dtype=np.int32)
+        self.triangles: Unsigned = np.zeros((0, 3), dtype=np.uint32)
+        self.source: Indices = np.zeros(0, dtype=np.int32)
+
+    @classmethod
+    def with_triangles(
+        cls, columns: int, vertex_count: int, triangles: Unsigned, source: Indices
+    ) -> "OwnStream":
+        """A stream of frames that all have these triangles, and so many vertices."""
+        stream = cls(columns, vertex_count, len(triangles))
+        stream.vertices = np.zeros((vertex_count, columns), dtype=np.float32)
+        stream.triangles = triangles
+        stream.source = source
+        return stream
 
     def reserve(self, vertex_count: int, triangle_count: int) -> None:
         """Make room for a frame of this size; the frame before is lost."""

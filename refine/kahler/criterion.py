@@ -58,6 +58,9 @@ class Criterion:
     """Criteria that this one asks. Each of them, too, serves one refiner only."""
     uses_normals = True
     """Whether it reads the normals that it is handed, which are not found where nobody does."""
+    is_constant = False
+    """Whether every frame gets the same splits. A refiner asks once then, at its first frame, and
+    keeps its vertices and triangles in number and order."""
     _metric: Floats = np.zeros(0, dtype=np.float32)
     """What `mark` follows from, shape (E,)."""
 

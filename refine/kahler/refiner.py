@@ -8,20 +8,25 @@ Kähler, Haber, Seidel 2003, sections 4.1 to 4.4. One frame is `Kahler.fill`:
     place       moved vertices, first level, second level  (4.2, smoothing.py)
     look up     subtriangles of each triangle              (4.3, table.py, look_up.py)
 
+Where the criterion never changes, marking, numbering and looking up are done once (`Topology`): all
+frames have the same triangles, and a frame is normals and places.
+
 Differs from the paper: normals of new points are interpolated linearly and then normalised; the
 deformed mesh is copied once, as a shield against a simulation that runs on meanwhile.
 """
 
-from typing import Unpack
+from functools import cached_property
+from typing import NamedTuple, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.read_only import read_only
 from ..border.base import BaseRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
-from ..border.stream import StreamArrays
-from ..mesh.arrays import Doubles, Floats, Indices, Short, Small
+from ..border.stream import OwnStream, StreamArrays
+from ..mesh.arrays import Doubles, Floats, Indices, Short, Small, Unsigned
 from ..mesh.connectivity import Connectivity
 from ..mesh.threads import beside
 from .coherence import Coherent
@@ -35,6 +40,16 @@ from .look_up import (
 )
 from .smoothing import LoopScheme, Scheme
 from .table import CONFIGURATIONS, MOST_SPLITS, POINTS_OF_EDGE, Patterns
+
+
+class Topology(NamedTuple):
+    """The triangles of all frames, where every frame has the same."""
+
+    vertex_count: int
+    triangles: Unsigned
+    """Shape (M, 3), read only."""
+    source: Indices
+    """Input triangle that each is part of, shape (M,), read only."""
 
 
 class Kahler(BaseRefiner):
@@ -80,7 +95,6 @@ class Kahler(BaseRefiner):
             frame.counts,
         )
         self.edge_splits = frame.splits[: len(mesh.edges)]
-        self._out: StreamArrays
         self._own(self._criterion, *self._criterion.parts, self._scheme, *self._scheme.parts)
         self._criterion.set_scheme(self._scheme)
         self.find_normals()
@@ -89,12 +103,27 @@ class Kahler(BaseRefiner):
 
     @property
     def vertex_capacity(self) -> int:
-        """Most output vertices: every wedge, and three points on every attribute edge."""
+        """Most output vertices: every wedge, and three points on every attribute edge.
+
+        Exactly those of a frame where the criterion never changes.
+        """
+        if self.topology is not None:
+            return self.topology.vertex_count
+        return self._most_vertices
+
+    @property
+    def _most_vertices(self) -> int:
+        """Output vertices where every edge is split twice."""
         return len(self.connectivity.wedge_vertices) + 3 * len(self.connectivity.attribute_edges)
 
     @property
     def triangle_capacity(self) -> int:
-        """Most output triangles: the longest row of the table for each."""
+        """Most output triangles: the longest row of the table for each.
+
+        Exactly those of a frame where the criterion never changes.
+        """
+        if self.topology is not None:
+            return len(self.topology.triangles)
         return int(self._patterns.subtriangles.shape[1] * len(self.connectivity.faces))
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
@@ -102,18 +131,58 @@ class Kahler(BaseRefiner):
         if self._criterion.uses_normals or self._scheme.uses_normals:
             self.find_normals()
         self._scheme.prepare(self._frame)
+        topology = self.topology
+        if topology is not None:
+            return self._fill_kept(stream, topology)
         self._mark(view)
         vertex_count, triangle_count = self._number()
-        out = self.reserve(stream, vertex_count, triangle_count)
-        if out.vertices is not self._frame.rows:
-            self._frame = self._frame._replace(rows=out.vertices)
-        self._out = out
-        look_up = beside(self._look_up, triangle_count)
+        out = self._reserve_rows(stream, vertex_count, triangle_count)
+        look_up = beside(lambda: self._look_up(out.triangles, out.source), triangle_count)
         try:
             self._place(out.vertices)
         finally:
             look_up()
         return vertex_count, triangle_count
+
+    def _fill_kept(self, stream: Stream, topology: Topology) -> tuple[int, int]:
+        """Write a frame whose vertices and triangles are numbered already."""
+        vertex_count = topology.vertex_count
+        triangle_count = len(topology.triangles)
+        out = self._reserve_rows(stream, vertex_count, triangle_count)
+        if out.triangles is not topology.triangles:
+            out.triangles[:triangle_count] = topology.triangles
+            out.source[:triangle_count] = topology.source
+        self._place(out.vertices)
+        return vertex_count, triangle_count
+
+    def _reserve_rows(self, stream: Stream, vertex_count: int, triangle_count: int) -> StreamArrays:
+        """Return the arrays of a stream, whose rows are those of the frame from now on."""
+        out = self.reserve(stream, vertex_count, triangle_count)
+        if out.vertices is not self._frame.rows:
+            self._frame = self._frame._replace(rows=out.vertices)
+        return out
+
+    @cached_property
+    def topology(self) -> Topology | None:
+        """Vertices and triangles of all frames, where the criterion never changes; None elsewhere.
+
+        None, too, where triangulations go on from earlier ones, which may be set at any time.
+        """
+        if not self._criterion.is_constant or self.history is not None:
+            return None
+        self._mark(None)
+        vertex_count, triangle_count = self._number()
+        triangles = np.zeros((triangle_count, 3), dtype=np.uint32)
+        source = np.zeros(triangle_count, dtype=np.int32)
+        self._look_up(triangles, source)
+        return Topology(vertex_count, read_only(triangles), read_only(source))
+
+    @cached_property
+    def _own_stream(self) -> OwnStream:
+        """The stream of frames that are lent none."""
+        if self.topology is not None:
+            return OwnStream.with_triangles(self.vertex_columns, *self.topology)
+        return super()._own_stream
 
     def _look_up_in(self, patterns: Patterns, rows: Short) -> None:
         """Take a table, and where each triangle says which row of it is its own."""
@@ -157,10 +226,9 @@ class Kahler(BaseRefiner):
             copy_along_attribute_edges(self.connectivity.attribute_edges, self._frame)
             place_attributes(self.connectivity.attribute_edge_uv, self._frame, self._values.values)
 
-    def _look_up(self) -> None:
+    def _look_up(self, triangles: Unsigned, source: Indices) -> None:
         """Write the subtriangles of every triangle (section 4.3)."""
-        out = self._out
-        look_up_triangles(*self._of_look_up, self._first_centre, out.triangles, out.source)
+        look_up_triangles(*self._of_look_up, self._first_centre, triangles, source)
 
     def complaint(self) -> str | None:
         """Name the criterion that has measured NaN in the last frame; None if none has.

@@ -121,6 +121,23 @@ def test_words_come_from_an_end():
     assert set(refiner.carry(["a", "b", "c"])) == {"a", "b", "c"}
 
 
+def test_splits_that_stay():
+    """With splits of a clip all frames have the same triangles, and carry the same values."""
+    ball = meshes.ball()
+    points = ball.vertices[ball.faces].reshape(-1, 3)  # each triangle by itself
+    triangles = np.arange(len(points)).reshape(-1, 3)
+    moved = [points * scale for scale in ((1.0, 1.0, 1.0), (1.0, 0.5, 1.0), (1.0, 1.0, 2.0))]
+    splits = refine.splits_of_clip(refine.WeldedRefiner(points, triangles), moved)
+    fixed = refine.WeldedRefiner(points, triangles, splits=splits)
+    frames = []
+    for each in moved:
+        mesh = fixed.refine(each)
+        frames.append([mesh.triangles.tobytes(), fixed.carry(points).tobytes()])
+        assert (fixed.splits == splits).all()
+    assert frames[0] == frames[1] == frames[2]
+    assert len(splits) == len(fixed.edges) == 192
+
+
 def test_mistakes_are_reported():
     """Wrong numbers of points and values, and too early a call."""
     points, faces = box()

@@ -69,6 +69,21 @@ def test_head(pose, is_seamed, rules, head, poses):
     refine.check(card, mesh, poses[pose])
 
 
+@pytest.mark.parametrize("scheme", ["loop", "cubic"])
+def test_splits_that_stay(scheme):
+    """With given splits all frames have the same triangles, on the card as on the processor."""
+    mesh = meshes.irregular(7)
+    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    splits = np.random.default_rng(3).integers(0, 3, edge_count)
+    processor, card = bound_twice(mesh.faces, mesh.vertices, scheme=scheme, splits=splits)
+    seen = set()
+    for seed in range(2):
+        refined = assert_same(processor, card, meshes.wrinkled(mesh, seed))
+        seen.add(refined.triangles.tobytes())
+        assert (card.splits == splits).all()
+    assert len(seen) == 1
+
+
 @both_rules
 @pytest.mark.parametrize("name", meshes.NAMED)
 def test_small_meshes(name, rules):

@@ -1,0 +1,91 @@
+"""Draw the figure of docs/one_topology.md: `python docs/figures/one_topology.py [FOLDER]`.
+
+one_topology      the same triangles in two frames of a clip, four of their vertices numbered
+
+Triangles through Pillow, from behind to the front, drawn three times too large and scaled down.
+"""
+
+from __future__ import annotations
+
+import figures
+import numpy as np
+import numpy.typing as npt
+from refinement import FAINT, INK, NEW, PAPER, SECOND, Colour, Diagram
+
+from risorius import assets, refine, sim
+from risorius.app.files import Image
+from risorius.bench.subjects import SETTLE, settled_positions
+
+Points = npt.NDArray[np.float64]
+
+EXPRESSIONS = ("joy", "surprise")
+SPLIT = (163, 204, 232)  # of triangles that are part of one that is split
+WHOLE = (242, 240, 236)
+LIGHT = np.array([-0.35, 0.45, 0.82])
+PANEL = (420, 480)
+CAPTION = 24  # pixels below the panels
+PIXELS = 2.45  # of a millimetre
+MIDDLE = (0.0, -22.0)  # of the face [mm], in the middle of a panel
+
+
+def shaded(colour: Colour, light: float) -> Colour:
+    """A colour in the light of a surface that looks toward it by this much, 0 to 1."""
+    red, green, blue = (round(part * (0.55 + 0.45 * light)) for part in colour)
+    return red, green, blue
+
+
+def draw_frame(
+    diagram: Diagram, mesh: refine.RefinedMesh, is_split: npt.NDArray[np.bool_], left: float
+) -> Points:
+    """Draw the triangles that look at the reader; return where all vertices are, (N, 2)."""
+    centre = np.array([left + PANEL[0] / 2.0, CAPTION + PANEL[1] / 2.0])
+    places = centre + PIXELS * (mesh.positions[:, :2].astype(np.float64) - MIDDLE)
+    corners = mesh.positions[mesh.triangles].astype(np.float64)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    is_inside = (np.abs(places[mesh.triangles, 0] - centre[0]) < PANEL[0] / 2.0).all(axis=1)
+    for k in np.argsort(corners[:, :, 2].mean(axis=1)):
+        if normals[k, 2] <= 0.0 or not is_inside[k]:
+            continue
+        outline = places[mesh.triangles[k]]
+        fill = SPLIT if is_split[mesh.source[k]] else WHOLE
+        diagram.polygon(list(outline), shaded(fill, max(float(normals[k] @ LIGHT), 0.0)))
+        diagram.line([*outline, outline[0]], FAINT, 0.5)
+    strip = [(left, 0), (left + PANEL[0], 0), (left + PANEL[0], CAPTION), (left, CAPTION)]
+    diagram.polygon(strip, PAPER)
+    return places
+
+
+def one_topology() -> Image:
+    """A face in two expressions, with the splits that both need together."""
+    head = assets.load("head")
+    simulation = sim.create(head)
+    frames = [settled_positions(simulation, head.expressions[each], SETTLE) for each in EXPRESSIONS]
+    splits = refine.splits_of_clip(refine.create("kahler", head.faces, head.vertices), frames)
+    refiner = refine.create("kahler", head.faces, head.vertices, splits=splits)
+    is_split = splits[refiner.triangle_edges].any(axis=1)
+    diagram = Diagram(2 * PANEL[0], PANEL[1] + CAPTION)
+    for panel, (expression, frame) in enumerate(zip(EXPRESSIONS, frames, strict=True)):
+        mesh = refiner.refine(frame)
+        left = panel * PANEL[0]
+        places = draw_frame(diagram, mesh, is_split, left)
+        if panel == 0:
+            marked = numbered(mesh, refiner.vertex_capacity)
+        for vertex in marked:
+            diagram.disc(places[vertex], SECOND, 3.2)
+            diagram.text(places[vertex] + [0.0, 11.0], str(vertex), INK, 12.0)
+        words = f"{expression}: {mesh.vertex_count} vertices, {mesh.triangle_count} triangles"
+        diagram.text((left + PANEL[0] / 2.0, CAPTION / 2.0), words, NEW, 13.0)
+    return diagram.image()
+
+
+def numbered(mesh: refine.RefinedMesh, count: int) -> list[int]:
+    """Vertices near a brow, a cheek, a corner of the mouth and the chin."""
+    wanted = np.array([(-28.0, 28.0), (34.0, -28.0), (-26.0, -50.0), (0.0, -82.0)])
+    front = np.flatnonzero(mesh.normals[:count, 2] > 0.4)
+    apart = np.linalg.norm(mesh.positions[front, None, :2] - wanted, axis=2)
+    return [int(front[k]) for k in apart.argmin(axis=0)]
+
+
+if __name__ == "__main__":
+    figures.run(__doc__, {"one_topology": one_topology})

@@ -1,0 +1,169 @@
+"""One connectivity for all frames: splits that are given, and those that a clip needs."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from risorius import refine
+from tests import meshes
+from tests.refine.cases import Forced, GivenMetric, kahler, soups
+
+LOOKS: dict[str, dict[str, Any]] = {
+    "paper": {},
+    "paper, blended": {"blend": True},
+    "paper, refined normals": {"normals": "refined"},
+    "coherent": {"coherent": True},
+    "cubic": {"scheme": "cubic"},
+    "cubic, not blended": {"scheme": "cubic", "blend": False},
+    "creases": {"scheme": "cubic", "crease_angle": 40.0},
+}
+
+
+def arrays_of(mesh: refine.RefinedMesh) -> list[bytes]:
+    """All arrays of a frame, as bytes."""
+    extra = [] if mesh.uv is None else [mesh.uv]
+    return [each.tobytes() for each in (*mesh[:4], *extra, *mesh.attributes.values())]
+
+
+@st.composite
+def clips(draw: st.DrawFn) -> tuple[meshes.Mesh, list[np.ndarray]]:
+    """Any triangles, with seams or without, and three frames of them."""
+    positions, faces = draw(soups())
+    generator = np.random.default_rng(draw(st.integers(0, 2**16)))
+    frames = [positions + generator.uniform(-0.4, 0.4, positions.shape) for _ in range(3)]
+    if not draw(st.booleans()):
+        return meshes.Mesh(positions, faces), frames
+    uv = generator.random((5, 2))
+    face_uv = generator.integers(0, 5, faces.shape).astype(np.int32)
+    return meshes.Mesh(positions, faces, uv, face_uv), frames
+
+
+@pytest.mark.parametrize("look", LOOKS)
+@settings(max_examples=25, deadline=None)
+@given(clip=clips())
+def test_a_clip_of_any_triangles(look, clip):
+    """No crack and no T-junction in any frame; one topology; nowhere coarser than a frame."""
+    mesh, frames = clip
+    inputs = [mesh.faces, mesh.vertices, *frames]
+    before = [array.tobytes() for array in inputs]
+    changing = kahler(mesh, **LOOKS[look])
+    splits = refine.splits_of_clip(changing, frames)
+    fixed = kahler(mesh, splits=splits, **LOOKS[look])
+    seen = []
+    for frame in frames:
+        refined = fixed.refine(frame)
+        refine.check(fixed, refined, frame)
+        changing.refine(frame)
+        assert (changing.splits <= fixed.splits).all()
+        assert (fixed.splits == splits).all()
+        origins = fixed.origins()
+        topology = (refined.triangles, refined.source, origins.vertices, origins.weights)
+        seen.append([array.tobytes() for array in topology])
+    assert seen[0] == seen[1] == seen[2]
+    assert [array.tobytes() for array in inputs] == before
+
+
+@pytest.mark.parametrize("look", [name for name in LOOKS if name != "coherent"])
+def test_a_frame_has_the_bits_of_one_that_decides(look):
+    """A frame is that of a refiner that comes to the same splits, attributes and all."""
+    mesh = meshes.irregular(7)
+    generator = np.random.default_rng(8)
+    splits = generator.integers(0, 3, len(refine.connect(mesh.faces, len(mesh.vertices)).edges))
+    heat = {"heat": generator.random((len(mesh.vertices), 1))}
+    options = {**LOOKS[look], "attributes": heat}
+    fixed = kahler(mesh, splits=splits, **options)
+    grown = np.where(splits > 0, splits, -np.inf)
+    deciding = kahler(mesh, criterion=GivenMetric(grown), **options)
+    for seed in range(3):
+        frame = meshes.wrinkled(mesh, seed)
+        assert arrays_of(fixed.refine(frame)) == arrays_of(deciding.refine(frame))
+
+
+def test_capacities_are_those_of_a_frame():
+    """A stream of exactly a frame's size is enough, and is written whole in every frame."""
+    mesh = meshes.irregular(7)
+    frames = [meshes.wrinkled(mesh, seed) for seed in range(3)]
+    fixed = kahler(mesh, splits=refine.splits_of_clip(kahler(mesh), frames))
+    shown = fixed.refine(frames[0])
+    assert fixed.vertex_capacity == len(shown.positions)
+    assert fixed.triangle_capacity == len(shown.triangles)
+    lent = refine.StreamArrays(
+        np.zeros((fixed.vertex_capacity, 6), np.float32),
+        np.zeros((fixed.triangle_capacity, 3), np.uint32),
+        np.zeros(fixed.triangle_capacity, np.int32),
+    )
+    for frame in frames:
+        own = arrays_of(fixed.refine(frame))
+        for array in lent:
+            array[:] = 7
+        assert arrays_of(fixed.refine(frame, out=lent)) == own
+        assert arrays_of(fixed.refine(frame)) == own
+
+
+def test_triangles_are_found_once():
+    """A criterion that never changes is asked once, and nobody can spoil the kept triangles."""
+
+    class Counting(Forced):
+        is_constant = True
+        calls = 0
+
+        def mark(self, positions: object, normals: object, splits: Any) -> None:
+            self.calls += 1
+            super().mark(positions, normals, splits)
+
+    mesh = meshes.irregular(7)
+    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    criterion = Counting(np.arange(edge_count) % 3)
+    refiner = kahler(mesh, criterion=criterion)
+    for seed in range(3):
+        refined = refiner.refine(meshes.wrinkled(mesh, seed))
+        with pytest.raises(ValueError, match="read-only"):
+            refined.triangles[0] = 0
+    assert criterion.calls == 1
+
+
+def test_the_criterion_rest_keeps_its_triangles():
+    """The criterion `rest` decides once, so its triangles stay; beside another one they do not."""
+    ball = meshes.ball(3)
+    frame = meshes.wrinkled(ball, 1)
+    assert kahler(ball, criterion="rest").topology is not None
+    both = kahler(ball, criterion="rest+normal")
+    assert both.topology is None
+    assert len(both.refine(frame).triangles) > len(both.refine(ball.vertices).triangles)
+
+
+def test_a_view_decides_as_well():
+    """The splits of a clip are those that the criterion asks for from where the eye is."""
+    ball = meshes.ball()
+    changing = kahler(ball, criterion="silhouette")
+    view = refine.View((0.0, 0.0, 4.0))
+    splits = refine.splits_of_clip(changing, [ball.vertices], view)
+    assert splits.any()
+    assert (splits == changing.splits).all()
+    assert not refine.splits_of_clip(changing, []).any()
+
+
+@pytest.mark.parametrize(
+    ("splits", "error"),
+    [
+        ([0, 1], "a number for each of the 12 edges of this mesh .refiner.edges., got 2"),
+        (np.full(12, 3), "splits must be 0, 1 or 2 for every edge.*but edge 0 has 3"),
+        (np.full(12, -1), "but edge 0 has -1"),
+        (np.zeros(12), "got float64 of shape .12,."),
+        (np.zeros((12, 1), int), "got int64 of shape .12, 1."),
+        ([[1], [1, 2]], "but is no array"),
+    ],
+)
+def test_mistakes_are_reported(splits, error):
+    """Splits of another mesh, shape, type or size are refused by a line that says what is right."""
+    with pytest.raises(ValueError, match=error):
+        kahler(meshes.octahedron(), splits=splits)
+
+
+def test_splits_and_a_criterion_exclude_each_other():
+    """Both say how often an edge is split, so one of them would be passed over."""
+    with pytest.raises(ValueError, match=r"splits= .* criterion=; pass one of the two"):
+        kahler(meshes.octahedron(), splits=np.zeros(12, int), criterion="rest")
