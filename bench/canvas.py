@@ -14,8 +14,9 @@ from PIL import ImageDraw
 from risorius import refine, render
 from risorius.app.capture.captions import INK, SHADE, font
 from risorius.app.pictures import Image
-from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport
+from risorius.app.refining.drawn_mesh import DrawnMesh
 from risorius.app.scenes import Scene
+from risorius.assets.identities import HAIR
 
 Transforms = Mapping[str, npt.NDArray[np.float64]]
 CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE)
@@ -34,29 +35,13 @@ class Drawing:
     lines: render.Lines | None = None
 
 
-class _Shown(Scene):
-    """The scene before the camera now; nothing moves it."""
-
-    drawing: Drawing
-    positions = np.zeros((0, 3))
-
-    @property
-    def parts(self) -> tuple[Any, ...]:
-        return self.drawing.parts
-
-    def bone_transforms(self) -> Transforms:
-        return self.drawing.bones
-
-
 class Canvas:
     """Draws the output of refiners, one picture at a time; a context manager."""
 
     def __init__(self, size: tuple[int, int], *, samples: int = 4) -> None:
         self.surface = render.open_offscreen(size, samples=samples)
         self.renderer = render.Renderer(self.surface)
-        self._scene = _Shown()
-        self._pipeline = Pipeline(self._scene, self.renderer)
-        self._meshes: dict[refine.Refiner, tuple[DrawnMesh, render.Stream]] = {}
+        self._meshes: dict[refine.Refiner, DrawnMesh] = {}
 
     def __enter__(self) -> Canvas:
         return self
@@ -64,26 +49,23 @@ class Canvas:
     def __exit__(self, *_: object) -> None:
         self.surface.close()
 
-    def stream_for(self, refiner: refine.Refiner) -> render.Stream:
-        """The buffers lent to a refiner, the same at every call."""
+    def mesh_of(self, refiner: refine.Refiner) -> DrawnMesh:
+        """The mesh of a refiner in buffers that are lent to it, the same at every call."""
         if refiner not in self._meshes:
             room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
-            stream = self.renderer.lend_stream(*room)
-            self._meshes[refiner] = DrawnMesh("", refiner, stream), stream
-        return self._meshes[refiner][1]
+            self._meshes[refiner] = DrawnMesh("", refiner, self.renderer.lend_stream(*room))
+        return self._meshes[refiner]
 
     def draw(
         self, refiner: refine.Refiner, positions: npt.NDArray[np.float64], drawing: Drawing
     ) -> None:
         """Refine, upload and draw, without reading back."""
-        self.stream_for(refiner)
-        self._scene.positions = positions
-        self._scene.drawing = drawing
-        viewports = [Viewport(self._meshes[refiner][0], (0, 0, *self.surface.size))]
-        overlays = [drawing.lines] if drawing.lines else []
-        self.surface.begin()
-        self._pipeline.draw(drawing.camera, drawing.style, viewports, overlays=overlays)
-        self.surface.end()
+        drawn = self.mesh_of(refiner)
+        drawn.refine(positions, drawing.camera)
+        drawn.upload()
+        splits = drawing.style.colour_by is render.ColourBy.SPLITS
+        values = drawn.splits() if splits else None
+        self._draw(render.Skin(drawn.stream, values=values), drawing)
 
     def draw_image(
         self, refiner: refine.Refiner, positions: npt.NDArray[np.float64], drawing: Drawing
@@ -105,11 +87,20 @@ class Canvas:
         stream.vertices[:] = np.hstack([positions, normals])
         stream.triangles[:] = faces
         stream.upload(len(positions), len(faces))
-        self.surface.begin()
-        self.renderer.draw_background(drawing.style)
-        self.renderer.draw_mesh(stream, self.renderer.view(drawing.camera), drawing.style)
-        self.surface.end()
+        self._draw(render.Skin(stream), drawing)
         return self.surface.read()
+
+    def _draw(self, skin: render.Skin, drawing: Drawing) -> None:
+        """Draw a skin with the parts and lines of a drawing."""
+        view = render.CameraView(drawing.camera)
+        parts = [render.PlacedPart.of(part, drawing.bones) for part in drawing.parts]
+        lines = [] if drawing.lines is None else [drawing.lines]
+        self.renderer.draw(render.Frame(view, drawing.style, skin, parts, overlays=lines))
+
+
+def parts_without_hair(scene: Scene) -> tuple[Any, ...]:
+    """The parts of a scene but for hair, which hides form."""
+    return tuple(part for part in scene.parts if not part.name.startswith(HAIR))
 
 
 def image_table(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Image:

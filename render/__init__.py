@@ -8,11 +8,9 @@ Takes arrays and knows nothing of where they come from. OpenGL 3.3 core and GLSL
         ...write stream.vertices and stream.triangles...
         stream.upload(vertex_count, triangle_count)
         camera = render.OrbitCamera.framing(vertices, view="three-quarter")
-        surface.begin()
-        renderer.draw_background(render.Style())
-        renderer.draw_mesh(stream, renderer.view(camera), render.Style())
-        surface.end()
-        frame = surface.read()
+        view = render.CameraView(camera)
+        renderer.draw(render.Frame(view, render.Style(), render.Skin(stream)))
+        image = surface.read()
 
 Source: Kähler et al. 2003, Fig. 1, the rendering stage.
 """
@@ -20,9 +18,9 @@ Source: Kähler et al. 2003, Fig. 1, the rendering stage.
 from .camera import VIEWS, CameraView, OrbitCamera
 from .compositor import Detail
 from .errors import GLError
+from .frame import NO_MAPS, Frame, Part, PlacedPart, Plane, Skin, SkinMaps
 from .geometry_buffer import Geometry
 from .lines import Lines
-from .parts import Part
 from .probe import Finding, probe
 from .render_target import Rectangle
 from .renderer import Renderer
@@ -45,7 +43,6 @@ from .style import (
 )
 from .surface import Image, OffscreenSurface, Surface, open_offscreen
 from .texture import BumpMap, Texture
-from .translucency import Plane
 from .window import WindowSurface, open_window
 
 __all__ = [
@@ -54,6 +51,7 @@ __all__ = [
     "DARK",
     "LIGHT",
     "LIGHTS",
+    "NO_MAPS",
     "SKIN",
     "SPLIT_PALETTE",
     "VIEWS",
@@ -65,6 +63,7 @@ __all__ = [
     "ColourBy",
     "Detail",
     "Finding",
+    "Frame",
     "GLError",
     "Geometry",
     "GpuStream",
@@ -74,10 +73,13 @@ __all__ = [
     "OffscreenSurface",
     "OrbitCamera",
     "Part",
+    "PlacedPart",
     "Plane",
     "Rectangle",
     "Renderer",
     "Shading",
+    "Skin",
+    "SkinMaps",
     "Stream",
     "Style",
     "Surface",

@@ -1,6 +1,6 @@
 """The camera: turns about a point of the scene, like a portrait photographer walking round.
 
-A `CameraView` is one camera that looks into a viewport.
+A `CameraView` is one camera that looks into a viewport; a `PlacedView` has its pixels and matrices.
 
 World: x to the subject's left (the viewer's right), y up, z toward the viewer of the front view.
 Matrices are pyrr's: float64, shape (4, 4), row vectors times matrix, so their bytes have the order
@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from pyrr import Matrix44
 
-from .render_target import Rectangle, intersection
+from .render_target import Rectangle, intersection, scaled
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -184,23 +184,46 @@ class OrbitCamera:
         self.narrowest_aspect = widest / usable
 
 
+@dataclass(frozen=True, eq=False)
 class CameraView:
-    """The matrices of one camera in one viewport, for row vectors, computed once.
+    """A camera, as it stands when this is made, that looks into a viewport.
 
-    clip: the part of the viewport outside which nothing is drawn.
+    viewport: x, y, width, height [pixels of the surface] from the lower left corner, whose aspect
+        the picture takes on; None: all of the surface.
+    clip: the part of the surface outside which nothing is drawn; None: all of the viewport. Two
+        clips make one image of two meshes.
+    """
+
+    camera: OrbitCamera
+    viewport: Rectangle | None = None
+    clip: Rectangle | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "camera", self.camera.copy())
+
+
+class PlacedView:
+    """The pixels and the matrices of a view on one target, for row vectors, computed once.
+
+    viewport, clip: of the target [pixels].
     world_to_view: world -> view space; projection: view -> clip space; shape (4, 4), float64.
     """
 
-    def __init__(
-        self, camera: OrbitCamera, viewport: Rectangle, clip: Rectangle | None = None
-    ) -> None:
+    def __init__(self, view: CameraView, size: tuple[int, int], scale: float = 1.0) -> None:
+        """size: of the target [pixels]. scale: its pixels per pixel of the surface.
+
+        Raises ValueError for a viewport without pixels.
+        """
+        camera = view.camera
+        whole = (0, 0, *size)
         self.camera = camera
-        self.viewport = viewport
-        self.clip = viewport if clip is None else intersection(viewport, clip)
+        self.viewport = whole if view.viewport is None else scaled(view.viewport, scale)
+        self.clip = self.viewport
+        if view.clip is not None:
+            self.clip = intersection(self.viewport, scaled(view.clip, scale))
+        aspect = self.viewport[2] / self.viewport[3]
         self.world_to_view: FloatArray = np.asarray(camera.view_matrix())
-        self.projection: FloatArray = np.asarray(
-            camera.projection_matrix(viewport[2] / viewport[3])
-        )
+        self.projection: FloatArray = np.asarray(camera.projection_matrix(aspect))
 
     @cached_property
     def world_to_clip(self) -> FloatArray:

@@ -5,11 +5,13 @@ is enlarged here, or smoothed. The scene's own pixels stay as they are: when onl
 the scene is laid under it again without being drawn again.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import moderngl
 
+from .camera import PlacedView
 from .programs import compile_program
 from .render_target import Rectangle, RenderTarget
 from .style import Background
@@ -99,6 +101,9 @@ class Compositor:
         return bytes(self.frame.read(components=3, alignment=1))
 
 
+_Area = tuple[Rectangle, Rectangle]  # a viewport, and its part that is painted
+
+
 class Backdrop:
     """Paints backgrounds into the frame of a surface's target: once, and copied into every frame.
 
@@ -111,36 +116,41 @@ class Backdrop:
         self._program = compile_program(gl, "background.glsl")
         self._triangle = gl.vertex_array(self._program, [])
         self._store: moderngl.Framebuffer | None = None
-        self._stored: tuple[tuple[Rectangle, ...], Background] | None = None
+        self._stored: dict[_Area, Background | None] | None = None
 
     def paint(
-        self, target: RenderTarget, viewports: tuple[Rectangle, ...], background: Background | None
+        self,
+        target: RenderTarget,
+        views: Sequence[PlacedView],
+        backgrounds: Sequence[Background | None],
     ) -> None:
-        """Paint the background over viewports of a frame on which nothing was drawn yet.
+        """Paint a background behind each view, in a frame on which nothing was drawn yet.
 
         None: nothing is there, not even black.
         """
-        if background is None:
-            target.use_frame()
-            for viewport in viewports:
-                target.frame.clear(0.0, 0.0, 0.0, 0.0, viewport=viewport)
-            return
         if self._store is None or self._store.size != target.size:
             self._store = self._gl.framebuffer([self._gl.renderbuffer(target.size, 4)])
             self._stored = None
-        if self._stored != (viewports, background):
+        areas = [(view.viewport, view.clip) for view in views]
+        wanted = dict(zip(areas, backgrounds, strict=True))
+        if self._stored != wanted:
             self._store.use()
             self._gl.scissor = None
             self._store.clear(0.0, 0.0, 0.0, 1.0)  # around them, as an empty frame
-            for viewport in viewports:
-                self._paint(viewport, background)
-            self._stored = viewports, background
+            for (viewport, clip), background in wanted.items():
+                if min(clip[2:]) > 0:
+                    self._paint(viewport, clip, background)
+            self._stored = wanted
         target.use_frame()
         self._gl.copy_framebuffer(target.frame, self._store)
 
-    def _paint(self, viewport: Rectangle, background: Background) -> None:
+    def _paint(self, viewport: Rectangle, clip: Rectangle, background: Background | None) -> None:
         gl = self._gl
-        gl.viewport = gl.scissor = viewport
+        gl.viewport = viewport
+        gl.scissor = clip
+        if background is None:
+            gl.fbo.clear(0.0, 0.0, 0.0, 0.0, viewport=clip)
+            return
         self._program["centre"] = background.centre
         self._program["edge"] = background.edge
         self._triangle.render(moderngl.TRIANGLES, vertices=3)

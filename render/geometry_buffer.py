@@ -12,10 +12,10 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .camera import CameraView
-from .parts import PlacedPart
+from .camera import PlacedView
+from .frame import Frame
+from .parts import PlacedBuffers
 from .programs import compile_program, write_uniform
-from .stream import MeshBuffers
 from .texture import BumpMap
 
 Floats = npt.NDArray[np.float32]
@@ -32,15 +32,15 @@ class Geometry(NamedTuple):
     normal: Floats
     """Interpolated unit normals of the side that is seen, shape (H, W, 3)."""
     triangle: npt.NDArray[np.int32]
-    """Number among the triangles of the stream, and after them those of each part, (H, W)."""
+    """Number among the triangles of the skin, then of each part without strands, (H, W)."""
     is_inside: npt.NDArray[np.bool_]
-    """Whether a triangle of the stream is seen from its back, shape (H, W)."""
+    """Whether a triangle of the skin is seen from its back, shape (H, W)."""
     uv: Floats
     """Texture coordinates; 0 on parts and in streams without, shape (H, W, 2)."""
 
 
 class GeometryBuffer:
-    """Float textures of one size, drawn on whenever somebody asks."""
+    """Float textures of one size."""
 
     def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
         self.size = size
@@ -49,30 +49,27 @@ class GeometryBuffer:
         self._textures = [gl.texture(size, components, dtype="f4") for components in (4, 4)]
         self._target = gl.framebuffer(self._textures, gl.depth_renderbuffer(size))
 
-    def draw(
-        self,
-        stream: MeshBuffers,
-        parts: Sequence[PlacedPart],
-        view: CameraView,
-        maps: Mapping[BumpMap, float],
-    ) -> Geometry:
-        """Draw the last upload of `stream`, and parts; see `Renderer.draw_geometry`."""
+    def draw(self, frame: Frame, parts: Sequence[PlacedBuffers], view: PlacedView) -> Geometry:
+        """Draw the numbers of a frame's skin and of these parts of it; see `Renderer.read`."""
         gl = self._gl
         program = self._program_of({})
         self._target.use()
-        gl.viewport = (0, 0, *self.size)
-        gl.scissor = None
         gl.enable_only(moderngl.DEPTH_TEST)
+        gl.scissor = None
         self._target.clear()
-        skin = self._program_of(maps)
-        for each in (program, skin):
-            write_uniform(each, "projection", view.projection)
-        write_uniform(skin, "model_view", view.world_to_view)
-        skin["first"] = 1.0
-        stream.draw(skin)
-        first = 1 + stream.triangle_count
-        for buffers, transform in parts:
-            write_uniform(program, "model_view", transform.T @ view.world_to_view)
+        gl.viewport = view.viewport
+        gl.scissor = view.clip
+        write_uniform(program, "projection", view.projection)
+        first = 1
+        if frame.skin is not None:
+            skin = self._program_of(frame.skin.shown_maps(frame.style))
+            write_uniform(skin, "projection", view.projection)
+            write_uniform(skin, "model_view", view.world_to_view)
+            skin["first"] = float(first)
+            frame.skin.stream.draw(skin)
+            first += frame.skin.stream.triangle_count
+        for buffers, part in parts:
+            write_uniform(program, "model_view", part.transform.T @ view.world_to_view)
             program["first"] = float(first)
             buffers.draw(program)
             first += len(buffers.faces)

@@ -14,12 +14,13 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .camera import CameraView
-from .parts import PlacedPart
+from .camera import PlacedView
+from .frame import Frame
+from .parts import PlacedBuffers
 from .programs import compile_program
 from .render_target import Rectangle, RenderTarget
-from .stream import MeshBuffers, Share
-from .style import ColourBy, Style
+from .stream import Share
+from .style import ColourBy
 
 TILE = 8  # [pixels] each way
 LEVELS = 5  # tables of the farthest depth: of tiles, and of squares of 2, 4, 8 and 16 of them
@@ -29,7 +30,7 @@ _UNIT = 1  # texture unit: the one of the layer
 
 
 class Occluder:
-    """The farthest depths, in tiles of a target, of all that was drawn on its layer so far."""
+    """Reads the farthest depths back from the layer of a target."""
 
     def __init__(self, gl: moderngl.Context, target: RenderTarget) -> None:
         self.target = target
@@ -39,22 +40,9 @@ class Occluder:
         self._pass = gl.vertex_array(program, [])
         columns, rows = (-(-pixels // TILE) for pixels in target.size)
         self._tiles = gl.framebuffer([gl.texture((columns, rows), 1, dtype="f4")])
-        self._farthest: list[npt.NDArray[np.float32]] = []  # by level: row, column
-        self._view: CameraView | None = None
-        self._layer_number = -1
 
-    def is_of(self, view: CameraView, target: RenderTarget) -> bool:
-        """Whether the depths that it took, through this view, are still on the target's layer."""
-        return (
-            self._view is view
-            and self.target is target
-            and self._layer_number == target.layer_number
-        )
-
-    def look(self, view: CameraView, area: Rectangle) -> None:
-        """Take the depths within an area [pixels] of a view; nothing is hidden elsewhere."""
-        self._view = view
-        self._layer_number = self.target.layer_number
+    def look(self, view: PlacedView, area: Rectangle) -> "FarthestDepths":
+        """The depths of all that was drawn within an area [pixels]; nothing hides elsewhere."""
         columns, rows = self._tiles.size
         left = area[0] // TILE
         bottom = area[1] // TILE
@@ -70,19 +58,29 @@ class Occluder:
         self._gl.scissor = None
         self._gl.enable_only(moderngl.DEPTH_TEST)
         read = np.frombuffer(self._tiles.read(components=1, dtype="f4"), np.float32)
-        self._farthest = [read.reshape(rows, columns)]
+        return FarthestDepths(view, read.reshape(rows, columns))
+
+
+class FarthestDepths:
+    """The farthest depth in each tile of a target, as a view saw it."""
+
+    def __init__(self, view: PlacedView, tiles: npt.NDArray[np.float32]) -> None:
+        """tiles: depths by row and column."""
+        self._view = view
+        self._farthest = [tiles]  # by level
         for _ in range(1, LEVELS):
             last = self._farthest[-1]
             even = np.pad(last, [(0, count % 2) for count in last.shape])
             by_twos = even.reshape(len(even) // 2, 2, -1, 2)
             self._farthest.append(by_twos.max(axis=(1, 3)))
 
-    def choose_parts(self, placed: Sequence[PlacedPart]) -> None:
+    def choose_parts(self, placed: Sequence[PlacedBuffers]) -> None:
         """Choose the faces of parts that are not surely hidden; all at once, which takes less."""
         vertices = []
         faces = []
         first = 0
-        for buffers, transform in placed:
+        for buffers, part in placed:
+            transform = part.transform
             for side in buffers.sides():
                 vertices.append(side @ transform[:3, :3].T + transform[:3, 3])
                 faces.append(buffers.faces + first)
@@ -106,7 +104,6 @@ class Occluder:
 
         away: of those that turn away from the eye, else to it; none of the others.
         """
-        assert self._view is not None
         matrix = self._view.world_to_clip.astype(np.float32)
         left, bottom, width, height = self._view.viewport
         with np.errstate(all="ignore"):  # a corner that is not finite is not surely hidden
@@ -156,30 +153,32 @@ class Occluder:
 
 def draw_sides(
     gl: moderngl.Context,
-    stream: MeshBuffers,
+    frame: Frame,
     shares: Sequence[tuple[moderngl.Program, Share]],
-    view: CameraView,
-    style: Style,
+    view: PlacedView,
     occluder: Occluder | None,
     *,
     blends: bool = False,
-) -> None:
-    """Draw shares of a mesh with software: front faces first.
+) -> FarthestDepths | None:
+    """Draw shares of a frame's skin with software: front faces first; the depths of these.
 
     Back faces are mostly hidden: drawn last, the hidden ones are not shaded at all if nothing is
-    multisampled. Else an occluder leaves out those that are certainly hidden.
+    multisampled. Else an occluder, if there is one, leaves out those that are certainly hidden.
     """
+    assert frame.skin is not None
+    stream = frame.skin.stream
     flags = moderngl.CULL_FACE | (moderngl.BLEND if blends else moderngl.NOTHING)
     gl.enable(flags)
     gl.cull_face = "back"
     for program, share in shares:
         stream.draw(program, share)
-    is_free = style.colour_by is ColourBy.NONE  # else values go by the order of triangles
-    if is_free and occluder is not None and occluder.target.samples:
+    depths = None
+    is_free = frame.style.colour_by is ColourBy.NONE  # else values go by the order of triangles
+    if is_free and occluder is not None:
         covered = view.covered_pixels(stream.corners)
-        occluder.look(view, covered)
-        positions = stream.frame.vertices[:, :3]
-        stream.choose(occluder.may_be_seen(positions, stream.frame.triangles, away=True))
+        depths = occluder.look(view, covered)
+        positions = stream.mesh.vertices[:, :3]
+        stream.choose(depths.may_be_seen(positions, stream.mesh.triangles, away=True))
         occluder.target.use_layer(view.viewport, covered)
         gl.enable(flags)
         # Back faces show no bumps, so the last program draws them.
@@ -189,3 +188,4 @@ def draw_sides(
         stream.draw(program, share)
     gl.cull_face = "back"
     gl.disable(moderngl.CULL_FACE)
+    return depths

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from risorius.geometry.colour import to_linear
 
-from .camera import CameraView
+from .camera import PlacedView
 from .parts import PartBuffers
 from .programs import write_uniform
 from .style import SPLIT_PALETTE, ColourBy, Light, Style
@@ -44,7 +44,7 @@ def part_shader(kind: str, has_shadow: bool, is_cut: bool) -> list[str]:
     return ["surface.glsl", "PIXEL", "COLOURED", kind, *shadows, *sunk]
 
 
-def set_mesh(program: moderngl.Program, style: Style, view: CameraView, line_scale: float) -> None:
+def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_scale: float) -> None:
     """How a mesh of this style takes light, and its wireframe and colours by values."""
     set_light(program, style.light)
     if "albedo" in program:  # not where a texture takes its place
@@ -61,7 +61,7 @@ def set_mesh(program: moderngl.Program, style: Style, view: CameraView, line_sca
         write_uniform(program, "split_palette", _PALETTE)
 
 
-def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: CameraView) -> None:
+def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: PlacedView) -> None:
     """From dull (broad and faint) to wet (small and bright) highlights.
 
     `set_light` comes first; its light from behind does not reach enclosed parts, or fibres.
@@ -103,7 +103,7 @@ def value_texture(
     Raises ValueError where there are none, or not as many.
     """
     if values is None:
-        raise ValueError("the style colours by values, so draw_mesh needs values, one per triangle")
+        raise ValueError("the style colours by values, so the skin needs values, one per triangle")
     rows = np.zeros((max(-(-triangle_count // VALUES_PER_ROW), 1), VALUES_PER_ROW), np.uint8)
     rows.reshape(-1)[:triangle_count] = values
     return gl.texture((VALUES_PER_ROW, len(rows)), 1, rows.tobytes(), dtype="u1", alignment=1)

@@ -1,8 +1,8 @@
 """Coloured parts, moved by bones: uploaded once, or again where one changes its shape."""
 
 import weakref
-from collections.abc import Callable, Iterable, Mapping
-from typing import Protocol
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
 
 import moderngl
 import numpy as np
@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from risorius.geometry.colour import to_linear
 
-from .camera import CameraView, box_corners
+from .camera import PlacedView, box_corners
+from .frame import Part, PlacedPart
 from .translucency import blending
 
 OF_SHELLS = "in_strand", "in_way", "in_dense"
@@ -23,42 +24,6 @@ ROOT = -0.6  # of that way, from vertices
 TIP = 0.4  # of that way, from vertices
 
 
-class Part(Protocol):
-    """The attributes that are read of a part.
-
-    name: for messages. vertices, normals: shape (n, 3), float32. A part that is not rigid hands out
-        other arrays of the same shape whenever its shape has changed.
-    faces: counter-clockwise from the side that is seen, shape (m, 3), int32; the other side is not
-        drawn. colours: sRGB 0..1, shape (n, 3), float32.
-    bone: whose transform moves it. shine: 0 dull, 1 wet.
-    is_enclosed: whether it lies within another surface, where light from behind does not get.
-    strand_radius: half the thickness of the strands that it consists of; 0 where it is solid.
-    striation: place of each vertex across and along fibres [mm], (n, 2), or None; of shells also
-        the way from root to tip [mm], at 0.6 of which vertices lie, and how dense it is, (n, 6).
-    """
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def vertices(self) -> npt.NDArray[np.float32]: ...
-    @property
-    def normals(self) -> npt.NDArray[np.float32]: ...
-    @property
-    def faces(self) -> npt.NDArray[np.int32]: ...
-    @property
-    def colours(self) -> npt.NDArray[np.float32]: ...
-    @property
-    def bone(self) -> str: ...
-    @property
-    def shine(self) -> float: ...
-    @property
-    def is_enclosed(self) -> bool: ...
-    @property
-    def strand_radius(self) -> float: ...
-    @property
-    def striation(self) -> npt.NDArray[np.float32] | None: ...
-
-
 class PartBuffers:
     """A part on the graphics card, and the arrays that were read of it.
 
@@ -66,6 +31,7 @@ class PartBuffers:
     """
 
     def __init__(self, gl: moderngl.Context, part: Part) -> None:
+        """Reserve what the part takes; `upload` fills it."""
         self._gl = gl
         self.faces = part.faces
         self.shine = part.shine
@@ -84,20 +50,20 @@ class PartBuffers:
         self.is_mixed = self.kind in ("STRANDS", "SHELLS")
         self._vertices = gl.buffer(reserve=4 * (9 + columns) * len(part.vertices))
         self._uploaded: npt.NDArray[np.float32] | None = None
-        self.upload(part)
+        self._striation = part.striation
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
         self._chosen = gl.buffer(reserve=self._indices.size, dynamic=True)
         self._chosen_count = 0
         self._arrays: dict[tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray] = {}
 
-    def upload(self, part: Part) -> None:
-        """Upload the part's vertices, unless they are those that were uploaded last."""
-        vertices = part.vertices
+    def upload(self, placed: PlacedPart) -> None:
+        """Upload the vertices of its part, unless they are those that were uploaded last."""
+        vertices = placed.vertices
         if vertices is self._uploaded:
             return
         self.corners = box_corners(vertices)
-        more = [] if part.striation is None else [part.striation]
-        rows = np.hstack([vertices, part.normals, to_linear(part.colours), *more])
+        more = [] if self._striation is None else [self._striation]
+        rows = np.hstack([vertices, placed.normals, to_linear(placed.colours), *more])
         self._vertices.write(rows.astype(np.float32).tobytes())
         self._uploaded = vertices
 
@@ -137,7 +103,7 @@ class PartBuffers:
         self._arrays[program, indices].render(vertices=3 * count, instances=layers)
         self._gl.disable(moderngl.CULL_FACE)
 
-    def draw_shells(self, program: moderngl.Program, view: CameraView, *, chosen: bool) -> None:
+    def draw_shells(self, program: moderngl.Program, view: PlacedView, *, chosen: bool) -> None:
         """Draw its layers from the inside out; the outer ones, which are thin, hide nothing."""
         _, _, width, height = view.viewport
         pixels = view.camera.focal(width / height, height) / view.camera.distance
@@ -150,7 +116,17 @@ class PartBuffers:
                 self.draw(program, chosen=chosen, layers=count)
 
 
-PlacedPart = tuple[PartBuffers, npt.NDArray[np.float64]]  # and the matrix of its bone
+class PlacedBuffers(NamedTuple):
+    """A placed part, and the buffers that hold it."""
+
+    buffers: PartBuffers
+    part: PlacedPart
+
+    @property
+    def corners(self) -> npt.NDArray[np.float64]:
+        """Of a box in the world that holds it, shape (8, 3)."""
+        transform = self.part.transform
+        return self.buffers.corners @ transform[:3, :3].T + transform[:3, 3]
 
 
 class PartStore:
@@ -165,31 +141,19 @@ class PartStore:
         # By the id of the part, which another part may have as soon as this one is gone.
         self._known: dict[int, tuple[Callable[[], Part | None], PartBuffers]] = {}
 
-    def placed(
-        self, parts: Iterable[Part], transforms: Mapping[str, npt.NDArray[np.float64]]
-    ) -> list[PlacedPart]:
-        """Each part, uploaded when it is first seen or has changed, with the matrix of its bone.
-
-        Raises ValueError for a bone without one.
-        """
+    def uploaded(self, parts: Iterable[PlacedPart]) -> list[PlacedBuffers]:
+        """Each part, uploaded when it is first seen or has another shape than at last."""
         self._forget_lost()
-        placed = []
-        for part in parts:
-            if part.bone not in transforms:
-                raise ValueError(
-                    f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
-                    f"{', '.join(sorted(transforms)) or 'none'}"
-                )
-            placed.append((self._buffers_of(part), transforms[part.bone]))
-        return placed
+        return [PlacedBuffers(self._buffers_of(each), each) for each in parts]
 
-    def _buffers_of(self, part: Part) -> PartBuffers:
-        """The buffers of a part, which hold its shape as it is now."""
+    def _buffers_of(self, placed: PlacedPart) -> PartBuffers:
+        """The buffers of a part, which hold the shape that it has in its place."""
+        part = placed.part
         get_known, buffers = self._known.get(id(part), (None, None))
         if get_known is None or buffers is None or get_known() is not part:
             buffers = PartBuffers(self._gl, part)
             self._known[id(part)] = _reference_to(part), buffers
-        buffers.upload(part)
+        buffers.upload(placed)
         return buffers
 
     def _forget_lost(self) -> None:

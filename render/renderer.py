@@ -1,24 +1,22 @@
-"""Draws meshes, rigid parts, lines and backgrounds on a surface.
+"""Draws frames on a surface: meshes, rigid parts, lines and backgrounds.
 
-Every call takes a view: a camera in a viewport, (x, y, width, height) in pixels from the lower left
-corner, whose aspect it takes on. All other pixels stay as they are. A `clip` draws only a part of
-the viewport: two clips make one image of two meshes.
-Programs are compiled on first use, one per combination of shading and options.
+`Renderer.draw` takes a whole picture. Programs are compiled and buffers are made on first use, and
+kept; nothing else is left of a picture when the next one is drawn.
 Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the figures are shaded).
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import nullcontext
-from types import MappingProxyType
 
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .camera import CameraView, OrbitCamera, box_corners
+from .camera import PlacedView, box_corners
 from .compositor import Backdrop
+from .frame import Frame, Plane, Skin
 from .geometry_buffer import Geometry, GeometryBuffer
-from .hidden import Occluder, draw_sides
+from .hidden import FarthestDepths, Occluder, draw_sides
 from .lines import Lines
 from .materials import (
     mesh_shader,
@@ -28,23 +26,14 @@ from .materials import (
     set_part,
     value_texture,
 )
-from .parts import Part, PartStore
+from .parts import PartStore, PlacedBuffers
 from .programs import compile_program, write_uniform
-from .render_target import Rectangle, scaled
-from .shadow import ShadowMap, Thrower
-from .stream import GpuStream, MeshBuffers, Share, Stream
+from .shadow import Shadow, ShadowMap
+from .stream import GpuStream, Share, Stream
 from .style import ColourBy, Style
 from .surface import NEWEST_VERSION, Surface
-from .texture import BumpMap, Texture
-from .translucency import (
-    SUNK_DEPTH,
-    Plane,
-    blending,
-    draw_nearest,
-    fade_seen,
-    set_cut,
-    set_translucency,
-)
+from .texture import BumpMap
+from .translucency import SUNK_DEPTH, blending, draw_nearest, fade_seen, set_cut, set_translucency
 
 # Texture units; the target uses 1.
 _VALUE_UNIT = 0
@@ -53,7 +42,7 @@ _ALBEDO_UNIT = 3
 
 
 class Renderer:
-    """The drawing calls of one surface, and the programs and buffers behind them."""
+    """Draws on one surface, and has the programs and buffers behind that."""
 
     def __init__(self, surface: Surface) -> None:
         surface.make_current()
@@ -62,10 +51,8 @@ class Renderer:
         self.lends_gpu_streams = self._gl.version_code >= NEWEST_VERSION
         self._programs: dict[tuple[str, ...], moderngl.Program] = {}
         self._parts = PartStore(self._gl)
-        self._values: moderngl.Texture | None = None
         self._backdrop = Backdrop(self._gl)
-        self._shadow: ShadowMap | None = None
-        self._shadow_of: MeshBuffers | None = None  # whose shadow is there before it is drawn
+        self._shadow_map: ShadowMap | None = None
         self._geometry_buffer: GeometryBuffer | None = None
         self._occluder: Occluder | None = None
 
@@ -84,124 +71,130 @@ class Renderer:
         self.surface.make_current()
         return GpuStream(self._gl, vertex_capacity, triangle_capacity, columns, margin)
 
-    def view(
-        self,
-        camera: OrbitCamera,
-        viewport: Rectangle | None = None,
-        clip: Rectangle | None = None,
-    ) -> CameraView:
-        """The view of a camera in a viewport, by default the whole frame; drawing calls take it.
+    def draw(self, *frames: Frame) -> None:
+        """Draw a picture of frames, each in its viewport; where there is none it is black.
 
-        clip: the part of the viewport in which anything is drawn.
+        Raises ValueError for a viewport without pixels, for values that do not fit the triangles,
+        and for a frame whose stream was filled anew. A window shows it at `Surface.end`.
         """
-        return CameraView(camera, self._viewport(viewport), clip and self._viewport(clip))
+        self.surface.begin()
+        target = self.surface.target
+        views = [self._placed_view(frame) for frame in frames]
+        styles = [frame.style for frame in frames]
+        self._backdrop.paint(target, views, [style.background for style in styles])
+        for frame, view in zip(frames, views, strict=True):
+            self._draw(frame, view)
+        target.use_frame()
 
-    def _viewport(self, viewport: Rectangle | None) -> Rectangle:
+    def read(self, frame: Frame) -> Geometry:
+        """Numbers for each pixel of the surface, whose picture stays as it is.
+
+        Skin and parts count as if they were opaque. Strands, thinner than a pixel, are left out:
+        pixels have the numbers of the surface behind them.
+        """
         self.surface.make_current()
-        if viewport is None:
-            return (0, 0, *self.surface.target.size)
-        return scaled(viewport, self.surface.scale)
+        size = self.surface.target.size
+        if self._geometry_buffer is None or self._geometry_buffer.size != size:
+            self._geometry_buffer = GeometryBuffer(self._gl, size)
+        solid = [each for each in frame.parts if not each.part.strand_radius]
+        parts = self._parts.uploaded(solid)
+        return self._geometry_buffer.draw(frame, parts, self._placed_view(frame))
 
-    def draw_background(self, style: Style, *viewports: Rectangle) -> None:
-        """Paint the background of a style over viewports, before anything is drawn; none: all."""
-        areas = tuple(self._viewport(each) for each in viewports or (None,))
-        self._backdrop.paint(self.surface.target, areas, style.background)
+    def _placed_view(self, frame: Frame) -> PlacedView:
+        """A frame's view on the target as it is now."""
+        if frame.skin is not None:
+            frame.skin.check()
+        return PlacedView(frame.view, self.surface.target.size, self.surface.scale)
 
-    def draw_mesh(
-        self,
-        stream: MeshBuffers,
-        view: CameraView,
-        style: Style,
-        *,
-        values: npt.NDArray[np.uint8] | None = None,
-        texture: Texture | None = None,
-        bumps: BumpMap | None = None,
-        cut: Plane | None = None,
-        fade: Plane | None = None,
-    ) -> None:
-        """Draw the last upload of `stream`.
+    def _draw(self, frame: Frame, view: PlacedView) -> None:
+        """Draw everything in the order that depth and blending ask for.
 
-        values: the number that colours each triangle, see `ColourBy`, shape (M,), uint8; needed
-            unless that is NONE. Raises ValueError where it does not fit.
-        texture: the albedo of the front side, unless the style is not textured, and its fine shape;
-            needs a stream of 8 columns, ValueError else.
-        bumps: fine shape, as far as the style and the amounts that were uploaded let it show;
-            per-pixel shading alone has it. Needs 8 columns, too.
-        cut: in front of it the mesh is opaque. Parts that are seen through it are drawn before it.
-        fade: a x + b y + c z + d, from 0 to 1, is the share of the mesh that shows at (x, y, z).
+        Solid parts come before an opened skin. All other parts come after the skin, whose shadow
+        and depths they need, and mixed ones after solid ones.
         """
-        if texture is not None or bumps is not None:
-            stream.check_uv()
+        parts = self._parts.uploaded(frame.parts)
+        if frame.is_opened:
+            solid = [each for each in parts if not each.buffers.is_mixed]
+            parts = [each for each in parts if each.buffers.is_mixed]
+            self._draw_under(frame, view, solid)
+        shadow = self._shadow(frame, view, parts, with_skin=True)
+        depths = None if frame.skin is None else self._draw_skin(frame, view, shadow)
+        self._draw_parts(parts, frame.style, view, shadow, depths=depths)
+        for lines in frame.overlays:
+            self._draw_lines(lines, view)
+
+    def _draw_under(self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers]) -> None:
+        """Draw solid parts that an opened skin will show; it lets the light through to them."""
+        shadow = self._shadow(frame, view, parts, with_skin=False)
+        beneath = [each for each in parts if each.part.lies_beneath]
+        others = [each for each in parts if not each.part.lies_beneath]
+        self._draw_parts(beneath, frame.style, view, shadow, cut=frame.cut)
+        self._draw_parts(others, frame.style, view, shadow)
+
+    def _shadow(
+        self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers], *, with_skin: bool
+    ) -> Shadow | None:
+        """The shadow of some parts and of the skin; None where a frame has no shadows."""
+        if not frame.style.shadows or frame.skin is None:
+            return None
+        if self._shadow_map is None:
+            self._shadow_map = ShadowMap(self._gl)
+        throwers = [each for each in parts if each.part.throws_shadow]
+        return self._shadow_map.draw(frame, view, throwers, with_skin=with_skin)
+
+    def _draw_skin(
+        self, frame: Frame, view: PlacedView, shadow: Shadow | None
+    ) -> FarthestDepths | None:
+        """Draw the mesh; the depths behind which nothing can be seen, where they were read."""
+        assert frame.skin is not None
+        stream = frame.skin.stream
+        style = frame.style
+        values = None
         if style.colour_by is not ColourBy.NONE:
-            self._values = value_texture(self._gl, values, stream.triangle_count)
-        if style.shadows and self._shadow_of is not stream:
-            self._cast([stream], view, style)
-        self._shadow_of = None
+            values = value_texture(self._gl, frame.skin.values, stream.triangle_count)
         if not self._use_layer(view, stream.corners):
-            return
-        fade = fade_seen(fade, stream, view)
+            return None
+        fade = fade_seen(frame.skin, view)
+        if values is not None:
+            values.use(_VALUE_UNIT)
         drawn = [
-            (self._mesh_program(view, style, texture, relief, fade), share)
-            for share, relief in _shares(stream, style, bumps)
+            (self._skin_program(frame, view, maps, shadow, fade), share)
+            for share, maps in _shares(frame.skin, style)
         ]
-        if style.opacity < 1.0:
+        if frame.is_opened:
             for program, _ in drawn:
-                set_translucency(program, style, view, cut)
+                set_translucency(program, frame, view)
             draw_nearest(self._gl, stream, drawn)
-            return
+            return None
         with nullcontext() if fade is None else blending(self._gl, hides=True):
             if self.surface.is_software:
                 occluder = self._target_occluder()
-                blends = fade is not None
-                draw_sides(self._gl, stream, drawn, view, style, occluder, blends=blends)
-            else:
-                for program, share in drawn:
-                    stream.draw(program, share)
+                return draw_sides(self._gl, frame, drawn, view, occluder, blends=fade is not None)
+            for program, share in drawn:
+                stream.draw(program, share)
+        return None
 
     def _target_occluder(self) -> Occluder | None:
-        """The occluder of the target where pixels have several samples; else the last one."""
+        """The occluder of the target; None where pixels have one sample."""
         target = self.surface.target
-        occluder = self._occluder
-        if target.samples and (occluder is None or occluder.target is not target):
+        if not target.samples:
+            return None
+        if self._occluder is None or self._occluder.target is not target:
             self._occluder = Occluder(self._gl, target)
         return self._occluder
 
-    def cast_shadows(
+    def _skin_program(
         self,
-        parts: Iterable[Part],
-        transforms: Mapping[str, npt.NDArray[np.float64]],
-        view: CameraView,
-        style: Style,
-        *,
-        stream: MeshBuffers | None = None,
-    ) -> None:
-        """Let parts, not the mesh, throw the shadow on parts that are drawn next.
-
-        stream: a mesh that is drawn next; it throws the shadow, too, and takes that of the parts.
-        """
-        mesh = [] if stream is None else [stream]
-        self._cast([*mesh, *self._parts.placed(parts, transforms)], view, style)
-        self._shadow_of = stream
-
-    def _cast(self, throwers: Sequence[Thrower], view: CameraView, style: Style) -> None:
-        if self._shadow is None:
-            self._shadow = ShadowMap(self._gl)
-        self._shadow.draw(throwers, view, self.surface.target.frame_number, style.light.to_key)
-
-    def _mesh_program(
-        self,
-        view: CameraView,
-        style: Style,
-        texture: Texture | None,
-        bumps: BumpMap | None,
+        frame: Frame,
+        view: PlacedView,
+        maps: dict[BumpMap, float],
+        shadow: Shadow | None,
         fade: Plane | None,
     ) -> moderngl.Program:
-        """The program of a mesh, with all that it asks for."""
-        maps = {} if bumps is None else {bumps: style.bumps}
-        fine = None if texture is None else texture.fine_shape
-        if fine is not None and style.shows_fine_shape:
-            maps[fine] = 1.0
-        texture = texture if style.textured else None
+        """The program of a frame's skin, with all that it looks up."""
+        assert frame.skin is not None
+        style = frame.style
+        texture = frame.skin.maps.texture if style.textured else None
         names = mesh_shader(style, texture is not None, maps, fade is not None)
         program = self._program(*names)
         write_uniform(program, "model_view", view.world_to_view)
@@ -209,46 +202,38 @@ class Renderer:
         if fade is not None:
             program["fade"] = fade
         set_mesh(program, style, view, self._line_scale)
-        if style.shadows and self._shadow is not None:
-            self._shadow.set_uniforms(program, view, _SHADOW_UNIT)
+        if shadow is not None:
+            shadow.set_uniforms(program, _SHADOW_UNIT)
         if texture is not None:
             texture.set_uniforms(program, _ALBEDO_UNIT, float(style.skin_maps))
         for map_, strength in maps.items():
             map_.set_uniforms(program, strength)
         if style.colour_by is not ColourBy.NONE:
-            assert self._values is not None
-            self._values.use(_VALUE_UNIT)
             program["triangle_values"] = _VALUE_UNIT
         return program
 
-    def draw_parts(
+    def _draw_parts(
         self,
-        parts: Iterable[Part],
-        transforms: Mapping[str, npt.NDArray[np.float64]],
-        view: CameraView,
+        parts: Sequence[PlacedBuffers],
         style: Style,
+        view: PlacedView,
+        shadow: Shadow | None,
         *,
         cut: Plane | None = None,
+        depths: FarthestDepths | None = None,
     ) -> None:
-        """Draw coloured parts, each moved by the matrix of its bone (column vectors); shells last.
+        """Draw coloured parts; mixed ones last.
 
-        Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
-        is first seen and must not change after; a part that changes its shape hands out others.
-        Raises ValueError for a bone without transform.
         cut: in front of it an opaque mesh will hide them, even where they come out of it.
+        depths: of the mesh; faces that are surely behind them are left out.
         """
-        shadow = self._shadow if style.shadows else None
-        if shadow is not None and not shadow.is_of(view, self.surface.target.frame_number):
-            shadow = None
-        placed = self._parts.placed(parts, transforms)
-        corners = [each.corners @ bone[:3, :3].T + bone[:3, 3] for each, bone in placed]
-        if not placed or not self._use_layer(view, np.concatenate(corners)):
+        corners = [each.corners for each in parts]
+        if not parts or not self._use_layer(view, np.concatenate(corners)):
             return
-        occluder = self._occluder
-        if is_chosen := occluder is not None and occluder.is_of(view, self.surface.target):
-            occluder.choose_parts(placed)
+        if depths is not None:
+            depths.choose_parts(parts)
         programs = {}
-        for kind in {each.kind for each, _ in placed}:
+        for kind in {each.buffers.kind for each in parts}:
             names = part_shader(kind, shadow is not None, cut is not None)
             programs[kind] = program = self._program(*names)
             write_uniform(program, "projection", view.projection)
@@ -256,40 +241,18 @@ class Renderer:
             if cut is not None and "cut" in program:
                 set_cut(program, view, cut, SUNK_DEPTH)
             if shadow is not None and "shadow_map" in program:
-                shadow.set_uniforms(program, view, _SHADOW_UNIT)
-        for buffers, bone in sorted(placed, key=lambda each: each[0].is_mixed):
+                shadow.set_uniforms(program, _SHADOW_UNIT)
+        for buffers, part in sorted(parts, key=lambda each: each.buffers.is_mixed):
             program = programs[buffers.kind]
-            write_uniform(program, "model_view", bone.T @ view.world_to_view)
+            write_uniform(program, "model_view", part.transform.T @ view.world_to_view)
             set_part(program, buffers, style.light, view)
             if buffers.kind == "SHELLS":
-                buffers.draw_shells(program, view, chosen=is_chosen)
+                buffers.draw_shells(program, view, chosen=depths is not None)
                 continue
             with blending(self._gl) if buffers.is_mixed else nullcontext():
-                buffers.draw(program, chosen=is_chosen)
+                buffers.draw(program, chosen=depths is not None)
 
-    def draw_geometry(
-        self,
-        stream: MeshBuffers,
-        parts: Iterable[Part],
-        transforms: Mapping[str, npt.NDArray[np.float64]],
-        view: CameraView,
-        *,
-        maps: Mapping[BumpMap, float] = MappingProxyType({}),
-    ) -> Geometry:
-        """Numbers for each pixel of the surface, whose picture stays as it is.
-
-        maps: fine shape that tilts normals, and how much of each, 0 to 1; a map that needs amounts
-            counts for nothing where none were uploaded. Raises ValueError for a bone without
-            transform.
-        """
-        if self._geometry_buffer is None or self._geometry_buffer.size != self.surface.target.size:
-            self._geometry_buffer = GeometryBuffer(self._gl, self.surface.target.size)
-        placed = self._parts.placed(parts, transforms)
-        if not stream.has_bumps:
-            maps = {each: strength for each, strength in maps.items() if each.define != "BUMPS"}
-        return self._geometry_buffer.draw(stream, placed, view, maps)
-
-    def draw_lines(self, lines: Lines, view: CameraView) -> None:
+    def _draw_lines(self, lines: Lines, view: PlacedView) -> None:
         """Draw polylines over the scene; where something hides them they shine through."""
         program = self._program("lines.glsl")
         rows, segments = lines.segments()
@@ -324,7 +287,7 @@ class Renderer:
         return self._programs[key]
 
     def _use_layer(
-        self, view: CameraView, corners: npt.NDArray[np.float64], padding: float = 2.0
+        self, view: PlacedView, corners: npt.NDArray[np.float64], padding: float = 2.0
     ) -> bool:
         """Set the drawing area to the hull of corners; False where the view does not see it."""
         covered = view.covered_pixels(corners, padding)
@@ -333,12 +296,10 @@ class Renderer:
         return is_seen
 
 
-def _shares(
-    stream: MeshBuffers, style: Style, bumps: BumpMap | None
-) -> list[tuple[Share, BumpMap | None]]:
-    """The triangles that are drawn alike, and their bumps; values go by the order of all."""
-    if bumps is None or not (style.shows_bumps and stream.has_bumps):
-        return [(Share.ALL, None)]
-    if style.colour_by is not ColourBy.NONE:
-        return [(Share.ALL, bumps)]
-    return [(Share.BUMPED, bumps), (Share.SMOOTH, None)]
+def _shares(skin: Skin, style: Style) -> list[tuple[Share, dict[BumpMap, float]]]:
+    """The triangles that are drawn alike, and their maps; values go by the order of all."""
+    maps = skin.shown_maps(style)
+    smooth = {each: strength for each, strength in maps.items() if each is not skin.maps.bumps}
+    if len(smooth) == len(maps) or style.colour_by is not ColourBy.NONE:
+        return [(Share.ALL, maps)]
+    return [(Share.BUMPED, maps), (Share.SMOOTH, smooth)]

@@ -9,16 +9,16 @@ Reeves et al. 1987.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .camera import CameraView
-from .parts import PlacedPart
+from .camera import PlacedView
+from .frame import Frame
+from .parts import PlacedBuffers
 from .programs import compile_program, write_uniform
-from .stream import MeshBuffers
-from .style import Vector
 
 RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade within 5 mm
 MAP_REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
@@ -26,73 +26,73 @@ TEXEL = 2.0 * MAP_REACH / RESOLUTION  # of the scene's radius
 OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
 STEEP_HEIGHT = 0.999  # of a light's height, from which on it has no direction sideways
 
-Thrower = MeshBuffers | PlacedPart
 FloatArray = npt.NDArray[np.float64]
 
 # -1..1 -> 0..1 in x, y and z, for row vectors.
 _TO_TEXTURE = np.array([[0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 0.5, 0], [0.5, 0.5, 0.5, 1.0]])
 
 
+@dataclass(frozen=True, eq=False)
+class Shadow:
+    """The shadow in one picture.
+
+    depth: the map of what the light reaches first. view_to_light: view space -> the light's clip
+    space. radius: of the scene.
+    """
+
+    depth: moderngl.Texture
+    view_to_light: FloatArray
+    radius: float
+
+    def set_uniforms(self, program: moderngl.Program, unit: int) -> None:
+        """Let a program look up the shadow, through a texture unit."""
+        write_uniform(program, "shadow_matrix", self.view_to_light @ _TO_TEXTURE)
+        program["shadow_offset"] = OFFSET * self.radius
+        program["shadow_reach"] = 2.0 * TEXEL * self.radius  # of the look-up, to each side
+        self.depth.use(unit)
+        program["shadow_map"] = unit
+
+
 class ShadowMap:
-    """One depth texture, redrawn for every mesh; parts drawn after it use it too."""
+    """One depth texture, drawn anew for every frame that has shadows."""
 
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
-        self._basis: FloatArray = np.eye(3)  # of the light that it was last drawn for
         self._program = compile_program(gl, "shadow.glsl")
         self._depth = gl.depth_texture((RESOLUTION, RESOLUTION))
         self._depth.compare_func = "<="
         self._depth.repeat_x = self._depth.repeat_y = False
         self._depth.filter = moderngl.LINEAR, moderngl.LINEAR
         self._target = gl.framebuffer(depth_attachment=self._depth)
-        self._drawn_for: tuple[int, CameraView | None] = (0, None)
 
     def draw(
-        self,
-        throwers: Sequence[Thrower],
-        view: CameraView,
-        frame_number: int,
-        to_key: Vector,
-    ) -> None:
-        """Take the depth map of uploaded streams, and of parts, in the frame of that number.
-
-        to_key: unit vector toward the key light, in view space.
-        """
+        self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers], *, with_skin: bool
+    ) -> Shadow:
+        """Draw the shadow that these parts of a frame throw, and its skin if it does, too."""
         gl = self._gl
-        self._basis = _basis(np.array(to_key))
-        to_light = view.world_to_view @ self._view_to_light(view)
-        write_uniform(self._program, "light_matrix", to_light)
+        view_to_light = _view_to_light(view, _basis(np.array(frame.style.light.to_key)))
+        to_light = view.world_to_view @ view_to_light
         self._target.use()
         gl.viewport = (0, 0, RESOLUTION, RESOLUTION)
         gl.scissor = None
         self._target.clear(depth=1.0)
-        for thrower in throwers:
-            transform = np.eye(4) if isinstance(thrower, MeshBuffers) else thrower[1]
-            write_uniform(self._program, "light_matrix", transform.T @ to_light)
-            (thrower if isinstance(thrower, MeshBuffers) else thrower[0]).draw(self._program)
-        self._drawn_for = frame_number, view
+        if with_skin and frame.skin is not None:
+            write_uniform(self._program, "light_matrix", to_light)
+            frame.skin.stream.draw(self._program)
+        for buffers, part in parts:
+            write_uniform(self._program, "light_matrix", part.transform.T @ to_light)
+            buffers.draw(self._program)
+        return Shadow(self._depth, view_to_light, view.camera.scene_radius)
 
-    def is_of(self, view: CameraView, frame_number: int) -> bool:
-        """Whether it was last drawn for this view, in the frame of that number."""
-        return self._drawn_for == (frame_number, view)
 
-    def set_uniforms(self, program: moderngl.Program, view: CameraView, unit: int) -> None:
-        """Let a program look up the shadow, through a texture unit."""
-        radius = view.camera.scene_radius
-        write_uniform(program, "shadow_matrix", self._view_to_light(view) @ _TO_TEXTURE)
-        program["shadow_offset"] = OFFSET * radius
-        program["shadow_reach"] = 2.0 * TEXEL * radius  # of the look-up, to each side
-        self._depth.use(unit)
-        program["shadow_map"] = unit
-
-    def _view_to_light(self, view: CameraView) -> FloatArray:
-        """View space -> the light's clip space: all that throws and takes shadows fills it."""
-        camera = view.camera
-        centre = (np.append(camera.scene_centre, 1.0) @ view.world_to_view)[:3]
-        matrix = np.eye(4)
-        matrix[:3, :3] = self._basis.T / (MAP_REACH * camera.scene_radius)
-        matrix[3, :3] = -centre @ matrix[:3, :3]
-        return matrix
+def _view_to_light(view: PlacedView, basis: FloatArray) -> FloatArray:
+    """View space -> the light's clip space: all that throws and takes shadows fills it."""
+    camera = view.camera
+    centre = (np.append(camera.scene_centre, 1.0) @ view.world_to_view)[:3]
+    matrix = np.eye(4)
+    matrix[:3, :3] = basis.T / (MAP_REACH * camera.scene_radius)
+    matrix[3, :3] = -centre @ matrix[:3, :3]
+    return matrix
 
 
 def _basis(toward: FloatArray) -> FloatArray:

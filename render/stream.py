@@ -30,8 +30,8 @@ COMMAND_WORDS = 7
 _Ranges = dict[Share, tuple[int, int]]  # first triangle and how many, in a buffer of indices
 
 
-class Frame(Protocol):
-    """The last frame; if it lies on the graphics card, all of it is fetched when it is read."""
+class UploadedMesh(Protocol):
+    """A mesh; if it lies on the graphics card, all of it is fetched when it is read."""
 
     @property
     def vertex_count(self) -> int:
@@ -51,7 +51,7 @@ class Frame(Protocol):
 
 
 class _Uploaded(NamedTuple):
-    """A frame of a `Stream`."""
+    """A mesh of a `Stream`."""
 
     vertices: npt.NDArray[np.float32]
     triangles: npt.NDArray[np.uint32]
@@ -69,8 +69,8 @@ class MeshBuffers:
     """One mesh of at most so many vertices and triangles, rewritten every frame, to be drawn.
 
     columns: of its rows, 6 (position, normal) or 8 (and texture u, v).
-    frame: the last frame that was written into it.
-    has_bumps: whether its last frame came with amounts of a bump map.
+    mesh: the last one that was written into it, another object after each upload.
+    has_bumps: whether that mesh came with amounts of a bump map.
     corners: of a box that holds its vertices, shape (8, 3), float64.
     places: where its vertices are, or some near them, shape (n, 3).
     """
@@ -90,7 +90,7 @@ class MeshBuffers:
         self.context = gl
         self.columns = columns
         none = np.zeros((0, columns), np.float32)
-        self.frame: Frame = _Uploaded(none, np.zeros((0, 3), np.uint32))
+        self.mesh: UploadedMesh = _Uploaded(none, np.zeros((0, 3), np.uint32))
         self.places: npt.NDArray[np.float32] = none[:, :3]
         self.corners = np.zeros((8, 3))
         self.has_bumps = False
@@ -109,13 +109,13 @@ class MeshBuffers:
 
     @property
     def vertex_count(self) -> int:
-        """How many vertices its last frame has."""
-        return self.frame.vertex_count
+        """How many vertices its last mesh has."""
+        return self.mesh.vertex_count
 
     @property
     def triangle_count(self) -> int:
         """How many triangles."""
-        return self.frame.triangle_count
+        return self.mesh.triangle_count
 
     def _rewrite(self, name: str, array: npt.NDArray[Any]) -> None:
         """Hand over an array with a row for each vertex, or a number for each triangle (uint32)."""
@@ -127,7 +127,7 @@ class MeshBuffers:
 
     def _upload_bumps(self, bump_amounts: npt.NDArray[np.float32]) -> None:
         """Upload amounts, and the triangles anew: first those that have bumps."""
-        parts = self.frame.triangles
+        parts = self.mesh.triangles
         is_bumped = (bump_amounts.max(axis=1) > 0.0)[parts].any(axis=1)
         count = int(is_bumped.sum())
         self._ranges[Share.BUMPED] = 0, count
@@ -146,7 +146,7 @@ class MeshBuffers:
 
     def choose(self, is_chosen: npt.NDArray[np.bool_]) -> None:
         """Choose among the uploaded triangles, (triangle_count,), for `draw`."""
-        chosen = self.frame.triangles[is_chosen]
+        chosen = self.mesh.triangles[is_chosen]
         self._ranges[Share.CHOSEN] = 0, len(chosen)
         self._rewrite("chosen", chosen)
 
@@ -233,7 +233,7 @@ class Stream(MeshBuffers):
             )
         rows = self.vertices[:vertex_count]
         triangles = self.triangles[:triangle_count]
-        self.frame = _Uploaded(rows, triangles)
+        self.mesh = _Uploaded(rows, triangles)
         self.places = rows[:, :3]
         self.has_bumps = bump_amounts is not None
         self._ranges = {}
@@ -276,16 +276,16 @@ class GpuStream(MeshBuffers):
 
     def show(
         self,
-        frame: Frame,
+        mesh: UploadedMesh,
         positions: npt.NDArray[np.floating],
         bump_amounts: npt.NDArray[np.float32] | None = None,
     ) -> None:
         """Draw the content of these buffers from now on.
 
-        frame: fetches it. positions: of the mesh that it was made of, (V, 3), near its vertices.
+        mesh: fetches it. positions: of the mesh that it was made of, (V, 3), near its vertices.
         bump_amounts: as `Stream.upload` takes them.
         """
-        self.frame = frame
+        self.mesh = mesh
         self.places = positions.astype(np.float32)
         self.has_bumps = bump_amounts is not None
         self._ranges = {}

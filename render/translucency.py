@@ -7,11 +7,10 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from .camera import CameraView
+from .camera import PlacedView
+from .frame import Frame, Plane, Skin
 from .stream import MeshBuffers, Share
-from .style import Style
 
-Plane = tuple[float, float, float, float]  # (a, b, c, d): in front is a x + b y + c z + d > 0
 CUT_WIDTH = 0.008  # of the scene's radius: how thick skin looks where it is cut
 # Of the scene's radius: as far as anything comes out of whole skin that should hide it.
 SUNK_DEPTH = 0.08
@@ -63,31 +62,30 @@ def draw_nearest(
     gl.disable(moderngl.CULL_FACE)
 
 
-def set_translucency(
-    program: moderngl.Program, style: Style, view: CameraView, cut: Plane | None
-) -> None:
-    """Set the opacity of skin, and the plane behind which it has it; None: everywhere."""
-    program["opacity"] = style.opacity
-    set_cut(program, view, cut or (0.0, 0.0, 0.0, -1.0), CUT_WIDTH)
+def set_translucency(program: moderngl.Program, frame: Frame, view: PlacedView) -> None:
+    """Set the opacity of a frame's skin, and the plane behind which it has it; None: everywhere."""
+    program["opacity"] = frame.style.opacity
+    set_cut(program, view, frame.cut or (0.0, 0.0, 0.0, -1.0), CUT_WIDTH)
 
 
-def set_cut(program: moderngl.Program, view: CameraView, cut: Plane, width: float) -> None:
+def set_cut(program: moderngl.Program, view: PlacedView, cut: Plane, width: float) -> None:
     """Where skin is cut, and how far from there that is seen [of the scene's radius]."""
     program["cut"] = in_view(cut, view)
     program["cut_width"] = width * view.camera.scene_radius
 
 
-def in_view(plane: Plane, view: CameraView) -> Plane:
+def in_view(plane: Plane, view: PlacedView) -> Plane:
     """A plane of the world in view space."""
     a, b, c, d = np.linalg.inv(view.world_to_view) @ plane
     return a, b, c, d
 
 
-def fade_seen(fade: Plane | None, stream: MeshBuffers, view: CameraView) -> Plane | None:
-    """Where a mesh fades, in view space; None where nothing of that is inside the frame."""
+def fade_seen(skin: Skin, view: PlacedView) -> Plane | None:
+    """Where a skin fades, in view space; None where nothing of that is inside the picture."""
+    fade = skin.fade
     if fade is None:
         return None
-    places = stream.places
+    places = skin.stream.places
     faded = places[places @ np.array(fade[:3], np.float32) + fade[3] < 1.0].astype(np.float64)
     is_seen = len(faded) and min(view.covered_pixels(faded, 0.0)[2:]) > 0
     return in_view(fade, view) if is_seen else None

@@ -1,12 +1,11 @@
-"""Structures under the skin, seen through it: the user's choice of them, and their drawing order.
+"""Structures under the skin, seen through it: the user's choice of them, and what is seen then.
 
 `AnatomyView` holds the choice. `Anatomy` makes muscles, skull and throat of one face when they
-are first asked for, and sorts them, the face's own parts and the skin into `DrawOrder`.
+are first asked for. `Dissection` has them, the face's own parts, and the opacity of the skin.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -24,6 +23,7 @@ STRUCTURES = ("muscles", "skull")
 SIDES = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's, whose skin is translucent
 OPACITY = 0.25  # of the skin, by default
 SOFT = ("oral_cavity", "gums")  # parts that line the mouth, by how their names begin
+OUTER_HAIR = (HAIR, HAIR + "_tied")
 
 
 @dataclass(frozen=True)
@@ -38,26 +38,14 @@ class AnatomyView:
 SKIN_ALONE = AnatomyView()
 
 
-class DrawOrder(NamedTuple):
-    """Parts in the order in which they are drawn, and the skin between them."""
+class Dissection(NamedTuple):
+    """What is seen of a scene beside its skin, and through it."""
 
-    shadow_casters: Sequence[Any]
-    """Parts that throw the shadow on parts; skin throws it, too, unless it is opened."""
-    under: Sequence[tuple[Sequence[Any], render.Plane | None]] = ()
-    """Parts before the skin; in front of the plane whole skin will hide them."""
-    over: Sequence[Any] = ()
-    """Parts after it: the skin throws its shadow on eyes and teeth, hairs blend with it."""
+    parts: tuple[render.PlacedPart, ...]
     opacity: float = 1.0
     """Of the skin."""
     cut: render.Plane | None = None
     """In front of it skin is opaque."""
-    is_opened: bool = False
-    """Whether anything is seen through the skin."""
-
-    @property
-    def parts(self) -> list[Any]:
-        """All of them."""
-        return [*(part for parts, _ in self.under for part in parts), *self.over]
 
 
 class Anatomy:
@@ -71,26 +59,32 @@ class Anatomy:
         self._followed = np.empty(0)  # the values that shaped the muscles last
         self._halves: dict[tuple[float, str], Any] = {}  # of parts, by the side that is opened
 
-    def draw_order(self, view: AnatomyView, *, has_hair: bool = True) -> DrawOrder:
-        """The chosen structures as they are now, and the scene's parts that do not hide them."""
+    def dissect(self, view: AnatomyView, *, has_hair: bool = True) -> Dissection:
+        """The chosen structures as they are now, and the scene's parts that do not hide them.
+
+        Hair throws its shadow on whole skin. Skin that is opened lets light through, and all solid
+        parts throw theirs.
+        """
         scene = self._scene
+        bones = scene.bone_transforms()
+        place = render.PlacedPart.of
         if not isinstance(scene, FaceScene) or not view.structures or view.opacity >= 1.0:
             parts = [part for part in scene.parts if has_hair or not part.name.startswith(HAIR)]
-            return DrawOrder([p for p in parts if p.name in (HAIR, HAIR + "_tied")], over=parts)
-        structures = self._structures(scene, view)
+            return Dissection(
+                tuple(place(each, bones, throws_shadow=each.name in OUTER_HAIR) for each in parts)
+            )
+        structures = [
+            place(part, bones, lies_beneath=True, throws_shadow=True)
+            for part in self._structures(scene, view)
+        ]
         stay = [part for part in scene.parts if not part.name.startswith((*SOFT, HAIR))]
-        others = stay + self._soft(scene, view)
-        strands = [part for part in others if part.strand_radius]
-        others = [part for part in others if not part.strand_radius]
-        cut = _cut(scene, view)
-        return DrawOrder(
-            structures + others,
-            under=((structures, cut), (others, None)),
-            over=strands + self._whole(scene, view, (HAIR,) if has_hair else ()),
-            opacity=view.opacity,
-            cut=cut,
-            is_opened=True,
-        )
+        others = [
+            place(part, bones, throws_shadow=not part.strand_radius)
+            for part in stay + self._soft(scene, view)
+        ]
+        hair = self._whole(scene, view, (HAIR,)) if has_hair else []
+        parts_of_hair = [place(part, bones) for part in hair]
+        return Dissection((*structures, *others, *parts_of_hair), view.opacity, _cut(scene, view))
 
     def _structures(self, scene: FaceScene, view: AnatomyView) -> list[Any]:
         """Throat, bones and muscles, which no skin leaves bare."""

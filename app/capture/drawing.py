@@ -153,11 +153,9 @@ class Capture:
 
     def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""
-        self.surface.begin()
         options = self.options
         style = self.options.style
         self.pipeline.draw(self.camera, style, self.viewports, anatomy=options.anatomy)
-        self.surface.end()
         image = self.surface.read_scene(4 if self.options.is_transparent else 3)
         has_bar = style.colour_by is render.ColourBy.SPLITS
         if options.captions and (options.beside or has_bar):
@@ -210,7 +208,7 @@ class Capture:
         known = None
         triangles = max(drawn.triangle_count for drawn, *_ in self.viewports)
         if self._passes is not None:
-            known = labelled(self._passes, self.camera, self.options.passes)
+            known = labelled(self._passes, self.camera, self.options.style, self.options.passes)
         return Frame(image, known, triangles)
 
     def play(

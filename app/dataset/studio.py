@@ -81,7 +81,8 @@ class Studio:
         assert isinstance(scene, FaceScene)
         camera = _posed(scene, sample, request.size)
         image, surroundings = self._taken(model, camera, sample)
-        images = model.passes.draw(camera, {"depth", *request.passes})
+        style = render.Style()  # neither light nor background counts in passes
+        images = model.passes.draw(camera, style, {"depth", *request.passes})
         labels = {
             "id": name_of(index),
             "index": index,
@@ -110,10 +111,8 @@ class Studio:
             name, picture = request.backgrounds.picture(random, request.size)
         else:
             colours = request.backgrounds.colours(random)
-        self._surface.begin()
         style = render.Style(light=light, background=colours)
         model.pipeline.draw(camera, style, [Viewport(model.passes.drawn, (0, 0, *request.size))])
-        self._surface.end()
         if picture is None:
             image = self._surface.read()
         else:

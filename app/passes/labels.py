@@ -251,10 +251,12 @@ def check_wanted(wanted: Sequence[str], scene: str) -> None:
         openexr()
 
 
-def labelled(passes: Passes, camera: render.OrbitCamera, wanted: Sequence[str]) -> Labelled:
+def labelled(
+    passes: Passes, camera: render.OrbitCamera, style: render.Style, wanted: Sequence[str]
+) -> Labelled:
     """Labels and passes of the picture that the pipeline of `passes` drew last, by `camera`."""
     has_landmarks = "landmarks" in wanted
-    images = passes.draw(camera, {*wanted, "depth"} if has_landmarks else wanted)
+    images = passes.draw(camera, style, {*wanted, "depth"} if has_landmarks else wanted)
     depth = images["depth"] if has_landmarks else None
     labels = labels_of(passes.scene, camera, passes.size, depth)
     return Labelled({name: images[name] for name in images if name in wanted}, labels)

@@ -22,7 +22,8 @@ from risorius import render
 from risorius.assets import Segment
 from risorius.assets.identities import HAIR
 
-from ..pipeline import DrawnMesh, Pipeline
+from ..pipeline import Pipeline, Viewport
+from ..refining.drawn_mesh import DrawnMesh
 from ..scenes import FaceScene
 
 IMAGES = ("depth", "normal", "triangle", "splits", "segmentation")
@@ -48,31 +49,21 @@ class Passes:
         return self._pipeline.renderer.surface.size
 
     def draw(
-        self, camera: render.OrbitCamera, wanted: Collection[str] = IMAGES
+        self,
+        camera: render.OrbitCamera,
+        style: render.Style,
+        wanted: Collection[str] = IMAGES,
     ) -> dict[str, npt.NDArray[Any]]:
         """The passes of these names, for the mesh as `Pipeline.draw` drew it last.
 
-        The camera and the scene must be as they were then. Raises ValueError before the first
-        picture, and for the segmentation of a scene that has none.
+        The camera, the style and the scene must be as they were then. Raises ValueError before the
+        first picture, and for the segmentation of a scene that has none.
         """
-        scene = self.scene
-        pipeline = self._pipeline
         drawn = self.drawn
         if drawn.mesh is None:
             raise ValueError("nothing was drawn yet; call Pipeline.draw first")
-        maps = {}
-        if pipeline.wrinkle_map is not None and drawn.has_uv:
-            maps[pipeline.wrinkle_map] = drawn.style.bumps
-        fine = None if pipeline.texture is None else pipeline.texture.fine_shape
-        if fine is not None and drawn.has_uv:
-            maps[fine] = float(drawn.style.shows_fine_shape)
-        geometry = pipeline.renderer.draw_geometry(
-            drawn.stream,
-            self._parts,
-            scene.bone_transforms(),
-            pipeline.renderer.view(camera),
-            maps=maps,
-        )
+        frame = self._pipeline.frame_of(camera, style, Viewport(drawn, (0, 0, *self.size)))
+        geometry = self._pipeline.renderer.read(frame)
         # Entry -1, the last one, is that of pixels where nothing is drawn.
         parts = len(self._part_classes)
         found: dict[str, npt.NDArray[Any]] = {

@@ -56,7 +56,7 @@ class Scene:
     face_uv: npt.NDArray[np.int32] | None = None  # which of them each corner has (F, 3)
     albedo: npt.NDArray[np.uint8] | None = None  # the texture (H, W, 3), sRGB
     wrinkles: assets.Wrinkles | None = None  # where skin wrinkles
-    fade: tuple[float, float, float, float] | None = None  # see render.Renderer.draw_mesh
+    fade: tuple[float, float, float, float] | None = None  # see render.Skin
     in_tone: Callable[[float], npt.NDArray[np.uint8]] | None = None  # the texture by ITA [deg]
     ambient_occlusion: npt.NDArray[np.uint8] | None = None  # over the texture (H, W), or all open
     fine_shape: assets.FineShape | None = None  # what its triangles do not hold of the skin

@@ -24,7 +24,7 @@ from risorius.app.capture.drawing import camera_for
 from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene
 
-from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table
+from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table, parts_without_hair
 from ..subjects import SETTLE, Points, fine_simulation, settled_positions
 from .experiments import Outcome
 
@@ -163,7 +163,8 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
             camera = camera_for(scene, viewpoint.view)
             camera.target = 0.5 * (lips.min(axis=0) + lips.max(axis=0))
             camera.pan(*viewpoint.aside)
-            parts = tuple(part for part in scene.parts if part.name not in parts_at_lids)
+            bare = parts_without_hair(scene)
+            parts = tuple(part for part in bare if part.name not in parts_at_lids)
             bones = simulation.bones.transforms()
             green = tuple(
                 replace(part, colours=np.tile(GREEN, (len(part.colours), 1)), shine=0.0)
@@ -177,7 +178,7 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
                     for style, each in ((SMOOTH, parts), (KINDS, green))
                 )
                 of_kind = kinds.argmax(axis=2).astype(np.uint8)
-                triangles = canvas.stream_for(refiner).triangle_count
+                triangles = canvas.mesh_of(refiner).triangle_count
                 cells.append(Cell(title, triangles, _smaller(smooth), of_kind))
             yield viewpoint.expression, cells
 

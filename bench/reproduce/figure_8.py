@@ -21,7 +21,7 @@ from risorius import refine, render
 from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import Scene, build_scene
 
-from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table
+from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table, parts_without_hair
 from .experiments import Outcome
 
 Points = npt.NDArray[np.float64]
@@ -50,7 +50,7 @@ def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
     }
     camera = camera_for(scene, "-30,-5,4.6")
     camera.pan(0.12, 0.05)
-    wire = Drawing(camera, WIRE, scene.parts, scene.bone_transforms())
+    wire = Drawing(camera, WIRE, parts_without_hair(scene), scene.bone_transforms())
     red = (0.85, 0.1, 0.1)
     along = render.Lines(lines_along(scene), red, width=2.0, hidden_opacity=0.0)
     with Canvas(size) as canvas:

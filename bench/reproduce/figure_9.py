@@ -88,7 +88,7 @@ class Waving:
         options = {**papers.options_for(variant.refiner), **variant.options}
         refiner = refine.create(variant.refiner, scene.faces, scene.rest_positions, **options)
         image = self._canvas.draw_image(refiner, scene.positions, Drawing(self._camera, style))
-        return image, self._canvas.stream_for(refiner).triangle_count
+        return image, self._canvas.mesh_of(refiner).triangle_count
 
     def true_image(self, phase: float) -> Image:
         """The picture of the sine itself; on triangles so small all shadings look alike."""

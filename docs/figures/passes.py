@@ -45,7 +45,8 @@ def passes(size: tuple[int, int] = (440, 500)) -> Image:
         settling_time = 1.0  # [s]
         scene.step(settling_time)
         picture = studio.draw_image()
-        known = labelled(Passes(studio.pipeline, studio.viewports[-1].drawn), studio.camera, NAMES)
+        drawn = Passes(studio.pipeline, studio.viewports[-1].drawn)
+        known = labelled(drawn, studio.camera, studio.options.style, NAMES)
     images = known.images
     on = images["depth"] > 0.0
     cells = {

@@ -49,7 +49,7 @@ def posed(scene: FaceScene, **pose: float) -> FaceScene:
 def structures_of(studio: Capture, **pose: float) -> list[Any]:
     """Muscles and skull of the face in a pose."""
     posed(studio.scene, **pose)  # type: ignore[arg-type]
-    parts = studio.pipeline.anatomy.draw_order(BOTH).parts
+    parts = [each.part for each in studio.pipeline.anatomy.dissect(BOTH).parts]
     return [part for part in parts if part.name.startswith(("skull", "muscles"))]
 
 
@@ -127,7 +127,7 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path):
     anatomy = Anatomy(scene)
     low = scene.rest_positions.min(axis=0)
     high = scene.rest_positions.max(axis=0)
-    parts = {part.name: part for part in anatomy.draw_order(BOTH).parts}
+    parts = {each.part.name: each.part for each in anatomy.dissect(BOTH).parts}
     for name in ("skull_cranium", "skull_mandible", "skull_nose", "muscles"):
         points = parts[name].vertices
         assert np.isfinite(points).all()
@@ -137,7 +137,7 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path):
     assert parts["skull_cranium"].vertices[:, 2].min() < low[2] + 8.0
     before = parts["muscles"].vertices
     posed(scene, jaw_open=1.0)
-    anatomy.draw_order(BOTH)
+    anatomy.dissect(BOTH)
     assert (before[:, 1] - parts["muscles"].vertices[:, 1]).max() > 8.0
 
 

@@ -8,7 +8,7 @@ import pytest
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.refining.presets import STATIC, Refinement
 from risorius.app.scenes import FaceScene
-from risorius.render.hidden import Occluder
+from risorius.render.hidden import FarthestDepths
 
 POSES = ({}, {"jaw_open": 1.0, "tongue_out": 1.0}, {"AU43": 1.0, "AU12": 1.0}, {"head_yaw": 1.0})
 CAMERAS = ("front", "20,-60", "-30,10,6")
@@ -38,7 +38,7 @@ def test_no_pixel_changes(studio, camera, pose, monkeypatch):
     studio.scene.step(0.5)
     studio.camera = camera_for(studio.scene, camera)
     shares = []
-    may_be_seen = Occluder.may_be_seen
+    may_be_seen = FarthestDepths.may_be_seen
 
     def noted(*arguments: object, **sides: bool) -> object:
         """What it says, and how much of it."""
@@ -46,10 +46,10 @@ def test_no_pixel_changes(studio, camera, pose, monkeypatch):
         shares.append(float(np.mean(result)))
         return result
 
-    monkeypatch.setattr(Occluder, "may_be_seen", noted)
+    monkeypatch.setattr(FarthestDepths, "may_be_seen", noted)
     sparing = studio.draw_image()
     monkeypatch.setattr(
-        Occluder, "may_be_seen", lambda _, __, faces, **sides: np.ones(len(faces), bool)
+        FarthestDepths, "may_be_seen", lambda _, __, faces, **sides: np.ones(len(faces), bool)
     )
     whole = studio.draw_image()
     assert np.array_equal(sparing, whole)

@@ -54,10 +54,8 @@ class Sitter:
         camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
         camera.orbit(yaw, pitch)
         camera.fit(scene.positions, 0.02)
-        self.surface.begin()
         self.pipeline.draw(camera, render.Style(), [Viewport(self.drawn, (0, 0, *SIZE))])
-        self.surface.end()
-        classes = self.passes.draw(camera, {"segmentation"})["segmentation"]
+        classes = self.passes.draw(camera, render.Style(), {"segmentation"})["segmentation"]
         places = CameraLabels.of(camera, SIZE).project(scene.positions[scene.landmarks[48:60]])
         outline = places[ConvexHull(places).vertices]
         lips = PIL.Image.new("1", SIZE)

@@ -29,7 +29,8 @@ Array = npt.NDArray[np.float64]
 
 def passes_of(studio: Capture, wanted: Sequence[str]) -> dict[str, Any]:
     """The passes of these names of what was drawn last."""
-    return Passes(studio.pipeline, studio.viewports[-1].drawn).draw(studio.camera, wanted)
+    passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
+    return passes.draw(studio.camera, studio.options.style, wanted)
 
 
 def posed(studio: Capture, controls: dict[str, float]) -> FaceScene:
@@ -110,7 +111,7 @@ def test_nothing_parts_and_skin_differ(studio):
     """One background in all passes; no triangle of the mesh on teeth and eyes."""
     posed(studio, EXPRESSIONS["open mouth"])
     seen_from(studio)
-    found = Passes(studio.pipeline, studio.viewports[-1].drawn).draw(studio.camera)
+    found = passes_of(studio, IMAGES)
     assert tuple(found) == IMAGES
     nothing = found["depth"] == 0.0
     assert 0.3 < nothing.mean() < 0.9

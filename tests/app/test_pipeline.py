@@ -9,7 +9,8 @@ import pytest
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.motion import SETTLING
-from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport
+from risorius.app.pipeline import Pipeline, Viewport
+from risorius.app.refining.drawn_mesh import DrawnMesh
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script.script_file import parse_script
@@ -27,10 +28,8 @@ def surface() -> Iterator[Any]:
 def image(pipeline: Pipeline, drawn: DrawnMesh) -> Any:
     """What is seen of a scene, by one refiner."""
     surface = pipeline.renderer.surface
-    surface.begin()
     camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="front")
     pipeline.draw(camera, render.Style(), [Viewport(drawn, (0, 0, *SIZE))])
-    surface.end()
     return surface.read()
 
 

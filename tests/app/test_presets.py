@@ -48,9 +48,7 @@ def test_every_look_is_drawn_by_every_refiner(surface, scenes, name, look, refin
     pipeline = Pipeline(scene, render.Renderer(surface))
     drawn = pipeline.bind(refinement)
     camera = whole_scene(scene, "front")
-    surface.begin()
     pipeline.draw(camera, render.Style(), [Viewport(drawn, (0, 0, *SIZE))])
-    surface.end()
     assert np.ptp(surface.read()) > 30
     bound = refiner_for(scene, refinement)
     mesh = bound.refine(scene.positions)

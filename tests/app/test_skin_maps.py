@@ -29,7 +29,8 @@ def images(scene: FaceScene) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.floa
             capture.options = replace(options, style=render.Style(skin_maps=is_on))
             found.append(capture.draw_image().astype(np.int32))
             passes = Passes(capture.pipeline, capture.viewports[-1].drawn)
-            normals.append(passes.draw(capture.camera, ("normal",))["normal"])
+            found_passes = passes.draw(capture.camera, capture.options.style, ("normal",))
+            normals.append(found_passes["normal"])
     return np.stack(found), np.stack(normals)
 
 

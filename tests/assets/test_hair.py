@@ -125,7 +125,8 @@ def label_of(person: Person, size: int = 200) -> tuple[Any, Any]:
     with Capture(FaceScene(person), options) as capture:
         image = capture.draw_image()
         passes = Passes(capture.pipeline, capture.viewports[-1].drawn)
-        return image, passes.draw(capture.camera, ("segmentation",))["segmentation"]
+        classes = passes.draw(capture.camera, capture.options.style, ("segmentation",))
+        return image, classes["segmentation"]
 
 
 def test_sparse_hair_is_called_what_is_behind_it():
@@ -154,6 +155,6 @@ def test_hair_is_seen_framed_and_labelled():
     anatomy = Anatomy(scene)
     opened = AnatomyView(("muscles",))
     clay = AnatomyView()
-    for parts in (anatomy.draw_order(opened).parts, anatomy.draw_order(clay, has_hair=False).parts):
-        assert parts
-        assert not [part for part in parts if part.name.startswith(HAIR)]
+    for seen in (anatomy.dissect(opened), anatomy.dissect(clay, has_hair=False)):
+        assert seen.parts
+        assert not [each for each in seen.parts if each.part.name.startswith(HAIR)]

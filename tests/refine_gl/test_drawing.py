@@ -11,10 +11,11 @@ import pytest
 from PIL import Image
 
 from risorius import render
-from risorius.app import pipeline as app_pipeline
 from risorius.app.dataset.request import request_of
 from risorius.app.dataset.studio import Studio
-from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport
+from risorius.app.pipeline import Pipeline, Viewport
+from risorius.app.refining import drawn_mesh
+from risorius.app.refining.drawn_mesh import DrawnMesh
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 from risorius.refine_gl import LEAST_VERSION, KahlerGl
@@ -56,9 +57,7 @@ def image(pipeline: Pipeline, drawn: DrawnMesh, style: render.Style) -> npt.NDAr
     """The picture of it."""
     surface = pipeline.renderer.surface
     camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="three-quarter")
-    surface.begin()
     pipeline.draw(camera, style, [Viewport(drawn, (0, 0, *surface.size))])
-    surface.end()
     return surface.read()
 
 
@@ -80,7 +79,7 @@ def test_a_card_takes_large_meshes_by_itself(pipeline, monkeypatch):
     """Where a look is asked for, the driver is hardware and the mesh large; to the same picture."""
     smooth = Refinement("smooth")
     count = len(pipeline.scene.faces)
-    monkeypatch.setattr(app_pipeline, "LARGE", count)
+    monkeypatch.setattr(drawn_mesh, "LARGE_MESH", count)
     drawn_by(monkeypatch, "software")
     before = pipeline.bind(smooth)
     drawn_by(monkeypatch, "hardware")
@@ -92,7 +91,7 @@ def test_a_card_takes_large_meshes_by_itself(pipeline, monkeypatch):
     assert now.caption == before.caption
     for other in (Refinement("smooth", "kahler"), replace(smooth, options={"blend": False})):
         assert not isinstance(pipeline.bind(other).refiner, KahlerGl)
-    monkeypatch.setattr(app_pipeline, "LARGE", count + 1)
+    monkeypatch.setattr(drawn_mesh, "LARGE_MESH", count + 1)
     assert not isinstance(pipeline.bind(smooth).refiner, KahlerGl)
 
 

@@ -1,8 +1,8 @@
 """Small things to draw, and how the tests here look at images."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -78,13 +78,25 @@ def facing(half: float = 50.0) -> render.OrbitCamera:
     return camera
 
 
-@contextmanager
-def fresh_frame(renderer: render.Renderer, style: render.Style = PLAIN) -> Iterator[None]:
-    """Draw within, over the style's background; the surface has the frame afterwards."""
-    renderer.surface.begin()
-    renderer.draw_background(style)
-    yield
-    renderer.surface.end()
+def draw(
+    renderer: render.Renderer,
+    skin: render.Skin | render.Stream | None = None,
+    style: render.Style = PLAIN,
+    *,
+    parts: Sequence[render.PlacedPart] = (),
+    lines: Sequence[render.Lines] = (),
+    camera: render.OrbitCamera | None = None,
+) -> SignedImage:
+    """The picture of one frame, shape (H, W, 3), int32."""
+    mesh = render.Skin(skin) if isinstance(skin, render.Stream) else skin
+    view = render.CameraView(camera or facing())
+    renderer.draw(render.Frame(view, style, mesh, parts, overlays=lines))
+    return renderer.surface.read().astype(np.int32)
+
+
+def still(*parts: Any) -> list[render.PlacedPart]:
+    """Parts whose bones are at rest."""
+    return [render.PlacedPart.of(part, STILL) for part in parts]
 
 
 def draw_image(
@@ -97,10 +109,8 @@ def draw_image(
 ) -> SignedImage:
     """Draw the shape over the style's background on a fresh frame, shape (H, W, 3), int32."""
     renderer = render.Renderer(surface)
-    stream = lent(renderer, shape)
-    with fresh_frame(renderer, style):
-        renderer.draw_mesh(stream, renderer.view(camera or facing()), style, values=values)
-    return surface.read().astype(np.int32)
+    skin = render.Skin(lent(renderer, shape), values=values)
+    return draw(renderer, skin, style, camera=camera)
 
 
 def needs_samples(surface: render.Surface) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, at, facing, fresh_frame, lent, sphere, square
+from .scenes import PLAIN, at, draw, lent, sphere, square
 
 LEVEL = (128, 128, 0, 0)  # a slope of 1 over a square of 100 mm
 STEEP = 100.0
@@ -29,16 +29,8 @@ def furrowed(
     stream.vertices[:, 6:] = shape.positions[:, :2] / 100.0 + 0.5
     rows = None if amounts is None else np.tile(np.float32(amounts), (len(shape.positions), 1))
     stream.upload(len(shape.positions), len(shape.triangles), rows)
-    with fresh_frame(renderer, style):
-        values = np.zeros(len(shape.triangles), np.uint8)
-        renderer.draw_mesh(
-            stream,
-            renderer.view(facing()),
-            style,
-            values=values,
-            bumps=render.BumpMap(renderer.surface, texels, STEEP),
-        )
-    return surface.read().astype(np.int32)
+    bumps = render.BumpMap(renderer.surface, texels, STEEP)
+    return draw(renderer, render.Skin(stream, render.SkinMaps(bumps=bumps)), style)
 
 
 def test_slopes_are_lit_like_the_slopes_they_are(surface):
@@ -99,9 +91,7 @@ def test_part_of_a_mesh_has_bumps_without_a_crack(surface):
         rows = np.zeros((len(shape.positions), 2), np.float32)
         rows[: int(share * len(rows))] = 1.0
         stream.upload(len(shape.positions), len(shape.triangles), rows)
-        with fresh_frame(renderer):
-            renderer.draw_mesh(stream, renderer.view(facing()), PLAIN, bumps=level)
-        frames.append(surface.read().astype(np.int32))
+        frames.append(draw(renderer, render.Skin(stream, render.SkinMaps(bumps=level))))
     assert np.abs(frames[0] - frames[1]).max() <= 1
 
 
@@ -116,4 +106,4 @@ def test_what_does_not_fit_is_refused(surface):
         stream.upload(4, 2, np.zeros((3, 2), np.float32))
     level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
     with pytest.raises(ValueError, match="8 columns"):
-        renderer.draw_mesh(stream, renderer.view(facing()), PLAIN, bumps=level)
+        render.Skin(stream, render.SkinMaps(bumps=level))

@@ -59,7 +59,7 @@ def test_palette_darkens_with_the_number_of_splits():
 
 def test_split_values_must_be_there(surface):
     """Missing numbers are refused, and another count of them."""
-    with pytest.raises(ValueError, match="the style colours by values, so draw_mesh needs values"):
+    with pytest.raises(ValueError, match="the style colours by values, so the skin needs values"):
         draw_image(surface, square(), SPLITS)
     with pytest.raises(ValueError, match="could not broadcast"):
         draw_image(surface, square(), SPLITS, values=np.zeros(3, np.uint8))

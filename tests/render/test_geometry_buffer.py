@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from risorius import render
 
-from .scenes import STILL, Ball, Shape, facing, fresh_frame, joined, lent, sphere, square
+from .scenes import PLAIN, Ball, Shape, facing, joined, lent, sphere, square, still
 
 CHORD = 0.2  # [unit of the scene] a sphere of 8192 triangles lies this far within its ball, at most
 
@@ -31,7 +31,8 @@ def drawn(
     """The numbers of one shape and parts."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape)
-    return renderer.draw_geometry(stream, parts, STILL, renderer.view(camera))
+    view = render.CameraView(camera)
+    return renderer.read(render.Frame(view, PLAIN, render.Skin(stream), still(*parts)))
 
 
 @settings(max_examples=15, deadline=None)
@@ -126,20 +127,15 @@ def test_the_back_of_the_mesh_differs_from_its_front(surface):
 
 
 def test_a_picture_is_the_same_before_and_after(surface):
-    """Drawing numbers leaves the colours of a frame alone, and those of the next."""
+    """Reading numbers leaves the colours of a frame alone, and those of the next."""
     renderer = render.Renderer(surface)
-    style = render.Style()
-    camera = facing()
     stream = lent(renderer, sphere())
-    ball = Ball(shape=sphere(3, 60.0))
+    parts = still(Ball(shape=sphere(3, 60.0)))
+    frame = render.Frame(render.CameraView(facing()), render.Style(), render.Skin(stream), parts)
     pictures = []
-    for is_between in (False, True, False):
-        with fresh_frame(renderer, style):
-            renderer.draw_mesh(stream, renderer.view(camera), style)
-            if is_between:
-                renderer.draw_geometry(stream, [ball], STILL, renderer.view(camera))
-            renderer.draw_parts([ball], STILL, renderer.view(camera), style)
-        renderer.draw_geometry(stream, [ball], STILL, renderer.view(camera))
+    for _ in range(3):
+        renderer.draw(frame)
         pictures.append(surface.read())
-    assert np.array_equal(pictures[0], pictures[1])
-    assert np.array_equal(pictures[0], pictures[2])
+        renderer.read(frame)
+        pictures.append(surface.read())
+    assert all(np.array_equal(pictures[0], each) for each in pictures)

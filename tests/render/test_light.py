@@ -12,16 +12,16 @@ from .scenes import (
     DARK_SKIN,
     LIGHT_SKIN,
     PLAIN,
-    STILL,
     Ball,
     SignedImage,
+    draw,
     draw_image,
     drawn,
-    fresh_frame,
     joined,
     lent,
     sphere,
     square,
+    still,
 )
 
 SHADED = replace(PLAIN, shadows=True, albedo=render.CLAY)
@@ -60,10 +60,7 @@ def test_other_light_leaves_nothing_behind(surface):
 
     def picture(style: render.Style) -> render.Image:
         """The mesh and a part in front of it."""
-        with fresh_frame(renderer, style):
-            view = renderer.view(camera)
-            renderer.draw_mesh(stream, view, style)
-            renderer.draw_parts([Ball()], STILL, view, style)
+        draw(renderer, stream, style, parts=still(Ball()), camera=camera)
         return surface.read()
 
     studio = picture(SHADED)

@@ -6,7 +6,7 @@ import pytest
 from risorius import render
 from risorius.render import Lines
 
-from .scenes import PLAIN, at, drawn, facing, fresh_frame, lent, square
+from .scenes import at, draw, drawn, lent, square
 
 RED = (1.0, 0.0, 0.0)
 
@@ -19,13 +19,9 @@ def test_lines_before_and_behind(surface):
     under = over - (0, 40, 10)
     frames = []
     for hidden_opacity in (0.5, 0.0):
-        with fresh_frame(renderer):
-            renderer.draw_mesh(wall, renderer.view(facing()), PLAIN)
-            colours = np.array([(0, 0.8, 0), (0, 0, 0.9)])
-            renderer.draw_lines(
-                Lines([over, under], colours, 4.0, hidden_opacity), renderer.view(facing())
-            )
-        frames.append(surface.read().astype(np.int32))
+        colours = np.array([(0, 0.8, 0), (0, 0, 0.9)])
+        lines = Lines([over, under], colours, 4.0, hidden_opacity)
+        frames.append(draw(renderer, wall, lines=[lines]))
     skin = at(frames[0], 0.0, 0.0)
     for frame in frames:
         assert at(frame, 10.0, 20.4) == pytest.approx((0, 204, 0), abs=3)
@@ -38,11 +34,8 @@ def test_lines_are_not_joined(surface):
     renderer = render.Renderer(surface)
     left = np.array([(-40.0, -10, 0), (-40, 10, 0)])
     right = np.array([(40.0, -10, 0), (40, 10, 0)])
-    with fresh_frame(renderer):
-        renderer.draw_lines(Lines([], RED), renderer.view(facing()))
-        renderer.draw_lines(
-            Lines([np.zeros((0, 3)), left, np.zeros((1, 3)), right], RED), renderer.view(facing())
-        )
-    columns = np.nonzero(drawn(surface.read().astype(np.int32)).any(axis=0))[0]
+    lines = Lines([np.zeros((0, 3)), left, np.zeros((1, 3)), right], RED)
+    image = draw(renderer, lines=[Lines([], RED), lines])
+    columns = np.nonzero(drawn(image).any(axis=0))[0]
     assert len(columns) > 2
     assert not ((columns > 20) & (columns < 76)).any()

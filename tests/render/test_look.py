@@ -14,7 +14,7 @@ from PIL import Image
 
 from risorius import render
 
-from .scenes import LIGHT_SKIN, Ball, fresh_frame, joined, lent, sphere, square
+from .scenes import LIGHT_SKIN, Ball, draw, joined, lent, sphere, square
 
 STORED = Path(__file__).parent / "pictures"
 SIZE = (160, 120)
@@ -36,12 +36,10 @@ def scene(surface: render.Surface, style: render.Style) -> render.Image:
     ball = np.eye(4)
     ball[:3, 3] = (55.0, -30.0, 10.0)
     values = (np.arange(len(shape.triangles)) % 7).astype(np.uint8)
-    with fresh_frame(renderer, style):
-        view = renderer.view(camera)
-        renderer.draw_mesh(stream, view, style, values=values)
-        renderer.draw_parts([Ball(shine=0.9)], {"cranium": ball}, view, style)
-        line = np.array([(-60.0, 40, 20), (60, -40, -20)])
-        renderer.draw_lines(render.Lines([line], (0.75, 0.1, 0.1)), view)
+    skin = render.Skin(stream, values=values)
+    parts = [render.PlacedPart.of(Ball(shine=0.9), {"cranium": ball})]
+    line = render.Lines([np.array([(-60.0, 40, 20), (60, -40, -20)])], (0.75, 0.1, 0.1))
+    draw(renderer, skin, style, parts=parts, lines=[line], camera=camera)
     return surface.read()
 
 

@@ -1,5 +1,6 @@
 """Rigid parts: where bones put them, how they shine, what hides them."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,7 +10,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, STILL, Ball, Shape, at, drawn, facing, fresh_frame, lent, square
+from .scenes import PLAIN, Ball, Shape, at, draw, drawn, facing, lent, square, still
 
 
 def reshaped(ball: Ball, **changes: npt.NDArray[Any]) -> Any:
@@ -28,9 +29,7 @@ def test_parts_move_with_their_bones(surface):
     for x in (-25.0, 25.0):
         moved = np.eye(4)
         moved[:3, 3] = (x, 0.0, 0.0)
-        with fresh_frame(renderer):
-            renderer.draw_parts([ball], {"eye_left": moved}, renderer.view(facing()), PLAIN)
-        frame = surface.read().astype(np.int32)
+        frame = draw(renderer, parts=[render.PlacedPart.of(ball, {"eye_left": moved})])
         assert at(frame, x, 0.0)[2] > at(frame, x, 0.0)[0] + 30
         places.append(np.nonzero(drawn(frame))[1].mean())
     assert places[0] == pytest.approx(47.5 - 21.5, abs=1.5)
@@ -45,9 +44,7 @@ def test_a_part_that_changes_its_shape_is_drawn_anew(surface):
     part = reshaped(ball)
     for scale in (1.0, 0.5):
         part.vertices = (scale * ball.vertices).astype(np.float32)
-        with fresh_frame(renderer):
-            renderer.draw_parts([part], STILL, renderer.view(facing()), PLAIN)
-        pixels.append(drawn(surface.read().astype(np.int32)).sum())
+        pixels.append(drawn(draw(renderer, parts=still(part))).sum())
     assert 0.2 * pixels[0] < pixels[1] < 0.3 * pixels[0]
 
 
@@ -56,10 +53,10 @@ def test_wet_parts_have_a_crisp_highlight(surface):
     renderer = render.Renderer(surface)
     frames = []
     for shine in (0.0, 1.0):
-        with fresh_frame(renderer, render.Style(background=render.DARK)):
-            ball = Ball(shine=shine, colour=(0.1, 0.1, 0.1))
-            renderer.draw_parts([ball], STILL, renderer.view(facing(25.0)), PLAIN)
-        frames.append(surface.read().astype(int).sum(axis=2))
+        style = replace(PLAIN, background=render.DARK)
+        ball = Ball(shine=shine, colour=(0.1, 0.1, 0.1))
+        image = draw(renderer, style=style, parts=still(ball), camera=facing(25.0))
+        frames.append(image.sum(axis=2))
     dull, wet = frames
     assert dull.max() < 400
     assert wet.max() > 600
@@ -67,14 +64,10 @@ def test_wet_parts_have_a_crisp_highlight(surface):
 
 
 def test_parts_and_mesh_hide_each_other(surface):
-    """Depth decides, in any order of drawing."""
+    """Depth decides."""
     renderer = render.Renderer(surface)
     wall = lent(renderer, square(z=10.0))
-    ball = Ball()
-    with fresh_frame(renderer):
-        renderer.draw_mesh(wall, renderer.view(facing()), PLAIN)
-        renderer.draw_parts([ball], STILL, renderer.view(facing()), PLAIN)
-    frame = surface.read().astype(np.int32)
+    frame = draw(renderer, wall, parts=still(Ball()))
     assert at(frame, 0.0, 0.0)[2] > at(frame, 0.0, 0.0)[0]  # the ball's front comes through
     assert at(frame, 19.0, 0.0)[0] > at(frame, 19.0, 0.0)[2]  # its rim is behind the wall
 
@@ -88,19 +81,16 @@ def test_parts_have_one_side(surface):
     shown = []
     for triangles, normals in ((bowl, ball.normals), (bowl[:, ::-1], -ball.normals)):
         part = Ball(shape=Shape(ball.vertices, normals, triangles))
-        with fresh_frame(renderer):
-            renderer.draw_parts([part], STILL, renderer.view(facing()), PLAIN)
-        shown.append(at(surface.read().astype(np.int32), 0.0, 0.0))
+        shown.append(at(draw(renderer, parts=still(part)), 0.0, 0.0))
     assert shown[0].min() >= 254
     assert 60 < shown[1][2] < 250
     assert shown[1][2] > 2 * shown[1][0]
 
 
-def test_part_errors(surface):
+def test_part_errors():
     """Unknown bones are refused by name."""
-    renderer = render.Renderer(surface)
     with pytest.raises(ValueError, match="part 'ball' moves with bone 'tail'; transforms has only"):
-        renderer.draw_parts([Ball(bone="tail")], STILL, renderer.view(facing()), PLAIN)
+        still(Ball(bone="tail"))
 
 
 @pytest.mark.parametrize("samples", [0, 4])
@@ -122,9 +112,7 @@ def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples):
                 colours=np.full((6, 3), 0.05, np.float32),
                 faces=np.array(faces, np.int32),
             )  # fmt: skip
-            with fresh_frame(renderer):
-                renderer.draw_parts([hair], STILL, renderer.view(facing()), PLAIN)
-            darker = 255.0 - surface.read().mean(axis=2)
+            darker = 255.0 - draw(renderer, parts=still(hair)).mean(axis=2)
         columns = darker.sum(axis=0)
         middle = columns[int(0.35 * len(columns)) : int(0.65 * len(columns))]
         assert middle.min() > 0.4 * middle.mean()
@@ -142,9 +130,7 @@ def test_hair_is_dense_up_to_its_outline(surface):
         striation = np.column_stack([3.0 * ball.vertices[:, :2], 10.0 * out, 0.0 * out[:, 0]])
         striation[:, 5] = dense
         hair = reshaped(ball, vertices=ball.vertices + 6.0 * out, striation=striation)
-        with fresh_frame(renderer):
-            renderer.draw_parts([hair], STILL, renderer.view(facing()), PLAIN)
-        row = 255 - surface.read().astype(np.int32)[48].mean(axis=1)
+        row = 255 - draw(renderer, parts=still(hair))[48].mean(axis=1)
         covers.append(row[48:])
     assert not covers[1].any()
     pixels = covers[0]  # 0.86 of a millimetre each; roots are 20 mm from the middle
@@ -153,7 +139,7 @@ def test_hair_is_dense_up_to_its_outline(surface):
     assert ((pixels > 5.0) & (pixels < 200.0)).sum() <= 2
 
 
-def test_hair_hides_what_is_drawn_after_it_behind(surface):
+def test_hair_hides_the_skin_behind_it(surface):
     """An outline of skin under hair is not seen through it."""
     renderer = render.Renderer(surface)
     wall = lent(renderer, square(z=-5.0))
@@ -161,10 +147,5 @@ def test_hair_hides_what_is_drawn_after_it_behind(surface):
     striation = np.column_stack([ball.vertices[:, :2], 6.0 * ball.normals, ball.normals[:, 0]])
     striation[:, 5] = 1.0
     hair = reshaped(ball, striation=striation)
-    surface.begin()
-    renderer.draw_background(PLAIN)
-    renderer.draw_parts([hair], STILL, renderer.view(facing()), PLAIN)
-    renderer.draw_mesh(wall, renderer.view(facing()), PLAIN)
-    surface.end()
-    frame = surface.read().astype(np.int32)
+    frame = draw(renderer, wall, parts=still(hair))
     assert at(frame, 0.0, 0.0).max() < 100 < at(frame, 30.0, 30.0).max()

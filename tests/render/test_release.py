@@ -13,7 +13,7 @@ import pytest
 from risorius import render
 from tests.memory import held_memory
 
-from .scenes import PLAIN, STILL, Ball, facing, fresh_frame, sphere
+from .scenes import PLAIN, Ball, draw, sphere, still
 
 KINDS = ("program", "buffer", "texture", "depth_texture", "renderbuffer", "framebuffer")
 KINDS += ("vertex_array", "simple_framebuffer", "depth_renderbuffer", "sampler")
@@ -49,7 +49,6 @@ def draw_all(surface: render.Surface) -> np.ndarray:
     """A picture that needs every program and buffer; nobody holds anything after it."""
     renderer = render.Renderer(surface)
     shape = sphere()
-    camera = facing()
     stream = renderer.lend_stream(len(shape.positions), len(shape.triangles), 8)
     stream.vertices[:, :3] = shape.positions
     stream.vertices[:, 3:6] = shape.normals
@@ -64,16 +63,10 @@ def draw_all(surface: render.Surface) -> np.ndarray:
         replace(PLAIN, wireframe=True, colour_by=render.ColourBy.SPLITS),
     ]
     for style in styles:
-        with fresh_frame(renderer, style):
-            renderer.draw_mesh(
-                stream, renderer.view(camera), style, values=values, texture=texture, bumps=bumps
-            )
-            renderer.draw_parts([Ball()], STILL, renderer.view(camera), style)
-            renderer.draw_lines(
-                render.Lines([shape.positions[:5]], (1.0, 0.0, 0.0)), renderer.view(camera)
-            )
-    frame = surface.read()
-    return frame
+        skin = render.Skin(stream, render.SkinMaps(texture, bumps), values=values)
+        lines = render.Lines([shape.positions[:5]], (1.0, 0.0, 0.0))
+        image = draw(renderer, skin, style, parts=still(Ball()), lines=[lines])
+    return image
 
 
 @pytest.mark.parametrize("samples", [0, 4])
@@ -92,17 +85,16 @@ def test_a_lost_renderer_leaves_nothing(samples, monkeypatch):
 
 def test_a_lost_part_leaves_nothing(monkeypatch):
     """A renderer that draws one person after the other holds the parts of the last one alone."""
-    camera = facing()
     left = list[Counter[str]]()
     style = replace(PLAIN, shadows=True)
     with render.open_offscreen((96, 96), samples=4) as surface:
         renderer = render.Renderer(surface)
         count = counting(monkeypatch)
         for _ in range(6):
-            with fresh_frame(renderer, style):
-                parts = [Ball(), Ball(bone="eye_left")]
-                renderer.draw_parts(parts, STILL, renderer.view(camera), style)
-                renderer.draw_parts(parts, STILL, renderer.view(camera), style)
+            parts = still(Ball(), Ball(bone="eye_left"))
+            for _ in range(2):
+                draw(renderer, style=style, parts=parts)
+            del parts
             surface.begin()
             left.append(count())
     assert left[0]["Buffer"] == 6
@@ -120,9 +112,7 @@ def test_a_part_without_weak_references_is_drawn():
     with render.open_offscreen((96, 96)) as surface:
         renderer = render.Renderer(surface)
         for part in (ball, kept):
-            with fresh_frame(renderer):
-                renderer.draw_parts([part], STILL, renderer.view(facing()), PLAIN)
-            images.append(surface.read())
+            images.append(draw(renderer, parts=still(part)))
     assert (images[0] == images[1]).all()
     assert len(np.unique(images[0])) > 10
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from risorius import render
 
-from .scenes import PLAIN, Shape, at, draw_image, facing, fresh_frame, lent, sphere, square
+from .scenes import PLAIN, Shape, at, draw, draw_image, lent, sphere, square
 
 FLAT = replace(PLAIN, shading=render.Shading.FLAT)
 GOURAUD = replace(PLAIN, shading=render.Shading.GOURAUD)
@@ -73,9 +73,8 @@ def test_skin_fades_toward_a_plane(surface):
     stream = lent(renderer, square(30.0))
     pictures = []
     for fade in (None, (0.0, 1.0 / 60.0, 0.0, 0.5)):  # from the lower edge to the upper one
-        with fresh_frame(renderer):
-            renderer.draw_mesh(stream, renderer.view(facing()), PLAIN, fade=fade)
-        pictures.append(255.0 - surface.read().astype(np.float64).mean(axis=2))
+        image = draw(renderer, render.Skin(stream, fade=fade))
+        pictures.append(255.0 - image.mean(axis=2))
     whole, faded = pictures
     rows = np.flatnonzero(whole[:, 48] > 1.0)
     top, middle, bottom = (faded[rows, 48] / whole[rows, 48])[[1, len(rows) // 2, -2]]

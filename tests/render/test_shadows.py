@@ -14,9 +14,9 @@ from .scenes import (
     Shape,
     SignedImage,
     at,
+    draw,
     draw_image,
     facing,
-    fresh_frame,
     joined,
     lent,
     sphere,
@@ -92,15 +92,8 @@ def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(surface, shadows):
     before_wall[2, 3] = 30.0
     frames = []
     for is_cast in (True, False):
-        with fresh_frame(renderer, style):
-            view = renderer.view(facing())
-            hair = [HairyBall()]
-            bones = {"cranium": before_wall}
-            if is_cast and shadows:
-                renderer.cast_shadows(hair, bones, view, style, stream=wall)
-            renderer.draw_mesh(wall, view, style)
-            renderer.draw_parts(hair, bones, view, style)
-        frames.append(surface.read().astype(np.int32))
+        hair = render.PlacedPart.of(HairyBall(), {"cranium": before_wall}, throws_shadow=is_cast)
+        frames.append(draw(renderer, wall, style, parts=[hair]))
     within, without = frames
     is_darker = at(within, 30.0, -33.0).sum() < 0.8 * at(without, 30.0, -33.0).sum()
     assert is_darker == shadows

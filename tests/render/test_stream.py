@@ -5,7 +5,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, draw_image, facing, fresh_frame, lent, sphere, square
+from .scenes import draw, draw_image, lent, sphere, square
 
 
 def test_lent_arrays_fit_the_contract(surface):
@@ -28,9 +28,7 @@ def test_eight_columns_draw_the_same(surface):
     stream = lent(renderer, sphere(), columns=8)
     stream.vertices[:, 6:] = 1e6
     stream.upload(len(stream.vertices), len(stream.triangles))
-    with fresh_frame(renderer):
-        renderer.draw_mesh(stream, renderer.view(facing()), PLAIN)
-    assert (surface.read() == expected).all()
+    assert (draw(renderer, stream) == expected).all()
 
 
 def test_only_the_used_part_is_drawn(surface):
@@ -45,9 +43,7 @@ def test_only_the_used_part_is_drawn(surface):
     stream.vertices[:4, 3:] = shape.normals
     stream.triangles[:2] = shape.triangles
     stream.upload(4, 2)
-    with fresh_frame(renderer):
-        renderer.draw_mesh(stream, renderer.view(facing()), PLAIN)
-    assert (surface.read() == expected).all()
+    assert (draw(renderer, stream) == expected).all()
 
 
 def test_hundred_frames_use_the_same_buffers(surface):
@@ -65,12 +61,8 @@ def test_hundred_frames_use_the_same_buffers(surface):
         count = len(shape.triangles) - 5 * frame
         stream.vertices[:, :3] = shape.positions * np.float32(1.0 + 0.001 * frame)
         stream.upload(len(shape.positions), count)
-        with fresh_frame(renderer, style):
-            renderer.draw_mesh(
-                stream, renderer.view(facing()), style, values=np.zeros(count, np.uint8)
-            )
-            renderer.draw_lines(lines, renderer.view(facing()))
-        surface.read()
+        skin = render.Skin(stream, values=np.zeros(count, np.uint8))
+        draw(renderer, skin, style, lines=[lines])
         peaks.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
     assert (stream.vertex_buffer, stream.index_buffer) == buffers
     assert [buffer.size for buffer in buffers] == sizes
@@ -82,9 +74,7 @@ def test_mesh_without_triangles_draws_nothing(surface):
     renderer = render.Renderer(surface)
     stream = lent(renderer, square())
     stream.upload(0, 0)
-    with fresh_frame(renderer):
-        renderer.draw_mesh(stream, renderer.view(facing()), render.Style(background=render.WHITE))
-    assert (surface.read() >= 254).all()
+    assert (draw(renderer, stream, render.Style(background=render.WHITE)) >= 254).all()
 
 
 def test_positions_that_are_not_finite_are_survived(surface):
@@ -94,10 +84,7 @@ def test_positions_that_are_not_finite_are_survived(surface):
     stream.vertices[3, 0] = np.inf
     stream.vertices[4, 1] = np.nan
     stream.upload(len(stream.vertices), len(stream.triangles))
-    surface.begin()
-    renderer.draw_mesh(stream, renderer.view(facing()), render.Style(wireframe=True))
-    surface.end()
-    assert surface.read().shape == (96, 96, 3)
+    assert draw(renderer, stream, render.Style(wireframe=True)).shape == (96, 96, 3)
 
 
 @pytest.mark.parametrize(

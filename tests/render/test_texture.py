@@ -8,7 +8,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, Shape, draw_image, facing, fresh_frame, lent, sphere, square
+from .scenes import PLAIN, Shape, draw, draw_image, lent, sphere, square
 
 SignedImage = npt.NDArray[np.int32]
 
@@ -31,11 +31,8 @@ def textured(
     stream.vertices[:, 6:] = shape.positions[:, :2] / 100.0 + 0.5
     stream.upload(len(shape.positions), len(shape.triangles))
     texture = render.Texture(renderer.surface, image, occlusion, fine_shape)
-    with fresh_frame(renderer, style):
-        renderer.draw_mesh(
-            stream, renderer.view(camera or facing()), style, values=values, texture=texture
-        )
-    return surface.read().astype(np.int32)
+    skin = render.Skin(stream, render.SkinMaps(texture), values=values)
+    return draw(renderer, skin, style, camera=camera)
 
 
 def plain_image(colour: tuple[int, int, int], size: tuple[int, int] = (8, 8)) -> render.Image:
@@ -144,7 +141,7 @@ def test_texture_needs_eight_columns(surface):
     stream = lent(renderer, square())
     texture = render.Texture(renderer.surface, quarters())
     with pytest.raises(ValueError, match="a texture meets a stream of 6 columns; it needs texture"):
-        renderer.draw_mesh(stream, renderer.view(facing()), PLAIN, texture=texture)
+        render.Skin(stream, render.SkinMaps(texture))
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, STILL, Ball, facing, lent, sphere
+from .scenes import PLAIN, Ball, facing, lent, sphere, still
 
 
 @pytest.mark.parametrize("samples", [0, 4])
@@ -19,14 +19,12 @@ def test_viewports_are_apart(samples):
         camera.zoom(2.0)
         images = []
         for viewports in ((left, right), (left,)):
-            surface.begin()
-            renderer.draw_background(PLAIN, *viewports)
-            for viewport in viewports:
-                view = renderer.view(camera, viewport)
-                renderer.draw_mesh(stream, view, PLAIN)
-                renderer.draw_parts([Ball()], STILL, view, PLAIN)
-                renderer.draw_lines(render.Lines([stream.vertices[:9, :3]], (1, 0, 0)), view)
-            surface.end()
+            skin = render.Skin(stream)
+            lines = [render.Lines([stream.vertices[:9, :3]], (1, 0, 0))]
+            views = [render.CameraView(camera, viewport) for viewport in viewports]
+            renderer.draw(
+                *(render.Frame(view, PLAIN, skin, still(Ball()), overlays=lines) for view in views)
+            )
             images.append(surface.read())
     both, alone = images
     assert (both[:, :60] == both[:, 60:]).mean() > 0.99
@@ -38,4 +36,5 @@ def test_viewports_are_apart(samples):
 def test_viewport_must_have_pixels(surface):
     """A viewport without extent is refused."""
     with pytest.raises(ValueError, match=r"viewport is \(0, 0, 0, 10\); it must be"):
-        render.Renderer(surface).draw_background(PLAIN, (0, 0, 0, 10))
+        view = render.CameraView(facing(), (0, 0, 0, 10))
+        render.Renderer(surface).draw(render.Frame(view, PLAIN))

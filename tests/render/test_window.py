@@ -7,7 +7,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import draw_image, needs_samples, sphere
+from .scenes import draw_image, facing, needs_samples, sphere
 
 pytestmark = pytest.mark.window
 
@@ -97,8 +97,8 @@ def test_a_coarser_scene_fills_the_window(window):
     images = []
     for detail in (render.Detail(), render.Detail(samples=0, scale=0.5)):
         window.detail = detail
-        window.begin()
-        renderer.draw_background(render.Style(), (0, 0, 48, 96))
+        view = render.CameraView(facing(), (0, 0, 48, 96))
+        renderer.draw(render.Frame(view, render.Style()))
         window.end()
         images.append(window.read().astype(int))
         assert window.read_scene().shape[:2] == (96 * detail.scale, 96 * detail.scale)
@@ -110,8 +110,7 @@ def test_a_coarser_scene_fills_the_window(window):
 def test_the_scene_outlives_its_panels(window):
     """Resolving again shows the scene as before the panel was drawn."""
     renderer = render.Renderer(window)
-    window.begin()
-    renderer.draw_background(render.Style())
+    renderer.draw(render.Frame(render.CameraView(facing()), render.Style()))
     window.end()
     before = window.read()
     window.resolve()

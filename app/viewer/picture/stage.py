@@ -174,14 +174,11 @@ class Stage:
         timed = self._times.timed
         viewports = self.viewports(display, view.viewport)
         style = style_of(display, view.background)
-        with timed("draw"):
-            self.surface.begin()
-            overlays = [] if is_photo else pointed_lines(self.scene, view.pointed)
+        overlays = [] if is_photo else pointed_lines(self.scene, view.pointed)
         self.pipeline.draw(
             view.camera, style, viewports, anatomy=display.anatomy, overlays=overlays, timer=timed
         )
         with timed("draw"):
-            self.surface.target.flush()
             self.surface.gl.finish()
         self.surface.labels = self._labels(view, viewports, style)
 

@@ -1,0 +1,119 @@
+"""A scene's mesh as one refiner has it drawn, in buffers that a renderer lent.
+
+The refiner reads the mesh and writes only into those buffers. The refined mesh is forgotten with
+the frame (Kähler, Haber, Seidel 2003, section 3). Where buffers and refiner are on the graphics
+card, nothing else knows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import refine, render
+
+from ..scenes import Scene
+from .plug_ins import PlugIn, plug_ins_of, reported
+from .presets import ON_CARD, Refinement
+from .refiners import refiner_for
+from .wrinkling import Amounts, on_rows
+
+LARGE_MESH = 20_000  # triangles from which on a graphics card refines, where it may choose
+
+
+@dataclass
+class DrawnMesh:
+    """The scene's mesh as one refiner has it drawn; two of them make a comparison."""
+
+    label: str  # its name under the picture
+    refiner: refine.Refiner
+    stream: render.Stream | render.GpuStream
+    mesh: refine.RefinedMesh | None = None  # the last result, refined from:
+    positions: npt.NDArray[np.float64] | None = None
+    plug_ins: tuple[PlugIn, ...] = ()  # somebody else's code that refines it
+
+    def refine(self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera) -> None:
+        """Fill the lent buffers with refined triangles, as the camera sees them.
+
+        Raises PlugInError where somebody else's code fails.
+        """
+        view = refine.View(camera.eye)
+        self.positions = positions
+        with reported(self.plug_ins):
+            if isinstance(self.stream, render.GpuStream):
+                assert isinstance(self.refiner, refine.GpuRefiner)  # see `bind`
+                self.mesh = self.refiner.refine_on_card(positions, self.stream, view)
+            else:
+                self.mesh = self.refiner.refine(positions, self.stream, view)
+
+    def upload(self, wrinkling: Amounts | None = None) -> None:
+        """Upload the last refined mesh, and how far the scene's vertices wrinkle."""
+        assert self.mesh is not None and self.positions is not None
+        with reported(self.plug_ins):
+            rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
+            if isinstance(self.stream, render.GpuStream):
+                mesh: Any = self.mesh  # of a refiner that fetches rows on demand
+                self.stream.show(mesh, self.positions, rows)
+            else:
+                self.stream.upload(self.mesh.vertex_count, self.mesh.triangle_count, rows)
+
+    def splits(self) -> npt.NDArray[np.uint8]:
+        """For each triangle drawn, how many splits its source triangle's edges have."""
+        assert self.mesh is not None
+        with reported(self.plug_ins):
+            return splits_of_source(self.refiner, self.mesh)
+
+    @property
+    def has_uv(self) -> bool:
+        """Whether rows carry texture coordinates, which a refiner from outside may leave out."""
+        # Position, normal, u and v.
+        return self.refiner.vertex_columns == 8
+
+    @property
+    def triangle_count(self) -> int:
+        """How many triangles the last frame drew."""
+        return self.stream.triangle_count
+
+    @property
+    def caption(self) -> str:
+        """The text under its picture: its name and its number of triangles."""
+        return f"{self.label}\n{self.triangle_count} triangles"
+
+
+def bind(scene: Scene, renderer: render.Renderer, refinement: Refinement) -> DrawnMesh:
+    """Bind the refiner that is asked for to the scene's mesh; borrow render buffers for it.
+
+    Where a look is asked for as it is, a graphics card makes the same of a large mesh.
+    """
+    has_card = renderer.lends_gpu_streams and not renderer.surface.is_software
+    is_open = refinement.refiner is None and not refinement.options
+    suits_card = has_card and is_open and len(scene.faces) >= LARGE_MESH
+    asked = replace(refinement, refiner=ON_CARD) if suits_card else refinement
+    refiner = refiner_for(scene, asked)
+    plug_ins = plug_ins_of(*asked.on(scene.name))
+    with reported(plug_ins):
+        stream = _stream_for(scene, renderer, refiner)
+    return DrawnMesh(refinement.label, refiner, stream, plug_ins=plug_ins)
+
+
+def _stream_for(
+    scene: Scene, renderer: render.Renderer, refiner: refine.Refiner
+) -> render.Stream | render.GpuStream:
+    """Buffers for the most that a refiner makes of the scene's mesh, on its side of the bus."""
+    room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
+    if not (renderer.lends_gpu_streams and isinstance(refiner, refine.GpuRefiner)):
+        return renderer.lend_stream(*room)
+    ends = scene.rest_positions[refiner.edges]
+    longest = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max(initial=0.0)
+    return renderer.lend_gpu_stream(*room, margin=float(longest))
+
+
+def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.NDArray[np.uint8]:
+    """For each drawn triangle, how many splits its source triangle's edges have."""
+    splits: npt.NDArray[np.uint8] = refiner.splits[refiner.triangle_edges].sum(
+        axis=1, dtype=np.uint8
+    )
+    return np.take(splits, mesh.source)

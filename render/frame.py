@@ -1,0 +1,176 @@
+"""A picture as a value: a view, a style, a mesh, parts and lines; `Renderer.draw` draws it.
+
+A frame says all that its picture depends on. So it gives the same picture whenever it is drawn, in
+between any other frames. Its parts keep the shape that they had when the frame was made. Its mesh
+lies in the buffers of a stream, so a frame can be drawn until that stream is filled anew.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from .camera import CameraView
+from .lines import Lines
+from .stream import MeshBuffers, UploadedMesh
+from .style import Style
+from .texture import BumpMap, Texture
+
+Plane = tuple[float, float, float, float]  # (a, b, c, d): in front is a x + b y + c z + d > 0
+
+
+class Part(Protocol):
+    """The attributes that are read of a part.
+
+    name: for messages. vertices, normals: shape (n, 3), float32. A part that is not rigid hands out
+        other arrays of the same shape whenever its shape has changed.
+    faces: counter-clockwise from the side that is seen, shape (m, 3), int32; the other side is not
+        drawn. colours: sRGB 0..1, shape (n, 3), float32.
+    bone: whose transform moves it. shine: 0 dull, 1 wet.
+    is_enclosed: whether it lies within another surface, where light from behind does not get.
+    strand_radius: half the thickness of the strands that it consists of; 0 where it is solid.
+    striation: place of each vertex across and along fibres [mm], (n, 2), or None; of shells also
+        the way from root to tip [mm], at 0.6 of which vertices lie, and how dense it is, (n, 6).
+    """
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def vertices(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def normals(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def faces(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def colours(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def bone(self) -> str: ...
+    @property
+    def shine(self) -> float: ...
+    @property
+    def is_enclosed(self) -> bool: ...
+    @property
+    def strand_radius(self) -> float: ...
+    @property
+    def striation(self) -> npt.NDArray[np.float32] | None: ...
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedPart:
+    """A part in the place and the shape that it has when this is made.
+
+    transform: from the part to the world, for column vectors, shape (4, 4).
+    lies_beneath: whether it belongs under the skin: whole skin hides it, even where it comes out.
+    throws_shadow: whether it throws a shadow on other parts and on the skin.
+    vertices, normals, colours: those of the part.
+    """
+
+    part: Part
+    transform: npt.NDArray[np.float64]
+    lies_beneath: bool = False
+    throws_shadow: bool = False
+    vertices: npt.NDArray[np.float32] = field(init=False)
+    normals: npt.NDArray[np.float32] = field(init=False)
+    colours: npt.NDArray[np.float32] = field(init=False)
+
+    def __post_init__(self) -> None:
+        for name in ("vertices", "normals", "colours"):
+            object.__setattr__(self, name, getattr(self.part, name))
+
+    @classmethod
+    def of(
+        cls,
+        part: Part,
+        transforms: Mapping[str, npt.NDArray[np.float64]],
+        *,
+        lies_beneath: bool = False,
+        throws_shadow: bool = False,
+    ) -> Self:
+        """A part where its bone puts it, by the matrix of that bone; ValueError if it has none."""
+        if part.bone not in transforms:
+            raise ValueError(
+                f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
+                f"{', '.join(sorted(transforms)) or 'none'}"
+            )
+        return cls(part, transforms[part.bone], lies_beneath, throws_shadow)
+
+
+@dataclass(frozen=True, eq=False)
+class SkinMaps:
+    """The images on a skin.
+
+    texture: the albedo of its front side, unless the style is not textured, and its fine shape.
+    bumps: furrows, as far as the style and the amounts that were uploaded let them show; per-pixel
+        shading alone has them.
+    """
+
+    texture: Texture | None = None
+    bumps: BumpMap | None = None
+
+
+NO_MAPS = SkinMaps()
+
+
+@dataclass(frozen=True, eq=False)
+class Skin:
+    """The mesh of a frame: the last upload of a stream, and what lies on it.
+
+    maps: they need a stream of 8 columns, ValueError else.
+    fade: a x + b y + c z + d, from 0 to 1, is the share of the mesh that shows at (x, y, z).
+    values: the number that colours each triangle, see `ColourBy`, shape (M,), uint8; needed unless
+        that is NONE.
+    """
+
+    stream: MeshBuffers
+    maps: SkinMaps = NO_MAPS
+    fade: Plane | None = None
+    values: npt.NDArray[np.uint8] | None = None
+    mesh: UploadedMesh = field(init=False)
+    """The upload that it shows."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mesh", self.stream.mesh)
+        if self.maps.texture is not None or self.maps.bumps is not None:
+            self.stream.check_uv()
+
+    def check(self) -> None:
+        """Raise ValueError if the stream holds another mesh by now."""
+        if self.stream.mesh is not self.mesh:
+            raise ValueError(
+                "the stream of this frame was filled anew since the frame was made; make the frame "
+                "after the upload, and draw it before the next one"
+            )
+
+    def shown_maps(self, style: Style) -> dict[BumpMap, float]:
+        """The fine shape that tilts normals in a style, and how much of each map, 0 to 1."""
+        shown = {}
+        if self.maps.bumps is not None and style.shows_bumps and self.stream.has_bumps:
+            shown[self.maps.bumps] = style.bumps
+        fine = None if self.maps.texture is None else self.maps.texture.fine_shape
+        if fine is not None and style.shows_fine_shape:
+            shown[fine] = 1.0
+        return shown
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """All that is seen in one viewport.
+
+    style: how it is drawn, with the background behind it and the opacity of the skin.
+    cut: in front of it a translucent skin is opaque.
+    overlays: lines over everything.
+    """
+
+    view: CameraView
+    style: Style
+    skin: Skin | None = None
+    parts: Sequence[PlacedPart] = ()
+    cut: Plane | None = None
+    overlays: Sequence[Lines] = ()
+
+    @property
+    def is_opened(self) -> bool:
+        """Whether parts are seen through the skin."""
+        return self.skin is not None and self.style.opacity < 1.0
