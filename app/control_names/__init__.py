@@ -128,6 +128,11 @@ def title_of(name: str, action: str = "") -> tuple[str, str]:
     return "", readable(stem).capitalize()
 
 
+def words_of_group(title: str) -> str:
+    """Other words by which a group of controls is found; "" for none."""
+    return str(_table("groups").get(title, ""))
+
+
 def is_found(words: str, text: str, names: Collection[str]) -> bool:
     """Whether each of the words is in the text, or begins another word for one of the names.
 

@@ -158,6 +158,20 @@ def test_the_file_goes_with_its_script(session, tmp_path):
     assert Session(session.scene, script_for(None, "face")).file.path is None
 
 
+def test_a_new_script_keeps_the_face(session):
+    """The pose made by hand is the first key of the script that begins; undo brings the old one."""
+    before = session.script
+    session.set("jaw_open", 0.4)
+    session.note()
+    session.work.begin_script()
+    assert session.values["jaw_open"] == 0.4
+    assert session.script.poses[0].values == {"jaw_open": 0.4}
+    assert session.script.tracks == {}
+    session.undo()
+    assert session.script == before
+    assert session.values["jaw_open"] == 0.4
+
+
 def test_losses_of_a_file_are_noticed(session):
     """Changes by another program, and comments that are not kept; not a # in a title."""
     path = session.file.path

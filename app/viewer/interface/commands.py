@@ -27,6 +27,7 @@ class Command:
     is_on: Callable[[], bool] | None = None
     can_run: Callable[[], bool] = lambda: True
     submenu: Callable[[], Iterable[Command]] | None = None  # in place of doing something
+    begins_section: bool = False  # of its menu, with a line above it
 
     @property
     def displayed_keys(self) -> str:
@@ -97,6 +98,8 @@ class MenuBar:
         for command in self._commands:
             if command.menu != title:
                 continue
+            if command.begins_section:
+                imgui.separator()
             if command.submenu is not None:
                 rows = tuple(command.submenu())
                 if imgui.begin_menu(command.label, bool(rows)):

@@ -13,7 +13,15 @@ from operator import or_
 
 from imgui_bundle import imgui
 
-from ...control_names import OPPOSITE, is_found, parted, readable, title_of, twin_of
+from ...control_names import (
+    OPPOSITE,
+    is_found,
+    parted,
+    readable,
+    title_of,
+    twin_of,
+    words_of_group,
+)
 from ..context import ApplicationContext
 from ..interface.gui import em, ink_of
 from ..interface.widgets import button, button_width, heading, hint, muted, slider, stay_in_line
@@ -93,7 +101,8 @@ def search_rows(
 def _text_of(row: Row, group: str, actions: Mapping[str, str]) -> str:
     action = actions.get(row.names[-1], "")
     names = " ".join((row.label, *row.names, *row.sides))
-    return " ".join((names, readable(names), *title_of(row.label, action), group, action))
+    groups = (group, words_of_group(group))
+    return " ".join((names, readable(names), *title_of(row.label, action), *groups, action))
 
 
 class ControlRows:

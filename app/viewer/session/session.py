@@ -348,11 +348,13 @@ class Work:
             self._session.replace_script(script, ScriptFile.of(script))
 
     def begin_script(self) -> None:
-        """Begin an empty script: the neutral face, to which keys can be added."""
+        """Begin a script of one pose: the face as it is, to which keys can be added."""
         scene = self._session.script.scene
         camera = self._session.script.camera
         duration = 4.0  # [s]
-        script = Script("", duration, "a new script", scene, camera, poses=(Pose(0.0),))
+        values = {name: value for name, value in self._session.values.items() if value}
+        poses = (Pose(0.0, values),)
+        script = Script("", duration, "a new script", scene, camera, poses=poses)
         self._session.replace_script(script, ScriptFile(None, script))
 
     def save_script(self, path: Path) -> None:

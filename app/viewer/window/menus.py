@@ -60,16 +60,16 @@ def file_menu(
         command("New script", "Ctrl+N", scripts.new),
         command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
         command("Recent", "", lambda: None, submenu=recent),
-        command("Open head ...", "Ctrl+H", file_drop.ask_head),
+        command("Open head ...", "Ctrl+H", file_drop.ask_head, begins_section=True),
         other("Built-in head", "", partial(file_drop.show_person, None)),
-        command("Open sound ...", "Ctrl+U", scripts.ask_sound),
+        command("Open sound ...", "Ctrl+U", scripts.ask_sound, begins_section=True),
         command("Remove sound", "", scripts.remove_sound, can_run=lambda: scripts.has_sound),
-        command("Save script", "Ctrl+S", scripts.save),
+        command("Save script", "Ctrl+S", scripts.save, begins_section=True),
         command("Save script as ...", "Ctrl+Shift+S", scripts.save_as),
         command("Save pose ...", "Ctrl+P", scripts.save_pose),
-        command("Screenshot", "F12", exporter.screenshot),
+        command("Screenshot", "F12", exporter.screenshot, begins_section=True),
         export("Export ...", "Ctrl+E, F10", exporter.ask),
-        command("Quit", "Ctrl+Q", close),
+        command("Quit", "Ctrl+Q", close, begins_section=True),
     )
 
 
@@ -80,7 +80,7 @@ def edit_menu(session: Session) -> Menu:
     return (
         command("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
         redo("Redo", "Ctrl+Y, Ctrl+Shift+Z", session.redo),
-        command("Neutral", "N", session.neutral),
+        command("Neutral", "N", session.neutral, begins_section=True),
         command("Mirror", "M", session.mirror),
         command("Left to right", "Shift+M", partial(session.mirror, "left")),
         command("Right to left", "Ctrl+M", partial(session.mirror, "right")),
@@ -94,7 +94,7 @@ def time_menu(session: Session, scripts: ScriptCommands, axis: TimeAxis) -> Menu
         command("Play", "Space", session.toggle_playing, lambda: session.is_playing),
         command("Record", "Ctrl+R", scripts.toggle_recording, lambda: session.is_recording),
         switch_of(lambda: session, "Time", "Loop", "L", "is_looping"),
-        command("To the start", "Home", partial(session.seek, 0.0)),
+        command("To the start", "Home", partial(session.seek, 0.0), begins_section=True),
         command("To the key before", "Left", partial(session.seek_key, -1)),
         command("To the next key", "Right", partial(session.seek_key, 1)),
         command("Show the whole script", "Shift+F", axis.show_whole),
@@ -109,13 +109,18 @@ def switch_of(
     field: str,
     on: object = True,
     off: object = False,
+    *,
+    begins_section: bool = False,
 ) -> Command:
     """A command that gives a field of some part one value or the other."""
 
     def is_on() -> bool:
         return bool(getattr(part(), field) == on)
 
-    return Command(menu, label, key, lambda: switch(part(), field, on, off), is_on)
+    def run() -> None:
+        switch(part(), field, on, off)
+
+    return Command(menu, label, key, run, is_on, begins_section=begins_section)
 
 
 def keys_menu(session: Session, selection: KeySelection) -> Menu:
@@ -130,10 +135,10 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
         edit("Key whole pose", "Shift+K", selection.key_whole_pose),
         command("Let go", "", session.let_go, can_run=lambda: bool(session.differing)),
         switch_of(lambda: session, "Keys", "Auto-key", "", "is_keying"),
-        change("Copy", "Ctrl+C", selection.copy),
+        change("Copy", "Ctrl+C", selection.copy, begins_section=True),
         command("Paste", "Ctrl+V", selection.paste, can_run=lambda: bool(selection.copied)),
         change("Delete", "Delete", selection.delete),
-        change("A frame earlier", "Shift+Left", partial(selection.nudge, -1)),
+        change("A frame earlier", "Shift+Left", partial(selection.nudge, -1), begins_section=True),
         change("A frame later", "Shift+Right", partial(selection.nudge, 1)),
         command("Select all keys", "Ctrl+A", selection.select_all),
         *(change(f"Easing: {e}", "", partial(ease, e), partial(is_eased, e)) for e in EASINGS),
@@ -156,17 +161,17 @@ def view_menu(settings: Settings, view: View) -> Menu:
     return (
         display_switch("Refine", "R", "is_refined"),
         command("Paper's look", "P", toggle_look, lambda: settings.display.look == PAPERS_PRESET),
-        display_switch("Compare: wipe", "D", "compare", "wipe", "off"),
+        display_switch("Compare: wipe", "D", "compare", "wipe", "off", begins_section=True),
         display_switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
-        display_switch("Wireframe", "W", "wireframe"),
+        display_switch("Wireframe", "W", "wireframe", begins_section=True),
         display_switch("Colour by splits", "C", "splits"),
         display_switch("Texture", "T", "skin", "textured", "plain"),
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
-        setting("Idle life", "A", "is_alive"),
+        setting("Idle life", "A", "is_alive", begins_section=True),
         setting("Curves", "G", "shows_curves"),
-        command("Frame the face", "F", view.fit_scene),
+        command("Frame the face", "F", view.fit_scene, begins_section=True),
         *(command(name, key, partial(view.look_from, name)) for name, key in VIEW_KEYS.items()),
-        setting("Dark theme", "F2", "theme", "dark", "light"),
+        setting("Dark theme", "F2", "theme", "dark", "light", begins_section=True),
         command("Larger text", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
         command("Smaller text", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
         command("Usual size", "Ctrl+0", partial(setattr, settings, "zoom", 1.0)),

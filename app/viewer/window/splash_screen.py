@@ -40,9 +40,10 @@ class SplashScreen(logging.Handler):
         known = size or self.settings.size
         self._text = LOADING_TEXT
         self._drawn = ((0, 0), "")
-        first_size = 1280, 800  # [units of a screen of ordinary density]
-        size = known or first_size
-        self.surface = render.open_window(size, "Risorius", is_scaled=known is None)
+        most = 2560, 1440  # [units of a screen of ordinary density], where it has room for that
+        self.surface = render.open_window(known or most, "Risorius", is_scaled=known is None)
+        if known is None:
+            self.settings.zoom = zoom_for(self.surface)
         LOG.addHandler(self)
         self._show()
 
@@ -76,6 +77,13 @@ class SplashScreen(logging.Handler):
         self._drawn = size, text = self.surface.frame_size, self._text
         letter = FONT_SIZE * self.settings.zoom * self.surface.pixel_scale
         self.surface.show(picture(size, letter, THEMES[self.settings.theme], text))
+
+
+def zoom_for(surface: render.WindowSurface) -> float:
+    """How much larger than usual words are on a large screen, so that they can be read there."""
+    height = surface.frame_size[1] / surface.pixel_scale
+    usual_height = 1080.0  # [units of a screen of ordinary density]
+    return min(max(height / usual_height, 1.0), 1.5)
 
 
 def picture(size: tuple[int, int], letter: float, theme: Theme, text: str) -> render.Image:
