@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from .control_names.limits import Limits
 from .errors import UserError
-from .recordings.playback import Playback
+from .playback import Playback
 from .scenes import SCENES, controls_of
 from .script import POSE_SECONDS, Pose, Script
 from .script.script_file import load_script

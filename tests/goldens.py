@@ -46,7 +46,7 @@ def commands() -> Iterator[tuple[str, list[str]]]:
         yield pose, ["capture", "--set", pose, "--size", "640x480", "-o", f"{pose}.png"]
     for camera in CAMERAS:
         yield camera, ["capture", "--set", "joy", "--camera", camera, "-o", f"camera_{camera}.png"]
-    yield "person", ["capture", "--set", "joy", "--person", "7", "-o", "person.png"]
+    yield "person", ["capture", "--set", "joy", "--head", "7", "-o", "person.png"]
     yield "anatomy", ["capture", "--set", "joy", "--anatomy", "muscles", "-o", "anatomy.png"]
     yield "compare", ["capture", "--compare", "none,paper", "-o", "compare.png"]
     passes = ["--passes", "depth,normal,triangle,splits,segmentation,landmarks"]

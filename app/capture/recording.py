@@ -122,16 +122,21 @@ def _check(
 ) -> None:
     """Raise UserError, before any work is done, where one of the outputs cannot be."""
     if time is not None and not _is_image(output):
-        raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
+        raise UserError(
+            f"--time {time:g}: is the time of a picture.png; for a film write --time FROM:TO"
+        )
     if time is not None and time > script.duration:
         raise UserError(f"--time {time:g}: {script.source} ends at {script.duration:g} s")
     if options.span is not None:
         begin, end = options.span
         if sheet is not None or _is_image(output):
-            raise UserError("--range is for a film or a folder of frames")
+            raise UserError(
+                f"--time {begin:g}:{end:g}: is for a film or a folder of frames; a picture has one "
+                "time"
+            )
         if not 0.0 <= begin < end <= script.duration:
             raise UserError(
-                f"--range {begin:g} {end:g}: take two times from 0 to {script.duration:g} s, "
+                f"--time {begin:g}:{end:g}: take two times from 0 to {script.duration:g} s, "
                 "the earlier one first"
             )
     if isinstance(options.camera, str):

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import UserError, in_one_line
-from ..recordings.playback import Playback
 from ..refining.presets import STATIC, Refinement
+from .help import GroupedCommand
 from .options import (
     PATH,
     SCENE,
@@ -21,10 +21,10 @@ from .options import (
     Drawing,
     FiniteRange,
     Size,
+    Times,
     option,
     packed,
     played,
-    with_playback,
 )
 
 if TYPE_CHECKING:
@@ -50,19 +50,15 @@ class Filming:
         metavar="[NAME,...]",
         help="Looks or refiners to show on the left; without a name the mesh as it is.",
     )
-    captions: bool = option(
-        "--captions/--no-captions",
-        default=True,
-        help="Names under a comparison, and a legend of colours.",
+    camera: str | None = option(
+        help="Named view, or yaw,pitch[,zoom] in degrees; turntable, alone or after a view and a "
+        "comma: the camera goes round once.",
     )
-    camera: str | None = option(help="Named view, or yaw,pitch[,zoom] in degrees.")
-    turntable: bool = option(is_flag=True, help="The camera goes round once.")
-    span: tuple[float, float] | None = option(
-        "--range",
-        type=FiniteRange(0, 86_400),
-        nargs=2,
-        metavar="FROM TO",
-        help="The part of the script to draw [s].",
+    times: tuple[float, ...] | None = option(
+        "--time",
+        type=Times(),
+        help="Time of a .png [s]; by default the first named pose, or else the end. FROM:TO: the "
+        "part of the script that a film or a folder shows.",
     )
     background: render.Background | None = option(
         type=BackgroundName(),
@@ -77,19 +73,31 @@ class Filming:
         is_flag=True,
         help="Idle life: eyes blink and look at the camera, unless the script moves them.",
     )
-    still_time: float | None = option(
-        "--time",
-        type=FiniteRange(0, 86_400),
-        help="Time of a .png [s]; by default the first named pose, or else the end.",
-    )
-    samples: int = option(
-        type=click.IntRange(0, 16),
-        default=4,
-        show_default=True,
-        help="Samples of each pixel, for smooth edges.",
-    )
     overwrite: bool = option(is_flag=True, help="Replace the frames in a folder.")
     quiet: bool = option(is_flag=True, help="No progress bar.")
+
+    @property
+    def still_time(self) -> float | None:
+        """The time of a picture [s]; None: the script's own."""
+        return self.times[0] if self.times is not None and len(self.times) == 1 else None
+
+    @property
+    def span(self) -> tuple[float, float] | None:
+        """The part of the script to draw [s]; None: all of it."""
+        if self.times is None or len(self.times) == 1:
+            return None
+        begin, end = self.times
+        return begin, end
+
+    def view(self) -> tuple[str | None, bool]:
+        """The camera without the word turntable, and whether that is there."""
+        if self.camera is None:
+            return None, False
+        words = self.camera.split(",")
+        is_turntable = words[-1] == "turntable"
+        if is_turntable:
+            words.pop()
+        return ",".join(words) or None, is_turntable
 
     def options(self, script: Script, drawing: Drawing) -> CaptureOptions:
         """All options that decide a script's frames; UserError for options that cannot be."""
@@ -98,25 +106,24 @@ class Filming:
 
         refinement = drawing.refinement()
         refinement.check(script.scene)
+        camera, is_turntable = self.view()
         return CaptureOptions(
             size=self.size,
             frames_per_second=self.fps,
             refinement=refinement,
             beside=parse_comparison(self.compare, refinement),
-            captions=self.captions,
-            camera=self.camera or script.camera,
-            is_turntable=self.turntable,
+            camera=camera or script.camera,
+            is_turntable=is_turntable,
             span=self.span,
             style=replace(drawing.style(), background=self.background),
             anatomy=drawing.anatomy_view(),
-            samples=self.samples,
             head=drawing.fitted_head(),
             is_alive=self.alive,
             passes=() if self.passes is None else tuple(self.passes.split(",")),
         )
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @SCRIPT
 @SETTINGS
 @click.option("-o", "--output", type=PATH, help="out.mp4, .webm, .gif, .webp, a folder, or .png")
@@ -124,7 +131,6 @@ class Filming:
 @SCENE
 @SOUND
 @packed(Filming)
-@with_playback
 @packed(Drawing)
 def capture(
     script: Path | None,
@@ -134,13 +140,13 @@ def capture(
     scene: str | None,
     sound: Path | None,
     filming: Filming,
-    playback: Playback,
     drawing: Drawing,
 ) -> None:
     """Draw SCRIPT as a film, frames, a picture or a contact sheet.
 
-    A recording of a face is a SCRIPT, too: Live Link Face, OpenFace, MediaPipe, ... Without SCRIPT
-    the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
+    A recording of a face is a SCRIPT, too: Live Link Face, OpenFace, MediaPipe, ... `risorius
+    convert` calibrates it. Without SCRIPT the scene's own one is played, or a pose of controls is
+    held: --set AU12=0.8.
     """
     from ..capture import capture as film_of
     from ..capture.outputs import HEARD
@@ -148,12 +154,10 @@ def capture(
     from ..passes.labels import beside
 
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
-    check_apart(written, (script, sound, drawing.head, drawing.landmarks))
+    check_apart(written, (script, sound, *drawing.files))
     if sound is not None and (output is None or output.suffix.lower() not in HEARD):
         raise UserError(f"--sound {sound}: only a film is heard; end -o in {', '.join(HEARD)}")
-    performance = played(
-        script, scene, playback, settings=settings, sound=sound, quiet=filming.quiet
-    )
+    performance = played(script, scene, settings=settings, sound=sound, quiet=filming.quiet)
     options = filming.options(performance, drawing)
     most = film_of(
         performance,

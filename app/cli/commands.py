@@ -6,7 +6,7 @@ Modules that need OpenGL or compiled code are imported inside the commands: --he
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,12 +16,15 @@ from click.core import ParameterSource
 
 from ..errors import UserError, counted, in_one_line
 from ..live.protocols import LOOPBACK, PROTOCOLS, Listening
-from ..recordings.playback import Playback
+from ..playback import Playback
 from .batch import batch
 from .capture import capture, demo
 from .dataset import dataset
 from .export import export
+from .help import GroupedCommand
 from .options import (
+    GAIN,
+    MIRROR,
     PATH,
     QUIET,
     SCENE_NAMES,
@@ -57,29 +60,35 @@ class Live:
         help="Address of this computer to listen on; 0.0.0.0 for its whole network.",
     )
 
-    def listening(self, playback: Playback) -> Listening | None:
+    def listening(self, gains: tuple[str, ...], mirror: bool) -> Listening | None:
         """Where to listen, None for nowhere; UserError for options that need --live.
 
-        playback: its gains and mirror are those of the live face.
+        gains: "NAME=x" each. mirror: whether left and right change places.
         """
         if self.live is None:
             source = click.get_current_context().get_parameter_source
             for name in ("port", "address"):
                 if source(name) is not ParameterSource.DEFAULT:
                     raise UserError(f"--{name} goes with --live, which names the protocol")
+            if gains or mirror:
+                option = "--gain" if gains else "--mirror"
+                raise UserError(
+                    f"{option} goes with --live; for a recording it goes with risorius convert"
+                )
             return None
         PROTOCOLS[self.live].check()
-        return Listening(self.live, self.address, self.port, playback.gains, playback.mirror)
+        return Listening(self.live, self.address, self.port, gains, mirror)
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.option("--size", type=Size(), help="Size of the window: as it was last, or 1280x800.")
 @click.option("--scene", type=SCENE_NAMES, help="The scene to animate, face by default.")
 @click.option("--script", type=PATH, help="The script or recording that the space key plays.")
 @SOUND
 @QUIET
 @packed(Live)
-@with_playback
+@GAIN
+@MIRROR
 @packed(Drawing)
 def view(
     size: tuple[int, int] | None,
@@ -87,22 +96,22 @@ def view(
     script: Path | None,
     sound: Path | None,
     live: Live,
+    gains: tuple[str, ...],
+    mirror: bool,
     quiet: bool,
-    playback: Playback,
     drawing: Drawing,
 ) -> None:
     """Open the window: a face with a slider for every muscle.
 
-    With --head alone, you mark the landmarks of that mesh first. With --live the face follows one
-    that a phone or `risorius send` sends; --gain and --mirror then apply to that face.
+    With --head and a mesh alone, you mark the landmarks of that mesh first. With --live the face
+    follows one that a phone or `risorius send` sends; --gain and --mirror are of that face.
     """
-    listening = live.listening(playback)
-    if listening is not None:
-        playback = replace(playback, gains=(), mirror=False)  # the live face has them
-    is_bare = drawing.head is not None and drawing.landmarks is None and drawing.person is None
-    mesh = drawing.head if is_bare else None
-    is_plain = (script, scene, sound, playback) == (None, None, None, Playback())
-    performance = None if is_plain else played(script, scene, playback, sound=sound, quiet=quiet)
+    listening = live.listening(gains, mirror)
+    mesh = None
+    if isinstance(drawing.head, Path) and drawing.landmarks is None:
+        mesh = drawing.head
+    is_plain = (script, scene, sound) == (None, None, None)
+    performance = None if is_plain else played(script, scene, sound=sound, quiet=quiet)
     open_window(performance, size, drawing, listening=listening, mesh=mesh)
 
 
@@ -133,13 +142,12 @@ def send(recording: Path | None, port: int | None, address: str, loop: bool) -> 
         sender.play(take, is_looping=loop)
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("script", type=PATH)
 @click.option("--size", type=Size(), help="Size of the window: as it was last, or 1280x800.")
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
 @SOUND
 @QUIET
-@with_playback
 @packed(Drawing)
 def replay(
     script: Path,
@@ -147,11 +155,10 @@ def replay(
     once: bool,
     sound: Path | None,
     quiet: bool,
-    playback: Playback,
     drawing: Drawing,
 ) -> None:
     """Play SCRIPT, or a recording of a face, in the window."""
-    performance = played(script, None, playback, sound=sound, quiet=quiet)
+    performance = played(script, None, sound=sound, quiet=quiet)
     open_window(performance, size, drawing, playing=True, once=once)
 
 
@@ -207,7 +214,7 @@ def open_window(
 
     def load() -> tuple[Script, FittedHead | None]:
         """All that takes long."""
-        script = performance or played(None, None, Playback(), quiet=True)
+        script = performance or played(None, None, quiet=True)
         head = drawing.fitted_head() if mesh is None else None
         import risorius.app.viewer.window.window  # noqa: F401
 
@@ -225,8 +232,8 @@ def open_window(
     path = settings_path()
     with SplashScreen(size, path) as splash:
         script, head = splash.during(load)
-        if drawing.head is not None:
-            splash.settings.note_recent(*filter(None, (drawing.head, drawing.landmarks)))
+        if drawing.files:
+            splash.settings.note_recent(*drawing.files)
         from ..viewer import Viewer
         from ..viewer.settings import display_of
 

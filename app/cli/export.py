@@ -10,7 +10,7 @@ import click
 from ..errors import in_one_line
 from ..export.formats import FORMATS, Request, check_request, format_for
 from ..export.formats import export as write
-from ..recordings.playback import Playback
+from .help import GroupedCommand
 from .options import (
     PATH,
     SCENE,
@@ -21,7 +21,6 @@ from .options import (
     option,
     packed,
     played,
-    with_playback,
 )
 
 
@@ -46,13 +45,12 @@ class Exporting:
     quiet: bool = option(is_flag=True, help="No progress bar.")
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @SCRIPT
 @SETTINGS
 @click.option("-o", "--output", type=PATH, required=True, help="A file, or a folder with --as.")
 @SCENE
 @packed(Exporting)
-@with_playback
 @packed(Subject)
 def export(
     script: Path | None,
@@ -60,26 +58,24 @@ def export(
     output: Path,
     scene: str | None,
     exporting: Exporting,
-    playback: Playback,
     subject: Subject,
 ) -> None:
     """Write the motion of SCRIPT for other programs.
 
-    A recording of a face is a SCRIPT, too. Without SCRIPT the scene's own one is played, or a pose
-    is held for a second: --set joy.
+    A recording of a face is a SCRIPT, too; `risorius convert` calibrates it. Without SCRIPT the
+    scene's own one is played, or a pose is held for a second: --set joy.
     """
     from ..files import check_apart
 
     chosen = format_for(output, exporting.name)
-    inputs = (script, subject.head, subject.landmarks)
-    check_apart(chosen.outputs(output), inputs)
+    check_apart(chosen.outputs(output), (script, *subject.files))
     request = Request(
         subject.refinement() if exporting.refined else None,
         exporting.overwrite,
         not exporting.quiet,
     )
     check_request(output, chosen, request)
-    performance = played(script, scene, playback, settings=settings, quiet=exporting.quiet)
+    performance = played(script, scene, settings=settings, quiet=exporting.quiet)
     if request.refinement is not None:
         request.refinement.check(performance.scene)
     head = subject.fitted_head()

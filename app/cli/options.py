@@ -15,8 +15,9 @@ import click
 from click.core import ParameterSource
 
 from ..errors import UserError
-from ..recordings.playback import LEAD, Playback
+from ..playback import LEAD, Playback
 from ..refining.presets import FIRST_PRESET, PRESETS, Refinement
+from .styles import LIGHT_NAMES, STRUCTURES, anatomy_in, style_in
 
 if TYPE_CHECKING:
     from risorius import render
@@ -80,6 +81,26 @@ class BackgroundName(click.ParamType["render.Background | None"]):
         )
 
 
+class Times(click.ParamType[tuple[float, ...]]):
+    """A time [s], or two with a colon between them: 2.5, or 1:2.5."""
+
+    name = "T|FROM:TO"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, ...]:
+        """Turn the text into one or two numbers of seconds, or fail with the forms allowed."""
+        if isinstance(value, tuple):
+            return value
+        try:
+            times = tuple(float(part) for part in str(value).split(":"))
+        except ValueError:
+            times = ()
+        if len(times) not in (1, 2) or not all(0.0 <= each <= 86_400.0 for each in times):
+            self.fail(f"'{value}' is no time [s]; write it as 2.5, or FROM:TO as 1:2.5", param, ctx)
+        return times
+
+
 class FiniteRange(click.FloatRange):
     """A number within limits; unlike its parent class it refuses NaN."""
 
@@ -93,21 +114,21 @@ class FiniteRange(click.FloatRange):
         return number
 
 
-class PersonName(click.ParamType[int | str]):
-    """A person's number or name."""
+class HeadName(click.ParamType["Path | int | str"]):
+    """A head: a file, or the number or name of a person."""
 
-    name = "NUMBER|NAME"
+    name = "FILE|PERSON"
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> int | str:
-        """The number, or the name as it is."""
+    ) -> Path | int | str:
+        """A number or a name of PERSON_NAMES is a person; all else is a path."""
         if value in PERSON_NAMES:
             return str(value)
-        if not str(value).isdecimal():
-            names = ", ".join(PERSON_NAMES)
-            self.fail(f"'{value}' is nobody; write a number, 0 or more, or {names}", param, ctx)
-        return click.IntRange(0, 2**32 - 1).convert(value, param, ctx)
+        if str(value).isdecimal():
+            return click.IntRange(0, 2**32 - 1).convert(value, param, ctx)
+        path: Path = PATH.convert(value, param, ctx)
+        return path
 
 
 Command = Callable[..., Any]
@@ -127,9 +148,6 @@ SETTINGS = click.option(
     help="Hold a control at a value, instead of a SCRIPT.",
 )
 SCENE = click.option("--scene", type=SCENE_NAMES, help="The scene to animate.")
-LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard")  # render.LIGHTS, not imported yet
-STRUCTURES = ("muscles", "skull")  # anatomy.STRUCTURES, not imported yet
-STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "skin_maps", "wrinkles", "light")
 
 
 def option(*names: str, **about: Any) -> Any:
@@ -174,12 +192,12 @@ def packed(settings: type[Any], options: Iterable[Command] = ()) -> Callable[[Co
 class Subject:
     """Options that choose the head, and how its mesh is refined."""
 
-    head: Path | None = option(type=PATH, help="A head of your own: any triangle mesh.")
-    landmarks: Path | None = option(type=PATH, help="The 68 iBug landmarks of --head, as JSON.")
-    person: int | str | None = option(
-        type=PersonName(),
-        help="Another person than the built-in head: each number is one, some have names.",
+    head: Path | int | str | None = option(
+        type=HeadName(),
+        help="A head of your own, any triangle mesh; or a person: each number is one, and ada, "
+        "kofi and maria.",
     )
+    landmarks: Path | None = option(type=PATH, help="The 68 iBug landmarks of --head, as JSON.")
     look: str = option(
         type=click.Choice(list(PRESETS)),
         default=FIRST_PRESET,
@@ -200,27 +218,36 @@ class Subject:
         "(risorius doctor lists schemes and criteria).",
     )
 
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files of a head of the user's."""
+        return tuple(each for each in (self.head, self.landmarks) if isinstance(each, Path))
+
     def check_head(self) -> None:
         """Raise UserError for options that exclude or need each other."""
-        if self.person is not None and (self.head is not None or self.landmarks is not None):
-            raise UserError("--person makes a head; it goes with neither --head nor --landmarks")
-        if (self.head is None) != (self.landmarks is None):
+        is_person = self.head is not None and not isinstance(self.head, Path)
+        if is_person and self.landmarks is not None:
+            raise UserError(
+                f"--head {self.head} is a person, whose landmarks are known; leave --landmarks out"
+            )
+        if len(self.files) == 1:
             raise UserError(
                 "--head HEAD.obj and --landmarks LANDMARKS.json go together; "
                 "`risorius view --head HEAD.obj` helps to mark the landmarks"
             )
 
     def fitted_head(self) -> FittedHead | None:
-        """The user's own head, fitted; None for the built-in one."""
+        """The user's own head, fitted, or a person; None for the built-in head."""
         self.check_head()
-        from risorius.assets.identities import person_called
+        if self.head is None:
+            return None
+        if not isinstance(self.head, Path):
+            from risorius.assets.identities import person_called
 
+            return person_called(self.head)
         from ..scenes import own_head
 
-        if self.person is not None:
-            return person_called(self.person)
-        if self.head is None or self.landmarks is None:
-            return None
+        assert self.landmarks is not None
         return own_head(self.head, self.landmarks)
 
     def refinement(self) -> Refinement:
@@ -239,75 +266,42 @@ class Drawing(Subject):
         is_flag=False,
         flag_value=",".join(STRUCTURES),
         metavar="[NAME,...]",
-        help="Draw muscles, skull or both under translucent skin.",
+        help="Draw muscles, skull or both under translucent skin; opacity=0..1 of the skin, 0.25 "
+        "by default; dissect=left or right: the subject's side with such skin.",
     )
-    skin_opacity: float | None = option(
-        type=FiniteRange(0, 1),
-        help="With --anatomy: opacity of the skin, 0.25 by default; 0: invisible.",
-    )
-    dissect: str | None = option(
-        type=click.Choice(["both", "left", "right"]),
-        help="With --anatomy: the subject's side with translucent skin; both by default.",
-    )
-    light: str = option(
-        type=click.Choice(LIGHT_NAMES),
-        default="studio",
-        show_default=True,
-        help="The light: its directions, strengths and colours.",
-    )
-    wrinkles: float = option(
-        type=FiniteRange(0, 1),
-        default=1.0,
-        show_default=True,
-        help="Depth of wrinkles where skin is compressed; 0: none.",
-    )
-    skin_maps: bool = option(
-        "--skin-maps/--no-skin-maps",
-        default=True,
-        show_default=True,
-        help="Maps of the skin's fine shape, and of light in its folds.",
-    )
-    skin: str = option(
-        type=click.Choice(["textured", "plain", "clay"]),
-        default="textured",
-        show_default=True,
-        help="clay is plain grey, as in the paper's pictures. Only textured skin has hair.",
-    )
-    splits: bool = option(is_flag=True, help="Colour triangles by their number of splits.")
-    wireframe: bool = option(is_flag=True, help="Draw the edges of every triangle.")
-    shading: str = option(
-        type=click.Choice(["flat", "gouraud", "pixel"]),
-        default="pixel",
-        show_default=True,
-        help="Light each triangle, each vertex or each pixel.",
+    style_settings: tuple[str, ...] = option(
+        "--style",
+        multiple=True,
+        metavar="NAME[=VALUE],...",
+        help="wireframe, splits (colours by number of splits), skin=textured, plain or clay, "
+        f"light={', '.join(LIGHT_NAMES[:-1])} or {LIGHT_NAMES[-1]}, wrinkles=0..1.",
     )
 
     @property
     def style_options(self) -> dict[str, Any]:
-        """The options of style alone."""
-        return {name: getattr(self, name) for name in STYLE_OPTIONS}
+        """The settings of style by name."""
+        return style_in(self.style_settings)
 
     @property
     def is_given(self) -> bool:
         """Whether the command line sets any option of refinement, style or anatomy."""
         source = click.get_current_context().get_parameter_source
-        names = ["look", "refiner", "refiner_settings", *STYLE_OPTIONS]
-        names += ["anatomy", "skin_opacity", "dissect"]
+        names = ("look", "refiner", "refiner_settings", "style_settings", "anatomy")
         return any(source(name) is not ParameterSource.DEFAULT for name in names)
 
     def style(self) -> render.Style:
-        """The style that these options set."""
+        """The style that these options set; UserError for an unknown one."""
         from risorius import render
 
+        wanted = self.style_options
+        skin = wanted["skin"]
         return render.Style(
-            shading=render.Shading[self.shading.upper()],
-            wireframe=self.wireframe,
-            colour_by=render.ColourBy.SPLITS if self.splits else render.ColourBy.NONE,
-            textured=self.skin == "textured",
-            albedo=render.CLAY if self.skin == "clay" else render.SKIN,
-            skin_maps=self.skin_maps,
-            bumps=self.wrinkles,
-            light=render.LIGHTS[self.light],
+            wireframe=wanted["wireframe"],
+            colour_by=render.ColourBy.SPLITS if wanted["splits"] else render.ColourBy.NONE,
+            textured=skin == "textured",
+            albedo=render.CLAY if skin == "clay" else render.SKIN,
+            bumps=wanted["wrinkles"],
+            light=render.LIGHTS[wanted["light"]],
         )
 
     def anatomy_view(self) -> AnatomyView:
@@ -315,23 +309,19 @@ class Drawing(Subject):
         from ..anatomy import OPACITY, SKIN_ALONE, AnatomyView
 
         if self.anatomy is None:
-            for name in ("skin_opacity", "dissect"):
-                if getattr(self, name) is not None:
-                    raise UserError(
-                        f"--{name.replace('_', '-')} goes with --anatomy, which names the "
-                        "structures under the skin"
-                    )
             return SKIN_ALONE
-        names = self.anatomy.split(",")
-        for name in names:
-            if name not in STRUCTURES:
-                raise UserError(
-                    f"--anatomy: '{name}' is not there; it takes {', '.join(STRUCTURES)}"
-                )
-        opacity = OPACITY if self.skin_opacity is None else self.skin_opacity
-        return AnatomyView(tuple(names), opacity, self.dissect or "both")
+        structures, opacity, side = anatomy_in(self.anatomy)
+        return AnatomyView(structures, OPACITY if opacity is None else opacity, side)
 
 
+GAIN = click.option(
+    "--gain",
+    "gains",
+    multiple=True,
+    metavar="NAME=x",
+    help="How strongly a channel counts; NAME may be a pattern (mouth*, *Left), or all.",
+)
+MIRROR = click.option("--mirror", is_flag=True, help="Left and right change places.")
 PLAYBACK = (
     click.option(
         "--neutral",
@@ -339,14 +329,8 @@ PLAYBACK = (
         help="The face at rest, to subtract: first:1, the median of the first second; "
         "percentile, the 5th of each channel; none. By default as suits the kind of file.",
     ),
-    click.option(
-        "--gain",
-        "gains",
-        multiple=True,
-        metavar="NAME=x",
-        help="How strongly a channel counts; NAME may be a pattern (mouth*, *Left), or all.",
-    ),
-    click.option("--mirror", is_flag=True, help="Left and right change places."),
+    GAIN,
+    MIRROR,
     click.option(
         "--lead",
         type=FiniteRange(0, 0.5),
@@ -371,7 +355,7 @@ def _print_report(report: Report) -> None:
 def played(
     script: Path | None,
     scene: str | None,
-    playback: Playback,
+    playback: Playback | None = None,
     *,
     settings: tuple[str, ...] = (),
     sound: Path | None = None,

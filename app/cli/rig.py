@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from ..errors import UserError, counted, in_one_line
-from .options import PATH, PersonName, option, packed
+from .options import PATH, HeadName, option, packed
 
 
 @dataclass(frozen=True)
@@ -16,9 +16,6 @@ class Rigging:
     """Options of rig alone."""
 
     landmarks: Path | None = option(type=PATH, help="The 68 iBug landmarks of HEAD, as JSON.")
-    person: int | str | None = option(
-        type=PersonName(), help="A made person in place of HEAD: each number is one."
-    )
     shapes: str = option(
         default="arkit",
         show_default=True,
@@ -48,14 +45,15 @@ class Rigging:
 
 
 @click.command()
-@click.argument("head", type=PATH, required=False)
+@click.argument("head", metavar="[HEAD]", type=HeadName(), required=False)
 @click.option("-o", "--output", type=PATH, required=True, help="avatar.glb")
 @packed(Rigging)
-def rig(head: Path | None, output: Path, rigging: Rigging) -> None:
+def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     """Make an avatar of HEAD: its own vertices, with named shapes.
 
-    Without HEAD the built-in head is taken. Lines on the error stream say what each piece of the
-    file was taken for, and how far sums of shapes are from the simulation.
+    HEAD is a file, or the number or name of a person. Without it the built-in head is taken. Lines
+    on the error stream report what each piece of the file was taken for, and how far sums of shapes
+    are from the simulation.
     """
     from risorius.assets.identities import person_called
 
@@ -63,16 +61,15 @@ def rig(head: Path | None, output: Path, rigging: Rigging) -> None:
     from ..rig.avatar import RigRequest, avatar_of, read_file_head
     from ..rig.writing import avatar_glb
 
-    if (head is None) != (rigging.landmarks is None):
+    file_path = head if isinstance(head, Path) else None
+    if (file_path is None) != (rigging.landmarks is None):
         raise UserError(
-            "HEAD and --landmarks LANDMARKS.json go together; "
+            "a file as HEAD and --landmarks LANDMARKS.json go together; "
             "`risorius view --head HEAD.obj` helps to mark the landmarks"
         )
-    if head is not None and rigging.person is not None:
-        raise UserError("--person makes a head; it goes without HEAD")
     if output.suffix.lower() != ".glb":
         raise UserError(f"{output}: avatars are written as .glb; choose a name that ends so")
-    check_apart((output,), (head, rigging.landmarks))
+    check_apart((output,), (file_path, rigging.landmarks))
     check_file(output)
     request = RigRequest(
         tuple(rigging.shapes.split(",")),
@@ -88,14 +85,14 @@ def rig(head: Path | None, output: Path, rigging: Rigging) -> None:
         if not rigging.quiet:
             click.echo(in_one_line(line), err=True)
 
-    if head is not None and rigging.landmarks is not None:
-        file = read_file_head(head, rigging.landmarks, request, say)
+    if file_path is not None and rigging.landmarks is not None:
+        file = read_file_head(file_path, rigging.landmarks, request, say)
         avatar = avatar_of(file.head, request, say, file=file)
-        title = head.stem
+        title = file_path.stem
     else:
-        person = None if rigging.person is None else person_called(rigging.person)
+        person = None if head is None or isinstance(head, Path) else person_called(head)
         avatar = avatar_of(person, request, say)
-        title = "head" if person is None else f"person {rigging.person}"
+        title = "head" if person is None else f"person {head}"
     with written_atomically(output) as part:
         part.write_bytes(avatar_glb(avatar, title))
     size = output.stat().st_size / 1e6

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from ..motion.curves import ARKIT_SHAPES, solved
+from ..playback import LEAD
 from ..recordings.conversion import lead_of
 from ..recordings.named_columns import OUTWARD
 from ..recordings.names import ARKIT
-from ..recordings.playback import LEAD
 from ..rig.surface import Floats
 from .clip import Clip
 from .formats import Request

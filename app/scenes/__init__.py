@@ -279,7 +279,7 @@ def build_scene(name: str, head: FittedHead | None = None) -> Scene:
     if head is None:
         return SCENES[name]()
     if name != "face":
-        raise UserError(f"--head and --person go with the scene face, not with '{name}'")
+        raise UserError(f"--head goes with the scene face, not with '{name}'")
     try:
         return FaceScene(head)
     except ValueError as error:

@@ -152,8 +152,8 @@ def test_the_command_draws_anatomy(tmp_path):
         return risorius(*always, *more)
 
     assert run("-o", str(plain)).exit_code == 0
-    message = ("--anatomy", "--dissect", "left", "--skin-opacity", "0.1")
-    assert run(*message, "--person", "ada", "-o", str(opened)).exit_code == 0  # with long hair
+    message = ("--anatomy", "dissect=left,opacity=0.1")
+    assert run(*message, "--head", "ada", "-o", str(opened)).exit_code == 0  # with long hair
     assert run(*message, "-o", str(opened)).exit_code == 0
     first, second = (np.array(Image.open(path)).astype(int) for path in (plain, opened))
     off = np.abs(first - second).max(axis=2) > 24
@@ -161,9 +161,9 @@ def test_the_command_draws_anatomy(tmp_path):
     wrong = run("--anatomy", "muscles,bones", "-o", str(plain))
     assert wrong.exit_code == 2
     assert "muscles, skull" in wrong.output
-    lonely = run("--skin-opacity", "0.5", "-o", str(plain))
-    assert lonely.exit_code == 2
-    assert "--anatomy" in lonely.output
+    dense = run("--anatomy", "opacity=2", "-o", str(plain))
+    assert dense.exit_code == 2
+    assert "a number from 0 to 1" in dense.output
 
 
 @pytest.mark.parametrize(("pose", "view"), [({}, "-30,-10,1.3"), ({"surprise": 1.0}, "-12,0,2")])

@@ -17,7 +17,7 @@ from .test_workers import is_running, wait_until
 
 SCRIPT = "duration = {0}\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = {0}\n{1} = 1.0\n"
 POSES = ("joy", "sadness", "fear")
-SMALL = "--size 64x48 --samples 0 --fps 20"
+SMALL = "--size 64x48 --fps 20"
 LIST = f"""
 # frames, a film and a clip
 capture joy.toml -o joy {SMALL}

@@ -10,7 +10,7 @@ import pytest
 from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import Request, format_for, write
 from risorius.app.performances import read_performance
-from risorius.app.recordings.playback import LEAD, Playback
+from risorius.app.playback import LEAD, Playback
 from risorius.app.recordings.reading import read_take
 from risorius.app.scenes import FaceScene
 from risorius.app.script import Script

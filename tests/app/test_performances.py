@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from risorius.app.errors import UserError
 from risorius.app.performances import limits_of, read_performance
+from risorius.app.playback import LEAD, Playback
 from risorius.app.recordings.conversion import lead_of, script_of
-from risorius.app.recordings.playback import LEAD, Playback
 from risorius.app.recordings.take import Take
 from risorius.app.script.script_file import load_script
 from risorius.app.script.thinning import TOLERANCE

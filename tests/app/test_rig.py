@@ -213,7 +213,7 @@ def test_wrong_options_are_refused(whole: Whole, tmp_path: Path) -> None:
     for words, expected in (
         (("-o", tmp_path / "a.fbx"), ".glb"),
         ((whole.mesh, "-o", tmp_path / "a.glb"), "--landmarks"),
-        ((*head, "--person", 3, "-o", tmp_path / "a.glb"), "--person"),
+        ((3, "--landmarks", landmarks, "-o", tmp_path / "a.glb"), "--landmarks"),
         (("-o", tmp_path / "a.glb", "--shapes", "arkit,cats"), "cats"),
         ((*head, "-o", tmp_path / "a.glb", "--piece", "9000=hair"), "pieces 1 to"),
         ((*head, "-o", tmp_path / "a.glb", "--piece", "1=wing"), "upper_teeth"),

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from risorius import refine
 from risorius.app.errors import UserError
 from risorius.app.live.frame import put_shape
+from risorius.app.playback import Playback
 from risorius.app.recordings.calibration import Calibration
 from risorius.app.recordings.conversion import script_of
 from risorius.app.recordings.mapping import controls_of
-from risorius.app.recordings.playback import Playback
 from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import PlaneScene

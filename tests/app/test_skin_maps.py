@@ -11,8 +11,6 @@ from risorius.app.passes.passes import Passes
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 
-from .command_line import risorius
-
 SIZE = (400, 300)
 
 
@@ -43,12 +41,3 @@ def test_both_sides_wear_it(scene):
     assert abs(static - refined) < 0.03
     assert not changed[:8].any()
     assert 0.05 < (np.abs(normals[0] - normals[1]).max(axis=2) > 0.02).mean() < 0.9
-
-
-def test_the_command_turns_it_off(tmp_path):
-    """`--no-skin-maps` draws another picture."""
-    files = [tmp_path / f"{k}.png" for k in (0, 1)]
-    for file, more in zip(files, ((), ("--no-skin-maps",)), strict=True):
-        done = risorius("capture", "--set", "joy", "--size", "160x120", *more, "-o", str(file))
-        assert done.exit_code == 0
-    assert files[0].read_bytes() != files[1].read_bytes()

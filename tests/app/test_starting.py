@@ -30,7 +30,7 @@ def loaded_by(*words: str, cache: Path) -> set[str]:
 
 def test_help_loads_no_library_but_click(tmp_path: Path) -> None:
     """Help of all commands, and of one, is printed by modules that compute nothing."""
-    slow = {"PIL", "moderngl", "numba", "numpy", "pydantic", "scipy", "threadpoolctl", "tqdm"}
+    slow = {"PIL", "moderngl", "numba", "numpy", "pydantic", "risorius.assets", "scipy", "tqdm"}
     for words in (("--help",), ("capture", "--help"), ("reproduce", "--help")):
         assert not loaded_by(*words, cache=tmp_path) & slow, words
 

@@ -10,7 +10,7 @@ import pytest
 
 from .command_line import started
 
-SLOW = ("capture", "--scene", "face", "--size", "320x240", "--samples", "0")
+SLOW = ("capture", "--scene", "face", "--size", "320x240")
 
 
 def is_there(folder: Path, pattern: str) -> bool:

@@ -251,7 +251,7 @@ def test_the_window_remembers(tmp_path):
         return settings
 
     start = time.monotonic()
-    settings = replayed("--size", "500x400", "--wireframe", "--look", "paper")
+    settings = replayed("--size", "500x400", "--style", "wireframe", "--look", "paper")
     assert time.monotonic() - start > 0.6
     assert settings.size == (500, 400)
     assert settings.recent == [str(script)]

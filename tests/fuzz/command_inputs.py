@@ -8,7 +8,7 @@ import click
 
 from risorius.__main__ import command as risorius
 
-IMAGE = "capture good.toml -o x.png --size 16x16 --samples 0 --fps 5 --quiet"
+IMAGE = "capture good.toml -o x.png --size 16x16 --fps 5 --quiet"
 
 ACCEPTED = (
     "--help",
@@ -21,7 +21,7 @@ ACCEPTED = (
     "replay good.toml --once",
     IMAGE,
     f"{IMAGE} --time 0.1 --camera 1e3,-1e3,1e-3",
-    f"{IMAGE} --wrinkles 0 --skin clay --splits --wireframe --shading flat",
+    f"{IMAGE} --style wrinkles=0,skin=clay --style splits,wireframe",
     f"{IMAGE} --refiner loop --option levels=2",
     f"{IMAGE} --look paper --compare smooth,none,loop",
     f"{IMAGE} --option scheme=cubic --option blend=OFF",
@@ -41,7 +41,18 @@ REFUSED = {
     "bench reference folder -o x": "has no FaceXModel/generic_neutral_mesh.obj",
     # Numbers.
     f"{IMAGE} --fps 0": "is not in the range",
-    f"{IMAGE} --samples {'9' * 5000}": "is not",
+    f"{IMAGE} --style wrinkles={'9' * 5000}": "write a number from 0 to 1",
+    f"{IMAGE} --style skin=red": "'red' is none of textured, plain, clay",
+    f"{IMAGE} --style shiny": "'shiny' is not there; it takes wireframe, splits, skin=textured|",
+    f"{IMAGE} --time 1:2": "a picture has one time",
+    # Options that commands had before.
+    f"{IMAGE} --gain all=1": "--gain has left: convert the recording first: risorius convert",
+    f"{IMAGE} --wireframe": "--wireframe has left: write --style wireframe",
+    f"{IMAGE} --light side": "--light has left: write --style light=VALUE",
+    "view --person 3": "--person has left: write --head NUMBER",
+    "replay good.toml --no-skin-maps": "--no-skin-maps has left: pictures always have skin maps",
+    "export good.toml -o x.npz --rate 30": "--rate has left: convert the recording first",
+    "view --mirror": "--mirror goes with --live",
     "bench window --size 9x9": "each 16 to 8192",
     # Live faces.
     "view --live vmc --scene plane": "moves the scene 'face'",
@@ -64,7 +75,7 @@ REFUSED = {
     f"{IMAGE} --compare --refiner none": "other than none",
     # What is asked for does not go together.
     "capture": "nothing to write",
-    "capture good.toml -o x.mp4 --time 1": "--time says when a picture is taken",
+    "capture good.toml -o x.mp4 --time 1": "for a film write --time FROM:TO",
     "capture good.toml --set joy -o x.png": "a script and --set exclude each other",
     "capture --head head.obj -o x.png": "go together",
     "view --script nowhere.toml": "no such script",
@@ -94,14 +105,12 @@ REFUSED = {
     "convert nothing.csv -o c.png": "c.png: scripts are written as .toml",
     "convert good.toml -o out.toml": "is a script already",
     # Persons.
-    "capture --head no.obj --person 3 -o x.png": "goes with neither --head nor --landmarks",
-    "capture --person 3 --scene plane -o x.png": "--head and --person go with the scene face",
-    "capture --person -1 -o x.png": "'-1' is nobody; write a number, 0 or more, or ada, kofi",
+    "capture --head 3 --landmarks marks.json -o x.png": "--head 3 is a person",
+    "capture --head 3 --scene plane -o x.png": "--head goes with the scene face",
     # Recordings.
     "convert take.csv -o out.toml --neutral last": "--neutral last: allowed are",
     "convert take.csv -o out.toml --gain mouth=1": "--gain mouth=1: no channel",
     "convert good.toml -o out.toml --gain all=2": "is a script, and --gain is for recordings",
-    "capture --set joy -o x.png --lead 0": "--lead is for recordings, and none is given",
     "send take.csv --address nobody.invalid": "address 'nobody.invalid'",
     # Passes and data sets.
     "capture good.toml --passes depth -o x.mp4": "--passes are files beside each picture: give -o ",
@@ -135,14 +144,14 @@ HOSTILE = {
 }
 
 GIVEN = {  # what else a command needs to come as far as the option
-    "capture": "good.toml -o x.png --size 16x16 --samples 0 --fps 5 --time 0 --quiet",
+    "capture": "good.toml -o x.png --size 16x16 --fps 5 --time 0 --quiet",
     "replay": "good.toml",
     "bench motion": "--reference folder",
     "bench reference": "folder -o made",
 }
 INSTEAD = {  # where one option excludes what is given
-    ("capture", "--set"): "-o x.png --size 16x16 --samples 0 --fps 5 --time 0 --quiet",
-    ("capture", "--sound"): "good.toml -o x.mp4 --size 16x16 --samples 0 --fps 5 --quiet",
+    ("capture", "--set"): "-o x.png --size 16x16 --fps 5 --time 0 --quiet",
+    ("capture", "--sound"): "good.toml -o x.mp4 --size 16x16 --fps 5 --quiet",
     ("capture", "--head"): f"{GIVEN['capture']} --landmarks marks.json",
     ("capture", "--landmarks"): f"{GIVEN['capture']} --head head.obj",
 }

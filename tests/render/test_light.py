@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from risorius import render
-from risorius.app.cli.options import LIGHT_NAMES
+from risorius.app.cli.styles import LIGHT_NAMES
 
 from .scenes import (
     DARK_SKIN,
@@ -83,5 +83,5 @@ def test_no_light_burns_or_blackens(surface, name):
 
 
 def test_the_command_knows_all_lights():
-    """The names of `--light`, written out so that help needs no OpenGL, are those there are."""
+    """The lights of `--style`, written out so that help needs no OpenGL, are those there are."""
     assert tuple(LIGHT_NAMES) == tuple(render.LIGHTS)

@@ -51,7 +51,7 @@ HINTS = {
     "Wireframe": "the edges of all triangles that are drawn ([Wireframe])",
     "Skin maps": "fine shape (with pixel shading), and less light in folds (with texture)",
     "Skin tone": "by its typology angle; own: as this person has it",
-    "Person": "another head, on which script and pose go on (--person takes any number)",
+    "Person": "another head, on which script and pose go on (--head takes any number)",
     "Muscles": "under translucent skin; they bulge and redden as they contract ([Muscles])",
     "Skull": "under translucent skin, fitted to the head; the mandible moves with the jaw",
     "Skin opacity": "over muscles and skull; 0: no skin",

@@ -1,0 +1,79 @@
+"""Help in groups under headings, and where options went that commands had before."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import click
+
+HEADINGS: Mapping[str, tuple[str, ...]] = {  # names of parameters, in the order of the help
+    "Output": (
+        *("output", "name", "sheet", "size", "fps", "times", "compare", "passes"),
+        *("refined", "overwrite", "once", "quiet"),
+    ),
+    "Motion": ("settings", "scene", "script", "sound", "alive"),
+    "Live face": ("live", "port", "address", "gains", "mirror"),
+    "Face": ("head", "landmarks"),
+    "Refinement": ("look", "refiner", "refiner_settings"),
+    "Picture": ("camera", "background", "style_settings", "anatomy"),
+}
+
+_CONVERT = "convert the recording first: risorius convert RECORDING {option} ... -o script.toml"
+_STYLE = "write --style {name}=VALUE"
+_WORD = "write --style {name}"
+MOVED: Mapping[str, str] = {
+    "--neutral": _CONVERT,
+    "--gain": _CONVERT,
+    "--mirror": _CONVERT,
+    "--lead": _CONVERT,
+    "--face": _CONVERT,
+    "--rate": _CONVERT,
+    "--skin": _STYLE,
+    "--light": _STYLE,
+    "--wrinkles": _STYLE,
+    "--wireframe": _WORD,
+    "--splits": _WORD,
+    "--skin-opacity": "write --anatomy muscles,skull,opacity=VALUE",
+    "--dissect": "write --anatomy muscles,skull,dissect=VALUE",
+    "--person": "write --head NUMBER, or the person's name",
+    "--range": "write --time FROM:TO",
+    "--turntable": "write --camera turntable, or --camera VIEW,turntable",
+    "--shading": "risorius reproduce figure9 draws flat and Gouraud shading",
+    "--samples": "edges are always smooth",
+    "--captions": "a comparison always has captions",
+    "--no-captions": "a comparison always has captions",
+    "--skin-maps": "pictures always have skin maps; the window can leave them out",
+    "--no-skin-maps": "pictures always have skin maps; the window can leave them out",
+}
+"""What to do instead of an option that has left; {option}: as typed, {name}: without dashes."""
+
+
+class GroupedCommand(click.Command):
+    """A command whose help lists options under headings, and that knows where old ones went."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options, group by group."""
+        options = [each for each in self.get_params(ctx) if isinstance(each, click.Option)]
+        records = {each.name: each.get_help_record(ctx) for each in options}
+        rows = {name: record for name, record in records.items() if record is not None}
+        for heading, names in HEADINGS.items():
+            group = [rows.pop(name) for name in names if name in rows]
+            if heading == "Output" and "output" not in records:
+                heading = "Window"
+            if group:
+                with formatter.section(heading):
+                    formatter.write_dl(group)
+        with formatter.section("Others"):
+            formatter.write_dl(list(rows.values()))  # --help, at least
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse; for an option that has left the error says what to do instead."""
+        try:
+            return super().parse_args(ctx, args)
+        except click.NoSuchOption as error:
+            instead = MOVED.get(error.option_name)
+            if instead is None:
+                raise
+            name = error.option_name.removeprefix("--")
+            cure = instead.format(option=error.option_name, name=name)
+            raise click.UsageError(f"{error.option_name} has left: {cure}", ctx) from None

@@ -1,0 +1,91 @@
+"""The options `--style` and `--anatomy`: words and NAME=VALUE, several with commas between them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import UserError
+
+STRUCTURES = ("muscles", "skull")  # anatomy.STRUCTURES, not imported yet
+LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard")  # render.LIGHTS, not imported yet
+SKINS = ("textured", "plain", "clay")
+SIDES = ("both", "left", "right")
+
+
+@dataclass(frozen=True)
+class Words:
+    """The words that an option may hold.
+
+    flags: single words. choices: NAME=WORD, and the words that each name takes. shares: NAME=x,
+    where x is a number from 0 to 1.
+    """
+
+    option: str
+    flags: tuple[str, ...]
+    choices: Mapping[str, tuple[str, ...]]
+    shares: tuple[str, ...]
+
+    def read(self, settings: Sequence[str]) -> dict[str, Any]:
+        """The value of each name that is set; True for a single word. UserError for others."""
+        values: dict[str, Any] = {}
+        for word in ",".join(settings).split(",") if settings else ():
+            name, equals, text = word.partition("=")
+            if name in self.flags and not equals:
+                values[name] = True
+            elif name in self.choices:
+                values[name] = self._choice(name, text)
+            elif name in self.shares:
+                values[name] = self._share(name, text)
+            else:
+                raise UserError(f"{self.option}: '{word}' is not there; it takes {self.allowed}")
+        return values
+
+    @property
+    def allowed(self) -> str:
+        """All words, for messages."""
+        named = [f"{name}={'|'.join(words)}" for name, words in self.choices.items()]
+        numbers = [f"{name}=0..1" for name in self.shares]
+        return ", ".join([*self.flags, *named, *numbers])
+
+    def _choice(self, name: str, text: str) -> str:
+        if text not in self.choices[name]:
+            words = ", ".join(self.choices[name])
+            raise UserError(f"{self.option} {name}={text}: '{text}' is none of {words}")
+        return text
+
+    def _share(self, name: str, text: str) -> float:
+        try:
+            share = float(text)
+        except ValueError:
+            share = math.nan
+        if not 0.0 <= share <= 1.0:
+            raise UserError(f"{self.option} {name}={text}: write a number from 0 to 1")
+        return share
+
+
+STYLE_WORDS = Words(
+    "--style", ("wireframe", "splits"), {"skin": SKINS, "light": LIGHT_NAMES}, ("wrinkles",)
+)
+ANATOMY_WORDS = Words("--anatomy", STRUCTURES, {"dissect": SIDES}, ("opacity",))
+
+
+def style_in(settings: Sequence[str]) -> dict[str, Any]:
+    """All settings of style by name, the usual ones where the option does not set them."""
+    usual = {
+        "skin": "textured",
+        "light": "studio",
+        "wrinkles": 1.0,
+        "wireframe": False,
+        "splits": False,
+    }
+    return usual | STYLE_WORDS.read(settings)
+
+
+def anatomy_in(text: str) -> tuple[tuple[str, ...], float | None, str]:
+    """The structures that `--anatomy` shows, the skin's opacity if it is set, and its side."""
+    values = ANATOMY_WORDS.read([text])
+    structures = tuple(name for name in STRUCTURES if name in values)
+    return structures or STRUCTURES, values.get("opacity"), values.get("dissect", "both")
