@@ -51,14 +51,16 @@ class Simulation:
     anatomy: the parts under the skin now. touch: blows and pulls on the skin.
     positions, rest_positions: of the vertices now and at rest [head units], shape (V, 3); `step`
     rewrites the first. faces: triangles, shape (F, 3). areas: skin that belongs to each vertex at
-    rest [mm2 of the standard face], shape (V,). All of them are read only.
+    rest [mm2 of the standard face], shape (V,). All of them are read only. grip: how firmly the
+    seal holds the lips together now.
     """
 
-    def __init__(self, model: FaceModel) -> None:
+    def __init__(self, model: FaceModel, state: State | None = None) -> None:
+        """state: the arrays that kernels read and write; new ones at rest if it is left out."""
         surface = model.surface
-        self._state = State.at_rest(surface, len(model.muscles.bundle.muscle))
+        self._state = state or State.at_rest(surface, len(model.muscles.bundle.muscle))
         self._model = model
-        self._grip = SEALED
+        self.grip = SEALED
         self._positions = model.vertices.copy()
         self.positions = read_only(self._positions)
         self.rest_positions = read_only(model.vertices.copy())
@@ -70,7 +72,7 @@ class Simulation:
         self._drive = MuscleDrive(model.rig, model.muscles.names, self.controls)
         self.anatomy = Anatomy(model, self._state, self.controls, self.bones, self._drive)
         self.touch = Touch(model, self._state, self.positions, self.bones)
-        self._place_targets()
+        self.place_targets()
 
     def reset(self) -> None:
         """Relax everything and put the face back to rest at once."""
@@ -79,7 +81,7 @@ class Simulation:
         self._state.v[:] = 0.0
         self._positions[:] = self.rest_positions
         self.touch.end_drag()
-        self._place_targets()
+        self.place_targets()
 
     def clone(self) -> Simulation:
         """Another simulation of this face as it is now, of which no finger has hold."""
@@ -121,8 +123,8 @@ class Simulation:
         count = substeps_in(tick)
         for _ in range(ticks):
             self.controls.advance(tick / 2.0)
-            self._place_targets()
-            advance(state, model.skin, Tick(count, tick / count, self._grip, bones.mandible))
+            self.place_targets()
+            advance(state, model.skin, Tick(count, tick / count, self.grip, bones.mandible))
             self.controls.advance(tick / 2.0)
         broken = to_posed_head(
             state.x, model.surface.positions, self._axes, self.rest_positions, bones.turn,
@@ -134,7 +136,7 @@ class Simulation:
                 "call reset(), and report the mesh if it was built from a sound one"
             )
 
-    def _place_targets(self) -> None:
+    def place_targets(self) -> None:
         """Bones, lids and muscles for the activations reached: where each spring pulls to."""
         model = self._model
         bones = self.bones
@@ -153,4 +155,4 @@ class Simulation:
         activation = self._drive.activation()
         muscles.add(self._drive.pull(activation), bones.mandible, bones.weight, state)
         self.touch.add_to(state)
-        self._grip = model.grip(activation, bones.jaw, bones.lips_closed)
+        self.grip = model.grip(activation, bones.jaw, bones.lips_closed)

@@ -10,6 +10,7 @@ from hypothesis import settings
 
 from risorius import assets
 from risorius.assets.model import Head
+from risorius.refine.border.registry import refiners
 
 # No deadlines: a shared machine may stall any example. In continuous integration the examples are
 # the same every time, and more; at a developer's desk hypothesis keeps looking for new ones.
@@ -29,6 +30,12 @@ def floating_point_errors_raise() -> Iterator[None]:
 def fixed_seed() -> None:
     """The standard generator starts each test in the same state."""
     random.seed(20030214)
+
+
+@pytest.fixture
+def own_refiners(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Forget afterwards which refiners a test registers."""
+    monkeypatch.setattr(refiners, "_factories", dict(refiners._factories))
 
 
 @pytest.fixture

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import trimesh
+from numpy.linalg import norm
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,7 @@ def ball(levels: int = 2) -> Mesh:
     faces = octahedron().faces
     for _ in range(levels):
         vertices, faces = trimesh.remesh.subdivide(vertices, faces)
-        vertices /= np.linalg.norm(vertices, axis=1, keepdims=True)
+        vertices /= norm(vertices, axis=1, keepdims=True)
     return _mesh(vertices, faces)
 
 
@@ -172,7 +173,7 @@ def irregular(seed: int, columns: int = 12, rows: int = 10, holes: int = 3) -> M
 
     centres = vertices[faces].mean(axis=1)
     for centre in centres[generator.integers(len(faces), size=holes)]:
-        is_far = np.linalg.norm(centres - centre, axis=1) > generator.uniform(0.8, 1.8)
+        is_far = norm(centres - centre, axis=1) > generator.uniform(0.8, 1.8)
         faces = faces[is_far]
         centres = centres[is_far]
 

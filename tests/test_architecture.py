@@ -60,7 +60,7 @@ def test_packages_import_only_what_they_may(folder, allowed):
     assert found - sys.stdlib_module_names - {"risorius"} == allowed
 
 
-def _imported(node: ast.AST) -> list[str]:
+def _imported(node):
     """Names of the modules that a statement imports, but for relative ones."""
     if isinstance(node, ast.Import):
         return [alias.name for alias in node.names]
@@ -79,7 +79,7 @@ def test_files_and_functions_are_short():
     assert not long
 
 
-def _is_too_long(source: str) -> bool:
+def _is_too_long(source):
     """Whether a file or one of its functions has more lines than it may."""
     functions = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)]
     lengths = [(node.end_lineno or 0) - node.lineno + 1 for node in functions]

@@ -8,13 +8,13 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import PIL.Image
 import pytest
+from pytest import approx
 
 from risorius import assets
 
-from .app.command_line import risorius
+from .app.command_line import succeeded
 
 pytestmark = pytest.mark.slow
 
@@ -25,25 +25,23 @@ SIZE = "160x120"
 class Take:
     """A recording after `risorius convert`: the report, and the script that it became."""
 
-    def __init__(self, name: str, folder: Path, *options: str) -> None:
+    def __init__(self, name, folder, *options):
         output = folder / f"{Path(name).stem}.toml"
-        result = risorius("convert", CASES / name, "-o", output, *options)
-        assert result.exit_code == 0, result.output
-        self.report = result.output
+        self.report = succeeded("convert", CASES / name, "-o", output, *options)
         script = tomllib.loads(output.read_text("utf-8"))
-        self.duration: float = script["duration"]
+        self.duration = script["duration"]
         self.tracks = {name: np.array(keys_of(track)) for name, track in script["tracks"].items()}
 
-    def peak(self, name: str) -> float:
+    def peak(self, name):
         """The largest value of a track, which is 0 where there is none."""
         return float(self.tracks[name][:, 1].max()) if name in self.tracks else 0.0
 
-    def reach(self, name: str) -> float:
+    def reach(self, name):
         """How far a track moves."""
         return float(np.ptp(self.tracks[name][:, 1])) if name in self.tracks else 0.0
 
 
-def keys_of(track: object) -> list[tuple[float, float]]:
+def keys_of(track):
     """Times and values of a track, which is a list of keys or lines of two numbers."""
     if isinstance(track, str):
         rows = [line.split() for line in track.split("\n") if line.strip()]
@@ -72,7 +70,7 @@ def keys_of(track: object) -> list[tuple[float, float]]:
 )
 def test_a_take_lasts_as_long_as_its_file_says(name, options, seconds, tmp_path):
     """Clocks, timecode of any base and tables of any dialect keep their time, whatever --rate."""
-    assert Take(name, tmp_path, *options).duration == pytest.approx(seconds, abs=0.06)
+    assert Take(name, tmp_path, *options).duration == approx(seconds, abs=0.06)
 
 
 def test_units_of_0_to_1_stay(tmp_path):
@@ -106,7 +104,7 @@ def test_frames_without_a_face_are_left_out(name, tmp_path):
     take = Take(name, tmp_path)
     control = Take("e_lost_frames_control.json", tmp_path)
     assert "40 of 150" in take.report
-    assert take.peak("browDownLeft") == pytest.approx(control.peak("browDownLeft"), abs=0.03)
+    assert take.peak("browDownLeft") == approx(control.peak("browDownLeft"), abs=0.03)
     assert take.peak("browDownLeft") < 0.1
 
 
@@ -114,13 +112,12 @@ LANDMARKS = CASES / "own_landmarks.json"  # numbers of vertices
 POINTS = CASES / "own_landmark_points.json"  # points [m]
 
 
-def picture_of(head: str, landmarks: Path, output: Path) -> npt.NDArray[np.float64]:
+def picture_of(head, landmarks, output):
     """A head of a file at rest, as `capture` draws it, (H, W, 3)."""
-    result = risorius(
+    succeeded(
         *("capture", "--head", CASES / head, "--landmarks", landmarks, "--set", "joy=0"),
         *("-o", output, "--size", SIZE, "--background", "white", "--quiet"),
     )
-    assert result.exit_code == 0, result.output
     return np.asarray(PIL.Image.open(output).convert("RGB"), float)
 
 
@@ -155,7 +152,6 @@ def test_glb_is_read_as_its_accessors_say(tmp_path):
 def test_colours_of_vertices_are_linear():
     """Linear colours of 16 bits, 0.2 0.5 0.9, become the blue (124, 188, 243)."""
     mesh = assets.read_mesh(CASES / "b_glb_colours_u16.glb")
-    assert mesh.colours is not None
     assert np.abs(mesh.colours.reshape(-1, 3) - np.array([124.0, 188.0, 243.0])).max() < 2.0
 
 

@@ -14,7 +14,6 @@ import pytest
 from click.testing import CliRunner
 
 from risorius.__main__ import command as risorius
-from risorius.refine.border.registry import refiners
 from tests.as_installed import lay
 from tests.tracked import tracked
 
@@ -25,13 +24,13 @@ PAGES = [README, ROOT / "CONTRIBUTING.md", *tracked("docs", "*.md")]
 COMMAND = re.compile(r"(?:`|^(?:    )?(?:xvfb-run -a )?)(risorius [a-z][^`#\n]*)", re.MULTILINE)
 
 
-def anchor(title: str) -> str:
+def anchor(title):
     """What a heading is called in a link: ASCII letters, digits and hyphens, as MkDocs has it."""
     plain = unicodedata.normalize("NFKD", title).encode("ascii", "ignore").decode()
     return re.sub(r"[-\s]+", "-", re.sub(r"[^\w\s-]", "", plain).strip().lower())
 
 
-def blocks(page: Path, language: str) -> str:
+def blocks(page, language):
     """The fenced blocks of one language on a page, joined."""
     return "\n".join(
         re.findall(rf"^```{language}\n(.*?)^```$", page.read_text("utf-8"), re.M | re.S)
@@ -67,7 +66,7 @@ def test_the_paper_is_where_the_page_says():
 def test_commands_are_known(page):
     """Every command that a page shows has the options that it is shown with."""
     for words in COMMAND.findall(page.read_text(encoding="utf-8")):
-        command: click.Command = risorius()
+        command = risorius()
         rest = shlex.split(words)[1:]
         while isinstance(command, click.Group) and rest:
             assert rest[0] in command.commands, words
@@ -109,13 +108,13 @@ def test_pages_have_short_lines():
             assert len(line) <= 120 or not is_prose, f"{page.name}: {line}"
 
 
+@pytest.mark.usefixtures("own_refiners")
 @pytest.mark.parametrize(
     "page", [page for page in PAGES if "```python" in page.read_text("utf-8")], ids=lambda p: p.name
 )
 def test_code_runs(page, tmp_path, monkeypatch):
     """The Python on a page is one program, and it runs in an empty folder."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(refiners, "_factories", dict(refiners._factories))
     program = blocks(page, "python")
     if "pv.Plotter" in program:  # beside other OpenGL VTK may end the process of all tests
         subprocess.run([sys.executable, "-c", program], check=True)
@@ -152,9 +151,7 @@ def test_own_head(tmp_path, monkeypatch):
     assert (tmp_path / "anna.mp4").exists()
 
 
-def capture_as_shown(
-    page: Path, files: dict[str, str], folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def capture_as_shown(page, files, folder, monkeypatch):
     """Run every `risorius capture` of a page in a folder with these files; pictures are small."""
     monkeypatch.chdir(folder)
     for name, text in files.items():

@@ -38,7 +38,7 @@ RESULT = "4.0 6.0"
 class Package:
     """A package of one kernel that calls one of another file, and the user's folder of code."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder):
         self.folder = folder
         self.code = folder / "home" / "risorius"
         self.refine = folder / "risorius" / "refine"
@@ -49,7 +49,7 @@ class Package:
         (self.refine / "other.py").write_text(OTHER)
         (self.refine / "kernels.py").write_text(KERNELS)
 
-    def run(self, program: str = PROGRAM, **environment: str) -> list[str]:
+    def run(self, program=PROGRAM, **environment):
         """Lines of a process that calls the kernel; it must end well."""
         clean = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
         result = subprocess.run(
@@ -63,7 +63,7 @@ class Package:
         assert result.returncode == 0, result.stderr
         return result.stdout.splitlines()
 
-    def kept(self) -> list[Path]:
+    def kept(self):
         """Folders of machine code."""
         return sorted(self.code.glob("compiled-*"))
 

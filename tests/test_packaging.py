@@ -11,7 +11,6 @@ import sysconfig
 import tarfile
 import tomllib
 import zipfile
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,7 +24,7 @@ from .tracked import tracked
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SETUPTOOLS = PROJECT["tool"]["setuptools"]
-FOLDERS: dict[str, str] = {"risorius": "risorius", **SETUPTOOLS["package-dir"]}
+FOLDERS = {"risorius": "risorius", **SETUPTOOLS["package-dir"]}
 TOP_NAMES = {package.partition(".")[2] for package in SETUPTOOLS["package-dir"]}
 LEFT = (".#lock", "leftover.orig", "notes.rej", ".DS_Store", "Thumbs.db")
 """Files that editors and systems leave in any folder."""
@@ -34,7 +33,7 @@ PASSED_OVER = shutil.ignore_patterns(
 )
 
 
-def files_of_packages() -> Iterator[tuple[str, Path]]:
+def files_of_packages():
     """Every file of the packages, with the package that its folder is."""
     for top, folder in FOLDERS.items():
         for file in tracked(folder):
@@ -91,7 +90,6 @@ def test_the_release_is_the_same_everywhere():
     """Version and date in pyproject.toml, the package, CHANGELOG.md, CITATION.cff, README."""
     changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     newest = re.search(r"^## \[Unreleased\]$.*?^## \[(\S+)\] - (\S+)$", changes, re.M | re.S)
-    assert newest is not None
     version, date = newest.groups()
     assert version == PROJECT["project"]["version"] == risorius.__version__
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
@@ -126,16 +124,16 @@ class Built:
     python: Path
 
 
-def run(*words: object, **options: object) -> str:
+def run(*words, **options):
     """Run a program that must end well; what it says."""
     result = subprocess.run(
         [str(word) for word in words], capture_output=True, text=True, timeout=600, **options
-    )  # type: ignore[call-overload]
+    )
     assert result.returncode == 0, result.stdout + result.stderr
     return str(result.stdout)
 
 
-def wheel_of(folder: Path, target: Path) -> Path:
+def wheel_of(folder, target):
     """Build a wheel without the network, with the setuptools of this environment."""
     run(
         sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "--no-index",

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius.bench.reproduce import table1
 
-from .app.command_line import risorius
+from .app.command_line import succeeded
 from .app.glb_player import Player
 
 pytestmark = pytest.mark.slow
@@ -17,13 +18,7 @@ ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 
 
-def run(*arguments: object) -> None:
-    """Run the command, which must succeed."""
-    result = risorius(*arguments)
-    assert result.exit_code == 0, result.output
-
-
-def numbers_of(page: Path, pattern: str) -> list[float]:
+def numbers_of(page, pattern):
     """The numbers that a pattern finds on a page, where it stands once; a blank in it stands for
     the end of a line, too.
     """
@@ -39,9 +34,9 @@ def test_triangles_of_table_1():
     values = table1.outcome(rounds=1).values
     ours = [values["face, most triangles"], values["plane, most triangles"]]
     on_index = numbers_of(DOCS / "index.md", r"ours (\d+) and (\d+) \(`risorius reproduce table1`")
-    assert on_index == pytest.approx(ours, rel=0.01)
+    assert on_index == approx(ours, rel=0.01)
     on_refinement = numbers_of(DOCS / "refinement.md", r"today's makes (\d+) triangles")
-    assert on_refinement == pytest.approx(ours[:1], rel=0.01)
+    assert on_refinement == approx(ours[:1], rel=0.01)
 
 
 @pytest.mark.parametrize("script", ["face", "speech"])
@@ -50,11 +45,11 @@ def test_table_of_exported_files(script, tmp_path):
     row = rf"\| `{script}\.toml`, built in \| (\d+) \| (\d+) \| ([\d.]+) MB \| ([\d.]+) mm"
     frames, targets, size, _ = numbers_of(DOCS / "export.md", row)
     path = tmp_path / "exported.glb"
-    run("export", str(ROOT / f"assets/scripts/{script}.toml"), "-o", str(path), "--quiet")
+    succeeded("export", str(ROOT / f"assets/scripts/{script}.toml"), "-o", str(path), "--quiet")
     player = Player(path)
     assert len(player.times) == frames
-    assert len(player.primitive("skin").targets) == pytest.approx(targets, abs=2)
-    assert path.stat().st_size / 1e6 == pytest.approx(size, rel=0.1)
+    assert len(player.primitive("skin").targets) == approx(targets, abs=2)
+    assert path.stat().st_size / 1e6 == approx(size, rel=0.1)
 
 
 def test_size_of_a_sample(tmp_path):
@@ -64,23 +59,22 @@ def test_size_of_a_sample(tmp_path):
     )
     faces = tmp_path / "faces"
     command = ["dataset", "--count", "6", "--passes", "segmentation,depth,normal", "-o", str(faces)]
-    run(*command, "--size", "512x512", "--quiet")
+    succeeded(*command, "--size", "512x512", "--quiet")
     files = [path for path in faces.rglob("*") if path.stem[0].isdigit()]
     exr = sum(path.stat().st_size for path in files if path.suffix == ".exr")
     everything = sum(path.stat().st_size for path in files)
-    assert (everything - exr) / 6e3 == pytest.approx(plain, rel=0.2)
-    assert exr / 6e6 == pytest.approx(floats, rel=0.2)
+    assert (everything - exr) / 6e3 == approx(plain, rel=0.2)
+    assert exr / 6e6 == approx(floats, rel=0.2)
 
 
 def test_code_that_reads_a_set(tmp_path, monkeypatch):
     """The page's lines that read a set run in a checkout as they stand."""
     page = (DOCS / "dataset.md").read_text("utf-8")
     code = re.search(r"(?:^    .*\n|^\n)*^    sample = faces.*$", page, re.MULTILINE)
-    assert code is not None
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(ROOT))
-    run("dataset", "--count", "4", "-o", "faces", "--size", "64x64", "--quiet")
-    names: dict[str, object] = {}
+    succeeded("dataset", "--count", "4", "-o", "faces", "--size", "64x64", "--quiet")
+    names = {}
     exec(compile("\n".join(line[4:] for line in code[0].splitlines()), "page", "exec"), names)
     sample = names["sample"]
     assert isinstance(sample, dict)

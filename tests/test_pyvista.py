@@ -5,10 +5,11 @@ import subprocess
 import sys
 import warnings
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from pytest import approx
 
 pyvista = pytest.importorskip("pyvista", reason="needs the extra 'pyvista'")
 
@@ -21,14 +22,14 @@ def warnings_are_errors() -> Iterator[None]:
         yield
 
 
-def wavy(mesh: Any, height: float = 0.3) -> Any:
+def wavy(mesh, height=0.3):
     """The points of a plane under a sine wave."""
     points = mesh.points.copy()
     points[:, 2] += height * np.sin(9.0 * points[:, 0] + 4.0 * points[:, 1])
     return points
 
 
-def plane() -> Any:
+def plane():
     """A plane of quads with data of every kind."""
     mesh = pyvista.Plane(i_resolution=12, j_resolution=12)
     x = mesh.points[:, 0]
@@ -64,19 +65,17 @@ def test_data_go_along():
     assert refined.n_cells > 2 * mesh.n_cells
     assert refined.is_all_triangles
     assert refined.active_scalars_name == "x"
-    np.testing.assert_allclose(refined["x"], refined.points[:, 0], atol=0.02)
-    np.testing.assert_allclose(refined["speed"][:, 1], 2.0 * refined.points[:, 1], atol=0.04)
+    assert_allclose(refined["x"], refined.points[:, 0], atol=0.02)
+    assert_allclose(refined["speed"][:, 1], 2.0 * refined.points[:, 1], atol=0.04)
     assert {name: refined[name].dtype for name in ("colours", "right", "x", "speed")} == {
         name: mesh[name].dtype for name in ("colours", "right", "x", "speed")
     }
     assert set(refined["name"]) <= set(mesh["name"])
     assert np.isnan(refined["hole"]).any()
     assert np.isfinite(refined["hole"]).any()
-    np.testing.assert_allclose(
-        refined.active_texture_coordinates[:, 0] - 0.5, refined["x"], atol=1e-6
-    )
+    assert_allclose(refined.active_texture_coordinates[:, 0] - 0.5, refined["x"], atol=1e-6)
     cells = refined.cell_data["vtkOriginalCellIds"]
-    np.testing.assert_array_equal(refined.cell_data["number"], cells)
+    assert_array_equal(refined.cell_data["number"], cells)
     bounds = mesh.extract_cells([int(cells[7])]).bounds
     assert refined.extract_cells([7]).bounds.x_min >= bounds.x_min - 0.03
     assert refined.field_data["time"][0] == 0.25
@@ -112,7 +111,7 @@ def test_polygons_strips_and_lines():
     refined = mesh.risorius.refine()
     assert refined.is_all_triangles
     assert refined.n_cells > 0
-    np.testing.assert_array_equal(refined["number"], refined["vtkOriginalCellIds"])
+    assert_array_equal(refined["number"], refined["vtkOriginalCellIds"])
     strips = pyvista.Sphere(theta_resolution=10, phi_resolution=10).strip()
     assert strips.risorius.refine().is_manifold
 
@@ -131,14 +130,14 @@ def test_creases_stay_sharp(shape, crease_angle, growth, count):
     sizes = {"Cylinder": {"resolution": 16, "height": 2.0}, "Cube": {}}
     mesh = getattr(pyvista, shape)(**sizes[shape])
     refined = mesh.risorius.refine(crease_angle=crease_angle)
-    assert refined.n_cells == pytest.approx(count, abs=20 if crease_angle is None else 4)
+    assert refined.n_cells == approx(count, abs=20 if crease_angle is None else 4)
     closed = refined.clean()
     assert closed.n_open_edges == 0
     own = mesh.triangulate().clean().volume
-    assert closed.volume == pytest.approx(growth * own, rel=0.005)
+    assert closed.volume == approx(growth * own, rel=0.005)
 
 
-def padded(cells: list[list[int]]) -> list[int]:
+def padded(cells):
     """Cells as VTK has them: each after the number of its points."""
     return [number for cell in cells for number in (len(cell), *cell)]
 
@@ -157,8 +156,8 @@ def test_cells_that_are_no_triangles():
 def test_cells_of_all_kinds(seed):
     """Cells lie at heights of their own, so that each triangle shows which cell it is of."""
     generator = np.random.default_rng(seed)
-    points: list[list[float]] = []
-    kinds: list[list[list[int]]] = [[], [], [], []]
+    points = []
+    kinds = [[], [], [], []]
     sizes = (1, 2), (2, 5), (3, 7), (3, 8)  # of lone points, lines, polygons and strips
     for kind, (least, most) in enumerate(sizes):
         for _ in range(generator.integers(0 if kind == 0 else 1, 5)):
@@ -179,7 +178,7 @@ def test_cells_of_all_kinds(seed):
     mesh.cell_data["height"] = heights
     refined = mesh.risorius.refine(criterion="normal")
     shown = refined.points[refined.regular_faces][..., 2]
-    np.testing.assert_array_equal(shown, np.repeat(refined["height"][:, None], 3, axis=1))
+    assert_array_equal(shown, np.repeat(refined["height"][:, None], 3, axis=1))
     surfaces = len(kinds[2]) + len(kinds[3])
     assert len(np.unique(refined["vtkOriginalCellIds"])) == surfaces
 

@@ -2,28 +2,24 @@
 
 import enum
 import types
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from risorius import assets, refine, sim
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.assets.fitting import FittedHead, fit
-from risorius.assets.identities import Person, make_person, sample_identity
-from risorius.assets.model import Head
+from risorius.assets.fitting import fit
+from risorius.assets.identities import make_person, sample_identity
 from risorius.refine.kahler.table import CONFIGURATIONS
 from tests.heads import stranger
 
-Array = npt.NDArray[np.generic]
 OF_A_FRAME = {"positions", "points", "normals", "edge_splits"}
 """Of a refiner, for who derives from it to write: each frame writes all of them anew."""
 PLAIN = (str, bytes, int, float, bool, np.generic, type, types.ModuleType, enum.Enum)
 
 
-def arrays_of(thing: object, name: str, seen: dict[int, object]) -> Iterator[tuple[str, Array]]:
+def arrays_of(thing, name, seen):
     """All arrays that public attributes, items and rows lead to, with the way there."""
     if thing is None or id(thing) in seen or isinstance(thing, PLAIN) or callable(thing):
         return
@@ -44,7 +40,7 @@ def arrays_of(thing: object, name: str, seen: dict[int, object]) -> Iterator[tup
             yield from arrays_of(value, f"{name}.{attribute}", seen)
 
 
-def is_kept(thing: object, name: str) -> bool:
+def is_kept(thing, name):
     """Whether an attribute can be read, and is the same when it is read once more."""
     try:
         first = getattr(thing, name)
@@ -56,18 +52,18 @@ def is_kept(thing: object, name: str) -> bool:
     return first is second
 
 
-def own_head() -> FittedHead:
+def own_head():
     """One that somebody brings."""
     brought = stranger()
     return fit(brought.mesh, brought.landmarks)
 
 
-def person() -> Person:
+def person():
     """One who is nobody."""
     return make_person(sample_identity(63))
 
 
-THINGS: dict[str, Any] = {
+THINGS = {
     "head": lambda head: head,
     "finer": lambda head: head.finer(1),
     "plane": lambda head: assets.load("plane"),
@@ -83,7 +79,7 @@ THINGS: dict[str, Any] = {
     "welded": lambda head: refine.WeldedRefiner(head.vertices, head.faces),
     "table": lambda head: CONFIGURATIONS,
 }
-REFINERS: dict[str, tuple[str, dict[str, Any]]] = {
+REFINERS = {
     "none": ("none", {}),
     "loop": ("loop", {"levels": 2}),
     "paper": ("kahler", {}),
@@ -93,7 +89,7 @@ REFINERS: dict[str, tuple[str, dict[str, Any]]] = {
 }
 
 
-def moved(head: Head) -> sim.Simulation:
+def moved(head):
     """A face whose jaw, lips and head have gone somewhere."""
     simulation = sim.create(head)
     simulation.jump({"jaw_open": 0.5, "lips_closed": 0.5, "head_yaw": 0.3})
@@ -129,9 +125,9 @@ def test_one_in_place_addition_harms_nobody(head):
         simulation.faces,
         refiner.edges,
         refiner.triangle_edges,
-        refiner.connectivity.corners,  # type: ignore[attr-defined]
-        refiner.connectivity.around.points,  # type: ignore[attr-defined]
-        refiner.history.states,  # type: ignore[attr-defined]
+        refiner.connectivity.corners,
+        refiner.connectivity.around.points,
+        refiner.history.states,
     ):
         with pytest.raises(ValueError, match="read-only"):
             array += 1

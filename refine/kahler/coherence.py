@@ -83,7 +83,7 @@ def sequence_tables() -> SequenceTables:
     number = {sequence: k for k, sequence in enumerate(sequences)}
     triangulations = [split_in_order(sequence) for sequence in sequences]
     for sequence, triangles in zip(sequences, triangulations, strict=True):
-        verify(_splits_of(sequence), triangles)
+        verify(splits_in(sequence), triangles)
 
     transitions = np.zeros((SEQUENCE_COUNT, CONFIGURATION_COUNT), dtype=np.uint16)
     removals = np.zeros((SEQUENCE_COUNT, CONFIGURATION_COUNT), dtype=np.uint8)
@@ -145,11 +145,11 @@ def _all_sequences() -> tuple[Sequence, ...]:
         sequence
         for length in range(3 * MOST_SPLITS + 1)
         for sequence in itertools.product(range(3), repeat=length)
-        if max(_splits_of(sequence)) <= MOST_SPLITS
+        if max(splits_in(sequence)) <= MOST_SPLITS
     )
 
 
-def _splits_of(sequence: Sequence) -> tuple[int, int, int]:
+def splits_in(sequence: Sequence) -> tuple[int, int, int]:
     return sequence.count(0), sequence.count(1), sequence.count(2)
 
 
@@ -158,7 +158,7 @@ def _taken_back(sequence: Sequence, wanted: tuple[int, int, int]) -> tuple[Seque
 
     Returns the sequence left, and how many splits were followed by one that stays.
     """
-    surplus = [max(0, has - want) for has, want in zip(_splits_of(sequence), wanted, strict=True)]
+    surplus = [max(0, has - want) for has, want in zip(splits_in(sequence), wanted, strict=True)]
     left: list[int] = []
     out_of_order = 0
     for edge in reversed(sequence):
@@ -178,7 +178,7 @@ def _best_continuations(
     for sequence in sequences:
         candidate = (round(_length_of_inner_lines(sequence), 9), sequence)
         for length in range(len(sequence) + 1):
-            key = sequence[:length], _splits_of(sequence)
+            key = sequence[:length], splits_in(sequence)
             best[key] = min(best.get(key, candidate), candidate)
     return {key: sequence for key, (_, sequence) in best.items()}
 

@@ -18,6 +18,13 @@ def risorius(*arguments: object) -> Result:
     return CliRunner().invoke(command(), [str(argument) for argument in arguments])
 
 
+def succeeded(*arguments: object) -> str:
+    """What the command prints, which must succeed."""
+    result = risorius(*arguments)
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
 def refusal(result: Result) -> str:
     """The one line that a refusal is, beside the one that says that something is compiled."""
     assert result.exit_code == 2, result.output

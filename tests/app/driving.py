@@ -64,6 +64,11 @@ def xdotool(viewer: Viewer, *words: object) -> None:
     settle(viewer)
 
 
+def press_keys(viewer: Viewer, *keys: str) -> None:
+    """Press keys, one after another, and let the window take them in."""
+    xdotool(viewer, "key", *keys)
+
+
 def until(viewer: Viewer, condition: Callable[[], object], seconds: float = DEADLINE) -> bool:
     """Show frames until something has come true, or too long: one at least, or it may be old."""
     end = time.monotonic() + seconds
@@ -144,7 +149,7 @@ def show_controls(viewer: Viewer, words: str) -> None:
 def clear_search(viewer: Viewer) -> None:
     """Empty the search line."""
     click(viewer, "search")
-    xdotool(viewer, "key", "ctrl+a", "BackSpace", "Return")
+    press_keys(viewer, "ctrl+a", "BackSpace", "Return")
 
 
 def moved(viewer: Viewer) -> float:

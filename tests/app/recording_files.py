@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.reading import read_take
 from risorius.app.recordings.take import Take
 
 Array = npt.NDArray[np.float64]
@@ -49,6 +50,11 @@ def written(path: Path, columns: Columns) -> Path:
     """The table in a file."""
     path.write_text(table(columns), encoding="utf-8")
     return path
+
+
+def take_in(folder: Path, columns: Columns, *, rate: float | None = None) -> Take:
+    """What is read of a table with these columns."""
+    return read_take(written(folder / "take.csv", columns), rate=rate)
 
 
 def timecodes(frames: Sequence[float] | Array, rate: int = 60, start: int = 36_000) -> list[str]:

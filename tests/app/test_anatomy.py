@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
+from numpy.linalg import norm
 from PIL import Image
+from pytest import approx
 
 from risorius import render
 from risorius.app.anatomy import STRUCTURES, Anatomy, AnatomyView
@@ -30,14 +31,14 @@ def studio() -> Iterator[Capture]:
         yield opened
 
 
-def picture(studio: Capture, anatomy: AnatomyView, **style: Any) -> Any:
+def picture(studio, anatomy, **style):
     """What is seen of the face as it is now."""
     options = replace(studio.options, anatomy=anatomy)
     studio.options = replace(options, style=render.Style(**style))
     return studio.draw_image().astype(int)
 
 
-def posed(scene: FaceScene, **pose: float) -> FaceScene:
+def posed(scene, **pose):
     """The face a second after its pose was set."""
     scene.reset()
     scene.pose(pose)
@@ -46,20 +47,20 @@ def posed(scene: FaceScene, **pose: float) -> FaceScene:
     return scene
 
 
-def structures_of(studio: Capture, **pose: float) -> list[Any]:
+def structures_of(studio, **pose):
     """Muscles and skull of the face in a pose."""
-    posed(studio.scene, **pose)  # type: ignore[arg-type]
+    posed(studio.scene, **pose)
     parts = [each.part for each in studio.pipeline.anatomy.dissect(BOTH).parts]
     return [part for part in parts if part.name.startswith(("skull", "muscles"))]
 
 
-def check_surface(part: Any) -> None:
+def check_surface(part):
     """Finite, with unit normals, and closed: each edge is used as often in either direction."""
     assert np.isfinite(part.vertices).all()
     assert np.isfinite(part.colours).all()
     assert 0.0 <= part.colours.min()
     assert part.colours.max() <= 1.0
-    assert np.abs(np.linalg.norm(part.normals, axis=1) - 1.0).max() < 1e-3
+    assert np.abs(norm(part.normals, axis=1) - 1.0).max() < 1e-3
     edges = np.concatenate([part.faces[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
     known, count = np.unique(edges, axis=0, return_counts=True)
     often = dict(zip(map(tuple, known.tolist()), count.tolist(), strict=True))
@@ -71,7 +72,7 @@ def check_surface(part: Any) -> None:
 @pytest.mark.slow
 def test_skin_that_hides_everything_is_drawn_as_ever(studio):
     """At opacity 1, and without anything beneath, every byte is that of the usual picture."""
-    posed(studio.scene)  # type: ignore[arg-type]
+    posed(studio.scene)
     usual = picture(studio, AnatomyView())
     assert np.array_equal(picture(studio, AnatomyView(STRUCTURES, 1.0)), usual)
     assert np.array_equal(picture(studio, AnatomyView((), 0.2)), usual)
@@ -96,12 +97,12 @@ def test_muscles_swell_and_redden_as_they_contract():
     muscles = Muscles.of(scene)
     names = [name for name, _ in muscles.names]
 
-    def belly(name: str) -> tuple[float, float]:
+    def belly(name):
         """Area of the cross section in the middle [mm2], and how red it is there."""
         first = names.index(name) * ROWS * AROUND + ROWS // 2 * AROUND
         ring = muscles.vertices[first : first + AROUND].astype(float)
         middle = ring - ring.mean(axis=0)
-        area = np.linalg.norm(np.cross(middle, np.roll(middle, -1, axis=0)).sum(axis=0))
+        area = norm(np.cross(middle, np.roll(middle, -1, axis=0)).sum(axis=0))
         red, green, _ = muscles.colours[first + AROUND // 4]
         return 0.5 * float(area), float(red / green)
 
@@ -111,11 +112,11 @@ def test_muscles_swell_and_redden_as_they_contract():
     right = belly("zygomaticus_major_right")
     assert left[0] > 1.15 * at_rest[0]
     assert left[1] > 1.5 * at_rest[1]
-    assert right == pytest.approx(left, rel=0.02)
+    assert right == approx(left, rel=0.02)
     late = Muscles.of(scene)  # made in the middle of a smile, they are the same
     assert np.abs(late.vertices - muscles.vertices).max() < 0.05
     muscles.follow(posed(scene))
-    assert belly("zygomaticus_major_left") == pytest.approx(at_rest, rel=0.01)
+    assert belly("zygomaticus_major_left") == approx(at_rest, rel=0.01)
 
 
 @pytest.mark.slow
@@ -148,7 +149,7 @@ def test_the_command_draws_anatomy(tmp_path):
     plain = tmp_path / "plain.png"
     opened = tmp_path / "opened.png"
 
-    def run(*more: str) -> Any:
+    def run(*more):
         return risorius(*always, *more)
 
     assert run("-o", str(plain)).exit_code == 0
@@ -169,7 +170,7 @@ def test_the_command_draws_anatomy(tmp_path):
 @pytest.mark.parametrize(("pose", "view"), [({}, "-30,-10,1.3"), ({"surprise": 1.0}, "-12,0,2")])
 def test_the_whole_side_is_the_usual_picture(studio, pose, view):
     """Seen from its own side, nothing comes through skin; the mouth is lined, lashes are there."""
-    posed(studio.scene, **pose)  # type: ignore[arg-type]
+    posed(studio.scene, **pose)
     camera, studio.camera = studio.camera, camera_for(studio.scene, view)
     usual = picture(studio, AnatomyView(), shadows=False)
     opened = picture(studio, AnatomyView(STRUCTURES, 0.3, "left"), shadows=False)
@@ -183,7 +184,7 @@ def test_the_whole_side_is_the_usual_picture(studio, pose, view):
     assert shown.mean() > 0.05
 
 
-def pixels_of(camera: render.OrbitCamera, points: Any) -> Any:
+def pixels_of(camera, points):
     """Where points of the world are in the picture: column and row."""
     matrix = np.asarray(camera.view_matrix()) @ np.asarray(
         camera.projection_matrix(SIZE[0] / SIZE[1])

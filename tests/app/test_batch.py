@@ -10,7 +10,6 @@ import time
 from pathlib import Path
 
 import pytest
-from click.testing import Result
 
 from .command_line import refusal, risorius, started
 from .test_workers import is_running, wait_until
@@ -38,23 +37,23 @@ def scripts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("clips.txt").write_text(LIST)
 
 
-def batch(*arguments: str) -> Result:
+def batch(*arguments):
     """Run the command in this process."""
     return risorius("batch", "clips.txt", *arguments)
 
 
-def rows() -> dict[int, dict[str, str]]:
+def rows():
     """The rows of the summary, by line."""
     with open("clips_logs/summary.csv", encoding="utf-8", newline="") as file:
         return {int(row["line"]): row for row in csv.DictReader(file)}
 
 
-def statuses() -> list[str]:
+def statuses():
     """What became of the lines, in their order."""
     return [row["status"] for row in rows().values()]
 
 
-def contents(*names: str) -> dict[str, bytes]:
+def contents(*names):
     """The bytes of these files, and of all files in these folders."""
     files = [file for name in names for file in (Path(name), *Path(name).rglob("*"))]
     return {str(file): file.read_bytes() for file in files if file.is_file()}
@@ -182,7 +181,7 @@ def test_a_cluster_does_what_is_done_here(cluster):
     assert Path("alone.npz").read_bytes() == Path("fear.npz").read_bytes()
 
 
-def films(count: int) -> list[str]:
+def films(count):
     """A list of so many films, and what they are called."""
     for number in range(count):
         script = SCRIPT.format(1 + number / 20, "amplitude")
@@ -192,13 +191,13 @@ def films(count: int) -> list[str]:
     return [f"{number}.mp4" for number in range(count)]
 
 
-def begun(*arguments: str) -> subprocess.Popen[bytes]:
+def begun(*arguments):
     """The command as a process."""
     words = ("-m", "risorius", "batch", "clips.txt", *arguments)
     return started(*words, stdout=subprocess.DEVNULL)
 
 
-def workers_of(process: subprocess.Popen[bytes]) -> list[int]:
+def workers_of(process):
     """The processes that it has work done in."""
     found = []
     for file in Path(f"/proc/{process.pid}/task").glob("*/children"):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.recordings.calibration import (
@@ -19,7 +20,6 @@ from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEME
 
 from .recording_files import take_of
 
-Frame = dict[str, float]
 SHAPES = (*ARKIT, "AU12", "AU12_left", "AU4_right")
 ANGLES = (*HEAD_ANGLES, *EYE_ANGLES)
 
@@ -56,24 +56,24 @@ def test_the_usual_neutral_face_spares_what_rests_at_nothing():
     """A blink, a gaze or an open jaw that is held is no neutral face."""
     held = take_of(browDownLeft=0.3, jawOpen=0.3, mouthClose=0.2, eyeBlinkLeft=0.4, eyeLookInLeft=1)
     neutral = neutral_of(held)
-    assert neutral == {"browDownLeft": pytest.approx(0.3)}
+    assert neutral == {"browDownLeft": approx(0.3)}
 
 
 def test_the_head_is_straight_in_the_first_second():
     turning = take_of(seconds=3.0, head_yaw=np.r_[np.full(11, 8.0), np.full(20, 30.0)])
     calibrated = Calibration(neutral_of(turning)).apply(turning.channels)
-    assert calibrated["head_yaw"][0] == pytest.approx(0.0)
-    assert calibrated["head_yaw"][-1] == pytest.approx(22.0)
+    assert calibrated["head_yaw"][0] == approx(0.0)
+    assert calibrated["head_yaw"][-1] == approx(22.0)
 
 
 def test_gains_suit_the_kind_of_file():
     blinking = calibration_for(take_of(seconds=0.5, eyeBlinkLeft=0.5, jawOpen=0.5))
     assert blinking.apply({"eyeBlinkLeft": 0.5, "jawOpen": 0.5}) == {
-        "eyeBlinkLeft": pytest.approx(0.5 * BLINK_GAIN),
+        "eyeBlinkLeft": approx(0.5 * BLINK_GAIN),
         "jawOpen": 0.5,
     }
     units = calibration_for(take_of("OpenFace 2", seconds=0.5, AU12=0.5))
-    assert units.apply({"AU12": 0.5})["AU12"] == pytest.approx(0.5 * OPENFACE_GAIN)
+    assert units.apply({"AU12": 0.5})["AU12"] == approx(0.5 * OPENFACE_GAIN)
 
 
 def test_later_gains_count_and_patterns_reach_many():

@@ -5,11 +5,10 @@ from pathlib import Path
 
 import imageio_ffmpeg
 import numpy as np
-import numpy.typing as npt
 import pytest
 from PIL import Image
 
-from .command_line import risorius
+from .command_line import risorius, succeeded
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
@@ -36,11 +35,10 @@ def test_a_script_becomes_a_film_and_a_sheet(smile, tmp_path):
     """`capture --compare` writes a film of the script's length and a sheet of its named poses."""
     film = tmp_path / "out.mp4"
     sheet = tmp_path / "out.png"
-    result = risorius(
+    said = succeeded(
         "capture", smile, "-o", film, "--sheet", sheet, "--compare", "--size", "256x144"
     )
-    assert result.exit_code == 0, result.output
-    assert "triangles at most" in result.output
+    assert "triangles at most" in said
     count, _ = imageio_ffmpeg.count_frames_and_secs(str(film))
     assert count == 13
     assert Image.open(sheet).size == (640, 400)
@@ -53,8 +51,7 @@ def test_frames_and_one_picture(smile, tmp_path):
     size = ("--size", "160x120", "--quiet")
     assert risorius("capture", smile, "-o", frames, "--fps", "20", *size).exit_code == 0
     assert len(list(frames.iterdir())) == 9
-    result = risorius("capture", smile, "-o", still, "--time", "0.4", "--fps", "20", *size)
-    assert result.exit_code == 0, result.output
+    succeeded("capture", smile, "-o", still, "--time", "0.4", "--fps", "20", *size)
     last = np.asarray(Image.open(frames / "frame_00008.png")).astype(int)
     image = np.asarray(Image.open(still)).astype(int)
     assert image.shape == (120, 160, 3)
@@ -65,13 +62,12 @@ def test_frames_and_one_picture(smile, tmp_path):
 def test_looks_and_refiners_side_by_side(smile, tmp_path):
     """Each part of a comparison is the picture that its look or refiner would make alone."""
 
-    def drawn(width: int, *options: str) -> tuple[npt.NDArray[np.int64], int]:
+    def drawn(width, *options):
         """A picture with these options, and its triangles at most."""
         picture = tmp_path / "x.png"
         size = ("--size", f"{width}x120", "--quiet")
-        result = risorius("capture", smile, "-o", picture, *size, *options)
-        assert result.exit_code == 0, result.output
-        return np.asarray(Image.open(picture)).astype(int), int(result.output.split()[1])
+        said = succeeded("capture", smile, "-o", picture, *size, *options)
+        return np.asarray(Image.open(picture)).astype(int), int(said.split()[1])
 
     alone = [
         drawn(160, *options)
@@ -101,11 +97,10 @@ def test_a_script_begins_in_its_first_pose(tmp_path):
     path = tmp_path / "held.toml"
     for scene, pose in (("face", "joy = 1"), ("plane", "amplitude = 1")):
         path.write_text(f"scene = '{scene}'\nduration = 1\n[[pose]]\ntime = 0\n{pose}\n")
-        result = risorius(
+        said = succeeded(
             "capture", path, "-o", tmp_path / "x.png", "--time", "0", "--size", "64x64", "--quiet"
         )
-        assert result.exit_code == 0, result.output
-        count = int(result.output.rsplit(": ")[-1].split()[0])
+        count = int(said.rsplit(": ")[-1].split()[0])
         assert count > (2300 if scene == "face" else 1000)
 
 
@@ -125,8 +120,7 @@ def test_a_pose_needs_no_script(tmp_path):
     for settings in (("jaw_open=0",), ("AU27",), ("AU27=1", "AU4_left=0.5")):
         image = tmp_path / "held.png"
         options = [word for setting in settings for word in ("--set", setting)]
-        result = risorius("capture", *options, "-o", image, *size)
-        assert result.exit_code == 0, result.output
+        succeeded("capture", *options, "-o", image, *size)
         images.append(image.read_bytes())
     assert len(set(images)) == 3
 
@@ -137,8 +131,7 @@ def test_persons_and_lights_are_filmed(tmp_path):
     seen = []
     for words in ("", "--head 3", "--style light=side", "--head ada", "--head 3"):
         asked = f"capture --set joy {words} --size 96x96 --quiet -o".split()
-        result = risorius(*asked, tmp_path / "a.png")
-        assert result.exit_code == 0, result.output
+        succeeded(*asked, tmp_path / "a.png")
         seen.append(np.asarray(Image.open(tmp_path / "a.png")).tobytes())
     assert seen[1] == seen[-1]
     assert len(set(seen)) == 4

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import PIL.Image
 import pytest
-from click.testing import Result
+from numpy.testing import assert_allclose
+from pytest import approx
 from scipy.ndimage import binary_dilation
 
 from risorius import render
@@ -19,7 +20,6 @@ from risorius.app.dataset.labels import action_units, labels_of_face
 from risorius.app.dataset.request import request_of
 from risorius.app.dataset.studio import Studio
 from risorius.app.dataset.table import load_table
-from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
 
 from .command_line import refusal, risorius
@@ -35,12 +35,12 @@ OPTIONS = (
 )  # fmt: skip
 
 
-def run(folder: Path, *options: str, count: int = COUNT) -> Result:
+def run(folder, *options, count=COUNT):
     """The command, in this process but for its workers."""
     return risorius("dataset", "--count", count, "-o", folder, *OPTIONS, *options)
 
 
-def content(folder: Path) -> dict[str, bytes]:
+def content(folder):
     """All files of a folder."""
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
@@ -100,7 +100,7 @@ def test_a_sample_counts_when_all_of_its_files_are_whole(made, tmp_path):
     """Whatever stands in the place of one of them, the sample is not there."""
     labels = (made / "000001.json").read_bytes()
     picture = (made / "000001.png").read_bytes()
-    instead: list[tuple[str, bytes | None]] = [
+    instead = [
         *((f"000001{end}", None) for end in ENDS),
         *((f"000001{end}", b"") for end in ENDS),
         ("000001.json", labels[:-1][: len(labels) // 2]),
@@ -176,14 +176,14 @@ def test_labels_agree_with_each_other(made, samples):
         points = np.array(landmarks["points"])
         seen = points @ np.array(camera["R"]).T + camera["t"]
         pixels = seen @ np.array(camera["K"]).T
-        np.testing.assert_allclose(pixels[:, :2] / pixels[:, 2:], landmarks["pixels"], atol=1e-3)
+        assert_allclose(pixels[:, :2] / pixels[:, 2:], landmarks["pixels"], atol=1e-3)
         rows = np.loadtxt(made / f"{sample['id']}_ldmks.txt")
         assert rows.shape == (70, 2)
-        np.testing.assert_allclose(rows, landmarks["pixels"], atol=1e-3)
+        assert_allclose(rows, landmarks["pixels"], atol=1e-3)
         units = sample["action_units"]
         for name, value in sample["controls"].items():
             if name in units:
-                assert units[name] == pytest.approx(value, abs=1e-4)
+                assert units[name] == approx(value, abs=1e-4)
         assert len(sample["arkit"]) == 52
         x, y, width, height = sample["face_box"]
         assert 0 <= x < x + width <= SIZE[0]
@@ -247,22 +247,21 @@ def test_landmarks_move_further_the_more_of_a_unit(face, unit):
         face.reset()
         face.pose({unit: value})
         face.step(1.0)
-        assert action_units(face)[unit] == pytest.approx(value, abs=1e-4)
+        assert action_units(face)[unit] == approx(value, abs=1e-4)
         away = np.linalg.norm(face.positions[face.landmarks] - rest, axis=1)
         moved.append(float(away.max()))
     assert moved[0] > 0.05
     assert (np.diff(moved) > 0.1 * moved[-1]).all()
 
 
-def apertures_of(face: FaceScene, pose: dict[str, float]) -> dict[str, float]:
+def apertures_of(face, pose):
     """What a label says of mouth and eyes in a pose."""
     face.reset()
     face.pose(pose)
     face.step(1.0)
     camera = render.OrbitCamera.framing(face.framed)
     labels = labels_of_face(face, camera, (64, 48), np.ones((48, 64)))
-    found: dict[str, float] = labels["apertures"]
-    return found
+    return labels["apertures"]
 
 
 @pytest.mark.parametrize("shut", ["AU17 AU15 AU4", "AU24", "AU28", "AU12", "AU43 AU6", "AU43 AU51"])
@@ -277,10 +276,10 @@ def test_apertures_grow_with_what_opens(face):
     """In proportion from where lips and lids part, each eye for itself, however the head turns."""
     parted = [apertures_of(face, {"AU25": value})["mouth"] for value in (0.25, 0.5, 0.75, 1.0)]
     assert parted[0] < 0.3
-    assert np.diff(parted) == pytest.approx(1.1, abs=0.3)
+    assert np.diff(parted) == approx(1.1, abs=0.3)
     turned = apertures_of(face, {"AU25": 1.0, "AU43_left": 0.5, "AU51": 1.0, "AU54": 1.0})
-    assert turned["mouth"] == pytest.approx(parted[-1], abs=0.1)
-    assert turned["eye_left"] == pytest.approx(0.5 * turned["eye_right"], abs=0.5)
+    assert turned["mouth"] == approx(parted[-1], abs=0.1)
+    assert turned["eye_left"] == approx(0.5 * turned["eye_right"], abs=0.5)
     assert apertures_of(face, {"AU27": 1.0})["mouth"] > 20.0
 
 
@@ -289,7 +288,7 @@ def test_speech_is_reported_in_units(face):
     face.reset()
     face.pose({"viseme_SS": 0.5, "AU1_left": 0.3})
     units = {name: value for name, value in action_units(face).items() if value > 0.01}
-    assert units.pop("AU1") == units.pop("AU1_left") == pytest.approx(0.3, abs=1e-4)
+    assert units.pop("AU1") == units.pop("AU1_left") == approx(0.3, abs=1e-4)
     shares = {"AU20": 0.35, "AU12": 0.15, "AU25": 1.0, "AU26": 0.06}
     for name, share in shares.items():
-        assert units[name] == pytest.approx(0.5 * share, abs=1e-3)
+        assert units[name] == approx(0.5 * share, abs=1e-3)

@@ -2,14 +2,13 @@
 
 import itertools
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius.app.dataset.sampling import MOST_UNITS, Sample, draw
-from risorius.app.dataset.table import SampleTable, load_table, paired_units
+from risorius.app.dataset.table import load_table, paired_units
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 
@@ -24,7 +23,7 @@ def limits() -> dict[str, tuple[float, float]]:
     return FaceScene().limits
 
 
-def units_of(sample: Sample) -> set[str]:
+def units_of(sample):
     """The action units of a sample, both sides as one."""
     names = {name for name in sample.controls if name.startswith("AU")}
     known = {name for row in paired_units() for name in (row, f"{row}_left", f"{row}_right")}
@@ -73,7 +72,7 @@ def test_kinds_and_units_come_as_often_as_the_table_says(many):
         assert any(unit in units_of(sample) for sample in many), f"{unit} never comes"
 
 
-def read(tmp_path: Path, text: str) -> SampleTable:
+def read(tmp_path, text):
     """A table with this text."""
     file = tmp_path / "my.toml"
     file.write_text(text, encoding="utf-8")

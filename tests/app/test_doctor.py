@@ -4,7 +4,6 @@ import itertools
 from pathlib import Path
 
 import pytest
-from click.testing import Result
 
 from risorius import render
 from risorius.app.cli import doctor
@@ -16,8 +15,8 @@ from .command_line import risorius
 def ill(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> object:
     """Makes a machine that lacks the given parts and has all others."""
 
-    def make(*missing: str) -> None:
-        def probe(*, offscreen_only: bool = False) -> list[render.Finding]:
+    def make(*missing):
+        def probe(*, offscreen_only=False):
             names = ["offscreen"] if offscreen_only else ["offscreen", "window"]
             return [
                 render.Finding(name, name not in missing, "" if name not in missing else "Cure: x")
@@ -33,7 +32,7 @@ def ill(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> object:
     return make
 
 
-def ask(*options: str) -> Result:
+def ask(*options):
     """Run the command."""
     return risorius("doctor", *options)
 
@@ -46,7 +45,7 @@ PARTS = ("offscreen", "window", "films")
 )
 def test_the_verdict_is_what_works(ill, missing):
     """Each part, the summary and the exit code agree."""
-    ill(*missing)  # type: ignore[operator]
+    ill(*missing)
     result = ask()
     lines = dict(line.split(": ", 1) for line in result.output.splitlines() if ": " in line)
     for part in PARTS:
@@ -84,7 +83,7 @@ def test_refinement_on_the_card(able, is_software, message, monkeypatch):
 @pytest.mark.parametrize("missing", [(), ("offscreen",), ("window", "films")])
 def test_offscreen_alone(ill, missing):
     """What is not asked for is neither missing nor there."""
-    ill(*missing)  # type: ignore[operator]
+    ill(*missing)
     result = ask("--offscreen")
     assert result.exit_code == (2 if "offscreen" in missing else 0)
     assert "window" not in result.output
@@ -95,7 +94,7 @@ def test_offscreen_alone(ill, missing):
 @pytest.mark.parametrize("program", ["exec sleep 100", "exec >&-; exit 3", None])
 def test_an_ffmpeg_that_does_not_answer(ill, tmp_path, monkeypatch, program):
     """One that hangs, fails or is not there is missing, and nobody waits for long."""
-    ill()  # type: ignore[operator]
+    ill()
     monkeypatch.setattr(doctor, "PATIENCE", 0.3)
     fake = tmp_path / "ffmpeg"
     fake.unlink() if program is None else fake.write_text(f"#!/bin/sh\n{program}\n")

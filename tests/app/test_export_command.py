@@ -5,7 +5,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from click.testing import Result
 
 from risorius.app.export.formats import FORMATS
 
@@ -47,7 +46,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def export(*arguments: str) -> Result:
+def export(*arguments):
     """Run the command in this process."""
     return risorius("export", *arguments, "--quiet")
 

@@ -10,8 +10,8 @@ import numpy as np
 import PIL.Image
 import pytest
 import trimesh
+from numpy.linalg import norm
 
-from risorius import assets
 from risorius.app.export import gltf
 from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import Request, format_for, write
@@ -52,7 +52,7 @@ def clip() -> Clip:
     return record(parse_script(SCRIPT, source="test"), None, 24.0, progress=False)
 
 
-def written(clip: Clip, path: Path) -> str | None:
+def written(clip, path):
     """Write the clip; what there is to say of it."""
     return write(clip, path, format_for(path, None), Request())
 
@@ -65,13 +65,11 @@ def glb(clip: Clip, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def farthest(player: Player, clip: Clip, name: str) -> float:
+def farthest(player, clip, name):
     """How far any vertex of a surface is off in any frame [m]."""
     surface = next(each for each in clip.surfaces if each.name == name)
     return max(
-        float(
-            np.linalg.norm(player.positions(name, frame) - surface.at(frame) / 1000.0, axis=1).max()
-        )
+        float(norm(player.positions(name, frame) - surface.at(frame) / 1000.0, axis=1).max())
         for frame in range(clip.frame_count)
     )
 
@@ -96,7 +94,7 @@ def test_normals_follow_the_motion(clip, glb):
     for frame in range(0, clip.frame_count, 4):
         shape = player.shape("skin", frame)
         normals = player.shape("skin", frame, "NORMAL")
-        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        normals /= norm(normals, axis=1, keepdims=True)
         expected = vertex_normals(shape, clip.skin.faces)
         angles = np.degrees(np.arccos(np.clip((normals * expected).sum(axis=1), -1.0, 1.0)))
         assert np.percentile(angles, 99) < 3.0
@@ -148,7 +146,7 @@ def test_the_file_is_as_validators_want_it(glb):
             indices = player.values(primitive["indices"])
             assert indices.max() == counts.pop() - 1 < 65535
             normals = player.values(attributes["NORMAL"])
-            assert np.abs(np.linalg.norm(normals, axis=1) - 1.0).max() < 5e-4
+            assert np.abs(norm(normals, axis=1) - 1.0).max() < 5e-4
             if "WEIGHTS_0" in attributes:
                 shares, joints = (player.values(attributes[n]) for n in ("WEIGHTS_0", "JOINTS_0"))
                 assert np.abs(shares.sum(axis=1) - 1.0).max() < 1e-6
@@ -175,8 +173,6 @@ def test_the_texture_is_the_right_way_up(clip, glb):
     player = Player(glb)
     skin = clip.skin
     albedo = clip.scene.albedo
-    assert albedo is not None
-    assert skin.uv is not None
     assert skin.face_uv is not None
     material = player.file.materials[player.primitive("skin").material]
     assert material.doubleSided
@@ -203,9 +199,6 @@ def test_fine_shape_is_a_normal_map(clip, glb):
     """
     skin = clip.skin
     fine = clip.scene.fine_shape
-    assert fine is not None
-    assert skin.uv is not None
-    assert skin.face_uv is not None
     scene = trimesh.load_scene(glb, process=False)
     material = next(
         mesh.visual.material for name, mesh in scene.geometry.items() if name.startswith("skin")
@@ -223,11 +216,11 @@ def test_fine_shape_is_a_normal_map(clip, glb):
         along, aside = np.linalg.solve(np.diff(uv, axis=0), np.diff(points, axis=0))
         if abs(np.linalg.det(np.diff(uv, axis=0))) < 4.0 / size.prod():
             continue  # smaller than a few texels: another may have drawn there
-        normal = np.cross(along, aside) / np.linalg.norm(np.cross(along, aside))
+        normal = np.cross(along, aside) / norm(np.cross(along, aside))
         gradient = np.linalg.solve(np.stack([along, aside, normal]), [*slope, 0.0])
-        right = along / np.linalg.norm(along)
+        right = along / norm(along)
         tilted = np.stack([right, np.cross(normal, right), normal]) @ (normal - gradient)
-        expected = 127.5 + 127.5 * tilted / np.linalg.norm(tilted)
+        expected = 127.5 + 127.5 * tilted / norm(tilted)
         assert np.abs(image[row, column] - expected).max() < 1.0
         checked += 1
     assert checked > 150
@@ -262,7 +255,7 @@ def test_blender_sees_the_same(clip, glb, tmp_path):
         assert set(positions) >= {surface.name for surface in clip.surfaces}
         for surface in clip.surfaces:
             expected = np.stack([surface.at(k) for k in range(clip.frame_count)]) / 1000.0
-            off = np.linalg.norm(positions[surface.name] - expected, axis=2)
+            off = norm(positions[surface.name] - expected, axis=2)
             assert off.max() < NEAR, surface.name
 
 
@@ -278,9 +271,8 @@ def test_what_targets_cannot_follow_is_reported(clip, tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_our_own_file_is_a_head_to_fit(glb, tmp_path):
+def test_our_own_file_is_a_head_to_fit(head, glb, tmp_path):
     """Its hair is cards that are no surface; the skin is fitted, and stands as it was."""
-    head = assets.load("head")
     marks = tmp_path / "own.json"
     marks.write_text(json.dumps((head.vertices[head.landmarks] / 1000.0).tolist()))
     fitted = fit_head(glb, marks)

@@ -2,8 +2,6 @@
 
 import struct
 import zipfile
-from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
@@ -11,6 +9,7 @@ import numpy.typing as npt
 import PIL.Image
 import pytest
 import trimesh
+from numpy.linalg import norm
 from pxr import Tf, Usd, UsdGeom, UsdShade
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkVersion
@@ -52,26 +51,24 @@ def clip() -> Clip:
     return record(parse_script(SCRIPT, source="test"), FaceScene(), RATE, progress=False)
 
 
-def written(
-    clip: Clip, path: Path, name: str | None = None, refinement: Refinement | None = None
-) -> Path:
+def written(clip, path, name=None, refinement=None):
     """The file that a clip was written to."""
     write(clip, path, format_for(path, name), Request(refinement, progress=False))
     return path
 
 
-def whole(clip: Clip, frame: int) -> Points:
+def whole(clip, frame):
     """All vertices of a frame [mm], the skin's first."""
     return np.concatenate([each.at(frame) for each in clip.surfaces])
 
 
-def refined_skins(clip: Clip) -> list[tuple[Points, npt.NDArray[Any]]]:
+def refined_skins(clip):
     """Points and triangles of the refined skin in each frame."""
     meshes = clip.refined(REFINED)
     return [(mesh.positions.astype(float), mesh.triangles.copy()) for mesh in meshes]
 
 
-def is_near(found: npt.ArrayLike, wanted: Points, unit: float = 1.0) -> bool:
+def is_near(found, wanted, unit=1.0):
     """Whether points in a unit of so many metres a ... are where they should be, in order."""
     points = np.asarray(found, np.float64)
     return points.shape == wanted.shape and float(np.abs(points / unit - wanted).max()) < NEAR
@@ -80,7 +77,7 @@ def is_near(found: npt.ArrayLike, wanted: Points, unit: float = 1.0) -> bool:
 # ---------- USD ---------------------------------------------------------------------------------
 
 
-def usd_points(stage: Any, name: str, frame: int) -> Points:
+def usd_points(stage, name, frame):
     """Where USD has a mesh's points [mm]."""
     prim = stage.GetPrimAtPath(f"/face/{name}")
     points = np.array(UsdGeom.Mesh(prim).GetPointsAttr().Get(frame), np.float64)
@@ -113,8 +110,6 @@ def test_usd_has_the_texture_and_colours(clip, tmp_path):
     stage = Usd.Stage.Open(str(path))
     skin = stage.GetPrimAtPath("/face/skin")
     st = UsdGeom.PrimvarsAPI(skin).GetPrimvar("st")
-    assert clip.skin.uv is not None
-    assert clip.skin.face_uv is not None
     assert np.array_equal(np.array(st.ComputeFlattened()), clip.skin.uv[clip.skin.face_uv.ravel()])
     material, _ = UsdShade.MaterialBindingAPI(skin).ComputeBoundMaterial()
     texture = UsdShade.Shader(stage.GetPrimAtPath(f"{material.GetPath()}/texture"))
@@ -155,7 +150,7 @@ def test_usd_has_the_refined_skin(clip, tmp_path):
         assert np.array_equal(indices, triangles)
         assert len(mesh.GetFaceVertexCountsAttr().Get(frame)) == len(triangles)
         assert is_near(usd_points(stage, "skin", frame), points)
-        lengths = np.linalg.norm(np.array(mesh.GetNormalsAttr().Get(frame)), axis=1)
+        lengths = norm(np.array(mesh.GetNormalsAttr().Get(frame)), axis=1)
         assert lengths.shape == points.shape[:1]
         assert np.allclose(lengths, 1.0, atol=1e-4)
         st = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st").Get(frame)
@@ -168,7 +163,7 @@ def test_usd_has_the_refined_skin(clip, tmp_path):
 # ---------- VTKHDF ------------------------------------------------------------------------------
 
 
-def vtk_steps(path: Path) -> list[tuple[float, Any]]:
+def vtk_steps(path):
     """Time and PolyData of each step, as VTK reads them."""
     reader = vtkHDFReader()
     steps = []
@@ -194,7 +189,7 @@ def test_vtkhdf_has_every_frame(clip, tmp_path):
     for frame, (_, data) in enumerate(steps):
         points = vtk_to_numpy(data.GetPoints().GetData())
         assert is_near(points, whole(clip, frame))
-        lengths = np.linalg.norm(vtk_to_numpy(data.GetPointData().GetArray("Normals")), axis=1)
+        lengths = norm(vtk_to_numpy(data.GetPointData().GetArray("Normals")), axis=1)
         assert np.allclose(lengths, 1.0, atol=1e-5)
         if vtkVersion().GetVTKVersion() >= "9.5":  # that is what VTK lights it by
             assert data.GetPointData().GetNormals() is not None
@@ -215,7 +210,7 @@ def test_vtkhdf_has_every_frame(clip, tmp_path):
 # ---------- Point caches ------------------------------------------------------------------------
 
 
-def obj_rows(path: Path, name: str) -> Points:
+def obj_rows(path, name):
     """The numbers of all lines of a kind in an OBJ."""
     lines = path.read_text().splitlines()
     return np.array([line.split()[1:] for line in lines if line.startswith(f"{name} ")], float)
@@ -239,7 +234,7 @@ def test_pc2_moves_the_mesh_beside_it(clip, tmp_path):
 # ---------- Sequences ---------------------------------------------------------------------------
 
 
-def triangles_in(path: Path) -> tuple[Points, Points]:
+def triangles_in(path):
     """Corners and normals of all triangles in an OBJ, shape (F, 3, 3), in their order."""
     lines = [line.split()[1:] for line in path.read_text().splitlines() if line.startswith("f ")]
     corners = np.array([[corner.split("/") for corner in line] for line in lines], int) - 1

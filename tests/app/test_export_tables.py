@@ -1,22 +1,16 @@
 """Exported curves: read by our own readers of recordings, they play the same face again."""
 
 import csv
-from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
-import pytest
+from pytest import approx
 
-from risorius.app.export.clip import Clip, record
+from risorius.app.export.clip import record
 from risorius.app.export.formats import Request, format_for, write
 from risorius.app.performances import read_performance
 from risorius.app.playback import LEAD, Playback
 from risorius.app.recordings.reading import read_take
-from risorius.app.scenes import FaceScene
-from risorius.app.script import Script
 from risorius.app.script.script_file import parse_script
-
-Columns = dict[str, npt.NDArray[np.float64]]
 
 RATE = 60.0  # frames a second
 SHAPES = """
@@ -43,12 +37,12 @@ browInnerUp = 0.5
 AS_IT_IS = Playback(neutral="none", gains=("eyeBlink*=1",))  # a face that needs no calibration
 
 
-def script_of(text: str) -> Script:
+def script_of(text):
     """A script."""
     return parse_script(text, source="test")
 
 
-def table(clip: Clip, path: Path) -> Columns:
+def table(clip, path):
     """The columns of the CSV that a clip was written to; a timecode as seconds."""
     write(clip, path, format_for(path, None), Request(progress=False))
     with path.open(newline="") as file:
@@ -64,17 +58,15 @@ def table(clip: Clip, path: Path) -> Columns:
     return found
 
 
-def replayed(path: Path, scene: FaceScene, playback: Playback) -> Clip:
+def replayed(path, scene, playback):
     """The clip that a recording makes."""
     script, _ = read_performance(path, playback, scene.limits)
     return record(script, scene, RATE, progress=False)
 
 
-def apart(first: Clip, second: Clip) -> tuple[float, float]:
+def apart(first, second):
     """How far two clips are apart: at most, and root mean square [mm]."""
     count = min(first.frame_count, second.frame_count)
-    assert first.skin.shapes is not None
-    assert second.skin.shapes is not None
     off = np.linalg.norm(first.skin.shapes[:count] - second.skin.shapes[:count], axis=2)
     return float(off.max()), float(np.sqrt((off**2).mean()))
 
@@ -113,8 +105,8 @@ def test_arkit_shows_set_values(scene, tmp_path):
         asked = [clip.script.at(max(time - LEAD, 0.0))[name] for time in clip.times]
         assert np.allclose(columns[name[0].upper() + name[1:]], asked, atol=0.01), name
     assert columns["MouthSmileRight"].max() == 0.0
-    assert columns["HeadYaw"].min() == pytest.approx(np.radians(-22.5), abs=0.02)
-    assert columns["LeftEyeYaw"].min() == pytest.approx(np.radians(-15.0 - 4.0), abs=0.02)
+    assert columns["HeadYaw"].min() == approx(np.radians(-22.5), abs=0.02)
+    assert columns["LeftEyeYaw"].min() == approx(np.radians(-15.0 - 4.0), abs=0.02)
 
 
 def test_expressions_become_shapes(scene, tmp_path):

@@ -42,7 +42,7 @@ ask([], main)
 """
 
 
-def plain(*words: str, folder: Path, code: str = RUN) -> subprocess.CompletedProcess[str]:
+def plain(*words, folder, code=RUN):
     """The command as `pip install risorius` alone has it."""
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
     return subprocess.run(
@@ -51,7 +51,7 @@ def plain(*words: str, folder: Path, code: str = RUN) -> subprocess.CompletedPro
     )  # fmt: skip
 
 
-def each_of(*commands: str, folder: Path) -> list[tuple[int, list[str]]]:
+def each_of(*commands, folder):
     """Exit codes and lines of errors of commands, one after the other in one process."""
     (folder / "take.csv").write_text("time,jawOpen\n0,0\n0.1,0.5\n0.2,0\n")
     (folder / "list.txt").write_text("export --set joy -o joy.npz\n")

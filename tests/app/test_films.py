@@ -2,7 +2,6 @@
 
 import subprocess
 from dataclasses import replace
-from pathlib import Path
 
 import imageio_ffmpeg
 import numpy as np
@@ -17,7 +16,7 @@ from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 from risorius.app.script.script_file import parse_script
 
-from .command_line import risorius
+from .command_line import succeeded
 
 Image = npt.NDArray[np.uint8]
 WIDTH = 97
@@ -27,7 +26,7 @@ RATE = 25.0
 SMALL = CaptureOptions(size=(64, 48), samples=0)
 
 
-def numbered_frames() -> list[Image]:
+def numbered_frames():
     """Pictures of a bar that moves to the right, a step with each."""
     frames = []
     for number in range(COUNT):
@@ -37,7 +36,7 @@ def numbered_frames() -> list[Image]:
     return frames
 
 
-def decoded(path: Path, size: tuple[int, int]) -> Image:
+def decoded(path, size):
     """All pictures of a film, (n, H, W, 3), read by another program where there is one."""
     if path.suffix in (".gif", ".webp"):
         with PIL.Image.open(path) as film:
@@ -54,7 +53,7 @@ def decoded(path: Path, size: tuple[int, int]) -> Image:
     return np.frombuffer(raw, np.uint8).reshape(-1, size[1], size[0], 3)
 
 
-def seconds_of(path: Path) -> float:
+def seconds_of(path):
     """How long a film is."""
     if path.suffix not in (".gif", ".webp"):
         return float(imageio_ffmpeg.count_frames_and_secs(str(path))[1])
@@ -126,8 +125,7 @@ def test_backgrounds_by_name(tmp_path, word, corner):
     """The corner of a picture has exactly the colour that was asked for."""
     path = tmp_path / "picture.png"
     arguments = ["capture", "--scene", "plane", "--size", "64x48", "--time", "0", "-o", str(path)]
-    result = risorius(*arguments, "--background", word)
-    assert result.exit_code == 0, result.output
+    succeeded(*arguments, "--background", word)
     with PIL.Image.open(path) as picture:
         assert picture.mode == "RGB"
         assert picture.getpixel((0, 0)) == corner
@@ -136,7 +134,7 @@ def test_backgrounds_by_name(tmp_path, word, corner):
 # Drawn by several processes
 
 
-def several(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def several(count, monkeypatch):
     """Let so many processes draw, however little there is to do."""
     monkeypatch.setattr(processes, "worthwhile", lambda *_: count)
 

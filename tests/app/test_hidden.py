@@ -40,9 +40,9 @@ def test_no_pixel_changes(studio, camera, pose, monkeypatch):
     shares = []
     may_be_seen = FarthestDepths.may_be_seen
 
-    def noted(*arguments: object, **sides: bool) -> object:
+    def noted(*arguments, **sides):
         """What it says, and how much of it."""
-        result = may_be_seen(*arguments, **sides)  # type: ignore[arg-type]
+        result = may_be_seen(*arguments, **sides)
         shares.append(float(np.mean(result)))
         return result
 

@@ -19,13 +19,13 @@ from risorius.app.script import Channel, Key, Script
 NOBODY = frozenset[str]()
 
 
-def lids_gap(scene: FaceScene) -> float:
+def lids_gap(scene):
     """How wide the right eye is open [mm], in the middle of its lids."""
     points = scene.positions[scene.landmarks]
     return float((points[[37, 38]] - points[[41, 40]])[:, 1].mean())
 
 
-def pupils(scene: FaceScene) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def pupils(scene):
     """Where each eyeball is now and which way it looks, by side."""
     bones = scene.bone_transforms()
     found = {}
@@ -84,7 +84,7 @@ def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene):
     assert np.diff(closed).max() > -1.15 * np.diff(closed).min()
 
 
-def life_blinks(life: Life, seconds: float = 30.0) -> list[float]:
+def life_blinks(life, seconds=30.0):
     """When the lids of a life begin to shut in its first seconds."""
     frames = range(round(60.0 * seconds))
     drawn = [0.0, *(life.parts(frame / 60.0)["lids"][f"{LID}_left"] for frame in frames)]
@@ -102,7 +102,7 @@ def test_both_eyes_meet_the_camera(scene, view):
     scene.reset()
 
 
-def _off(scene: FaceScene, viewer: np.ndarray) -> float:
+def _off(scene, viewer):
     """How far the eye that looks least at a point looks past it [degrees]."""
     off = []
     for centre, way in pupils(scene).values():
@@ -124,7 +124,7 @@ def test_who_stands_aside_is_not_followed(scene):
     assert np.abs(walk).max() <= EYES_MOST / EYE_RANGE + 1e-9
 
 
-def _look(scene: FaceScene, viewer: np.ndarray) -> None:
+def _look(scene, viewer):
     """Let the face look at a point until it does."""
     idle = Idle(scene)
     scene.reset()

@@ -2,11 +2,12 @@
 
 import socket
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
 import pytest
+from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.live.live_face import (
@@ -29,49 +30,49 @@ APPLY = "/VMC/Ext/Blend/Apply"
 class Clock:
     """A clock that stands until it is set."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.now = 100.0
 
-    def __call__(self) -> float:
+    def __call__(self):
         return self.now
 
 
 class Wire:
     """A live face, and a socket that sends to it."""
 
-    def __init__(self, kind: str) -> None:
+    def __init__(self, kind):
         self.clock = Clock()
         self.woken = 0
         self.face = LiveFace(Listening(kind, port=0), wake=self._wake, clock=self.clock)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 
-    def _wake(self) -> None:
+    def _wake(self):
         self.woken += 1
 
-    def send(self, *packets: bytes) -> None:
+    def send(self, *packets):
         """Send packets, and wait until they are there."""
         wanted = self.face.received + len(packets)
         for packet in packets:
             self._socket.sendto(packet, (LOOPBACK, self.face.port))
         assert until(lambda: self.face.received == wanted)
 
-    def take(self, *packets: bytes, seconds: float = 0.0) -> None:
+    def take(self, *packets, seconds=0.0):
         """Send packets and let the face take them in, so much later."""
         self.send(*packets)
         self.pass_time(seconds)
 
-    def pass_time(self, seconds: float) -> None:
+    def pass_time(self, seconds):
         """Let time go by in one step."""
         self.clock.now += seconds
         self.face.advance(seconds)
 
-    def close(self) -> None:
+    def close(self):
         """End both."""
         self.face.close()
         self._socket.close()
 
 
-def until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
+def until(condition, seconds=10.0):
     """Wait until something has come true, or too long."""
     end = time.monotonic() + seconds
     while not condition() and time.monotonic() < end:
@@ -100,7 +101,7 @@ def test_a_frame_leads_the_controls(wire):
     assert wire.face.rate == 1.0
     assert controls["jawOpen"] == 0.5
     assert 0.5 < controls["eyeBlinkLeft"] < 0.65
-    assert controls["head_yaw"] == pytest.approx(0.5, abs=1e-3)  # of 45 degrees
+    assert controls["head_yaw"] == approx(0.5, abs=1e-3)  # of 45 degrees
     wire.pass_time(0.01)
     assert not wire.face.has_news
 
@@ -158,7 +159,7 @@ def test_calibrating_takes_the_neutral_face_away(wire):
     controls = wire.face.controls()
     assert controls["browDownLeft"] == 0.0
     assert controls["eyeBlinkLeft"] == 0.0
-    assert controls["head_pitch"] == pytest.approx(0.0, abs=1e-6)
+    assert controls["head_pitch"] == approx(0.0, abs=1e-6)
     wire.take(live_link({**neutral, "BrowDownLeft": 1.0, "EyeBlinkLeft": 1.0}))
     controls = wire.face.controls()
     assert controls["browDownLeft"] == 1.0
@@ -172,8 +173,8 @@ def test_gains_and_mirror_may_be_given_from_the_start():
     try:
         face.channels.update({"jawOpen": 0.3, "mouthSmileLeft": 0.8})
         controls = face.controls()
-        assert controls["jawOpen"] == pytest.approx(0.6)
-        assert controls["mouthSmileRight"] == pytest.approx(0.4)
+        assert controls["jawOpen"] == approx(0.6)
+        assert controls["mouthSmileRight"] == approx(0.4)
     finally:
         face.close()
     with pytest.raises(UserError):
@@ -186,8 +187,8 @@ def test_what_is_not_named_keeps_its_value(wire):
     wire.take(vmc({"jawOpen": 0.5, "cheekPuff": 0.3}))
     wire.take(vmc({"jawOpen": 0.2}))
     channels = wire.face.channels
-    assert channels["jawOpen"] == pytest.approx(0.2)
-    assert channels["cheekPuff"] == pytest.approx(0.3)
+    assert channels["jawOpen"] == approx(0.2)
+    assert channels["cheekPuff"] == approx(0.3)
 
 
 @pytest.mark.parametrize("wire", ["vmc"], indirect=True)
@@ -200,9 +201,9 @@ def test_parts_of_a_frame_count_together(wire):
     wire.take(osc((VALUE, "mouthPucker", 0.25)), osc((APPLY,)))
     assert wire.woken == 1
     wanted = {"jawOpen": 0.5, "mouthPucker": 0.25, "eyeBlinkLeft": 0.6}
-    assert wire.face.channels == pytest.approx(wanted)
+    assert wire.face.channels == approx(wanted)
     wire.take(osc((VALUE, "eyeBlinkLeft", 0.1), (APPLY,)))
-    assert wire.face.channels["eyeBlinkLeft"] == pytest.approx(0.1)
+    assert wire.face.channels["eyeBlinkLeft"] == approx(0.1)
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
-import numpy.typing as npt
 import PIL.Image
 import PIL.ImageDraw
 import pytest
+from numpy.linalg import norm
 from scipy.ndimage import binary_dilation
 from scipy.spatial import ConvexHull
 
@@ -19,12 +19,12 @@ from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 from risorius.app.scenes.mouth import MouthWalls
 from risorius.assets import Segment
-from risorius.assets.fitting import FittedHead, fit
+from risorius.assets.fitting import fit
 from risorius.assets.identities import make_person, sample_identity
 from risorius.assets.meshes import Mesh
 
 SIZE = (300, 300)
-JAWS: tuple[dict[str, float], ...] = ({}, {"jaw_open": 1.0}, {"jaw_open": 0.7, "jaw_sideways": 1.0})
+JAWS = ({}, {"jaw_open": 1.0}, {"jaw_open": 0.7, "jaw_sideways": 1.0})
 TURNS = tuple(
     dict(zip(("head_pitch", "head_yaw", "head_roll"), signs, strict=True))
     for signs in product((-1.0, 1.0), repeat=3)
@@ -41,14 +41,14 @@ def renderer() -> Iterator[render.Renderer]:
 class Sitter:
     """A face before a camera."""
 
-    def __init__(self, scene: FaceScene, renderer: render.Renderer) -> None:
+    def __init__(self, scene, renderer):
         self.scene = scene
         self.surface = renderer.surface
         self.pipeline = Pipeline(scene, renderer)
         self.drawn = self.pipeline.bind(Refinement(refiner="none"))
         self.passes = Passes(self.pipeline, self.drawn)
 
-    def outside_lips(self, yaw: float, pitch: float) -> int:
+    def outside_lips(self, yaw, pitch):
         """How many pixels that show the mouth's inside lie outside the outline of the lips."""
         scene = self.scene
         camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
@@ -84,7 +84,7 @@ def test_nothing_of_the_mouth_pierces_the_throat(renderer):
     assert found == {}
 
 
-def mask(lowest: float) -> FittedHead:
+def mask(lowest):
     """The front of the built-in head, without neck and ears: cut along the jaw, `lowest` [mm]."""
     head = assets.load("head")
     _, y, z = head.vertices[head.faces].mean(axis=1).T
@@ -97,9 +97,7 @@ def mask(lowest: float) -> FittedHead:
     return fit(mesh, place_of[head.landmarks].astype(np.int32))
 
 
-def seen_from_in_front(
-    sitter: Sitter, pitches: tuple[float, ...]
-) -> dict[tuple[float, float], int]:
+def seen_from_in_front(sitter, pitches):
     """Pixels of the mouth's inside beside the lips, by the view that shows any."""
     views = product((-80.0, -40.0, 0.0, 40.0, 80.0), pitches)
     counts = {view: sitter.outside_lips(*view) for view in views}
@@ -125,7 +123,7 @@ def test_a_mask_has_no_neck_that_fades():
     assert mask(-118.0).fade() is None
 
 
-def lower_edge(walls: MouthWalls) -> npt.NDArray[np.float32]:
+def lower_edge(walls):
     """The vertices of walls that go with the mandible most, where they are now."""
     return walls.vertices[walls.shares > 0.9]
 
@@ -145,10 +143,10 @@ def test_walls_stretch_with_the_jaw(face):
     assert walls.vertices is not rest
     mandible = face.bone_transforms()["mandible"]
     moved = edge @ mandible[:3, :3].T + mandible[:3, 3]
-    assert np.linalg.norm(lower_edge(walls) - moved, axis=1).max() < 2.5
+    assert norm(lower_edge(walls) - moved, axis=1).max() < 2.5
     fixed = walls.shares == 0.0
     assert np.array_equal(walls.vertices[fixed], rest[fixed])
-    assert np.allclose(np.linalg.norm(walls.normals, axis=1), 1.0, atol=1e-4)
+    assert np.allclose(norm(walls.normals, axis=1), 1.0, atol=1e-4)
     stretched = walls.vertices
     assert face.parts
     assert walls.vertices is stretched

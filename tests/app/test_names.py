@@ -19,7 +19,7 @@ from risorius.app.pictures import save_png
 from risorius.app.script import Pose, Script
 from risorius.app.script.script_file import load_script, save_script, script_text
 
-from .command_line import refusal, risorius
+from .command_line import refusal, risorius, succeeded
 from .recording_files import timecodes, written
 
 RAW = "l\udce4cheln"  # "lächeln" in Latin-1, as an old archive has it
@@ -30,13 +30,13 @@ needs_bytes = pytest.mark.skipif(
 )
 
 
-def take(path: Path) -> Path:
+def take(path):
     """A short recording."""
     times = timecodes(range(12))
     return written(path, {"Timecode": times, "jawOpen": np.linspace(0.0, 0.8, 12)})
 
 
-def pose(path: Path, *more: str) -> Path:
+def pose(path, *more):
     """A pose that holds for a fifth of a second; more: lines at the head of its file."""
     lines = (*more, "duration = 0.2", "[[pose]]", "time = 0.0", "jaw_open = 0.5")
     path.write_text("\n".join(lines), "utf-8")
@@ -86,8 +86,7 @@ def test_motion_with_such_a_name_is_exported(where, end, tmp_path):
     script = pose(tmp_path / f"{RAW}.toml")
     folder = tmp_path / (RAW if where == "folder" else "folder")
     target = folder / f"{'plain' if where == 'folder' else RAW}{end}"
-    result = risorius("export", script, "-o", target, "--fps", "10", "--quiet")
-    assert result.exit_code == 0, result.output
+    succeeded("export", script, "-o", target, "--fps", "10", "--quiet")
     beside = {item.suffix for item in folder.iterdir()}
     assert target.stat().st_size > 1000
     if end == ".pc2":
@@ -110,10 +109,7 @@ def test_pictures_with_such_a_name_have_their_passes(tmp_path):
     OpenEXR = pytest.importorskip("OpenEXR")  # noqa: N806 - a module
     script = pose(tmp_path / "pose.toml")
     picture = tmp_path / RAW / f"{RAW}.png"
-    result = risorius(
-        "capture", script, "-o", picture, "--passes", "depth,segmentation,landmarks", *SMALL
-    )
-    assert result.exit_code == 0, result.output
+    succeeded("capture", script, "-o", picture, "--passes", "depth,segmentation,landmarks", *SMALL)
     ends = (".exr", ".json", ".png", "_ldmks.txt", "_seg.png")
     assert sorted(item.name for item in picture.parent.iterdir()) == [f"{RAW}{e}" for e in ends]
     shutil.copy(picture.with_suffix(".exr"), tmp_path / "plain.exr")
@@ -221,8 +217,7 @@ def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(secret, tmp
         ("export", script, "-o", shared / "face.csv"),
         ("export", script, "-o", shared / "face.pc2"),
     ):
-        result = risorius(*words)
-        assert result.exit_code == 0, result.output
+        succeeded(*words)
     left = [item.name for item in shared.iterdir() if item.is_symlink()]
     assert sorted(left) == ["loop.png", "nowhere.png"]
     assert secret.read_text() == "mine"

@@ -1,10 +1,8 @@
 """Passes of a face: triangles, splits and classes, and landmarks against the depth map."""
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from risorius import render
@@ -16,7 +14,7 @@ from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
 
 SIZE = (500, 500)
-EXPRESSIONS: dict[str, dict[str, float]] = {
+EXPRESSIONS = {
     "rest": {},
     "smile": {"AU6": 0.6, "AU12": 0.9},
     "open mouth": {"jaw_open": 0.9, "AU1": 1.0, "AU2": 1.0},
@@ -24,16 +22,15 @@ EXPRESSIONS: dict[str, dict[str, float]] = {
     "disgust, nodding": {"AU9": 1.0, "AU15": 0.6, "head_pitch": -0.4},
     "pucker, tilted": {"AU18": 1.0, "head_roll": 0.5},
 }
-Array = npt.NDArray[np.float64]
 
 
-def passes_of(studio: Capture, wanted: Sequence[str]) -> dict[str, Any]:
+def passes_of(studio, wanted):
     """The passes of these names of what was drawn last."""
     passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
     return passes.draw(studio.camera, studio.options.style, wanted)
 
 
-def posed(studio: Capture, controls: dict[str, float]) -> FaceScene:
+def posed(studio, controls):
     """The face of a studio, resting in a pose."""
     face = studio.scene
     assert isinstance(face, FaceScene)
@@ -58,7 +55,7 @@ def plain(scene: FaceScene) -> Iterator[Capture]:
         yield opened
 
 
-def seen_from(studio: Capture, yaw: float = 0.0, pitch: float = 0.0) -> CameraLabels:
+def seen_from(studio, yaw=0.0, pitch=0.0):
     """Draw the face from somewhere, as it is now."""
     studio.camera = render.OrbitCamera.framing(studio.scene.extent)
     studio.camera.orbit(yaw, pitch)
@@ -66,7 +63,7 @@ def seen_from(studio: Capture, yaw: float = 0.0, pitch: float = 0.0) -> CameraLa
     return CameraLabels.of(studio.camera, SIZE)
 
 
-def first_hits(points: Array, faces: npt.NDArray[np.int32], eye: Array, ways: Array) -> Array:
+def first_hits(points, faces, eye, ways):
     """By casting a ray at every triangle: number of the first one hit and how far, (n, 2).
 
     Source: Möller and Trumbore 1997; -1 and infinity for no triangle.

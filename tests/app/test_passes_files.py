@@ -2,15 +2,13 @@
 
 import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import OpenEXR
 import pytest
 from PIL import Image
 
-from .command_line import risorius
+from .command_line import risorius, succeeded
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
@@ -26,13 +24,13 @@ AU12 = 1.0
 """
 
 
-def channels_of(path: Path) -> dict[str, npt.NDArray[Any]]:
+def channels_of(path):
     """All channels of an OpenEXR file, by its own library."""
     with OpenEXR.File(str(path), separate_channels=True) as file:
         return {name: np.array(channel.pixels) for name, channel in file.channels().items()}
 
 
-def names_in(folder: Path) -> list[str]:
+def names_in(folder):
     """The names of all files of a folder."""
     return sorted(path.name for path in folder.iterdir())
 
@@ -42,8 +40,7 @@ def test_every_frame_has_its_passes_beside_it(tmp_path):
     script = tmp_path / "smile.toml"
     frames = tmp_path / "frames"
     script.write_text(SMILE)
-    result = risorius(*CAPTURE, script, "--passes", ALL, "-o", frames)
-    assert result.exit_code == 0, result.output
+    succeeded(*CAPTURE, script, "--passes", ALL, "-o", frames)
     ends = (".exr", ".json", ".png", "_ldmks.txt", "_seg.png")
     assert names_in(frames) == [f"frame_0000{k}{end}" for k in range(3) for end in ends]
 
@@ -82,8 +79,7 @@ def test_every_frame_has_its_passes_beside_it(tmp_path):
 def test_only_what_is_asked_for_is_written(tmp_path):
     """One picture with classes alone has no OpenEXR file, and no landmarks in its numbers."""
     target = tmp_path / "deep" / "joy.png"
-    result = risorius(*CAPTURE, "--set", "joy", "--passes", "segmentation", "-o", target)
-    assert result.exit_code == 0, result.output
+    succeeded(*CAPTURE, "--set", "joy", "--passes", "segmentation", "-o", target)
     assert names_in(target.parent) == ["joy.json", "joy.png", "joy_seg.png"]
     assert "landmarks" not in json.loads((target.parent / "joy.json").read_text())
 

@@ -4,9 +4,9 @@ import json
 import math
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pytest import approx
 
 from risorius import render
 from risorius.app.passes.labels import CameraLabels, gaze, labels_of
@@ -16,7 +16,7 @@ SIZES = st.tuples(st.integers(16, 4000), st.integers(16, 4000))
 ANGLES = {"yaw": st.floats(-180.0, 180.0), "pitch": st.floats(-89.0, 89.0)}
 
 
-def camera_at(yaw: float, pitch: float) -> render.OrbitCamera:
+def camera_at(yaw, pitch):
     """A camera on the head's level, off its middle."""
     camera = render.OrbitCamera.framing(np.array([[-80.0, -160.0, -90.0], [80.0, 130.0, 120.0]]))
     camera.orbit(yaw, pitch)
@@ -57,9 +57,9 @@ def test_a_head_at_rest_is_turned_as_the_camera_is_not(scene, yaw, pitch):
     assert math.copysign(1.0, pose["yaw"]) == -math.copysign(1.0, yaw) or abs(yaw) < 1e-6
     sine = math.sin(math.radians(pose["pitch"]))
     bowed = -math.sin(math.radians(pitch)) * math.cos(math.radians(yaw))
-    assert sine == pytest.approx(bowed, abs=1e-9)
+    assert sine == approx(bowed, abs=1e-9)
     facing = -rotation[2, 2]
-    assert facing == pytest.approx(towards_camera[2])
+    assert facing == approx(towards_camera[2])
 
 
 def test_angles_are_those_that_the_head_was_turned_by(face):
@@ -69,7 +69,7 @@ def test_angles_are_those_that_the_head_was_turned_by(face):
     """
     names = ("yaw", "pitch", "roll")
 
-    def turned(*values: float) -> list[float]:
+    def turned(*values):
         """The angles of a head with these values of its controls."""
         face.reset()
         face.pose({f"head_{name}": value for name, value in zip(names, values, strict=True)})

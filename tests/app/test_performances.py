@@ -1,13 +1,12 @@
 """Recordings as scripts: in time, in few keys, with a report; and the commands that take them."""
 
 from functools import partial
-from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.performances import limits_of, read_performance
@@ -21,17 +20,16 @@ from . import recording_files
 from .command_line import risorius
 
 RATE = 60
-Curve = npt.NDArray[np.float64]
 take_of = partial(recording_files.take_of, seconds=3.0, rate=RATE)
 
 
-def wave(seconds: float = 3.0) -> Curve:
+def wave(seconds=3.0):
     """A channel that comes and goes, from 0 to 1."""
     times = np.arange(round(seconds * RATE) + 1) / RATE
     return 0.5 - 0.5 * np.cos(5.0 * times)
 
 
-def written(folder: Path, seconds: float = 1.0) -> Path:
+def written(folder, seconds=1.0):
     """A recording in a file, of a smile that comes and a head that turns to its right."""
     times = np.arange(round(seconds * RATE) + 1) / RATE
     path = folder / "take.csv"
@@ -46,8 +44,8 @@ def test_the_lead_shifts_what_is_played(lead, moment):
     script, _ = script_of(take, Playback(neutral="none", lead=lead), limits_of("face"))
     for name, size in (("jawOpen", 1.0), ("head_yaw", 20.0 / 45.0)):
         recorded = np.interp(moment + lead_of(name, lead), take.times, size * wave())
-        assert script.at(moment)[name] == pytest.approx(recorded, abs=2.0 * TOLERANCE)
-    assert script.duration == pytest.approx(3.0), "as long as its sound"
+        assert script.at(moment)[name] == approx(recorded, abs=2.0 * TOLERANCE)
+    assert script.duration == approx(3.0), "as long as its sound"
 
 
 def test_the_usual_lead_is_what_the_skin_is_late(face):
@@ -111,8 +109,8 @@ def test_a_recording_becomes_a_script_that_plays_the_same(tmp_path):
     converted = read_performance(path, Playback(gains=("mouth*=0.5",)))[0]
     assert script.tracks == converted.tracks
     assert script.duration == converted.duration
-    assert script.at(1.0)["mouthSmileLeft"] == pytest.approx(0.5, abs=0.01)
-    assert script.at(1.0)["head_yaw"] == pytest.approx(-20.0 / 45.0, abs=0.01)
+    assert script.at(1.0)["mouthSmileLeft"] == approx(0.5, abs=0.01)
+    assert script.at(1.0)["head_yaw"] == approx(-20.0 / 45.0, abs=0.01)
 
 
 @pytest.mark.parametrize(
@@ -148,4 +146,4 @@ def test_angles_turn_head_and_eyes_as_they_were_recorded(face, channel, degrees,
     face.step(2.0)
     matrix = face.bone_transforms()[bones.get(channel, "cranium")]
     turned = np.degrees(np.arctan2(matrix[towards, axis], matrix[axis, axis]))
-    assert turned == pytest.approx(degrees, abs=1.0)
+    assert turned == approx(degrees, abs=1.0)

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.motion import SETTLING
 from risorius.app.pipeline import Pipeline, Viewport
-from risorius.app.refining.drawn_mesh import DrawnMesh
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script.script_file import parse_script
@@ -25,7 +25,7 @@ def surface() -> Iterator[Any]:
         yield opened
 
 
-def image(pipeline: Pipeline, drawn: DrawnMesh) -> Any:
+def image(pipeline, drawn):
     """What is seen of a scene, by one refiner."""
     surface = pipeline.renderer.surface
     camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="front")
@@ -65,10 +65,10 @@ def test_a_film_takes_as_long_as_its_script(first, settling, rate):
     script = parse_script(text, source="wave")
     options = CaptureOptions(size=SIZE, samples=0, frames_per_second=rate)
     with Capture(PlaneScene(), options) as capture:
-        steps: list[float] = []
-        capture.pipeline.step = steps.append  # type: ignore[method-assign]
+        steps = []
+        capture.pipeline.step = steps.append
         times = list(capture.play(script, progress=False))
-        assert times == pytest.approx(np.arange(len(times)) / rate)
-        assert times[-1] == pytest.approx(0.5)
-        assert sum(steps) == pytest.approx(0.5 + settling)
+        assert times == approx(np.arange(len(times)) / rate)
+        assert times[-1] == approx(0.5)
+        assert sum(steps) == approx(0.5 + settling)
         assert capture.scene.values["amplitude"] == 1.0

@@ -12,7 +12,6 @@ from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import parse_comparison, refiner_for
 from risorius.app.scenes import SCENES, Scene
-from risorius.refine.border.registry import refiners
 
 SIZE = (160, 120)
 MOVED = {
@@ -70,10 +69,10 @@ def test_the_papers_look_is_the_papers_rule(scenes):
     assert len(smooth.triangles) > 1.2 * len(seen.triangles)
 
 
-def test_a_comparison_is_of_looks_and_refiners(monkeypatch):
+@pytest.mark.usefixtures("own_refiners")
+def test_a_comparison_is_of_looks_and_refiners():
     """In their order; a refiner gets the options of the look, also one of a plug-in."""
-    strangers = {**refiners._factories, "far": refine.PassThrough}
-    monkeypatch.setattr(refiners, "_factories", strangers)
+    refine.refiners.register("far", refine.PassThrough)
     shown = Refinement("paper", "kahler", {"blend": True})
     assert parse_comparison("none,smooth,far", shown) == (
         Refinement("paper", "none"), Refinement("smooth"), Refinement("paper", "far"),

@@ -3,9 +3,9 @@
 import math
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.recordings.gaps import whole_take
@@ -39,8 +39,8 @@ def test_rows_are_put_in_the_order_of_their_times():
     """Of two with one time the first counts; what is years away is no time of this take."""
     times = np.array([0.2, 0.0, 0.1, 0.1, np.nan, 0.3, 1e9])
     take = whole_take("any", "x", times, {"jawOpen": np.arange(7) / 10.0})
-    assert take.times == pytest.approx([0.0, 0.1, 0.2, 0.3])
-    assert take.channels["jawOpen"] == pytest.approx([0.1, 0.2, 0.0, 0.5])
+    assert take.times == approx([0.0, 0.1, 0.2, 0.3])
+    assert take.channels["jawOpen"] == approx([0.1, 0.2, 0.0, 0.5])
     assert "3 rows without a time of their own" in take.notes[0]
 
 
@@ -49,7 +49,7 @@ def test_a_pose_is_held_and_left_at_the_end_of_the_gap():
     values = np.array([0.2, 0.4, np.nan, np.nan, np.nan, np.nan, 1.0, 1.0])
     take = whole_take("any", "x", np.arange(8) / 10.0, {"jawOpen": values})
     expected = [0.2, 0.4, 0.4, 0.4, 0.6, 0.8, 1.0, 1.0]
-    assert take.channels["jawOpen"] == pytest.approx(expected)
+    assert take.channels["jawOpen"] == approx(expected)
 
 
 def test_a_slow_recording_has_no_holes():

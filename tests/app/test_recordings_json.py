@@ -1,11 +1,10 @@
 """Takes in JSON: shapes as MediaPipe and pages that use it write them, and speech as visemes."""
 
 import json
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.recordings.names import ARKIT
@@ -16,14 +15,19 @@ from .recording_files import has_note
 NAMES = [name for name in sorted(ARKIT) if name != "tongueOut"]
 
 
-def written(path: Path, document: Any) -> Path:
+def written(path, document):
     """The document in a file that is known as a recording."""
     path.write_text(json.dumps(document))
     assert is_recording(path)
     return path
 
 
-def categories(jaw: float, key: str = "category_name", as_text: bool = False) -> list[Any]:
+def take_in(folder, document):
+    """What is read of the document."""
+    return read_take(written(folder / "take", document))
+
+
+def categories(jaw, key="category_name", as_text=False):
     """What the landmarker answers for one face."""
     scores = {name: jaw if name == "jawOpen" else 0.125 for name in ("_neutral", *NAMES)}
     return [
@@ -36,16 +40,16 @@ def categories(jaw: float, key: str = "category_name", as_text: bool = False) ->
 @pytest.mark.parametrize("as_text", [False, True])
 def test_one_picture(key, as_text, tmp_path):
     """Both spellings of keys, scores as numbers and as texts; `_neutral` is no shape."""
-    take = read_take(written(tmp_path / "take", categories(0.75, key, as_text)))
+    take = take_in(tmp_path, categories(0.75, key, as_text))
     assert take.kind == "MediaPipe JSON"
     assert take.duration == 0.0
     assert set(take.channels) == set(NAMES)
-    assert take.channels["jawOpen"] == pytest.approx([0.75])
+    assert take.channels["jawOpen"] == approx([0.75])
     assert not take.unknown
 
 
 JAW = [0.1, 0.2, 0.4, 0.3]
-DOCUMENTS: dict[str, Any] = {
+DOCUMENTS = {
     "a list of pictures": [categories(jaw) for jaw in JAW],
     "frames of faces": {"frames": [{"faceBlendshapes": [categories(jaw)]} for jaw in JAW]},
     "stamps in seconds": [
@@ -86,9 +90,9 @@ DOCUMENTS: dict[str, Any] = {
 @pytest.mark.parametrize("kind", DOCUMENTS)
 def test_a_film(kind, tmp_path):
     """However the frames are packed, the take is the same."""
-    take = read_take(written(tmp_path / "take", DOCUMENTS[kind]))
-    assert take.channels["jawOpen"] == pytest.approx(JAW)
-    assert take.times == pytest.approx(np.arange(4) / 30.0)
+    take = take_in(tmp_path, DOCUMENTS[kind])
+    assert take.channels["jawOpen"] == approx(JAW)
+    assert take.times == approx(np.arange(4) / 30.0)
 
 
 def test_what_stands_in_columns_beside_shapes(tmp_path):
@@ -97,18 +101,18 @@ def test_what_stands_in_columns_beside_shapes(tmp_path):
     rows = [[jaw, row != 1, 10.0 * row, 0.5] for row, jaw in enumerate(JAW)]
     over_time = dict(zip(columns, map(list, zip(*rows, strict=True)), strict=True))
     for document in ({"columns": columns, "data": rows}, over_time):
-        take = read_take(written(tmp_path / "take", document))
+        take = take_in(tmp_path, document)
         assert take.channels.keys() == {"jawOpen", "head_yaw"}
-        assert np.ptp(take.channels["head_yaw"]) == pytest.approx(30.0)
-        assert take.channels["jawOpen"] == pytest.approx([0.1, 0.25, 0.4, 0.3])
+        assert np.ptp(take.channels["head_yaw"]) == approx(30.0)
+        assert take.channels["jawOpen"] == approx([0.1, 0.25, 0.4, 0.3])
         assert take.unknown == ("mood",)
 
 
 def test_frames_without_a_face(tmp_path):
     """An empty list is a frame in which nobody was."""
     frames = [{"faceBlendshapes": [categories(jaw)] if jaw else []} for jaw in (0.2, 0, 0.4)]
-    take = read_take(written(tmp_path / "take", {"frames": frames}))
-    assert take.channels["jawOpen"] == pytest.approx([0.2, 0.3, 0.4])
+    take = take_in(tmp_path, {"frames": frames})
+    assert take.channels["jawOpen"] == approx([0.2, 0.3, 0.4])
     assert has_note(take.notes, "No face in 1 of 3")
 
 
@@ -116,7 +120,7 @@ def test_several_faces(tmp_path):
     """The first face is taken, and no other can be asked for."""
     frames = [{"faceBlendshapes": [categories(0.2), categories(0.6)]} for _ in range(3)]
     path = written(tmp_path / "take", frames)
-    assert read_take(path).channels["jawOpen"] == pytest.approx([0.2] * 3)
+    assert read_take(path).channels["jawOpen"] == approx([0.2] * 3)
     assert has_note(read_take(path).notes, "Up to 2 faces")
     with pytest.raises(UserError, match="names no faces"):
         read_take(path, face="1")
@@ -128,16 +132,16 @@ def test_the_matrix_of_the_head(layout, tmp_path):
     cos = np.cos(np.radians(20.0))
     sin = np.sin(np.radians(20.0))
     matrix = np.array([[cos, 0, sin, 1.0], [0, 1, 0, 2.0], [-sin, 0, cos, -40.0], [0, 0, 0, 1.0]])
-    packed: Any = {
+    packed = {
         "rows": [matrix.tolist()],
         "columns": [matrix.T.ravel().tolist()],
         "data": [{"rows": 4, "columns": 4, "data": matrix.T.ravel().tolist()}],
     }[layout]
     frame = {"faceBlendshapes": [categories(0.2)], "facialTransformationMatrixes": packed}
-    take = read_take(written(tmp_path / "take", [frame] * 2))
-    assert take.channels["head_yaw"] == pytest.approx([20.0] * 2)
-    assert take.channels["head_pitch"] == pytest.approx([0.0] * 2, abs=1e-9)
-    assert take.channels["head_roll"] == pytest.approx([0.0] * 2, abs=1e-9)
+    take = take_in(tmp_path, [frame] * 2)
+    assert take.channels["head_yaw"] == approx([20.0] * 2)
+    assert take.channels["head_pitch"] == approx([0.0] * 2, abs=1e-9)
+    assert take.channels["head_roll"] == approx([0.0] * 2, abs=1e-9)
 
 
 def test_the_nod_and_tilt_of_a_matrix(tmp_path):
@@ -150,8 +154,8 @@ def test_the_nod_and_tilt_of_a_matrix(tmp_path):
         matrix = np.eye(4)
         matrix[:3, :3] = turn
         frame = {"blendshapes": categories(0.2), "matrix": matrix.tolist()}
-        take = read_take(written(tmp_path / "take", [frame]))
-        assert take.channels[name] == pytest.approx([angle])
+        take = take_in(tmp_path, [frame])
+        assert take.channels[name] == approx([angle])
 
 
 @pytest.mark.parametrize(
@@ -172,7 +176,7 @@ def test_json_of_something_else(text, tmp_path):
 # Visemes
 
 
-def tracks(height: float = 0.42) -> dict[str, Any]:
+def tracks(height=0.42):
     """A word of OpenFaceFX: silence, aa, PP, oh, silence; each moment is shared out."""
     keys = {
         "sil": [[0.0, 0.44], [0.2, 0.0], [0.8, 0.0], [1.0, 0.44]],
@@ -189,17 +193,17 @@ def tracks(height: float = 0.42) -> dict[str, Any]:
 
 def test_tracks_of_visemes(tmp_path):
     """Its I, O, U are our ih, oh, ou; where lips are to meet they do, and silence is silent."""
-    take = read_take(written(tmp_path / "take", tracks()))
+    take = take_in(tmp_path, tracks())
     assert take.kind == "Viseme tracks"
     assert take.is_calibrated
     assert take.unknown == ("tail",)
     assert set(take.channels) == {"viseme_sil", "viseme_aa", "viseme_PP", "viseme_oh"}
     at = list(take.times).index(0.4)
-    assert take.channels["viseme_PP"][at] == pytest.approx(1.0)
-    assert take.channels["viseme_sil"][0] == pytest.approx(1.0)
-    assert take.channels["viseme_aa"][0] == pytest.approx(0.0, abs=1e-9)
-    assert take.channels["viseme_oh"][-1] == pytest.approx(0.0, abs=1e-9)
-    assert take.channels["viseme_aa"][list(take.times).index(0.2)] == pytest.approx(0.8)
+    assert take.channels["viseme_PP"][at] == approx(1.0)
+    assert take.channels["viseme_sil"][0] == approx(1.0)
+    assert take.channels["viseme_aa"][0] == approx(0.0, abs=1e-9)
+    assert take.channels["viseme_oh"][-1] == approx(0.0, abs=1e-9)
+    assert take.channels["viseme_aa"][list(take.times).index(0.2)] == approx(0.8)
 
 
 @pytest.mark.parametrize(
@@ -225,19 +229,19 @@ def test_mouth_shapes_of_rhubarb(tmp_path):
         for (start, value), end in zip(CUES, ends, strict=True)
     ]
     document = {"metadata": {"soundFile": "a.wav", "duration": 1.6}, "mouthCues": cues}
-    take = read_take(written(tmp_path / "take", document))
+    take = take_in(tmp_path, document)
     assert take.kind == "Rhubarb Lip Sync"
 
-    def value(name: str, time: float) -> float:
+    def value(name, time):
         """Of a channel at a time."""
         return float(np.interp(time, take.times, take.channels[name]))
 
     assert take.channels.keys() == {f"viseme_{sound}" for sound in ("sil", "PP", "aa", "ou")}
-    assert value("viseme_PP", 0.45) == pytest.approx(1.0)
-    assert value("viseme_aa", 0.75) == pytest.approx(0.9)
-    assert value("viseme_aa", 0.5) == pytest.approx(0.45)
-    assert value("viseme_ou", 1.2) == pytest.approx(0.9)
-    assert value("viseme_sil", 0.2) == pytest.approx(1.0)
+    assert value("viseme_PP", 0.45) == approx(1.0)
+    assert value("viseme_aa", 0.75) == approx(0.9)
+    assert value("viseme_aa", 0.5) == approx(0.45)
+    assert value("viseme_ou", 1.2) == approx(0.9)
+    assert value("viseme_sil", 0.2) == approx(1.0)
     assert np.all(np.diff(take.times) > 0.0)
 
 
@@ -250,4 +254,4 @@ def test_mouth_shapes_of_rhubarb(tmp_path):
 def test_wrong_mouth_shapes(cues, words, tmp_path):
     """The cue is counted, and what is allowed is named."""
     with pytest.raises(UserError, match=words):
-        read_take(written(tmp_path / "take", {"mouthCues": cues}))
+        take_in(tmp_path, {"mouthCues": cues})

@@ -1,29 +1,29 @@
 """Takes of Live Link Face: times, names, units and signs are found from what the file holds."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius.app.recordings.names import ARKIT
 from risorius.app.recordings.reading import is_recording, read_take
 
-from .recording_files import ANGLES, has_note, live_link, timecodes, written
+from .recording_files import ANGLES, has_note, live_link, take_in, timecodes, written
 
 
 def test_a_raw_take(tmp_path):
     """All 52 shapes and seven angles are there, as they were, in degrees with our signs."""
     columns = live_link()
-    take = read_take(written(tmp_path / "take.csv", columns))
+    take = take_in(tmp_path, columns)
     assert take.kind == "Live Link Face"
     assert not take.is_calibrated
     assert not take.unknown
     assert set(ARKIT) < set(take.channels)
-    assert take.times == pytest.approx(np.arange(120) / 60.0, abs=1e-9)
+    assert take.times == approx(np.arange(120) / 60.0, abs=1e-9)
     for name in ARKIT:
         there = np.array(columns[name[0].upper() + name[1:]])
-        assert take.channels[name] == pytest.approx(there, abs=1e-6)
+        assert take.channels[name] == approx(there, abs=1e-6)
     for ours, theirs in (
         ("head_yaw", "HeadYaw"),
         ("head_pitch", "HeadPitch"),
@@ -31,7 +31,7 @@ def test_a_raw_take(tmp_path):
         ("eye_pitch_right", "RightEyePitch"),
     ):
         there = np.degrees(np.array(columns[theirs], dtype=float))
-        assert take.channels[ours] == pytest.approx(-there, abs=1e-3)
+        assert take.channels[ours] == approx(-there, abs=1e-3)
 
 
 @pytest.mark.parametrize("name", ["take.csv", "take.toml", "take", "take.json"])
@@ -46,7 +46,7 @@ def test_the_name_of_the_file_does_not_count(name, tmp_path):
 def test_fewer_columns(left_out, tmp_path):
     """60, 61, 51 and 52 columns; what is not there is no channel."""
     columns = {name: values for name, values in live_link().items() if name not in left_out}
-    take = read_take(written(tmp_path / "take.csv", columns))
+    take = take_in(tmp_path, columns)
     assert ("tongueOut" in take.channels) == ("TongueOut" not in left_out)
     assert ("head_yaw" in take.channels) == ("HeadYaw" not in left_out)
 
@@ -57,8 +57,8 @@ def test_values_that_are_none(tmp_path):
     jaw = np.full(120, 0.5)
     jaw[7] = -9.8e5
     jaw[9] = 1.2
-    take = read_take(written(tmp_path / "take.csv", columns | {"JawOpen": jaw}))
-    assert take.channels["jawOpen"][7] == pytest.approx((0.5 + 0.5) / 2.0)
+    take = take_in(tmp_path, columns | {"JawOpen": jaw})
+    assert take.channels["jawOpen"][7] == approx((0.5 + 0.5) / 2.0)
     assert take.channels["jawOpen"][9] == 1.2
     assert has_note(take.notes, "far from 0 to 1")
 
@@ -66,29 +66,29 @@ def test_values_that_are_none(tmp_path):
 @pytest.mark.parametrize(("name", "unit"), [("radians", 1.0), ("degrees", math.pi / 180.0)])
 def test_units_of_angles(name, unit, tmp_path):
     """Their size shows the unit, for no head turns by more than a quarter of a circle."""
-    take = read_take(written(tmp_path / "take.csv", live_link(unit=unit)))
+    take = take_in(tmp_path, live_link(unit=unit))
     assert has_note(take.notes, f"taken for {name}")
     known = live_link()
     for ours, theirs in (("head_yaw", "HeadYaw"), ("eye_pitch_left", "LeftEyePitch")):
         there = -np.degrees(np.array(known[theirs], dtype=float))
-        assert take.channels[ours] == pytest.approx(there, abs=0.02)
+        assert take.channels[ours] == approx(there, abs=0.02)
 
 
 def test_axes_of_the_eyeballs(tmp_path):
     """The app's axes stand 4 degrees outwards of where an eye looks; a face must not squint out."""
-    take = read_take(written(tmp_path / "take.csv", live_link()))
+    take = take_in(tmp_path, live_link())
     left = take.channels["eye_yaw_left"]
     right = take.channels["eye_yaw_right"]
     assert np.abs(left - right).max() < 1e-3
     wanted = -np.degrees(0.62 * take.channels["eyeLookInLeft"])
     wanted += np.degrees(0.59 * take.channels["eyeLookOutLeft"])
-    assert left == pytest.approx(wanted, abs=1e-3)
+    assert left == approx(wanted, abs=1e-3)
 
 
 def test_angles_that_are_switched_off(tmp_path):
     """The app writes 0 where the head's rotation is off: then the head is not held at 0."""
     off = {name: np.zeros(120) for name in ("HeadYaw", "HeadPitch", "HeadRoll")}
-    take = read_take(written(tmp_path / "take.csv", live_link() | off))
+    take = take_in(tmp_path, live_link() | off)
     assert "head_yaw" not in take.channels
     assert "eye_yaw_left" in take.channels
     assert has_note(take.notes, "switched off")
@@ -109,7 +109,7 @@ def test_a_calibrated_take(tmp_path):
 # Times
 
 
-def take_of(path: Path, codes: list[str], rate: float | None = None) -> tuple[object, ...]:
+def take_of(path, codes, rate=None):
     """Times and notes of a take with these timecodes."""
     columns = {
         "Timecode": codes,
@@ -124,7 +124,7 @@ def test_the_fraction_of_a_frame(tmp_path):
     """Where frames come a little slower than 60 a second, the fraction gives each one's time."""
     frames = 37.867 + 1.003 * np.arange(400)
     times, notes = take_of(tmp_path, timecodes(frames))
-    assert times == pytest.approx(1.003 * np.arange(400) / 60.0, abs=1e-4)
+    assert times == approx(1.003 * np.arange(400) / 60.0, abs=1e-4)
     assert has_note(notes, "60 frames a second")
 
 
@@ -133,14 +133,14 @@ def test_rates(rate, tmp_path):
     """The highest number of a frame in a second gives the rate, also without a fraction."""
     codes = [code[:-4] for code in timecodes(np.arange(3 * rate), rate)]
     times, notes = take_of(tmp_path, codes)
-    assert times == pytest.approx(np.arange(3 * rate) / rate, abs=1e-9)
+    assert times == approx(np.arange(3 * rate) / rate, abs=1e-9)
     assert has_note(notes, f"{rate} frames a second")
 
 
 def test_a_rate_that_the_user_knows(tmp_path):
     """It counts more than what was inferred."""
     times, _ = take_of(tmp_path, timecodes(np.arange(10)), rate=30.0)
-    assert times[-1] == pytest.approx(9 / 30.0)
+    assert times[-1] == approx(9 / 30.0)
 
 
 def test_midnight(tmp_path):
@@ -148,11 +148,11 @@ def test_midnight(tmp_path):
     codes = [code[:-4] for code in timecodes(np.arange(60), 60, start=86_399)]
     codes += [code[:-4] for code in timecodes(np.arange(60), 60, start=0)]
     times, _ = take_of(tmp_path, codes)
-    assert times == pytest.approx(np.arange(120) / 60.0, abs=1e-9)
+    assert times == approx(np.arange(120) / 60.0, abs=1e-9)
 
 
 def test_thousandths(tmp_path):
     """Some programs write thousandths of a second in the place of frames."""
     codes = [f"10:00:{n // 25:02}:{n % 25 * 40:03}" for n in range(100)]
     times, _ = take_of(tmp_path, codes)
-    assert times == pytest.approx(np.arange(100) / 25.0, abs=1e-9)
+    assert times == approx(np.arange(100) / 25.0, abs=1e-9)

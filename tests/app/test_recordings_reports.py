@@ -1,8 +1,6 @@
 """What reports say of a recording: nothing that is not so, and all that was left out."""
 
 import json
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,16 +9,15 @@ from risorius.app.performances import read_performance
 from risorius.app.recordings.calibration import calibration_for
 from risorius.app.recordings.reading import read_take
 from risorius.app.recordings.report import report_of
-from risorius.app.script import Script
 
 from .recording_files import has_note, openface, written
 
 CUES = [(0.0, 0.1, "X"), (0.1, 0.2, "B"), (0.2, 2.2, "A"), (2.2, 2.3, "D"), (2.3, 3.0, "X")]
 
 
-def rhubarb(path: Path, sound: str | None = None) -> Path:
+def rhubarb(path, sound=None):
     """What Rhubarb writes of these cues, of which one holds for two seconds."""
-    metadata: dict[str, Any] = {"duration": 3.0}
+    metadata = {"duration": 3.0}
     if sound is not None:
         metadata["soundFile"] = sound
     cues = [{"start": start, "end": end, "value": mouth} for start, end, mouth in CUES]
@@ -28,7 +25,7 @@ def rhubarb(path: Path, sound: str | None = None) -> Path:
     return path
 
 
-def lines_of(path: Path) -> str:
+def lines_of(path):
     """The report of a recording."""
     take = read_take(path)
     return "\n".join(report_of(take, calibration_for(take)).lines)
@@ -52,7 +49,7 @@ def test_keys_of_visemes_far_apart(tmp_path):
     assert "missing in" not in lines_of(path)
 
 
-def script_of(path: Path) -> Script:
+def script_of(path):
     """The script that plays a recording."""
     script, _ = read_performance(path)
     return script
@@ -86,8 +83,8 @@ def test_time_stamps_of_no_use(tmp_path):
 
 def test_one_of_a_kind(tmp_path):
     """One place, one row, one cell and one value are not several."""
-    times: list[object] = [*np.arange(30) / 30.0, *(3.0 + np.arange(30) / 30.0)]
-    jaw: list[object] = [0.5] * 60
+    times = [*np.arange(30) / 30.0, *(3.0 + np.arange(30) / 30.0)]
+    jaw = [0.5] * 60
     times[5] = ""
     jaw[20] = "wide"
     jaw[40] = 50.0

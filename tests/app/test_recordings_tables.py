@@ -2,10 +2,10 @@
 
 import csv
 import io
-from collections.abc import Callable
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius.app.recordings.reading import is_recording, read_take
 
@@ -15,28 +15,28 @@ JAW = np.sin(np.arange(180) / 30.0) ** 2
 COLUMNS = {"timestamp": np.arange(180) / 60.0, "jawOpen": JAW, "mouthSmile_L": JAW / 2.0}
 
 
-def cells(columns: dict[str, np.ndarray] = COLUMNS) -> list[list[str]]:
+def cells(columns=COLUMNS):
     """The header and the rows."""
     return list(csv.reader(io.StringIO(table(columns))))
 
 
-def rewritten(separator: str = ",", quoting: int = csv.QUOTE_MINIMAL, quote: str = '"') -> str:
+def rewritten(separator=",", quoting=csv.QUOTE_MINIMAL, quote='"'):
     """The table with other separators and quotes."""
     file = io.StringIO()
-    writer = csv.writer(file, delimiter=separator, quoting=quoting, quotechar=quote)  # type: ignore[arg-type]
+    writer = csv.writer(file, delimiter=separator, quoting=quoting, quotechar=quote)
     writer.writerows(cells())
     return file.getvalue()
 
 
-def german(quoting: int = csv.QUOTE_MINIMAL, separator: str = ";") -> str:
+def german(quoting=csv.QUOTE_MINIMAL, separator=";"):
     """The table with decimal commas."""
     file = io.StringIO()
-    writer = csv.writer(file, delimiter=separator, quoting=quoting)  # type: ignore[arg-type]
+    writer = csv.writer(file, delimiter=separator, quoting=quoting)
     writer.writerows([[cell.replace(".", ",") for cell in row] for row in cells()])
     return file.getvalue()
 
 
-def of_r() -> str:
+def of_r():
     """What R's write.csv makes: a column of row names, and quotes around all names."""
     header, *rows = cells()
     lines = [",".join(f'"{name}"' for name in ("", *header))]
@@ -44,7 +44,7 @@ def of_r() -> str:
     return "\n".join(lines)
 
 
-def aligned(*, has_row_names: bool = False) -> str:
+def aligned(*, has_row_names=False):
     """The table in columns of one width, as pandas' `to_string` writes it."""
     rows = [[str(number), *row] for number, row in enumerate(cells(), -1)]
     rows[0][0] = ""
@@ -52,12 +52,12 @@ def aligned(*, has_row_names: bool = False) -> str:
     return "\n".join("".join(f"{cell:>14}" for cell in row[begin:]) for row in rows)
 
 
-def of_r_table() -> str:
+def of_r_table():
     """What R's write.table makes: row names without a name above."""
     return of_r().replace('"",', "", 1)
 
 
-TEXTS: dict[str, tuple[Callable[[], str], str]] = {
+TEXTS = {
     "all quoted": (lambda: rewritten(quoting=csv.QUOTE_ALL), "quotes around cells"),
     "names quoted": (lambda: rewritten(quoting=csv.QUOTE_NONNUMERIC), "quotes around cells"),
     "single quotes": (lambda: rewritten(quoting=csv.QUOTE_ALL, quote="'"), "quotes around cells"),
@@ -99,9 +99,9 @@ def test_layouts(kind, tmp_path):
     path.write_text(make(), encoding="utf-8")
     assert is_recording(path)
     take = read_take(path)
-    assert take.duration == pytest.approx(179 / 60.0, abs=1e-5)
+    assert take.duration == approx(179 / 60.0, abs=1e-5)
     assert take.channels.keys() == {"jawOpen", "mouthSmileLeft"}
-    assert take.channels["jawOpen"] == pytest.approx(JAW, abs=1e-6)
+    assert take.channels["jawOpen"] == approx(JAW, abs=1e-6)
     assert not take.unknown
     assert has_note(take.notes, note) or not note
 
@@ -114,7 +114,7 @@ def test_a_separator_in_a_name(tmp_path):
     path.write_text('"time","jawOpen","said; or; sung; or not"\n0,0.1,a\n0.1,0.2,"b, c"\n')
     take = read_take(path)
     assert take.unknown == ("said; or; sung; or not",)
-    assert take.channels["jawOpen"] == pytest.approx([0.1, 0.2])
+    assert take.channels["jawOpen"] == approx([0.1, 0.2])
 
 
 @pytest.mark.parametrize(
@@ -146,7 +146,7 @@ def test_encodings(codec, name, tmp_path):
     assert is_recording(path)
     take = read_take(path)
     assert take.unknown == ("für später",)
-    assert take.channels["jawOpen"] == pytest.approx(JAW, abs=1e-6)
+    assert take.channels["jawOpen"] == approx(JAW, abs=1e-6)
     assert has_note(take.notes, f"read as {name}")
 
 
@@ -156,7 +156,7 @@ def test_json_in_utf_16(tmp_path):
     path.write_text('[{"jawOpen": 0.1}, {"jawOpen": 0.5}]', encoding="utf-16")
     assert is_recording(path)
     take = read_take(path)
-    assert take.channels["jawOpen"] == pytest.approx([0.1, 0.5])
+    assert take.channels["jawOpen"] == approx([0.1, 0.5])
     assert has_note(take.notes, "read as UTF-16")
 
 
@@ -165,8 +165,8 @@ def test_a_quoted_text_beside_numbers(tmp_path):
     path = tmp_path / "take.csv"
     path.write_text('time,note,jawOpen\n0,"a, b",0.1\n0.1,"one\ntwo",0.2\n0.2,"""c""",0.3\n')
     take = read_take(path)
-    assert take.channels["jawOpen"] == pytest.approx([0.1, 0.2, 0.3])
-    assert take.times == pytest.approx([0.0, 0.1, 0.2])
+    assert take.channels["jawOpen"] == approx([0.1, 0.2, 0.3])
+    assert take.times == approx([0.0, 0.1, 0.2])
 
 
 @pytest.mark.parametrize("is_first", [True, False])

@@ -2,26 +2,26 @@
 
 import math
 import os
-from pathlib import Path
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.recordings.reading import is_recording, read_take
 
-from .recording_files import has_note, live_link, table, written
+from .recording_files import has_note, live_link, table, take_in
 
 COLUMNS = {"time": np.arange(6) / 30.0, "jawOpen": np.arange(6) / 10.0, "AU4": np.full(6, 0.25)}
 
 
-def check(path: Path) -> tuple[str, ...]:
+def check(path):
     """The table above is in the file; its notes."""
     assert is_recording(path)
     take = read_take(path)
-    assert take.channels["jawOpen"] == pytest.approx(COLUMNS["jawOpen"], abs=1e-6)
-    assert take.channels["AU4"] == pytest.approx(0.25)
-    assert take.times == pytest.approx(COLUMNS["time"], abs=1e-6)
+    assert take.channels["jawOpen"] == approx(COLUMNS["jawOpen"], abs=1e-6)
+    assert take.channels["AU4"] == approx(0.25)
+    assert take.times == approx(COLUMNS["time"], abs=1e-6)
     return take.notes
 
 
@@ -107,7 +107,7 @@ def test_a_huge_file(tmp_path):
 def test_a_rate_that_is_none(rate, tmp_path):
     """The limits are named."""
     with pytest.raises(UserError, match="1 and 1000"):
-        read_take(written(tmp_path / "take.csv", live_link()), rate=rate)
+        take_in(tmp_path, live_link(), rate=rate)
 
 
 @pytest.mark.parametrize(

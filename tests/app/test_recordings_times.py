@@ -2,36 +2,32 @@
 
 import datetime
 import json
-from collections.abc import Callable, Sequence
-from pathlib import Path
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius.app.recordings.reading import read_take
-from risorius.app.recordings.take import Take
 
 from .recording_files import has_note, written
 
 JAW = np.linspace(0.0, 0.9, 90)
 
 
-def take_of(
-    folder: Path, cells: Sequence[object], *, name: str = "time", rate: float | None = None
-) -> Take:
+def take_of(folder, cells, *, name="time", rate=None):
     """The take of a table with these times above an opening jaw."""
     columns = {name: [f'"{cell}"' for cell in cells], "jawOpen": np.linspace(0, 0.9, len(cells))}
     return read_take(written(folder / "take.csv", columns), rate=rate)
 
 
-def timecode(frame: int, base: int, *, separator: str = ":", start: int = 36_000) -> str:
+def timecode(frame, base, *, separator=":", start=36000):
     """The label of a frame that is counted from `start` [s]."""
     second, number = divmod(frame, base)
     second += start
     return f"{second // 3600 % 24:02}:{second // 60 % 60:02}:{second % 60:02}{separator}{number:02}"
 
 
-def drop_frame(frame: int, base: int, separator: str = ";") -> str:
+def drop_frame(frame, base, separator=";"):
     """The label of a frame by SMPTE's rule: at each minute but every tenth numbers are dropped."""
     dropped = base // 15
     tens, rest = divmod(frame, 600 * base - 9 * dropped)
@@ -47,7 +43,7 @@ def test_any_timecode(base, step, tmp_path):
     cells = [timecode(frame, base) for frame in frames]
     for rate in (None, float(base), 30.0, base / step):
         take = take_of(tmp_path, cells, name="Timecode", rate=rate)
-        assert take.times == pytest.approx(np.array(frames) / base, abs=1e-6), rate
+        assert take.times == approx(np.array(frames) / base, abs=1e-6), rate
 
 
 @pytest.mark.parametrize(("rate", "base"), [(23.976, 24), (29.97, 30), (47.952, 48), (59.94, 60)])
@@ -55,14 +51,14 @@ def test_the_true_rate_of_timecode(rate, base, tmp_path):
     """A rate that is a thousandth less than the count is what the camera really does."""
     cells = [timecode(frame, base) for frame in range(3 * base)]
     take = take_of(tmp_path, cells, name="Timecode", rate=rate)
-    assert take.duration == pytest.approx((3 * base - 1) / rate)
+    assert take.duration == approx((3 * base - 1) / rate)
 
 
 def test_a_rate_that_timecode_contradicts(tmp_path):
     """It is not used, and this is reported."""
     cells = [timecode(frame, 60) for frame in range(0, 240, 2)]
     take = take_of(tmp_path, cells, name="Timecode", rate=30.0)
-    assert take.duration == pytest.approx(238 / 60.0)
+    assert take.duration == approx(238 / 60.0)
     assert has_note(take.notes, "counts 60 frames a second; 30 was not used")
 
 
@@ -73,7 +69,7 @@ def test_drop_frame(base, separator, tmp_path):
     frames = np.arange(700 * base // 5) * 5
     cells = [drop_frame(int(frame), base, separator) for frame in frames]
     take = take_of(tmp_path, cells, name="Timecode")
-    assert take.times == pytest.approx(frames * 1.001 / base, abs=1e-4)
+    assert take.times == approx(frames * 1.001 / base, abs=1e-4)
     assert has_note(take.notes, "Timecode drops frames")
 
 
@@ -82,7 +78,7 @@ def test_colons_that_drop_nothing(start, step, tmp_path):
     """Rows that happen to miss the first numbers of minutes are no drop-frame timecode."""
     frames = range(start, 7200, step)
     take = take_of(tmp_path, [timecode(frame, 30) for frame in frames], name="Timecode")
-    assert take.times == pytest.approx((np.array(frames) - start) / 30.0)
+    assert take.times == approx((np.array(frames) - start) / 30.0)
 
 
 def test_a_semicolon_that_drops_nothing(tmp_path):
@@ -90,7 +86,7 @@ def test_a_semicolon_that_drops_nothing(tmp_path):
     frames = range(0, 2100)
     cells = [timecode(frame, 30, separator=";", start=0) for frame in frames]
     take = take_of(tmp_path, cells, name="Timecode")
-    assert take.times == pytest.approx(np.array(frames) / 30.0)
+    assert take.times == approx(np.array(frames) / 30.0)
 
 
 @pytest.mark.parametrize("base", [24, 25, 30, 48, 60])
@@ -99,43 +95,43 @@ def test_frames_behind_a_point(base, tmp_path):
     frames = range(3 * base)
     cells = [timecode(frame, base, separator=".") for frame in frames]
     take = take_of(tmp_path, cells, name="Timecode")
-    assert take.times == pytest.approx(np.array(frames) / base)
+    assert take.times == approx(np.array(frames) / base)
     cells = [f"00:00:{frame / base:05.2f}" for frame in frames]
-    assert take_of(tmp_path, cells).times == pytest.approx(np.array(frames) / base, abs=6e-3)
+    assert take_of(tmp_path, cells).times == approx(np.array(frames) / base, abs=6e-3)
 
 
 def test_rows_that_share_a_frame_of_timecode(tmp_path):
     """60 rows a second with timecode of 30 are 60 a second."""
     cells = [timecode(row // 2, 30) for row in range(180)]
     take = take_of(tmp_path, cells, name="Timecode")
-    assert take.times == pytest.approx(np.arange(180) / 60.0)
+    assert take.times == approx(np.arange(180) / 60.0)
     assert has_note(take.notes, "spread evenly")
 
 
-def clock(form: str) -> Callable[[float], str]:
+def clock(form):
     """A label of seconds, by strftime with {ms} for milliseconds."""
     start = datetime.datetime(2024, 5, 1, 12, 0, 0)
 
-    def label(seconds: float) -> str:
+    def label(seconds):
         at = start + datetime.timedelta(milliseconds=round(seconds * 1000))
         return at.strftime(form).replace("{ms}", f"{at.microsecond // 1000:03}")
 
     return label
 
 
-def timedelta_of_pandas(seconds: float) -> str:
+def timedelta_of_pandas(seconds):
     """As pandas prints a time delta."""
     return f"0 days 00:00:{seconds:09.6f}"
 
 
-def timedelta_from_below(seconds: float) -> str:
+def timedelta_from_below(seconds):
     """As pandas prints a time delta that begins a second before 0."""
     if seconds < 1.0:
         return f"-1 days +23:59:{59 + seconds:09.6f}"
     return f"0 days 00:00:{seconds - 1.0:09.6f}"
 
 
-CLOCKS: dict[str, Callable[[float], object]] = {
+CLOCKS = {
     "HH:MM:SS.mmm": clock("%H:%M:%S.{ms}"),
     "HH:MM:SS,mmm": clock("%H:%M:%S,{ms}"),
     "from 0": lambda s: f"00:00:{s:06.3f}",
@@ -172,12 +168,12 @@ def test_clocks_and_stamps(kind, tmp_path):
     cells = [CLOCKS[kind](float(time)) for time in times]
     for rate in (None, 30.0):
         take = take_of(tmp_path, cells, rate=rate)
-        assert take.times == pytest.approx(times, abs=6e-3)
+        assert take.times == approx(times, abs=6e-3)
         assert not has_note(take.notes, "No times are given")
     frames = [{"time": cell, "jawOpen": jaw} for cell, jaw in zip(cells, JAW, strict=True)]
     path = tmp_path / "take.json"
     path.write_text(json.dumps(frames))
-    assert read_take(path).times == pytest.approx(times, abs=6e-3)
+    assert read_take(path).times == approx(times, abs=6e-3)
 
 
 @pytest.mark.parametrize("form", ["%H:%M:%S.{ms}", "%Y-%m-%d %H:%M:%S.{ms}"])
@@ -185,7 +181,7 @@ def test_a_clock_over_midnight(form, tmp_path):
     """Time goes on, with and without a date."""
     times = np.arange(90) / 30.0
     take = take_of(tmp_path, [clock(form)(43_199.0 + float(time)) for time in times])
-    assert take.times == pytest.approx(times, abs=2e-3)
+    assert take.times == approx(times, abs=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -203,21 +199,21 @@ def test_a_clock_over_midnight(form, tmp_path):
 def test_names_of_times(name, step, seconds, tmp_path):
     """A name may say the unit."""
     take = take_of(tmp_path, [f"{step * row:.6f}" for row in range(90)], name=name)
-    assert take.times == pytest.approx(seconds * np.arange(90), abs=1e-5)
+    assert take.times == approx(seconds * np.arange(90), abs=1e-5)
     assert not take.unknown
 
 
 def test_a_clock_of_whole_seconds(tmp_path):
     """Rows of one second are spread over it."""
     take = take_of(tmp_path, [f"12:00:{row // 30:02}" for row in range(90)])
-    assert take.times == pytest.approx(np.arange(90) / 30.0)
+    assert take.times == approx(np.arange(90) / 30.0)
     assert has_note(take.notes, "spread evenly")
 
 
 def test_times_that_cannot_be_read(tmp_path):
     """The column is named, and frames are played one by one."""
     take = take_of(tmp_path, ["half past: ten"] * 90)
-    assert take.duration == pytest.approx(89 / 30.0)
+    assert take.duration == approx(89 / 30.0)
     assert has_note(take.notes, "The times in 'time' cannot be read, and were not used")
     assert has_note(take.notes, "Instead 30 frames a second were assumed")
     assert not has_note(take.notes, "No times are given")

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.recordings.reading import read_take
 
-from .recording_files import has_note, openface, pyfeat, pyfeat_2, table, written
+from .recording_files import has_note, openface, pyfeat, pyfeat_2, table, take_in, written
 
 # OpenFace
 
@@ -14,12 +15,12 @@ from .recording_files import has_note, openface, pyfeat, pyfeat_2, table, writte
 def test_openface(tmp_path):
     """Units from 0 to 5, presence where there is no more, and angles with our signs."""
     columns = openface()
-    take = read_take(written(tmp_path / "take.csv", columns))
+    take = take_in(tmp_path, columns)
     assert take.kind == "OpenFace 2"
     assert not take.unknown
-    assert take.times == pytest.approx(np.arange(60) / 30.0, abs=1e-6)
+    assert take.times == approx(np.arange(60) / 30.0, abs=1e-6)
     smile = np.array(columns["AU12_r"]) / 5.0
-    assert take.channels["AU12"] == pytest.approx(smile, abs=1e-6)
+    assert take.channels["AU12"] == approx(smile, abs=1e-6)
     assert np.all(take.channels["AU1"] <= 0.0), "a negative intensity is none"
     assert set(take.channels["AU28"]) == {0.0, 1.0}
     assert set(take.channels) == {
@@ -32,19 +33,19 @@ def test_openface(tmp_path):
         ("head_roll", "pose_Rz", 1.0),
     ):
         there = sign * np.degrees(np.array(columns[theirs], dtype=float))
-        assert take.channels[ours] == pytest.approx(there, abs=1e-3)
+        assert take.channels[ours] == approx(there, abs=1e-3)
 
 
 def test_openface_sees_the_gaze_from_the_camera(tmp_path):
     """Eyes that stay on the camera turn against the head, and look ahead in the middle."""
     columns = openface()
-    take = read_take(written(tmp_path / "take.csv", columns))
+    take = take_in(tmp_path, columns)
     head = take.channels["head_yaw"]
     eye = take.channels["eye_yaw_left"]
     assert np.ptp(head + eye) < 1e-3
     up = -np.degrees(np.array(columns["gaze_angle_y"], dtype=float))
     assert np.ptp(take.channels["head_pitch"] + take.channels["eye_pitch_left"] - up) < 1e-3
-    assert np.median(eye) == pytest.approx(0.0, abs=1e-9)
+    assert np.median(eye) == approx(0.0, abs=1e-9)
     assert has_note(take.notes, "camera")
 
 
@@ -64,7 +65,7 @@ def test_openface_1(tmp_path):
     assert take.kind == "OpenFace 1"
     assert not take.unknown
     eye = take.channels["eye_yaw_right"]
-    assert eye == pytest.approx(np.degrees(turn - np.median(turn)), abs=1e-3)
+    assert eye == approx(np.degrees(turn - np.median(turn)), abs=1e-3)
 
 
 @pytest.mark.parametrize(("unit", "name"), [(1e3, "milli"), (1e6, "micro"), (1e9, "nano")])
@@ -72,8 +73,8 @@ def test_stamps_in_other_units(unit, name, tmp_path):
     """Time stamps are in seconds, milliseconds, microseconds or nanoseconds, by their steps."""
     columns = openface()
     columns["timestamp"] = [round(stamp * unit) for stamp in np.arange(60) / 30.0]
-    take = read_take(written(tmp_path / "take.csv", columns))
-    assert take.duration == pytest.approx(59 / 30.0, abs=1e-3)
+    take = take_in(tmp_path, columns)
+    assert take.duration == approx(59 / 30.0, abs=1e-3)
     assert has_note(take.notes, name)
 
 
@@ -87,14 +88,14 @@ def test_no_face_at_all(tmp_path):
 def test_rows_of_nan(tmp_path):
     """Cells without a number are gaps, whatever stands there."""
     columns = openface()
-    cells: list[object] = list(np.full(60, 2.0))
+    cells = list(np.full(60, 2.0))
     cells[10:14] = ["nan", "inf", "NaN", "1e99"]
-    take = read_take(written(tmp_path / "take.csv", columns | {"AU12_r": cells}))
+    take = take_in(tmp_path, columns | {"AU12_r": cells})
     assert has_note(take.notes, "4 cells hold no usable number")
     cells[11] = ""
     cells[20] = "two"
-    take = read_take(written(tmp_path / "take.csv", columns | {"AU12_r": cells}))
-    assert take.channels["AU12"] == pytest.approx(0.4)
+    take = take_in(tmp_path, columns | {"AU12_r": cells})
+    assert take.channels["AU12"] == approx(0.4)
     assert has_note(
         take.notes, "5 cells hold no usable number, the first in line 12, column 'AU12_r'"
     )
@@ -120,30 +121,30 @@ def test_several_faces(tmp_path):
 
 def test_pyfeat_1(tmp_path):
     """Frames are the times; the head's angles are degrees, + up, right, left shoulder."""
-    take = read_take(written(tmp_path / "take.csv", pyfeat()))
+    take = take_in(tmp_path, pyfeat())
     assert take.kind == "py-feat 1"
     assert not take.unknown
-    assert take.duration == pytest.approx(19 / 30.0)
-    assert take.channels["AU12"][-1] == pytest.approx(0.9)
-    assert take.channels["head_pitch"][-1] == pytest.approx(10.0)
-    assert take.channels["head_yaw"][-1] == pytest.approx(-20.0)
-    assert take.channels["head_roll"][-1] == pytest.approx(3.0)
+    assert take.duration == approx(19 / 30.0)
+    assert take.channels["AU12"][-1] == approx(0.9)
+    assert take.channels["head_pitch"][-1] == approx(10.0)
+    assert take.channels["head_yaw"][-1] == approx(-20.0)
+    assert take.channels["head_roll"][-1] == approx(3.0)
     assert has_note(take.notes, "degrees")
 
 
 def test_pyfeat_2(tmp_path):
     """Every other frame; radians; the shapes count, and only units that they do not know."""
-    take = read_take(written(tmp_path / "take.csv", pyfeat_2()))
+    take = take_in(tmp_path, pyfeat_2())
     assert take.kind == "py-feat 2"
     assert not take.unknown
-    assert take.duration == pytest.approx(38 / 30.0)
-    assert take.channels["mouthSmileLeft"][-1] == pytest.approx(0.5)
-    assert take.channels["head_pitch"][-1] == pytest.approx(-10.0, abs=1e-3)
-    assert take.channels["head_yaw"][-1] == pytest.approx(-20.0, abs=1e-3)
-    assert take.channels["head_roll"][-1] == pytest.approx(-3.0, abs=1e-3)
+    assert take.duration == approx(38 / 30.0)
+    assert take.channels["mouthSmileLeft"][-1] == approx(0.5)
+    assert take.channels["head_pitch"][-1] == approx(-10.0, abs=1e-3)
+    assert take.channels["head_yaw"][-1] == approx(-20.0, abs=1e-3)
+    assert take.channels["head_roll"][-1] == approx(-3.0, abs=1e-3)
     assert "AU12" not in take.channels
     assert "cheekSquintLeft" not in take.channels
-    assert take.channels["AU6"] == pytest.approx(0.4)
+    assert take.channels["AU6"] == approx(0.4)
     assert has_note(take.notes, "twice")
     assert has_note(take.notes, "one in 2 frames")
 
@@ -155,7 +156,7 @@ def test_pyfeat_names_persons(tmp_path):
     columns["frame"] = np.repeat(np.arange(10), 2).tolist()
     take = read_take(written(tmp_path / "take.csv", columns), face="Person_1")
     assert len(take.times) == 10
-    assert take.channels["jawOpen"] == pytest.approx(np.linspace(0.0, 0.5, 20)[1::2], abs=1e-6)
+    assert take.channels["jawOpen"] == approx(np.linspace(0.0, 0.5, 20)[1::2], abs=1e-6)
 
 
 # Named columns
@@ -170,9 +171,9 @@ def test_pyfeat_names_persons(tmp_path):
 def test_spellings_of_a_shape(spelled, tmp_path):
     """Capitals, underscores, blanks, and what stands before the last dot do not count."""
     columns = {"time": np.arange(5) / 30.0, spelled: np.arange(5) / 10.0}
-    take = read_take(written(tmp_path / "take.csv", columns))
+    take = take_in(tmp_path, columns)
     assert take.channels.keys() == {"mouthSmileLeft"}
-    assert take.channels["mouthSmileLeft"] == pytest.approx(np.arange(5) / 10.0)
+    assert take.channels["mouthSmileLeft"] == approx(np.arange(5) / 10.0)
 
 
 @pytest.mark.parametrize(
@@ -188,8 +189,8 @@ def test_spellings_of_a_shape(spelled, tmp_path):
 def test_spellings_of_units_and_visemes(spelled, meant, tmp_path):
     """`_R` is the right side where there is a left one."""
     columns = {name: np.full(3, 0.1 + place / 10.0) for place, name in enumerate(spelled)}
-    take = read_take(written(tmp_path / "take.csv", columns))
-    assert {name: values[0] for name, values in take.channels.items()} == pytest.approx(
+    take = take_in(tmp_path, columns)
+    assert {name: values[0] for name, values in take.channels.items()} == approx(
         {name: 0.1 + place / 10.0 for place, name in enumerate(meant)}
     )
 
@@ -198,8 +199,8 @@ def test_spellings_of_units_and_visemes(spelled, meant, tmp_path):
 def test_units_of_action_units(largest, tmp_path):
     """0 to 1, and 0 to 5 (A to E)."""
     columns = {"t": np.arange(11) / 30.0, "AU12": np.linspace(0.0, largest, 11)}
-    take = read_take(written(tmp_path / "take.csv", columns))
-    assert take.channels["AU12"] == pytest.approx(np.linspace(0.0, 1.0, 11))
+    take = take_in(tmp_path, columns)
+    assert take.channels["AU12"] == approx(np.linspace(0.0, 1.0, 11))
     assert has_note(take.notes, "divided") == (largest > 1.0)
 
 

@@ -1,16 +1,13 @@
 """Units of values, flags of rows without a face, heads beside shapes: in tables and in JSON."""
 
 import json
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from pytest import approx
 from scipy.spatial.transform import Rotation
 
 from risorius.app.recordings.reading import is_recording, read_take
-from risorius.app.recordings.take import Take
 
 from .recording_files import has_note, written
 
@@ -18,18 +15,18 @@ COUNT = 150
 RISE = np.sin(np.linspace(0.0, np.pi, COUNT)) ** 2
 TIMES = np.arange(COUNT) / 30.0
 RESTING = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight", "mouthShrugUpper")
-FRAMES: list[dict[str, Any]] = [
+FRAMES = [
     {"time": time, "blendshapes": {"jawOpen": value, "mouthClose": 0.1}}
     for time, value in zip(TIMES.tolist(), RISE.tolist(), strict=True)
 ]
 
 
-def of_table(folder: Path, columns: Mapping[str, Sequence[object] | np.ndarray]) -> Take:
+def of_table(folder, columns):
     """The take of a table with these columns behind times."""
     return read_take(written(folder / "take.csv", {"timestamp": TIMES, **columns}))
 
 
-def of_json(folder: Path, document: Any) -> Take:
+def of_json(folder, document):
     """The take of a document."""
     path = folder / "take.json"
     path.write_text(json.dumps(document))
@@ -37,7 +34,7 @@ def of_json(folder: Path, document: Any) -> Take:
     return read_take(path)
 
 
-UNITS: dict[str, tuple[dict[str, Any], str, float, str]] = {
+UNITS = {
     "shapes in percent": ({"jawOpen": 100 * RISE}, "jawOpen", 1.0, "0 to 100"),
     "shapes": ({"jawOpen": RISE}, "jawOpen", 1.0, ""),
     "units in percent": ({"AU12": 100 * RISE}, "AU12", 1.0, "0 to 100"),
@@ -69,7 +66,7 @@ def test_units(kind, tmp_path):
     columns, channel, peak, note = UNITS[kind]
     take = of_table(tmp_path, columns)
     assert take.channels.keys() == {channel}
-    assert take.channels[channel].max() == pytest.approx(peak, abs=2e-3)
+    assert take.channels[channel].max() == approx(peak, abs=2e-3)
     assert has_note(take.notes, note) or not note
     assert not has_note(take.notes, "No face")
 
@@ -79,11 +76,11 @@ def test_stray_values_are_no_percent(tmp_path):
     jaw = RISE.copy()
     jaw[[20, 70]] = 80.0
     take = of_table(tmp_path, {"jawOpen": jaw})
-    assert take.channels["jawOpen"].max() == pytest.approx(1.0, abs=1e-3)
+    assert take.channels["jawOpen"].max() == approx(1.0, abs=1e-3)
     assert has_note(take.notes, "2 values of shapes are far from 0 to 1")
 
 
-def lost_columns(value: float) -> tuple[dict[str, Any], np.ndarray]:
+def lost_columns(value):
     """A face whose brows and nose rest at 0.4, and `value` in all shapes of rows 60 to 99."""
     lost = (np.arange(COUNT) >= 60) & (np.arange(COUNT) < 100)
     shapes = {name: np.where(lost, value, 0.4 + 0.02 * RISE) for name in RESTING}
@@ -146,7 +143,7 @@ YAW = 20.0 * np.sin(TIMES + 0.1)
 TURNS = Rotation.from_euler("y", YAW[:, None], degrees=True)  # y is up, so that + is to the left
 
 
-def heads() -> dict[str, tuple[list[Any], str, float]]:
+def heads():
     """Layout -> values of each frame, their key, and the sign of yaw in it."""
     quaternions = TURNS.as_quat()
     return {
@@ -167,7 +164,7 @@ def test_heads_beside_shapes(layout, tmp_path):
     take = of_json(
         tmp_path, [{**frame, key: value} for frame, value in zip(FRAMES, values, strict=True)]
     )
-    assert take.channels["head_yaw"] == pytest.approx(sign * YAW, abs=1e-6)
+    assert take.channels["head_yaw"] == approx(sign * YAW, abs=1e-6)
     assert not take.unknown
 
 
@@ -179,13 +176,13 @@ def test_heads_that_are_not_clear(value, tmp_path):
     assert take.unknown == ("headrotation",)
 
 
-def in_categories(frame: dict[str, Any]) -> list[Any]:
+def in_categories(frame):
     """The shapes as MediaPipe's web page has them."""
     shapes = [{"categoryName": n, "score": v} for n, v in frame["blendshapes"].items()]
     return [{"categories": shapes}]
 
 
-LAYOUTS: dict[str, Any] = {
+LAYOUTS = {
     "under results": [
         {"timestamp": f["time"], "results": {"faceBlendshapes": in_categories(f)}} for f in FRAMES
     ],
@@ -208,8 +205,8 @@ LAYOUTS: dict[str, Any] = {
 def test_layouts_of_json(layout, tmp_path):
     """Shapes are found in tables in one another, and under names that stand once."""
     take = of_json(tmp_path, LAYOUTS[layout])
-    assert take.channels["jawOpen"] == pytest.approx(RISE)
-    assert take.times == pytest.approx(TIMES)
+    assert take.channels["jawOpen"] == approx(RISE)
+    assert take.times == approx(TIMES)
     assert not take.unknown
 
 
@@ -240,6 +237,6 @@ def test_percent_signs_in_cells(form, tmp_path):
     for text in texts:
         path.write_text(text)
         take = read_take(path)
-        assert take.channels["jawOpen"][-5:] == pytest.approx(values[-5:])
-        assert take.channels["cheekPuff"] == pytest.approx(0.5)
+        assert take.channels["jawOpen"][-5:] == approx(values[-5:])
+        assert take.channels["cheekPuff"] == approx(0.5)
         assert has_note(take.notes, "No face in")

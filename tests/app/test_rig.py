@@ -25,7 +25,7 @@ METRES = 0.001
 SEEN = 0.02  # [mm] that nobody sees
 
 
-def document(path: Path) -> dict[str, Any]:
+def document(path):
     """The JSON of a GLB."""
     data = path.read_bytes()
     (length,) = struct.unpack_from("<I", data, 12)
@@ -44,7 +44,7 @@ def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_shapes_are_where_the_simulation_rests(built_in: Path, face: FaceScene) -> None:
+def test_shapes_are_where_the_simulation_rests(built_in, face):
     """ARKit's 52 in Apple's order; each moves the skin as the control at 1 does."""
     player = Player(built_in)
     shapes = player.shapes("skin")
@@ -56,7 +56,7 @@ def test_shapes_are_where_the_simulation_rests(built_in: Path, face: FaceScene) 
         assert np.abs(shapes[name] / METRES - moved).max() < SEEN, name
 
 
-def test_mouth_close_shuts_an_open_jaw(built_in: Path, face: FaceScene) -> None:
+def test_mouth_close_shuts_an_open_jaw(built_in, face):
     """It is added to jawOpen, as ARKit means it."""
     shapes = Player(built_in).shapes("skin")
     shut = (shapes["jawOpen"] + shapes["mouthClose"]) / METRES + face.rest_positions
@@ -66,7 +66,7 @@ def test_mouth_close_shuts_an_open_jaw(built_in: Path, face: FaceScene) -> None:
     assert abs(shut[upper, 1] - shut[lower, 1]) < 3.0
 
 
-def test_parts_have_the_shapes_that_move_them(built_in: Path) -> None:
+def test_parts_have_the_shapes_that_move_them(built_in):
     """Lower teeth and tongue go with the jaw by its shape; hair has none; eyes are nodes."""
     player = Player(built_in)
     assert tuple(player.shapes("teeth_lower")) == ARKIT
@@ -81,7 +81,7 @@ def test_parts_have_the_shapes_that_move_them(built_in: Path) -> None:
     assert turns["eyeLookDownLeft"][0] > 0.2  # forward over the x axis
 
 
-def test_most_of_a_shape_takes_no_room(built_in: Path) -> None:
+def test_most_of_a_shape_takes_no_room(built_in):
     """Vertices that stand still are not stored."""
     found = document(built_in)
     targets = [
@@ -116,7 +116,7 @@ def whole(scene: FaceScene, tmp_path_factory: pytest.TempPathFactory) -> Whole:
     return Whole(mesh, places, folder / "whole.glb", result.output)
 
 
-def test_a_file_keeps_its_vertices_in_their_order(whole: Whole) -> None:
+def test_a_file_keeps_its_vertices_in_their_order(whole):
     """All of them, and all triangles, with texture coordinates, material and picture."""
     mesh = read_mesh(whole.mesh)
     player = Player(whole.avatar)
@@ -136,7 +136,7 @@ def test_a_file_keeps_its_vertices_in_their_order(whole: Whole) -> None:
     assert content == (whole.mesh.parent / "skin.png").read_bytes()
 
 
-def test_each_piece_of_a_file_moves_as_what_it_is(whole: Whole, face: FaceScene) -> None:
+def test_each_piece_of_a_file_moves_as_what_it_is(whole, face):
     """Teeth with the jaw, lashes with the lids, the tongue out; hair and body stand still."""
     shapes = {
         name: 100.0 * each / 10.0 for name, each in Player(whole.avatar).shapes("head").items()
@@ -158,7 +158,7 @@ def test_each_piece_of_a_file_moves_as_what_it_is(whole: Whole, face: FaceScene)
     assert np.median(off) < 0.5  # its organs were fitted anew
 
 
-def test_eyeballs_of_a_file_become_nodes(whole: Whole, face: FaceScene) -> None:
+def test_eyeballs_of_a_file_become_nodes(whole, face):
     """Each stands where its ball turns; the file's unit becomes metres at the root."""
     nodes = {node["name"]: node for node in document(whole.avatar)["nodes"]}
     for eye in face.head.eyes:
@@ -168,13 +168,13 @@ def test_eyeballs_of_a_file_become_nodes(whole: Whole, face: FaceScene) -> None:
     assert scale == pytest.approx(0.01)
 
 
-def test_the_file_is_read_by_trimesh(whole: Whole) -> None:
+def test_the_file_is_read_by_trimesh(whole):
     """Another reader finds the head, as large as it is."""
     scene = trimesh.load_scene(whole.avatar, process=False)
     assert 0.3 < scene.extents[1] < 0.8
 
 
-def test_an_option_corrects_what_a_piece_is(whole: Whole, tmp_path: Path) -> None:
+def test_an_option_corrects_what_a_piece_is(whole, tmp_path):
     """Beside it eyes turn by the shapes, where that is asked for."""
     landmarks = whole.mesh.with_suffix(".json")
     path = tmp_path / "other.glb"
@@ -187,7 +187,7 @@ def test_an_option_corrects_what_a_piece_is(whole: Whole, tmp_path: Path) -> Non
     assert np.abs(shapes["eyeLookUpLeft"][whole.places["eyeball_left"]]).max() > 0.2
 
 
-def test_correctives_make_sums_come_true(tmp_path: Path, face: FaceScene) -> None:
+def test_correctives_make_sums_come_true(tmp_path, face):
     """A shape of a pair, times the product of both weights; the file says so."""
     path = tmp_path / "head.glb"
     result = risorius("rig", "-o", path, "--correctives", 2, "--quiet")
@@ -206,7 +206,7 @@ def test_correctives_make_sums_come_true(tmp_path: Path, face: FaceScene) -> Non
         assert np.abs(plain - together).max() > 3.0
 
 
-def test_wrong_options_are_refused(whole: Whole, tmp_path: Path) -> None:
+def test_wrong_options_are_refused(whole, tmp_path):
     """In one line that says what is allowed."""
     landmarks = whole.mesh.with_suffix(".json")
     head = (whole.mesh, "--landmarks", landmarks)
@@ -222,7 +222,7 @@ def test_wrong_options_are_refused(whole: Whole, tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_a_ball_is_found_where_it_is() -> None:
+def test_a_ball_is_found_where_it_is():
     """Also by half of it; what is no ball leaves the guess as it was."""
     points = 12.0 * ball(3).vertices + (30.0, 1.0, 70.0)
     front = points[points[:, 2] > 68.0]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.script import ALL_EASINGS, LARGEST, Channel, Key, Pose, Script
@@ -31,9 +32,9 @@ joy = [ { time = 0.0, value = 0.25 } ]
 def test_poses_and_tracks_add_up():
     """Poses interpolate, what a pose does not name is zero, tracks are added."""
     script = parse_script(HELLO, source="hello.toml")
-    assert script.at(1.5) == pytest.approx({"joy": 0.75, "jaw_open": 0.25, "blink": 0.0})
-    assert script.at(2.0) == pytest.approx({"joy": 1.25, "jaw_open": 0.5, "blink": 1.0})
-    assert script.at(99.0) == pytest.approx({"joy": 0.25, "jaw_open": 0.0, "blink": 1.0})
+    assert script.at(1.5) == approx({"joy": 0.75, "jaw_open": 0.25, "blink": 0.0})
+    assert script.at(2.0) == approx({"joy": 1.25, "jaw_open": 0.5, "blink": 1.0})
+    assert script.at(99.0) == approx({"joy": 0.25, "jaw_open": 0.0, "blink": 1.0})
     assert script.duration == 3.0
     assert [(pose.time, pose.name) for pose in script.key_poses] == [(2.0, "top")]
 
@@ -53,7 +54,7 @@ def test_lines_are_keys_as_tables_are():
 
 
 @st.composite
-def channels(draw: st.DrawFn) -> Channel:
+def channels(draw):
     """Channels of few keys and of many, of one easing and of all."""
     times = draw(
         st.lists(st.floats(0.0, LARGEST), unique=True, min_size=1, max_size=60).map(sorted)
@@ -99,7 +100,7 @@ def test_a_drawn_curve_is_what_is_played(channel, start, span):
     times, values = channel.outline(start, start + span, 40)
     keys = [time for time in channel.times.tolist() if start <= time <= start + span]
     if len(keys) <= 40:
-        assert values.tolist() == pytest.approx([channel.value(time) for time in times.tolist()])
+        assert values.tolist() == approx([channel.value(time) for time in times.tolist()])
         assert set(keys) <= set(times.tolist())
         assert np.all(np.diff(times) > 0.0)
     assert len(times) <= 4 * 41

@@ -14,7 +14,7 @@ PLACES = st.frozensets(st.builds(KeyPlace, TRACKS, TIMES))
 EASING = st.sampled_from(sorted(EASINGS))
 
 
-def keys() -> st.SearchStrategy[list[Key]]:
+def keys():
     """Keys of one track, in the order of time."""
     key = st.builds(Key, TIMES, st.floats(0.0, 1.0), EASING)
     each_once = st.lists(key, min_size=1, max_size=12, unique_by=lambda each: each.time)
@@ -22,7 +22,7 @@ def keys() -> st.SearchStrategy[list[Key]]:
 
 
 @st.composite
-def scripts(draw: st.DrawFn) -> Script:
+def scripts(draw):
     """Scripts of poses and two tracks."""
     poses = tuple(Pose(key.time, {"joy": key.value}, key.easing) for key in draw(keys()))
     tracks = {name: Channel.of(draw(keys())) for name in ("joy", "blink")}
@@ -91,9 +91,9 @@ def test_the_next_key(script, time):
     )
 
 
-def keyed_by_place(script: Script) -> list[tuple[KeyPlace, tuple[object, ...]]]:
+def keyed_by_place(script):
     """Each key but for its time, by its place, of poses and tracks."""
-    found: list[tuple[KeyPlace, tuple[object, ...]]] = []
+    found = []
     for pose in script.poses:
         found.append((KeyPlace(POSES, pose.time), (pose.values, pose.name, pose.easing)))
     for name, track in script.tracks.items():

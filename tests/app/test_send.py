@@ -1,11 +1,12 @@
 """`risorius send`: a recording goes out as packets, in its own time, and comes in as it was."""
 
 import socket
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.live.livelink import parse
@@ -13,12 +14,12 @@ from risorius.app.live.protocols import LOOPBACK
 from risorius.app.live.sender import Sender
 from risorius.app.recordings.take import Take
 
-from .command_line import risorius
+from .command_line import succeeded
 
 STEP = 1.0 / 60.0
 
 
-def take_of(**channels: list[float]) -> Take:
+def take_of(**channels):
     """A take with these values, 60 to a second."""
     count = len(next(iter(channels.values())))
     arrays = {name: np.array(values) for name, values in channels.items()}
@@ -44,21 +45,19 @@ def test_a_take_comes_in_as_it_went_out(heard):
     found = []
     while len(found) < 4:
         frame = parse(heard.recv(9000))
-        assert frame is not None
         assert frame.is_complete
         found.append((frame.channels["mouthSmileLeft"], frame.channels["head_yaw"]))
-    assert [each[0] for each in found] == pytest.approx(smile, abs=1e-6)
-    assert [each[1] for each in found] == pytest.approx(turn, abs=1e-3)
+    assert [each[0] for each in found] == approx(smile, abs=1e-6)
+    assert [each[1] for each in found] == approx(turn, abs=1e-3)
 
 
 def test_a_recording_comes_along(monkeypatch, tmp_path, heard):
     """Without a recording one is sent that is installed, which speaks, and blinks."""
     monkeypatch.chdir(tmp_path)
-    sent: list[Take] = []
+    sent = []
     monkeypatch.setattr(Sender, "play", lambda _, take, **__: sent.append(take))
-    result = risorius("send", "--port", heard.getsockname()[1])
-    assert result.exit_code == 0, result.output
-    assert "speech.csv: Live Link Face, 6.10 s, " in result.output
+    said = succeeded("send", "--port", heard.getsockname()[1])
+    assert "speech.csv: Live Link Face, 6.10 s, " in said
     assert sent[0].channels["jawOpen"].max() > 0.2
     assert sent[0].channels["eyeBlinkLeft"].max() > 0.6
     assert Path(sent[0].source).stat().st_size < 60_000
@@ -68,12 +67,12 @@ class Stopped(Exception):  # noqa: N818, what ends the test is no error
     """Time is over."""
 
 
-def clock_until(end: float) -> tuple[Callable[[], float], Callable[[float], None], list[float]]:
+def clock_until(end):
     """A clock, a sleep that moves it and ends the test, and what was slept."""
     now = [0.0]
     slept = []
 
-    def sleep(seconds: float) -> None:
+    def sleep(seconds):
         """Move on."""
         slept.append(seconds)
         now[0] += seconds
@@ -93,7 +92,7 @@ def test_a_take_keeps_its_time_and_may_go_round(heard):
     ):
         sender.play(take, is_looping=True, clock=clock, sleep=sleep)
     assert slept[0] == 0.0
-    assert slept[1:] == pytest.approx([STEP] * (len(slept) - 1))
+    assert slept[1:] == approx([STEP] * (len(slept) - 1))
     assert len(slept) > 25
 
 
@@ -111,10 +110,8 @@ def test_the_command_sends_a_file(tmp_path, heard):
     file = tmp_path / "take.csv"
     file.write_text("time,jawOpen,AU38\n0.0,0.5,0.1\n0.05,0.25,0.2\n")
     port = heard.getsockname()[1]
-    result = risorius("send", file, "--port", port)
-    assert result.exit_code == 0, result.output
-    assert f"to 127.0.0.1, port {port}; " in result.output
+    said = succeeded("send", file, "--port", port)
+    assert f"to 127.0.0.1, port {port}; " in said
     frame = parse(heard.recv(9000))
-    assert frame is not None
     assert frame.subject == "take"
     assert frame.channels["jawOpen"] == 0.5

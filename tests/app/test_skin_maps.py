@@ -3,18 +3,16 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.passes.passes import Passes
 from risorius.app.refining.presets import Refinement
-from risorius.app.scenes import FaceScene
 
 SIZE = (400, 300)
 
 
-def images(scene: FaceScene) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.float32]]:
+def images(scene):
     """Static beside refined, with the maps and without, (2, H, W, 3); and normals of the latter."""
     scene.reset()
     options = CaptureOptions(

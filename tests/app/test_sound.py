@@ -2,15 +2,13 @@
 
 import os
 import shutil
-from collections.abc import Generator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 import scipy.signal
+from pytest import approx
 
 from risorius.app.capture import outputs
 from risorius.app.capture.outputs import HEARD
@@ -34,7 +32,7 @@ GREY = np.full((48, 64, 3), 128, np.uint8)
 FRAME = 1.0 / 30.0  # [s]
 
 
-def lag(heard: Sound, source: Sound) -> float:
+def lag(heard, source):
     """By how much one sound comes later than the other that is in it [s]."""
     first, second = (each.samples[:, 0].astype(float) for each in (heard, source))
     length = len(first) + len(second)
@@ -65,8 +63,8 @@ def test_other_rates_are_in_step(tmp_path, rate):
     write_wav(tmp_path / "high.wav", source, 48_000)
     low = scipy.signal.resample(source, rate)
     again = load_sound(write_wav(tmp_path / "low.wav", low, rate))
-    assert again.duration == pytest.approx(1.0, abs=2e-3)
-    assert lag(again, load_sound(tmp_path / "high.wav")) == pytest.approx(0.0, abs=5e-4)
+    assert again.duration == approx(1.0, abs=2e-3)
+    assert lag(again, load_sound(tmp_path / "high.wav")) == approx(0.0, abs=5e-4)
 
 
 def test_what_is_no_sound_is_reported_in_one_line(tmp_path):
@@ -139,7 +137,7 @@ def test_a_film_is_heard_in_step(tmp_path, suffix, seconds, rate):
             add(GREY)
     heard = load_sound(film)
     assert abs(lag(heard, load_sound(source))) < 5e-3
-    assert heard.duration == pytest.approx(min(seconds, 1.0), abs=0.05)
+    assert heard.duration == approx(min(seconds, 1.0), abs=0.05)
     import imageio_ffmpeg
 
     assert imageio_ffmpeg.count_frames_and_secs(str(film))[0] == 31
@@ -152,7 +150,7 @@ def test_capture_takes_the_sound_of_script_and_option(tmp_path, monkeypatch):
     write_wav(tmp_path / "other.wav", noise(0.4, seed=1))
     (tmp_path / "s.toml").write_text("scene = 'plane'\nsound = 'own.wav'\n[[pose]]\ntime = 0.2\n")
 
-    def capture(*words: str) -> tuple[int, str]:
+    def capture(*words):
         result = risorius("capture", "s.toml", "--size", "64x48", "--quiet", *words)
         return result.exit_code, result.output
 
@@ -177,23 +175,22 @@ def test_capture_takes_the_sound_of_script_and_option(tmp_path, monkeypatch):
 class HandDevice:
     """A device that asks for samples when a test says so, by a clock of the test's."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.running = False
         self.now = 0.0
-        self._samples: Generator[Any, int, None] | None = None
+        self._samples = None
 
-    def start(self, samples: Generator[Any, int, None]) -> None:
+    def start(self, samples):
         self.running = True
         self._samples = samples
 
-    def stop(self) -> None:
+    def stop(self):
         self.running = False
 
     close = stop
 
-    def ask(self, count: int) -> npt.NDArray[np.int16]:
+    def ask(self, count):
         """The next frames, (count, C)."""
-        assert self._samples is not None
         return np.asarray(self._samples.send(count))
 
 
@@ -208,7 +205,7 @@ def device(monkeypatch: pytest.MonkeyPatch) -> HandDevice:
     return hand_device
 
 
-def ramp(seconds: float) -> Sound:
+def ramp(seconds):
     """A sound whose samples hold their own time [ms]."""
     samples = (np.arange(round(seconds * 48_000)) // 48).astype(np.int16)
     return Sound(Path("ramp"), np.stack([samples, samples], axis=1))
@@ -251,9 +248,9 @@ def test_the_picture_keeps_to_the_sound(device, pace, frames_per_second, monkeyp
 
     pace: seconds of the device for one of ours. The steps of physics are the window's own.
     """
-    played: list[Player] = []
+    played = []
 
-    def play(sound: Sound) -> Player:
+    def play(sound):
         played.append(Player(sound, clock=lambda: device.now))
         return played[0]
 
@@ -279,7 +276,7 @@ def test_the_picture_keeps_to_the_sound(device, pace, frames_per_second, monkeyp
             due += player.PERIOD / pace
         device.now = now
         session.time += clock.steps(soundtrack.elapsed(1.0 / frames_per_second)) * STEP
-        assert played[0].position == pytest.approx(now * pace, abs=2e-3)
+        assert played[0].position == approx(now * pace, abs=2e-3)
         off.append(now * pace - session.time)
     assert np.abs(off).max() < FRAME
     assert abs(np.median(off)) < 0.5 * FRAME

@@ -11,7 +11,7 @@ from risorius.app import staging
 from risorius.app.staging import StagingFolder, is_staging_folder, sweep
 
 
-def made_old(folder: Path) -> Path:
+def made_old(folder):
     """Let the last change in a folder be more than a day ago."""
     when = time.time() - staging.OLD - 60.0
     for path in (*folder.rglob("*"), folder):

@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 PROGRAM = """
 import contextlib, sys
@@ -14,7 +13,7 @@ print("loaded:", *sys.modules)
 """
 
 
-def loaded_by(*words: str, cache: Path) -> set[str]:
+def loaded_by(*words, cache):
     """The packages that a command loads, ours as two words; `cache`: of compiled code."""
     result = subprocess.run(
         [sys.executable, "-c", PROGRAM, *words],
@@ -28,21 +27,21 @@ def loaded_by(*words: str, cache: Path) -> set[str]:
     return {".".join(name[:2]) if name[0] == "risorius" else name[0] for name in names}
 
 
-def test_help_loads_no_library_but_click(tmp_path: Path) -> None:
+def test_help_loads_no_library_but_click(tmp_path):
     """Help of all commands, and of one, is printed by modules that compute nothing."""
     slow = {"PIL", "moderngl", "numba", "numpy", "pydantic", "risorius.assets", "scipy", "tqdm"}
     for words in (("--help",), ("capture", "--help"), ("reproduce", "--help")):
         assert not loaded_by(*words, cache=tmp_path) & slow, words
 
 
-def test_controls_compiles_nothing(tmp_path: Path) -> None:
+def test_controls_compiles_nothing(tmp_path):
     """The list of controls needs a head and its rig: no picture, no refiner, no simulation."""
     drawing = {"PIL", "moderngl", "glfw", "risorius.render", "risorius.refine", "trimesh"}
     assert not loaded_by("controls", cache=tmp_path) & drawing
     assert not list(tmp_path.rglob("*.nbc"))
 
 
-def test_doctor_simulates_nothing(tmp_path: Path) -> None:
+def test_doctor_simulates_nothing(tmp_path):
     """A report on the machine needs OpenGL and the names of refiners: no head, no script."""
     loaded = loaded_by("doctor", cache=tmp_path)
     assert not loaded & {"risorius.sim", "risorius.assets", "pydantic", "trimesh"}

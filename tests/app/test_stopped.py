@@ -4,7 +4,6 @@ import os
 import signal
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
@@ -13,7 +12,7 @@ from .command_line import started
 SLOW = ("capture", "--scene", "face", "--size", "320x240")
 
 
-def is_there(folder: Path, pattern: str) -> bool:
+def is_there(folder, pattern):
     """Whether a file of this name is somewhere in the folder."""
     try:
         return any(folder.glob(pattern))

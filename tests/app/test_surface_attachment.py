@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.linalg import norm
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from risorius import assets
-from risorius.app.scenes import FaceScene
 from risorius.app.scenes.surface_attachment import SurfaceAttachment
 
 POSES = (
@@ -21,7 +21,7 @@ POSES = (
 )
 
 
-def attached(scene: FaceScene) -> list[SurfaceAttachment]:
+def attached(scene):
     """What is attached to its skin."""
     return [part for part in scene.parts if isinstance(part, SurfaceAttachment)]
 
@@ -65,12 +65,12 @@ def test_they_stay_on_lids_that_move(scene, pose):
         assert roots is not None
         assert tree.query(there[roots])[0].max() < 2.5
         lengths = [
-            np.linalg.norm(points - points[roots], axis=1)
+            norm(points - points[roots], axis=1)
             for points in (part.vertices, made[part.name].vertices)
         ]
         if part.strand_radius:
             assert np.allclose(*lengths, atol=1e-3)
             for eye in scene.head.eyes:
                 centre = matrix[:3, :3] @ eye.centre + matrix[:3, 3]
-                assert np.linalg.norm(there - centre, axis=1).min() > eye.radius - 0.5
+                assert norm(there - centre, axis=1).min() > eye.radius - 0.5
     scene.reset()

@@ -10,9 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from risorius.app.viewer import Viewer
 from risorius.app.viewer.picture.stage import pointed_lines
-from risorius.app.viewer.settings import Display, Settings, load_settings
+from risorius.app.viewer.settings import Display, load_settings
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -25,6 +24,7 @@ from .driving import (
     moved,
     nose,
     on_screen,
+    press_keys,
     seen_at,
     settle,
     show_controls,
@@ -43,10 +43,10 @@ def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer):
     clear_search(viewer)
     assert viewer.session.values["jaw_open"] > 0.4
     assert until(viewer, lambda: moved(viewer) > 8.0)
-    xdotool(viewer, "key", "ctrl+z")
+    press_keys(viewer, "ctrl+z")
     assert viewer.session.values["jaw_open"] == 0.0
     assert until(viewer, lambda: moved(viewer) < 1.0)
-    xdotool(viewer, "key", "ctrl+shift+z")
+    press_keys(viewer, "ctrl+shift+z")
     assert viewer.session.values["jaw_open"] > 0.4
 
 
@@ -54,9 +54,9 @@ def test_a_number_can_be_typed(viewer):
     """A double click turns a slider into a line to type in; its menu sets it back to 0."""
     show_controls(viewer, "jaw open")
     click(viewer, "jaw_open", times=2)
-    xdotool(viewer, "key", "ctrl+a")
+    press_keys(viewer, "ctrl+a")
     write(viewer, "0.37")
-    xdotool(viewer, "key", "Return")
+    press_keys(viewer, "Return")
     assert viewer.session.values["jaw_open"] == pytest.approx(0.37)
     xdotool(viewer, "mousemove", *middle(viewer, "jaw_open"))
     xdotool(viewer, "click", 3)
@@ -67,29 +67,30 @@ def test_a_number_can_be_typed(viewer):
 
 def test_linked_sides_move_together(viewer):
     """One slider for both sides; unlinked, each has its own."""
+    session = viewer.session
     show_controls(viewer, "zygom maj")
     left = "zygomaticus_major_left"
     right = "zygomaticus_major_right"
     drag_and_release(viewer, middle(viewer, left), (30, 0))
-    assert viewer.session.values[left] == viewer.session.values[right] > 0.1
+    assert session.values[left] == session.values[right] > 0.1
     click(viewer, "Link sides")
     drag_and_release(viewer, middle(viewer, right), (-60, 0))
     click(viewer, "Link sides")
     clear_search(viewer)
-    assert viewer.session.values[right] == 0.0 < viewer.session.values[left]
+    assert session.values[right] == 0.0 < session.values[left]
 
 
 def test_keys_show_expressions_and_refinement(viewer):
     """1 shows the first expression, 1 again is neutral; R makes refined triangles come and go."""
-    xdotool(viewer, "key", "1")
+    press_keys(viewer, "1")
     assert viewer.session.is_alone(next(iter(viewer.session.scene.expressions)))
     assert until(viewer, lambda: moved(viewer) > 3.0)
     assert until(viewer, lambda: viewer.stage.refined.triangle_count > 2100)
-    xdotool(viewer, "key", "r")
+    press_keys(viewer, "r")
     shot = viewer.stage.viewports(viewer.settings.display, viewer.view.viewport)[0]
     assert shot.drawn.triangle_count == len(viewer.session.scene.faces)
-    xdotool(viewer, "key", "r")
-    xdotool(viewer, "key", "1")
+    press_keys(viewer, "r")
+    press_keys(viewer, "1")
     assert until(viewer, lambda: moved(viewer) < 0.5)
 
 
@@ -102,10 +103,10 @@ def test_keys_change_the_picture(viewer):
     settings = deepcopy(viewer.settings)
     left = round(viewer.view.area[0])
     for key in ("w", "c", "t", "d", "F2"):
-        xdotool(viewer, "key", key)
+        press_keys(viewer, key)
         changed = viewer.surface.read()[:500, left:].astype(int) - before[:500, left:]
         assert np.abs(changed).max() > 20, key
-        xdotool(viewer, "key", key)
+        press_keys(viewer, key)
         assert viewer.settings == settings, key
     assert until(viewer, lambda: viewer.is_idle)
     back = viewer.surface.read()[:500, left:].astype(int) - before[:500, left:]
@@ -119,7 +120,7 @@ def test_the_mouse_orbits_and_the_wheel_zooms(viewer):
         drag_and_release(viewer, place, (-80, 20), button=button)
         turned = viewer.view.camera.view_matrix().copy()
         assert np.abs(turned - view).max() > 0.1
-        xdotool(viewer, "key", "f")
+        press_keys(viewer, "f")
         assert np.allclose(viewer.view.camera.view_matrix(), view)
 
 
@@ -194,7 +195,7 @@ def test_a_look_is_chosen(viewer):
     click(viewer, "Look: paper")
     assert stage.refined.triangle_count == paper
     assert stage.refined.label == "paper"
-    xdotool(viewer, "key", "p")
+    press_keys(viewer, "p")
     assert display.look == stage.refined.label == "smooth"
     assert stage.refined.triangle_count == smooth
     click(viewer, "menu View")
@@ -207,13 +208,13 @@ def test_a_look_is_chosen(viewer):
 def test_unsaved_work_is_asked_for(viewer):
     """Closing with a pose made by hand asks; going back keeps it, going on closes."""
     viewer.session.set("jaw_open", 0.5)
-    xdotool(viewer, "key", "ctrl+q")
+    press_keys(viewer, "ctrl+q")
     assert viewer.question.is_open
     assert not viewer.surface.should_close
     click(viewer, "question: Back")
     assert not viewer.question.is_open
     assert viewer.session.values["jaw_open"] == 0.5
-    xdotool(viewer, "key", "ctrl+q")
+    press_keys(viewer, "ctrl+q")
     click(viewer, "question: Close without saving")
     assert viewer.surface.should_close
     viewer.surface.should_close = viewer.is_leaving = False
@@ -238,7 +239,7 @@ def test_the_window_remembers(tmp_path):
     remembered.write_text('{"size": ')
     command = [sys.executable, "-m", "risorius", "replay", str(script), "--once"]
 
-    def replayed(*options: str) -> Settings:
+    def replayed(*options):
         """The settings that are remembered after a replay with these options."""
         result = subprocess.run(
             [*command, *options], capture_output=True, text=True, timeout=60, check=False,
@@ -263,7 +264,7 @@ def test_the_window_remembers(tmp_path):
 MAJOR = "zygomaticus_major"
 
 
-def landmark(viewer: Viewer, number: int) -> tuple[int, int]:
+def landmark(viewer, number):
     """A landmark of the face, on the screen."""
     scene = viewer.session.scene
     return seen_at(viewer, scene.positions[scene.head.landmarks[number]])
@@ -271,18 +272,19 @@ def landmark(viewer: Viewer, number: int) -> tuple[int, int]:
 
 def test_pulled_skin_stays_where_muscles_hold_it(viewer):
     """Pull the left corner of the mouth up and out: it stays where it is seen; Ctrl+Z undoes."""
+    session = viewer.session
     viewer.settings.is_linked = False
-    seen = [viewer.session.scene.positions.copy()]
+    seen = [session.scene.positions.copy()]
 
-    def is_held() -> bool:
-        seen.append(viewer.session.scene.positions.copy())
+    def is_held():
+        seen.append(session.scene.positions.copy())
         return moved(viewer) > 1.0 and bool(np.abs(seen[-1] - seen[-2]).max() < 1e-3)
 
     drag(viewer, landmark(viewer, 54), (12, -14))
     assert until(viewer, is_held)
-    solved = dict(viewer.session.values)
+    solved = dict(session.values)
     xdotool(viewer, "mouseup", 1)
-    assert viewer.session.values == solved
+    assert session.values == solved
     assert solved[f"{MAJOR}_left"] > 0.3
     assert len([name for name, value in solved.items() if value]) <= 4
     assert not any(value for name, value in solved.items() if name.endswith("_right"))
@@ -290,10 +292,10 @@ def test_pulled_skin_stays_where_muscles_hold_it(viewer):
     assert viewer.messages.text.endswith("mm short of the mouse")
     assert until(viewer, lambda: viewer.physics.is_at_rest)
     assert moved(viewer) > 4.0
-    assert np.abs(viewer.session.scene.positions - seen[-1]).max() < 0.1
-    assert viewer.session.values == solved
-    xdotool(viewer, "key", "ctrl+z")
-    assert not any(viewer.session.values.values())
+    assert np.abs(session.scene.positions - seen[-1]).max() < 0.1
+    assert session.values == solved
+    press_keys(viewer, "ctrl+z")
+    assert not any(session.values.values())
     assert until(viewer, lambda: moved(viewer) < 0.3)
 
 

@@ -7,7 +7,6 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -28,7 +27,7 @@ pytestmark = NEEDS_A_SCREEN
 ROOT = Path(__file__).parents[2]
 
 
-def ask_to_close(window: int) -> None:
+def ask_to_close(window):
     """Send the message of a click on the cross above the window."""
     screen = display.Display()
     target = screen.create_resource_object("window", window)
@@ -38,7 +37,7 @@ def ask_to_close(window: int) -> None:
     screen.sync()
 
 
-def windows_of(process: subprocess.Popen[bytes], screen: display.Display) -> Iterator[Any]:
+def windows_of(process, screen):
     """Those on the screen that a process has opened."""
     number = screen.get_atom("_NET_WM_PID")
     for window in screen.screen().root.query_tree().children:
@@ -48,7 +47,7 @@ def windows_of(process: subprocess.Popen[bytes], screen: display.Display) -> Ite
                 yield window
 
 
-def first_pictures(process: subprocess.Popen[bytes]) -> Iterator[np.ndarray]:
+def first_pictures(process):
     """Pictures of the window of a process that starts, again and again, (H, W, 3)."""
     screen = display.Display()
     while process.poll() is None:
@@ -68,7 +67,7 @@ def start(tmp_path: Path) -> Iterator[Callable[[], subprocess.Popen[bytes]]]:
     folders = {"XDG_CONFIG_HOME": tmp_path / "config", "NUMBA_CACHE_DIR": tmp_path / "compiled"}
     environment = {**os.environ, **{name: str(path) for name, path in folders.items()}}
 
-    def view() -> subprocess.Popen[bytes]:
+    def view():
         """Start it."""
         command = [sys.executable, "-m", "risorius", "view", "--size", "640x400"]
         begun.append(subprocess.Popen(command, env=environment, stderr=subprocess.PIPE))

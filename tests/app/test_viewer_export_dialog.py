@@ -18,7 +18,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import ExportChoices
 from risorius.render import LIGHT, LIGHTS, Style
 
-from .driving import NEEDS_A_SCREEN, click, settle, until, write, xdotool
+from .driving import NEEDS_A_SCREEN, click, press_keys, settle, until, write
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -38,31 +38,31 @@ def _at_first(viewer: Viewer, tmp_path: Path, calm: None) -> Iterator[None]:
     settle(viewer)
 
 
-def open_script(viewer: Viewer, text: str) -> None:
+def open_script(viewer, text):
     """Take a script of this text in place of the one before."""
     viewer.session.work.open(parse_script(text, source="smile.toml"))
 
 
-def finish(viewer: Viewer, *key: str) -> None:
+def finish(viewer, *key):
     """Open the dialog, take its present choices, and wait until the file is written."""
-    xdotool(viewer, "key", *(key or ("F10",)))
+    press_keys(viewer, *(key or ("F10",)))
     assert until(viewer, lambda: "export: begin" in viewer.gui.places)
     begin(viewer)
     assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
     assert until(viewer, lambda: viewer.exporter.job is None, LONG)
 
 
-def begin(viewer: Viewer, name: str = "") -> None:
+def begin(viewer, name=""):
     """Go on to the file chooser, and take the name that it proposes, or another."""
     click(viewer, "export: begin")
     assert viewer.files.is_waiting
     if name:
-        xdotool(viewer, "key", "ctrl+a")
+        press_keys(viewer, "ctrl+a")
         write(viewer, name)
-    xdotool(viewer, "key", "Return")
+    press_keys(viewer, "Return")
 
 
-def pictures(folder: Path) -> np.ndarray:
+def pictures(folder):
     """All pictures of a folder, in order, (N, H, W, 3 or 4)."""
     files = sorted(folder.glob("*.png"))
     return np.stack([np.asarray(Image.open(file)) for file in files]).astype(int)
@@ -87,14 +87,14 @@ def test_a_film_is_that_of_capture(viewer, tmp_path):
     captured = pictures(tmp_path / "captured")
     assert ours.shape == captured.shape == (7, 120, 160, 3)
     assert np.abs(ours - captured).max() <= 2
-    xdotool(viewer, "key", "n")
+    press_keys(viewer, "n")
     assert not viewer.messages.text  # which the next command takes away
 
 
 @pytest.mark.slow
 def test_motion_is_exported_by_the_same_dialog(viewer, tmp_path):
     """The file of `risorius export`, under the name that was typed."""
-    xdotool(viewer, "key", "ctrl+e")
+    press_keys(viewer, "ctrl+e")
     click(viewer, "Write")
     click(viewer, "Write: Motion: numpy arrays (.npz)")
     begin(viewer, "moved")
@@ -112,20 +112,19 @@ def test_the_window_lives_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatc
     monkeypatch.setattr(workers, "GRACE", LONG)
     viewer.settings.export.kind = "mp4"
     open_script(viewer, SCRIPT.replace("0.5", "600.0"))
-    xdotool(viewer, "key", "F10")
+    press_keys(viewer, "F10")
     begin(viewer)
     job = viewer.exporter.job
-    assert job is not None
     assert until(viewer, lambda: job.task.share > 0.0, LONG)
-    xdotool(viewer, "key", "1")
+    press_keys(viewer, "1")
     assert viewer.session.is_alone("joy")
-    xdotool(viewer, "key", "ctrl+q")
+    press_keys(viewer, "ctrl+q")
     assert "mp4 is being written" in viewer.messages.text
     assert not viewer.surface.should_close
     process = job.task._pool._workers[0].process
     process.send_signal(signal.SIGSTOP)  # it takes its time to end
     click(viewer, "export: stop")
-    xdotool(viewer, "key", "2")
+    press_keys(viewer, "2")
     assert viewer.session.is_alone("sadness")
     assert viewer.exporter.job is job
     process.send_signal(signal.SIGCONT)
@@ -139,7 +138,7 @@ def test_the_window_lives_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatc
 def test_a_bad_folder_is_one_line(viewer, kind):
     """The error is shown at once, and all choices are there when it is tried again."""
     viewer.settings.export.kind = kind
-    xdotool(viewer, "key", "F10")
+    press_keys(viewer, "F10")
     begin(viewer, "/proc/none/moved")
     assert until(viewer, lambda: "cannot be written" in viewer.messages.text)
     assert viewer.messages.is_error

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius.app.script.script_file import load_script
 from risorius.app.sound import player
@@ -24,6 +25,7 @@ from .driving import (
     moved,
     nose,
     on_screen,
+    press_keys,
     put,
     settle,
     until,
@@ -81,7 +83,7 @@ def test_the_chooser_walks_through_folders(viewer, tmp_path):
     (tmp_path / "takes").mkdir()
     (tmp_path / "takes" / "smile.toml").write_text(SCRIPT)
     (tmp_path / "picture.png").write_bytes(b"")
-    xdotool(viewer, "key", "ctrl+o")
+    press_keys(viewer, "ctrl+o")
     assert "file picture.png" not in viewer.gui.places
     click(viewer, "folder takes")
     assert until(viewer, lambda: "file smile.toml" in viewer.gui.places)
@@ -91,9 +93,9 @@ def test_the_chooser_walks_through_folders(viewer, tmp_path):
     click(viewer, "file smile.toml", times=2)
     assert viewer.session.script.duration == 2.0
     assert not viewer.files.is_waiting
-    xdotool(viewer, "key", "ctrl+o")
+    press_keys(viewer, "ctrl+o")
     assert "file smile.toml" in viewer.gui.places  # begins where it was last
-    xdotool(viewer, "key", "Escape")
+    press_keys(viewer, "Escape")
     assert not viewer.files.is_waiting
 
 
@@ -102,18 +104,18 @@ def test_the_chooser_replaces_nothing_unasked(viewer, tmp_path):
     taken = tmp_path / "pose.toml"
     taken.write_text("precious")
     viewer.session.set("jaw_open", 0.4)
-    xdotool(viewer, "key", "ctrl+p")
-    xdotool(viewer, "key", "Return")
+    press_keys(viewer, "ctrl+p")
+    press_keys(viewer, "Return")
     assert viewer.files.is_waiting
     assert taken.read_text() == "precious"
-    xdotool(viewer, "key", "Return")
+    press_keys(viewer, "Return")
     assert not viewer.files.is_waiting
     assert "jaw_open = 0.4" in taken.read_text()
     viewer.session.set("jaw_open", 0.5)
-    xdotool(viewer, "key", "ctrl+p")
-    xdotool(viewer, "key", "ctrl+a")
+    press_keys(viewer, "ctrl+p")
+    press_keys(viewer, "ctrl+a")
     write(viewer, "/proc/none/pose")
-    xdotool(viewer, "key", "Return")
+    press_keys(viewer, "Return")
     assert viewer.messages.is_error
     assert "/proc/none/pose.toml" in viewer.messages.text
     assert "the pose" in viewer.session.work.unsaved
@@ -121,21 +123,21 @@ def test_the_chooser_replaces_nothing_unasked(viewer, tmp_path):
 
 def test_closing_while_recording_saves_it_first(viewer, tmp_path):
     """Save, in answer to the question, keeps the recording in a file and then closes."""
-    xdotool(viewer, "key", "ctrl+r")
+    press_keys(viewer, "ctrl+r")
     viewer.session.set("jaw_open", 0.6)
     assert until(viewer, lambda: viewer.session.recorded_seconds > 0.3)
     viewer.surface.should_close = False
-    xdotool(viewer, "key", "ctrl+q")
+    press_keys(viewer, "ctrl+q")
     assert "the recording" in viewer.session.work.unsaved
     assert not viewer.surface.should_close
     click(viewer, "question: Save recording ...")
-    xdotool(viewer, "key", "Return")
+    press_keys(viewer, "Return")
     assert "jaw_open" in (tmp_path / "script.toml").read_text()
     assert viewer.surface.should_close
     viewer.surface.should_close = viewer.is_leaving = False
 
 
-def title_of(viewer: Viewer) -> str:
+def title_of(viewer):
     """The title that the desktop shows above the window."""
     settle(viewer)
     command = ["xdotool", "search", "--onlyvisible", "--name", "^Risorius: "]
@@ -151,20 +153,20 @@ def test_saving_goes_to_the_known_file(viewer, tmp_path):
     put(viewer, script)
     assert title_of(viewer) == "Risorius: smile.toml"
     viewer.session.seek(1.0)
-    xdotool(viewer, "key", "shift+k")
+    press_keys(viewer, "shift+k")
     assert title_of(viewer) == "Risorius: smile.toml *"
-    xdotool(viewer, "key", "ctrl+s")
+    press_keys(viewer, "ctrl+s")
     assert not viewer.files.is_waiting
     assert title_of(viewer) == "Risorius: smile.toml"
     assert script.read_text().startswith("# mine\n") and len(load_script(script).poses) == 3
-    xdotool(viewer, "key", "ctrl+shift+s")
+    press_keys(viewer, "ctrl+shift+s")
     assert viewer.files.is_waiting
-    xdotool(viewer, "key", "ctrl+a")
+    press_keys(viewer, "ctrl+a")
     write(viewer, "other")
-    xdotool(viewer, "key", "Return")
+    press_keys(viewer, "Return")
     assert title_of(viewer) == "Risorius: other.toml"
     viewer.messages.attempt(viewer.selection.delete)
-    xdotool(viewer, "key", "ctrl+s")
+    press_keys(viewer, "ctrl+s")
     assert len(load_script(tmp_path / "other.toml").poses) == 2
     assert len(load_script(script).poses) == 3
 
@@ -173,52 +175,53 @@ def test_saving_asks_where_it_did_not_open(viewer, tmp_path):
     """New scripts and the program's own ask for a name; a file changed elsewhere is not lost."""
     taken = tmp_path / "script.toml"
     taken.write_text("precious")
-    xdotool(viewer, "key", "ctrl+n", "shift+k", "ctrl+s")
+    press_keys(viewer, "ctrl+n", "shift+k", "ctrl+s")
     assert viewer.files.is_waiting
-    xdotool(viewer, "key", "Return")
+    press_keys(viewer, "Return")
     assert viewer.files.is_waiting
     assert taken.read_text() == "precious"
-    xdotool(viewer, "key", "Escape")
+    press_keys(viewer, "Escape")
     viewer.session.work.open(load_script(Path(str(resources.files("risorius.assets"))) / EXAMPLE))
-    xdotool(viewer, "key", "ctrl+s")
+    press_keys(viewer, "ctrl+s")
     assert viewer.files.is_waiting
-    xdotool(viewer, "key", "Escape")
+    press_keys(viewer, "Escape")
     script = tmp_path / "smile.toml"
     script.write_text(SCRIPT)
     put(viewer, script)
     script.write_text(SCRIPT.replace("joy", "anger"))
-    xdotool(viewer, "key", "shift+k", "ctrl+s")
+    press_keys(viewer, "shift+k", "ctrl+s")
     assert viewer.files.is_waiting
     assert "another program" in viewer.messages.text
     assert "anger" in script.read_text()
-    xdotool(viewer, "key", "Escape")
+    press_keys(viewer, "Escape")
 
 
 @pytest.mark.slow
 def test_a_head_and_a_script_are_dropped_together(viewer, tmp_path):
     """The face is another one, the script plays on it; unsaved work is still there."""
-    before = viewer.session.scene
+    session = viewer.session
+    before = session.scene
     mesh, landmarks = stranger().write(tmp_path)
     try:
-        viewer.session.set("jaw_open", 0.5)
-        viewer.session.note()
+        session.set("jaw_open", 0.5)
+        session.note()
         put(viewer, landmarks)
         assert viewer.messages.is_error
         assert "half of a head" in viewer.messages.text
         put(viewer, landmarks, mesh)
         assert until(viewer, lambda: "opened" in viewer.messages.text)
-        assert len(viewer.session.scene.faces) > len(before.faces)
-        assert viewer.session.values["jaw_open"] == 0.5
-        assert viewer.session.work.has_unsaved_pose
+        assert len(session.scene.faces) > len(before.faces)
+        assert session.values["jaw_open"] == 0.5
+        assert session.work.has_unsaved_pose
         assert until(viewer, lambda: moved(viewer) > 5.0)
-        assert viewer.stage.refined.triangle_count >= len(viewer.session.scene.faces)
-        xdotool(viewer, "key", "ctrl+z")
-        assert viewer.session.values["jaw_open"] == 0.0
+        assert viewer.stage.refined.triangle_count >= len(session.scene.faces)
+        press_keys(viewer, "ctrl+z")
+        assert session.values["jaw_open"] == 0.0
         script = tmp_path / "smile.toml"
         script.write_text(SCRIPT)
         put(viewer, mesh, script, landmarks)
         assert until(viewer, lambda: "smile.toml: opened with stranger" in viewer.messages.text)
-        viewer.session.seek(2.0)
+        session.seek(2.0)
         assert until(viewer, lambda: moved(viewer) > 2.0)
         drag(viewer, nose(viewer), (30, 30))
         assert until(viewer, lambda: viewer.mouse.is_dragging_skin)
@@ -244,7 +247,7 @@ def test_a_head_is_opened_by_the_menu(viewer, tmp_path):
     viewer.show_scene(before)
 
 
-def written(path: Path) -> Path:
+def written(path):
     """A table of a jaw that opens within a second, and of a column that nobody knows."""
     rows = [f"{k / 30:.4f},{k / 60:.4f},7" for k in range(31)]
     path.write_text("\n".join(["time,jawOpen,mood", *rows]), encoding="utf-8")
@@ -256,23 +259,24 @@ def test_a_recording_is_dropped_played_and_saved_as_a_script(viewer, tmp_path):
 
     The recording itself is never written.
     """
+    session = viewer.session
     take = written(tmp_path / "take.csv")
     before = take.read_bytes()
-    viewer.session.set("jaw_open", 0.4)
+    session.set("jaw_open", 0.4)
     put(viewer, take)
     assert viewer.question.is_open
-    assert viewer.session.work.has_unsaved_pose
+    assert session.work.has_unsaved_pose
     click(viewer, "question: Open without saving")
     assert "take.csv: Table of named columns, 31 frames in 1.00 s" in viewer.messages.text
-    assert viewer.session.script.duration == pytest.approx(1.0)
-    assert not viewer.session.work.unsaved, "the file has it all"
-    viewer.session.seek(1.0)
+    assert session.script.duration == approx(1.0)
+    assert not session.work.unsaved, "the file has it all"
+    session.seek(1.0)
     assert until(viewer, lambda: moved(viewer) > 5.0)
-    xdotool(viewer, "key", "ctrl+s")
+    press_keys(viewer, "ctrl+s")
     assert viewer.files.is_waiting
-    xdotool(viewer, "key", "Return")
+    press_keys(viewer, "Return")
     saved = load_script(tmp_path / "take.toml")
-    assert saved.at(0.5)["jawOpen"] == pytest.approx(viewer.session.script.at(0.5)["jawOpen"])
+    assert saved.at(0.5)["jawOpen"] == approx(session.script.at(0.5)["jawOpen"])
     assert take.read_bytes() == before
 
 
@@ -300,21 +304,22 @@ def sound(viewer: Viewer, tmp_path: Path) -> Iterator[Path]:
 
 def test_a_sound_is_dropped_and_played(viewer, sound, has_device):
     """It gets a row of its own, plays and pauses with the script; without a device in peace."""
+    session = viewer.session
     before = viewer.timeline.height()
     put(viewer, sound)
     assert "noise.wav" in viewer.messages.text
     assert not viewer.messages.is_error
-    assert viewer.session.script.sound == sound
-    assert viewer.session.work.script_is_unsaved
+    assert session.script.sound == sound
+    assert session.work.script_is_unsaved
     settle(viewer)
     assert viewer.timeline.height() > before
     assert viewer.soundtrack.sound is not None
-    xdotool(viewer, "key", "space")
-    assert viewer.session.is_playing
-    assert until(viewer, lambda: viewer.session.time > 0.2)
+    press_keys(viewer, "space")
+    assert session.is_playing
+    assert until(viewer, lambda: session.time > 0.2)
     assert until(viewer, lambda: viewer.soundtrack.is_heard == has_device)
-    xdotool(viewer, "key", "space")
-    assert not viewer.session.is_playing
+    press_keys(viewer, "space")
+    assert not session.is_playing
     assert not viewer.soundtrack.is_heard
     assert not viewer.messages.is_error
     viewer.messages.text = ""
@@ -334,14 +339,14 @@ def test_the_waveform_is_seen_and_scrubs(viewer, sound, has_device):
     density = image.shape[1] / viewer.surface.size[0]
     upper = round((top + 0.45 * (bottom - top)) * density), round((bottom - 4) * density)
 
-    def contrast(first: float, last: float) -> float:
+    def contrast(first, last):
         columns = slice(round(axis.x(first) * density), round(axis.x(last) * density))
         return float(image[slice(*upper), columns].std())
 
     assert contrast(0.6, 1.9) > 2.0 * contrast(0.1, 0.4)
     place = on_screen(viewer, axis.x(1.5), bottom - 6)
     drag_and_release(viewer, place, (0, 0))
-    assert viewer.session.time == pytest.approx(1.5, abs=0.1)
+    assert viewer.session.time == approx(1.5, abs=0.1)
     assert left < axis.x(0.0)
     assert middle(viewer, "time")
 
@@ -349,15 +354,16 @@ def test_the_waveform_is_seen_and_scrubs(viewer, sound, has_device):
 @pytest.mark.parametrize("has_device", ["null device"], indirect=True)
 def test_the_sound_is_kept_with_the_script(viewer, sound, has_device):
     """Ctrl+S writes it, undo and the menu take it away, a lost file is reported once."""
+    session = viewer.session
     put(viewer, sound)
-    xdotool(viewer, "key", "ctrl+s")
+    press_keys(viewer, "ctrl+s")
     assert load_script(sound.parent / "s.toml").sound == sound
-    assert not viewer.session.work.unsaved
+    assert not session.work.unsaved
     assert 'sound = "noise.wav"' in (sound.parent / "s.toml").read_text()
-    xdotool(viewer, "key", "ctrl+z")
-    assert viewer.session.script.sound is None
+    press_keys(viewer, "ctrl+z")
+    assert session.script.sound is None
     assert viewer.soundtrack.sound is None
-    xdotool(viewer, "key", "ctrl+shift+z")
+    press_keys(viewer, "ctrl+shift+z")
     assert viewer.soundtrack.sound is not None
     viewer.scripts.remove_sound()
     settle(viewer)
@@ -369,37 +375,37 @@ def test_the_sound_is_kept_with_the_script(viewer, sound, has_device):
     assert viewer.messages.is_error
     assert "there is no sound in it" in viewer.messages.text
     sound.unlink()
-    viewer.session.work.open(load_script(sound.parent / "s.toml"))
+    session.work.open(load_script(sound.parent / "s.toml"))
     settle(viewer)
     assert "no such sound file; the script plays without" in viewer.messages.text
     viewer.messages.text = ""
-    xdotool(viewer, "key", "space")
-    assert until(viewer, lambda: viewer.session.time > 0.2)
+    press_keys(viewer, "space")
+    assert until(viewer, lambda: session.time > 0.2)
     assert not viewer.messages.text
 
 
 def test_a_name_that_is_no_utf8(viewer, tmp_path):
     """Dropped, saved, chosen and opened again: shown with its bytes escaped, never changed."""
+    session = viewer.session
     script = Path(os.fsdecode(os.fsencode(tmp_path) + b"/l\xe4cheln.toml"))
     script.write_text(SCRIPT)
     drop(viewer, script)
-    assert viewer.session.file.path == script
+    assert session.file.path == script
     assert not viewer.messages.is_error
     assert viewer.messages.text == r"l\xe4cheln.toml: opened"
     assert title_of(viewer) == r"Risorius: l\xe4cheln.toml"
-    viewer.session.set("jaw_open", 0.4)
-    viewer.session.note()
-    xdotool(viewer, "key", "k")
-    xdotool(viewer, "key", "ctrl+s")
+    session.set("jaw_open", 0.4)
+    session.note()
+    press_keys(viewer, "k")
+    press_keys(viewer, "ctrl+s")
     assert "jaw_open" in script.read_text("utf-8")
     put(viewer, tmp_path / "none.toml")
-    xdotool(viewer, "key", "ctrl+o")
+    press_keys(viewer, "ctrl+o")
     click(viewer, r"file l\xe4cheln.toml", times=2)
-    assert viewer.session.file.path == script
+    assert session.file.path == script
     assert not viewer.files.is_waiting
-    xdotool(viewer, "key", "ctrl+shift+s")
-    assert viewer.files.request is not None
+    press_keys(viewer, "ctrl+shift+s")
     assert viewer.files.request.target == script
-    xdotool(viewer, "key", "Escape")
-    xdotool(viewer, "key", "F12")
+    press_keys(viewer, "Escape")
+    press_keys(viewer, "F12")
     assert not viewer.messages.is_error

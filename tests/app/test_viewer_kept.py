@@ -9,14 +9,12 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import PlaneScene
-from risorius.app.script import Script
 from risorius.app.script.script_file import load_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session.physics import STEP
@@ -106,7 +104,7 @@ def test_a_file_of_no_use_is_reported(path, content):
 @pytest.mark.parametrize("name", ["theme", "display"])
 def test_no_settings_keep_the_window_shut(path, name):
     """Everything wrong at once, or an option that a refiner refuses: it opens, and says so."""
-    wrong: dict[str, Any] = {name: "zzz" for name in vars(Settings())}
+    wrong = {name: "zzz" for name in vars(Settings())}
     if name == "display":
         wrong = {name: {"options": {"kahler": {"threshold_once": "x"}}}}
     path.write_text(json.dumps(wrong))
@@ -131,7 +129,7 @@ def test_a_full_disk_is_reported_and_closes_the_window(path, monkeypatch, caplog
         viewer.session.set("jaw_open", 0.5)
         viewer.recovery.save()
 
-        def full(*_: object, **__: object) -> None:
+        def full(*_, **__):
             raise OSError(errno.ENOSPC, "No space left on device")
 
         monkeypatch.setattr(Path, "write_text", full)
@@ -154,7 +152,7 @@ class Clock:
 
     now = 0.0
 
-    def __call__(self) -> float:
+    def __call__(self):
         return self.now
 
 
@@ -172,26 +170,26 @@ def recovery(session: Session, tmp_path: Path, clock: Clock) -> Iterator[Recover
     made.close()
 
 
-def watch(recovery: Recovery, clock: Clock) -> None:
+def watch(recovery, clock):
     """Let the time pass in which a change is written."""
     recovery.watch()
     clock.now += INTERVAL
     recovery.watch()
 
 
-def stored(folder: Path) -> list[str]:
+def stored(folder):
     """The files with unsaved work."""
     return [path.name for path in folder.glob("unsaved*.toml")]
 
 
-def found_by_next(folder: Path, session: Session) -> Script | None:
+def found_by_next(folder, session):
     """The file that a window which opens now finds."""
     other = Recovery(folder, session)
     other.close()
     return None if other.found is None else load_script(other.found)
 
 
-def leave(folder: Path, session: Session) -> None:
+def leave(folder, session):
     """Work that a window has which then ends."""
     recovery = Recovery(folder, session)
     recovery.save()

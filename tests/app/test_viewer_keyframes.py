@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pytest import approx
 
 from risorius.app.control_names.limits import Limits
 from risorius.app.errors import UserError
@@ -32,7 +33,7 @@ def test_a_key_shows_just_the_face_that_was_set(hello, scene):
     wanted = limits.pose({"jaw_open": 0.4, "AU4_left": 0.2, "blink": 0.25})
     script = keyframes.keyed(hello, 2.12, wanted)
     for name, value in wanted.items():
-        assert script.at(2.12).get(name, 0.0) == pytest.approx(value, abs=1e-9), name
+        assert script.at(2.12).get(name, 0.0) == approx(value, abs=1e-9), name
     script.check(limits)
     assert [pose for pose in script.poses if pose.time != 2.12] == list(hello.poses)
     assert [key for key in script.tracks["blink"].keys if key.time != 2.12] == [
@@ -60,7 +61,7 @@ def test_a_key_in_a_recording(scene):
     assert len(held.tracks["joy"].keys) == 3
     assert len(held.tracks["jaw_open"].keys) == 2
     for time in np.linspace(0.0, 2.0, 9):
-        assert held.at(time) == pytest.approx(script.at(time))
+        assert held.at(time) == approx(script.at(time))
 
 
 def test_one_control_is_keyed_over_poses(hello, scene):
@@ -175,7 +176,6 @@ def test_a_new_script_keeps_the_face(session):
 def test_losses_of_a_file_are_noticed(session):
     """Changes by another program, and comments that are not kept; not a # in a title."""
     path = session.file.path
-    assert path is not None
     assert session.file.objection == ""
     session.work.save_script(path)
     assert session.file.objection == ""
@@ -208,7 +208,7 @@ def test_raised_keys_stay_within_limits(amount, choice):
         for old, new in zip(before.keys, after.keys, strict=True):
             wanted = min(max(old.value + amount, 0.0), 1.0)
             is_in = KeyPlace(name, old.time) in places
-            assert new.value == pytest.approx(wanted if is_in else old.value, abs=1e-6)
+            assert new.value == approx(wanted if is_in else old.value, abs=1e-6)
             assert new.easing == old.easing
     assert [pose.values.get("jaw_open") for pose in script.poses] == [None, 0.1, None, None]
     assert keyframes.raised(hello, places, 0.0, limits, {"joy"}) == hello

@@ -1,36 +1,11 @@
 """Clicks, keys and words as they come to a window that draws slowly: each has its effect."""
 
-import subprocess
-import time
-from pathlib import Path
-
 import pytest
 from imgui_bundle import imgui
 
-from risorius.app.viewer import Viewer
-
-from .driving import NEEDS_A_SCREEN, click, middle, until, xdotool
+from .driving import NEEDS_A_SCREEN, click, middle, press_keys, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
-
-SLOW = 0.15  # [s] beside the time to draw a frame
-
-
-def slowly(viewer: Viewer, *words: object, frames: int = 3) -> None:
-    """Send real events while the window draws a few frames a second, and some frames more."""
-    events = subprocess.Popen(["xdotool", *map(str, words)])
-    while events.poll() is None:
-        viewer.frame()
-        time.sleep(SLOW)
-    assert events.returncode == 0
-    for _ in range(frames):
-        viewer.frame()
-        time.sleep(SLOW)
-
-
-def typed(words: object) -> tuple[object, ...]:
-    """Events of words that are written at once, and entered."""
-    return "type", "--delay", 2, "--args", 1, words, "key", "Return"
 
 
 def test_escape_closes_one_thing_after_another(viewer):
@@ -44,7 +19,7 @@ def test_escape_closes_one_thing_after_another(viewer):
         (lambda: click(viewer, "Refiner"), "Refiner: loop"),
         (lambda: click(viewer, "speed"), "speed: 2 x"),
         (lambda: xdotool(viewer, "mousemove", x, y, "click", 3), "menu Keys: Set key"),
-        (lambda: xdotool(viewer, "key", "ctrl+o"), "path"),
+        (lambda: press_keys(viewer, "ctrl+o"), "path"),
     ):
         opens()
         assert until(viewer, lambda: shown in places), shown  # noqa: B023
@@ -68,7 +43,7 @@ def test_recent_files_are_opened_again(viewer, tmp_path):
         viewer.drop([str(path)])
     assert viewer.settings.recent[:2] == [str(path) for path in reversed(paths)]
 
-    def choose(path: Path) -> None:
+    def choose(path):
         """Open a file by the menu."""
         click(viewer, "menu File")
         click(viewer, "menu File: Recent")
@@ -83,5 +58,5 @@ def test_recent_files_are_opened_again(viewer, tmp_path):
     assert "no such file" in viewer.messages.text
     assert "\n" not in viewer.messages.text
     assert viewer.session.script.source == str(paths[0])
-    xdotool(viewer, "key", "Escape")
+    press_keys(viewer, "Escape")
     assert not viewer.messages.text

@@ -8,7 +8,7 @@ import pytest
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session.physics import SLEEP_DELAY
 
-from .driving import NEEDS_A_SCREEN, moved, settle, until, xdotool
+from .driving import NEEDS_A_SCREEN, moved, press_keys, settle, until
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("alive")]
 
@@ -24,25 +24,26 @@ def alive(viewer: Viewer, calm: None) -> Iterator[None]:
 
 def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer):
     """The eyes turn to the camera; sliders, undo and unsaved work stay as they were."""
-    assert until(viewer, lambda: viewer.session.scene.values["gaze_horizontal_left"] != 0.0)
+    session = viewer.session
+    assert until(viewer, lambda: session.scene.values["gaze_horizontal_left"] != 0.0)
     assert until(viewer, lambda: moved(viewer) > 0.5)
     settle(viewer)
-    assert not any(viewer.session.values.values())
-    assert not viewer.session.work.unsaved
-    assert not viewer.session.can_undo
+    assert not any(session.values.values())
+    assert not session.work.unsaved
+    assert not session.can_undo
     eye = viewer.view.camera.eye
-    motion = viewer.session.scene.bone_transforms()["eye_left"][:3, :3]
+    motion = session.scene.bone_transforms()["eye_left"][:3, :3]
     assert (motion @ [0.0, 0.0, 1.0]) @ (eye / np.linalg.norm(eye)) > 0.97
 
 
 def test_a_key_switches_it_off_and_on(viewer):
     """A lets the face come to rest, so that the window sleeps; A again wakes it."""
     assert until(viewer, lambda: moved(viewer) > 0.1)
-    xdotool(viewer, "key", "a")
+    press_keys(viewer, "a")
     assert not viewer.settings.is_alive
     assert until(viewer, lambda: viewer.is_idle)
     assert moved(viewer) < 0.05
-    xdotool(viewer, "key", "a")
+    press_keys(viewer, "a")
     assert viewer.settings.is_alive
     assert not viewer.is_idle
     assert until(viewer, lambda: moved(viewer) > 0.1)
@@ -66,5 +67,5 @@ def test_it_sleeps_when_nobody_is_there(viewer):
     viewer.life.after(SLEEP_DELAY, is_held=False)
     assert not viewer.life.is_on
     assert until(viewer, lambda: viewer.is_idle)
-    xdotool(viewer, "key", "Shift_L")
+    press_keys(viewer, "Shift_L")
     assert viewer.life.is_on

@@ -3,12 +3,12 @@
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
-from pathlib import Path
 
 import pytest
+from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.live.live_face import LiveFace, State
@@ -18,7 +18,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.session import live_commands
 from risorius.app.viewer.session.live_commands import LiveCommands
 
-from .driving import NEEDS_A_SCREEN, click, moved, until, xdotool
+from .driving import NEEDS_A_SCREEN, click, moved, press_keys, until
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "silent")]
 
@@ -29,16 +29,16 @@ class FrameClock:
     So no face is lost, and nothing is missed, because a machine is slow.
     """
 
-    def __init__(self, frame: Callable[[], None]) -> None:
+    def __init__(self, frame):
         """frame: the window's own, which draws one."""
         self._frame = frame
         self._now = 0.0
         self._last = time.perf_counter()
 
-    def __call__(self) -> float:
+    def __call__(self):
         return self._now
 
-    def frame(self) -> None:
+    def frame(self):
         """A frame goes by."""
         last, self._last = self._last, time.perf_counter()
         self._now += min(self._last - last, 0.05)
@@ -63,7 +63,7 @@ def silent(viewer: Viewer, clock: FrameClock) -> Iterator[None]:
     viewer.live.stop()
 
 
-def listen(viewer: Viewer) -> LiveFace:
+def listen(viewer):
     """Listen on a free port."""
     viewer.live.start(Listening("livelink", port=0))
     face = viewer.live.face
@@ -72,7 +72,7 @@ def listen(viewer: Viewer) -> LiveFace:
 
 
 @contextmanager
-def sending(face: LiveFace, file: Path) -> Iterator[None]:
+def sending(face, file):
     """Another process plays a recording to the window, again and again."""
     words = ["send", file, "--loop", "--port", face.port]
     process = subprocess.Popen(
@@ -85,13 +85,13 @@ def sending(face: LiveFace, file: Path) -> Iterator[None]:
         process.wait()
 
 
-def hold(viewer: Viewer, face: LiveFace, seconds: float, **channels: float) -> None:
+def hold(viewer, face, seconds, **channels):
     """Send the same face with every frame of the window, for a while and until it leads."""
     clock = face._clock
     end = clock() + seconds
     with Sender(LOOPBACK, face.port, "Ada") as sender:
 
-        def leads() -> bool:
+        def leads():
             """Whether that is enough; if not, send it once more."""
             is_enough = clock() >= end and face.presence == 1.0
             if not is_enough:
@@ -101,7 +101,7 @@ def hold(viewer: Viewer, face: LiveFace, seconds: float, **channels: float) -> N
         assert until(viewer, leads)
 
 
-def write_take(file: Path, **channels: float) -> Path:
+def write_take(file, **channels):
     """A recording of two seconds in which the channels rise and stay."""
     lines = [",".join(("time", *channels))]
     for index in range(120):
@@ -131,21 +131,23 @@ def test_a_recording_that_is_sent_moves_the_face(viewer, tmp_path):
 
 def test_live_leads_controls_it_names_and_sliders_keep_the_rest(viewer):
     """A slider of a control that is led has its value again when the lead is over."""
+    session = viewer.session
     face = listen(viewer)
-    viewer.session.set("jawOpen", 0.2)
-    viewer.session.set("AU9", 0.3)
+    session.set("jawOpen", 0.2)
+    session.set("AU9", 0.3)
     hold(viewer, face, 1.0, jawOpen=0.8)
-    assert viewer.session.current["jawOpen"] == pytest.approx(0.8)
-    assert viewer.session.current["AU9"] == 0.3
-    assert viewer.session.values["jawOpen"] == 0.2
+    assert session.current["jawOpen"] == approx(0.8)
+    assert session.current["AU9"] == 0.3
+    assert session.values["jawOpen"] == 0.2
     assert until(viewer, lambda: face.presence == 0.0)
-    assert viewer.session.current["jawOpen"] == 0.2
-    viewer.session.undo()
-    assert viewer.session.values["jawOpen"] == 0.0
+    assert session.current["jawOpen"] == 0.2
+    session.undo()
+    assert session.values["jawOpen"] == 0.0
 
 
 def test_buttons_listen_calibrate_mirror_and_stop(viewer):
     """All by hand, in the panel; the neutral face does not move ours any more."""
+    session = viewer.session
     click(viewer, "tab Live")
     click(viewer, "listen")
     face = viewer.live.face
@@ -153,19 +155,19 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer):
     assert not viewer.live.is_receiving
     frown = {"browDownLeft": 0.3, "mouthFrownLeft": 0.2}
     hold(viewer, face, 0.6, **frown)
-    assert viewer.session.current["browDownLeft"] > 0.2
+    assert session.current["browDownLeft"] > 0.2
     place = viewer.gui.places["calibrate"]
     assert place
     viewer.live.calibrate()
     hold(viewer, face, 1.2, **frown)
     assert viewer.messages.text == "This face is neutral now"
-    assert viewer.session.current["browDownLeft"] == pytest.approx(0.0, abs=1e-6)
+    assert session.current["browDownLeft"] == approx(0.0, abs=1e-6)
     click(viewer, "mirror live")
     hold(viewer, face, 0.5, **{**frown, "mouthSmileLeft": 0.6})
-    assert viewer.session.current["mouthSmileRight"] == pytest.approx(0.6, abs=1e-6)
+    assert session.current["mouthSmileRight"] == approx(0.6, abs=1e-6)
     click(viewer, "listen")
     assert viewer.live.face is None
-    assert viewer.session.current == viewer.session.values
+    assert session.current == session.values
 
 
 def test_a_packet_wakes_an_idle_window(viewer):
@@ -185,10 +187,9 @@ def test_a_port_that_is_taken_is_a_message(viewer):
     """The window goes on, and a line names the cure."""
     other = LiveCommands(viewer.session, lambda: None, lambda: None)
     other.start(Listening("livelink", port=0))
-    assert other.face is not None
     try:
         viewer.live.wanted = Listening("livelink", port=other.face.port)
-        xdotool(viewer, "key", "ctrl+l")
+        press_keys(viewer, "ctrl+l")
         assert viewer.messages.is_error
         assert "cannot listen" in viewer.messages.text
         assert viewer.live.face is None

@@ -9,21 +9,33 @@ from typing import ClassVar
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from numpy.linalg import norm
 from PIL import Image
+from pytest import approx
 
 from risorius.__main__ import command
 from risorius.app.errors import UserError
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
-from risorius.app.viewer.marking import Marking, MarkingMode
+from risorius.app.viewer.marking import Marking
 from risorius.app.viewer.marking.marking import FIRST, ORDER
 from risorius.app.viewer.marking.mode import places_in
 from risorius.assets import AssetError
 from risorius.assets.fitting.guess import placing
 from risorius.assets.fitting.landmark_file import read_landmarks
-from tests.heads import METRES, Array, stranger, with_card
+from tests.heads import METRES, stranger, with_card
 
-from .driving import NEEDS_A_SCREEN, click, drop, on_screen, settle, until, write, xdotool
+from .driving import (
+    NEEDS_A_SCREEN,
+    click,
+    drop,
+    on_screen,
+    press_keys,
+    settle,
+    until,
+    write,
+    xdotool,
+)
 
 NEAR = 6.0 * METRES  # of the built-in head's own shape, guesses are that good
 
@@ -40,13 +52,13 @@ def marking(mesh: Path) -> Marking:
     return Marking(mesh, FileDialogs())
 
 
-def true_places() -> Array:
+def true_places():
     """Where its landmarks are."""
     other = stranger()
     return other.mesh.vertices[other.landmarks]
 
 
-def mark_first(marking: Marking) -> None:
+def mark_first(marking):
     """Place the first five, as they are asked for, exactly."""
     for number in FIRST:
         assert marking.current == number
@@ -54,11 +66,10 @@ def mark_first(marking: Marking) -> None:
         marking.note()
 
 
-def off(marking: Marking) -> Array:
+def off(marking):
     """How far marks are from where they belong [m]."""
     found = np.array([marking.marks.places[number] for number in range(68)])
-    distance: Array = np.linalg.norm(found - true_places(), axis=1)
-    return distance
+    return norm(found - true_places(), axis=1)
 
 
 @pytest.mark.slow
@@ -144,19 +155,19 @@ class TestInTheWindow:
             viewer.show_scene(before)
         viewer.surface.should_close = viewer.is_leaving = False
 
-    def mode(self, viewer: Viewer) -> MarkingMode:
+    def mode(self, viewer):
         """The marking mode of the window."""
         assert until(viewer, lambda: viewer.marking_mode is not None)
         assert viewer.marking_mode is not None
         return viewer.marking_mode
 
-    def place(self, viewer: Viewer, point: Array) -> tuple[int, int]:
+    def place(self, viewer, point):
         """Where a point of the mesh is, on the screen."""
         mode = self.mode(viewer)
         seen = mode.marking.placing.points(point[None])
         return on_screen(viewer, *places_in(mode.view.area, mode.view.camera, seen)[0])
 
-    def face_it(self, viewer: Viewer) -> None:
+    def face_it(self, viewer):
         """Turn the camera to the face, which lies on its back: z is up in its file."""
         mode = self.mode(viewer)
         settle(viewer)  # the mesh gets its place in the window
@@ -166,7 +177,7 @@ class TestInTheWindow:
         camera.orbit(math.degrees(math.atan2(x, z)) - camera.yaw)
         camera.orbit(0.0, math.degrees(math.atan2(y, math.hypot(x, z))) - camera.pitch)
 
-    def mark_first(self, viewer: Viewer) -> None:
+    def mark_first(self, viewer):
         """Click the first points."""
         self.face_it(viewer)
         for number in FIRST:
@@ -182,23 +193,23 @@ class TestInTheWindow:
         self.face_it(viewer)
         ways = placing(dict(enumerate(true_places()))).inverse.vectors(np.eye(3))
 
-        def axes() -> Array:
+        def axes():
             """To the left, up and out of the face, as they are seen."""
             turned = marking.placing.vectors(ways)
-            return turned / np.linalg.norm(turned, axis=1, keepdims=True)
+            return turned / norm(turned, axis=1, keepdims=True)
 
         lying = axes()
         click(viewer, "Turn")
-        assert axes()[2] == pytest.approx([0.0, 0.0, 1.0], abs=0.1)
+        assert axes()[2] == approx([0.0, 0.0, 1.0], abs=0.1)
         up = axes()[1]
         click(viewer, "Turn")
-        assert axes()[1] == pytest.approx([up[1], -up[0], 0.0], abs=0.1)  # clockwise
-        xdotool(viewer, "key", "ctrl+z", "ctrl+z")
-        assert axes() == pytest.approx(lying)
-        xdotool(viewer, "key", "ctrl+y")
+        assert axes()[1] == approx([up[1], -up[0], 0.0], abs=0.1)  # clockwise
+        press_keys(viewer, "ctrl+z", "ctrl+z")
+        assert axes() == approx(lying)
+        press_keys(viewer, "ctrl+y")
         while axes()[1, 1] < 0.9:
-            xdotool(viewer, "key", "t")
-        assert axes() == pytest.approx(np.eye(3), abs=0.1)
+            press_keys(viewer, "t")
+        assert axes() == approx(np.eye(3), abs=0.1)
 
     def test_a_mark_is_put_only_where_it_is_seen(self, viewer, mesh):
         """A click into the open neck meets skin from behind: it is no mark, as a line says."""
@@ -228,25 +239,25 @@ class TestInTheWindow:
         xdotool(viewer, "mousemove_relative", "--", 2, -8)
         xdotool(viewer, "mouseup", 1)
         moved = np.subtract(marking.marks.places[number], before.places[number])
-        assert np.linalg.norm(moved) > 2.0 * METRES
+        assert norm(moved) > 2.0 * METRES
         assert marking.current == number
         assert [n for n in ORDER if marking.marks.places[n] != before.places[n]] == [number]
-        xdotool(viewer, "key", "ctrl+z")
+        press_keys(viewer, "ctrl+z")
         assert marking.marks == before
-        xdotool(viewer, "key", "ctrl+y")
+        press_keys(viewer, "ctrl+y")
         assert number in marking.marks.by_hand
-        xdotool(viewer, "key", "Right")
+        press_keys(viewer, "Right")
         assert marking.current == ORDER[ORDER.index(number) + 1]
         self.mode(viewer).view.camera.orbit(80.0, 0.0)  # whose side hides it
-        xdotool(viewer, "key", "Left")
+        press_keys(viewer, "Left")
         settle(viewer)
         assert number == marking.current
         assert number in self.mode(viewer).view.places()
         click(viewer, "Use this head")
         assert viewer.files.is_waiting
-        xdotool(viewer, "key", "ctrl+a")
+        press_keys(viewer, "ctrl+a")
         write(viewer, "marked")
-        xdotool(viewer, "key", "Return")
+        press_keys(viewer, "Return")
         assert until(viewer, lambda: viewer.marking_mode is None)
         assert len(viewer.session.scene.faces) == len(stranger().mesh.faces)
         image = tmp_path / "joy.png"
@@ -262,7 +273,7 @@ class TestInTheWindow:
         """Leaving and closing ask; a second mesh, too; saving in answer goes on."""
         viewer.session.set("jaw_open", 0.5)
         viewer.read(mesh)()
-        xdotool(viewer, "key", "ctrl+w")
+        press_keys(viewer, "ctrl+w")
         assert viewer.marking_mode is None  # nothing was marked, and the pose is not in danger
         viewer.read(mesh)()
         self.mark_first(viewer)
@@ -270,20 +281,20 @@ class TestInTheWindow:
         click(viewer, "Leave")
         assert viewer.question.is_open
         assert "question: Save pose ..." not in viewer.gui.places
-        xdotool(viewer, "key", "Escape")
+        press_keys(viewer, "Escape")
         assert viewer.marking_mode is mode
         viewer.drop([str(mesh)])
         assert viewer.question.is_open
-        xdotool(viewer, "key", "Escape")
-        xdotool(viewer, "key", "ctrl+q")
+        press_keys(viewer, "Escape")
+        press_keys(viewer, "ctrl+q")
         assert viewer.question.unsaved == "the landmarks of stranger.obj"
-        xdotool(viewer, "key", "Escape")
+        press_keys(viewer, "Escape")
         click(viewer, "Leave")
         click(viewer, "question: Save landmarks")
         write(viewer, "")
-        xdotool(viewer, "key", "ctrl+a")
+        press_keys(viewer, "ctrl+a")
         write(viewer, "kept")
-        xdotool(viewer, "key", "Return")
+        press_keys(viewer, "Return")
         assert until(viewer, lambda: viewer.marking_mode is None)
         assert mesh.with_name("kept.json").exists()
         assert viewer.session.values["jaw_open"] == 0.5

@@ -8,13 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from pytest import approx
 
 from risorius.app.anatomy import AnatomyView
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.captions import plate
-from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import SKINS, Display
-from risorius.assets.loading import read_words
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -24,10 +23,10 @@ from .driving import (
     drag_and_release,
     moved,
     on_screen,
+    press_keys,
     settle,
     show_controls,
     until,
-    xdotool,
 )
 
 from risorius import render  # isort: skip - after the viewer, see app/viewer/gui.py
@@ -37,7 +36,7 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 SMILE = "zygomaticus_major"
 
 
-def rows_shown(viewer: Viewer) -> set[str]:
+def rows_shown(viewer):
     """Labels of the rows in the panel."""
     settle(viewer)
     return {name.removeprefix("show ") for name in viewer.gui.places if name.startswith("show ")}
@@ -61,49 +60,14 @@ def test_plain_words_find_controls(viewer):
         viewer.settings.zoom = 1.0
 
 
-def test_one_side_is_copied_to_the_other(viewer):
-    """By the menu, in all spellings of sides; eyes and jaw stay where they are."""
-    session = viewer.session
-    shown = {"AU12_left": 0.5, "mouthSmileRight": 0.3, "wink": 0.2, "gaze_horizontal_left": 0.4}
-    for name, value in {**shown, "jaw_sideways": 0.1, "AU61": 0.2}.items():
-        session.set(name, value)
-    session.note()
-    click(viewer, "menu Edit")
-    click(viewer, "menu Edit: Left to right")
-    values = {name: value for name, value in session.values.items() if value}
-    assert values == {
-        "AU12_left": 0.5, "AU12_right": 0.5, "wink": 0.2, "wink_right": 0.2,
-        "gaze_horizontal_left": 0.4, "jaw_sideways": 0.1, "AU61": 0.2,
-    }  # fmt: skip
-    xdotool(viewer, "key", "ctrl+z")
-    click(viewer, "menu Edit")
-    click(viewer, "menu Edit: Right to left")
-    assert until(viewer, lambda: session.values["mouthSmileLeft"] == 0.3)
-    assert session.values["AU12_left"] == session.values["wink"] == 0.0
-
-
-def test_words_are_of_controls_that_there_are(viewer):
-    """Names, synonyms and filters of the table all mean something."""
-    controls = viewer.session.controls
-    limits = controls.limits
-    words = read_words()
-
-    def is_known(name: str) -> bool:
-        return any(f"{name}{side}" in limits for side in ("", "_left", "Left"))
-
-    found = {name for names in words["synonyms"].values() for name in names}
-    assert all(map(is_known, [*words["names"], *found]))
-    assert words["order"] == list(controls.groups)
-
-
-def in_panel(viewer: Viewer, *rows: tuple[str, str]) -> None:
+def in_panel(viewer, *rows):
     """Choose in lists of the Mechanism panel."""
     for row, choice in rows:
         click(viewer, row)
         click(viewer, f"{row}: {choice}")
 
 
-def only_open(viewer: Viewer, title: str) -> None:
+def only_open(viewer, title):
     """Fold all of the Mechanism panel but one heading, so that there is room for it."""
     viewer.wanted_tab = "Mechanism"
     titles = ("Refinement", "Style", "Anatomy", "Light and person", "Milliseconds")
@@ -111,7 +75,7 @@ def only_open(viewer: Viewer, title: str) -> None:
     settle(viewer)
 
 
-def seen_labels(viewer: Viewer, page: np.ndarray, origin: tuple[int, int]) -> list[bool]:
+def seen_labels(viewer, page, origin):
     """Whether each label of the window is in a picture whose lower left corner is there."""
     seen = []
     for x, y, image in viewer.surface.labels:
@@ -127,7 +91,7 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
     assert not viewer.surface.labels
     only_open(viewer, "Style")
     click(viewer, "Colour by splits")
-    xdotool(viewer, "key", "d")
+    press_keys(viewer, "d")
     assert until(viewer, lambda: viewer.is_idle)
     assert len(viewer.surface.labels) == 3
     height = viewer.view.viewport[3]
@@ -140,7 +104,7 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
     ):
         assert np.array_equal(label[2], plate(text, size))
     assert seen_labels(viewer, viewer.surface.read(), (0, 0)) == [True] * 3
-    xdotool(viewer, "key", "F12")
+    press_keys(viewer, "F12")
     (path,) = tmp_path.glob("*.png")
     page = np.asarray(Image.open(path))
     assert seen_labels(viewer, page, viewer.view.viewport[:2]) == [True] * 3
@@ -178,7 +142,7 @@ def test_the_number_pad_looks_from_all_sides(viewer):
         ("KP_End", 0.0, 0.0),
         ("alt+3", 90.0, 0.0),
     ):
-        xdotool(viewer, "key", keys)
+        press_keys(viewer, keys)
         assert (camera.yaw, camera.pitch) == (yaw, pitch), keys
     assert (camera.distance, camera.target.tolist()) == place
     assert not any(viewer.session.values.values())  # alt+3 is no expression
@@ -188,7 +152,7 @@ def test_a_key_shows_the_muscles_as_capture_draws_them(viewer):
     """U switches them on and off; nothing stays behind."""
     settle(viewer)
     usual = viewer.stage.draw_image(viewer.view).astype(int)
-    xdotool(viewer, "key", "u")
+    press_keys(viewer, "u")
     settle(viewer)
     assert viewer.settings.display.overlays == ["muscles"]
     shown = viewer.stage.draw_image(viewer.view).astype(int)
@@ -201,7 +165,7 @@ def test_a_key_shows_the_muscles_as_capture_draws_them(viewer):
         off = np.abs(capture.draw_image().astype(int) - shown)
     assert np.percentile(off, 99) <= 2.0
     viewer.surface.make_current()
-    xdotool(viewer, "key", "u")
+    press_keys(viewer, "u")
     settle(viewer)
     assert np.array_equal(viewer.stage.draw_image(viewer.view), usual)
 
@@ -224,7 +188,7 @@ def test_the_panel_can_be_made_wider(viewer):
     """Its edge follows the mouse, as far as the picture keeps more than half of the window."""
     left, top, _, height = viewer.view.area
     drag_and_release(viewer, on_screen(viewer, left - 1, top + 0.5 * height), (-90, 0))
-    assert viewer.view.area[0] == pytest.approx(left - 90, abs=3)
+    assert viewer.view.area[0] == approx(left - 90, abs=3)
     viewer.settings.panel_width = 22.5
     drag_and_release(viewer, on_screen(viewer, viewer.view.area[0] - 1, top + 0.5 * height), (5, 0))
 
@@ -253,7 +217,7 @@ def test_any_size_can_be_drawn(viewer):
     import glfw
 
     before = viewer.view.area
-    xdotool(viewer, "key", "1")
+    press_keys(viewer, "1")
     try:
         for size in ((1, 1), (40, 30), (700, 20), (20, 500), SIZE):
             glfw.set_window_size(viewer.surface.handle, *size)
@@ -278,7 +242,7 @@ def test_a_dense_screen_has_everything_twice_as_large(viewer):
     assert result.returncode == 0, result.stderr
     found = json.loads(result.stdout)
     # Letters are as wide as whole pixels allow, which at twice the size is not quite twice as much.
-    assert found["button"] == pytest.approx([2.0 * (right - left), 2.0 * (bottom - top)], abs=6.0)
+    assert found["button"] == approx([2.0 * (right - left), 2.0 * (bottom - top)], abs=6.0)
     assert found["line"] == 2.0
     assert found["is_settled"]  # the first picture is where all others are
     assert found["frame"] == found["window"] == [1200, 800]

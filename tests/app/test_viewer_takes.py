@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pytest import approx
 
 from risorius.app.control_names.limits import Limits
 from risorius.app.errors import UserError
@@ -14,7 +15,6 @@ from risorius.app.script import Channel, Key, Pose, Script
 from risorius.app.script.recorder import Recorder
 from risorius.app.script.script_file import load_script
 from risorius.app.viewer.session.physics import STEP
-from risorius.app.viewer.session.session import Session
 
 from .driving import run
 
@@ -40,7 +40,7 @@ def test_recording_begins_at_the_playhead_and_keeps_the_rest(session):
     assert after.poses == before.poses
     assert after.duration == before.duration
     assert set(after.tracks) == {"blink", "jaw_open"}
-    assert after.at(1.9)["jaw_open"] == pytest.approx(0.7, abs=2e-3)
+    assert after.at(1.9)["jaw_open"] == approx(0.7, abs=2e-3)
     for time in (0.0, 1.0, 1.6, 2.1, 3.0, 4.0):
         assert after.at(time) == before.at(time) | {"jaw_open": before.at(time)["jaw_open"]}
     session.undo()
@@ -55,7 +55,7 @@ EASINGS = st.sampled_from(["linear", "smooth", "hold", "ease-in", "ease-out"])
 
 
 @st.composite
-def scripts(draw: st.DrawFn) -> Script:
+def scripts(draw):
     """Poses, tracks, or both, of three controls; four seconds."""
     poses = [
         Pose(time, draw(st.dictionaries(st.sampled_from("abc"), SHARES)), draw(EASINGS))
@@ -70,7 +70,7 @@ def scripts(draw: st.DrawFn) -> Script:
     return Script("drawn", 4.0, "drawn", poses=tuple(poses), tracks=tracks)
 
 
-def cut_by(script: Script, name: str, times: tuple[float, ...], moment: float) -> bool:
+def cut_by(script, name, times, moment):
     """Whether a moment is on the way between two keys of a track that one of the times parts."""
     keys = script.tracks.get(name, Channel([], [])).times
     ways = itertools.pairwise(keys)
@@ -123,15 +123,15 @@ def test_punching_in_changes_nothing_else(played, start, moves):
             after = script.at(moment).get(name, 0.0)
             if moment < begin - 1.01 * STEP or (moment > end and end < 4.0 - 0.04):
                 if cut_by(played, name, (begin - STEP, end), moment):
-                    assert after == pytest.approx(before, abs=3e-3)
+                    assert after == approx(before, abs=3e-3)
                 else:
                     assert after == before
         for moment, values in shown.items():
             if begin <= moment < end - 0.101:
-                assert script.at(moment)[name] == pytest.approx(values[name], abs=4e-3)
+                assert script.at(moment)[name] == approx(values[name], abs=4e-3)
 
 
-def paused(session: Session) -> None:
+def paused(session):
     """Begin to record at 1 s, move the jaw, and pause at 2 s."""
     session.seek(1.0)
     session.toggle_recording()
@@ -156,7 +156,7 @@ def test_moves_in_a_pause_stay_by_hand_when_it_ends(session):
     assert session.values["jaw_open"] == 0.1
     assert session.differing == {"AU4", "jaw_open"}
     assert session.work.has_unsaved_pose
-    assert session.script.at(1.8)["jaw_open"] == pytest.approx(0.5, abs=0.002)
+    assert session.script.at(1.8)["jaw_open"] == approx(0.5, abs=0.002)
     assert "AU4" not in session.script.tracks
     assert "[Undo]" in (session.seek(0.0) or "")
     session.undo()
@@ -204,4 +204,4 @@ def test_the_face_that_is_led_becomes_keys_poses_and_recordings(session, tmp_pat
         session.live_override.take({"jaw_open": step / 30.0}, 1.0)
         session.advance(STEP)
     session.toggle_recording()
-    assert session.script.at(0.25)["jaw_open"] == pytest.approx(0.5, abs=0.05)
+    assert session.script.at(0.25)["jaw_open"] == approx(0.5, abs=0.05)

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from imgui_bundle import imgui
+from pytest import approx
 
-from risorius.app.script import Channel, Script
 from risorius.app.script.keyframes import POSES, on_frame
 from risorius.app.script.places import KeyPlace, Places
-from risorius.app.script.script_file import load_script, parse_script, save_script, script_text
+from risorius.app.script.script_file import load_script, parse_script, script_text
 from risorius.app.viewer import Viewer
 
 from .driving import (
@@ -23,6 +23,7 @@ from .driving import (
     on_screen,
     pose_times,
     press,
+    press_keys,
     settle,
     show_controls,
     where_key,
@@ -38,48 +39,51 @@ REST = KeyPlace(POSES, 3.0)
 
 def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
     """A drag goes to whole frames, the face follows, the file keeps it, one undo takes it back."""
-    before = viewer.session.script
-    viewer.session.seek(1.0)
+    session = viewer.session
+    before = session.script
+    session.seek(1.0)
     drag(viewer, key_at(viewer, JOY), (40, 0))
     xdotool(viewer, "mousemove_relative", "--", 13, 0)
-    assert viewer.session.values["joy"] < 1.0  # seen while it is dragged
+    assert session.values["joy"] < 1.0  # seen while it is dragged
     xdotool(viewer, "mouseup", 1)
     time = pose_times(viewer)[1]
     assert time == on_frame(time) > 1.1
     assert viewer.selection.places == {KeyPlace(POSES, time)}
-    assert viewer.session.work.name == "own.toml"
-    assert viewer.session.work.script_is_unsaved
-    xdotool(viewer, "key", "ctrl+s")
-    assert not viewer.session.work.unsaved
-    assert load_script(own) == viewer.session.script
+    assert session.work.name == "own.toml"
+    assert session.work.script_is_unsaved
+    press_keys(viewer, "ctrl+s")
+    assert not session.work.unsaved
+    assert load_script(own) == session.script
     assert load_script(own).poses[1].time == time
-    xdotool(viewer, "key", "ctrl+z")
-    assert viewer.session.script == before
-    assert viewer.session.work.script_is_unsaved
-    xdotool(viewer, "key", "ctrl+shift+z")
+    press_keys(viewer, "ctrl+z")
+    assert session.script == before
+    assert session.work.script_is_unsaved
+    press_keys(viewer, "ctrl+shift+z")
     assert pose_times(viewer)[1] == time
-    assert not viewer.session.work.script_is_unsaved
+    assert not session.work.script_is_unsaved
 
 
 def test_a_click_selects_a_key_and_goes_there(viewer):
     """The pose under the mouse is selected and shown; Shift adds another and stays."""
+    session = viewer.session
     press(viewer, key_at(viewer, JOY))
     assert viewer.selection.places == {JOY}
-    assert viewer.session.time == 1.0
-    assert viewer.session.values["joy"] == 1.0
+    assert session.time == 1.0
+    assert session.values["joy"] == 1.0
     press(viewer, key_at(viewer, REST), "shift")
     assert viewer.selection.places == {JOY, REST}
-    assert viewer.session.time == 1.0
+    assert session.time == 1.0
     press(viewer, key_at(viewer, JOY), "shift")
     assert viewer.selection.places == {REST}
     x, y = key_at(viewer, KeyPlace(POSES, 1.0))
     press(viewer, (x + 50, y))
     assert not viewer.selection.places
-    assert not viewer.session.work.unsaved
+    assert not session.work.unsaved
 
 
 def test_a_box_selects_keys_that_then_move_together(viewer):
     """A drag over nothing takes the keys inside, of poses and tracks; they keep their distance."""
+    session = viewer.session
     x, y = key_at(viewer, JOY)
     right, low = key_at(viewer, KeyPlace("blink", 2.4))
     drag_and_release(viewer, (x - 30, y - 4), (right + 12 - x + 30, low - y + 8))
@@ -87,50 +91,51 @@ def test_a_box_selects_keys_that_then_move_together(viewer):
     assert {place.track for place in chosen} == {POSES, "blink"}
     assert len(chosen) == 5
     drag_and_release(viewer, key_at(viewer, JOY), (-30, 0))
-    by = viewer.session.script.poses[1].time - 1.0
+    by = session.script.poses[1].time - 1.0
     assert by < -0.1
-    times = [key.time + 0.0 for key in viewer.session.script.tracks["blink"].keys]
-    assert times == pytest.approx([time + by for time in (2.0, 2.12, 2.22, 2.4)])
-    xdotool(viewer, "key", "shift+Right")
-    assert viewer.session.script.poses[1].time == pytest.approx(1.0 + by + 1.0 / 30.0, abs=1e-5)
-    xdotool(viewer, "key", "ctrl+z", "ctrl+z")
-    assert not viewer.session.work.script_is_unsaved
+    times = [key.time + 0.0 for key in session.script.tracks["blink"].keys]
+    assert times == approx([time + by for time in (2.0, 2.12, 2.22, 2.4)])
+    press_keys(viewer, "shift+Right")
+    assert session.script.poses[1].time == approx(1.0 + by + 1.0 / 30.0, abs=1e-5)
+    press_keys(viewer, "ctrl+z", "ctrl+z")
+    assert not session.work.script_is_unsaved
 
 
 def test_delete_and_paste(viewer):
     """Delete takes selected keys, they are pasted at the time shown; both can be undone."""
     press(viewer, key_at(viewer, JOY))
     viewer.session.seek(2.0)
-    xdotool(viewer, "key", "ctrl+c", "ctrl+v")
+    press_keys(viewer, "ctrl+c", "ctrl+v")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert viewer.session.script.poses[2].name == "joy"
     assert viewer.selection.places == {KeyPlace(POSES, 2.0)}
-    xdotool(viewer, "key", "Delete")
+    press_keys(viewer, "Delete")
     assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
     assert "1 key deleted" in viewer.messages.text
-    xdotool(viewer, "key", "ctrl+a", "Delete")
+    press_keys(viewer, "ctrl+a", "Delete")
     assert viewer.messages.is_error
     assert "at least one key" in viewer.messages.text
-    xdotool(viewer, "key", "ctrl+z")
+    press_keys(viewer, "ctrl+z")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert not viewer.messages.text
-    xdotool(viewer, "key", "ctrl+z")
+    press_keys(viewer, "ctrl+z")
     assert not viewer.session.work.script_is_unsaved
 
 
 def test_the_face_becomes_a_key(viewer):
     """Go to a time, move a slider, press Shift+K: a pose is there that shows just this face."""
-    viewer.session.seek(2.0)
+    session = viewer.session
+    session.seek(2.0)
     open_jaw(viewer)
-    wanted = dict(viewer.session.values)
-    xdotool(viewer, "key", "shift+k")
+    wanted = dict(session.values)
+    press_keys(viewer, "shift+k")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
-    assert viewer.session.script.at(2.0)["jaw_open"] == pytest.approx(wanted["jaw_open"])
+    assert session.script.at(2.0)["jaw_open"] == approx(wanted["jaw_open"])
     assert viewer.selection.places == {KeyPlace(POSES, 2.0)}
-    assert viewer.session.work.unsaved == "the script"
-    xdotool(viewer, "key", "Home")
+    assert session.work.unsaved == "the script"
+    press_keys(viewer, "Home")
     press(viewer, key_at(viewer, KeyPlace(POSES, 2.0)))
-    assert viewer.session.values == pytest.approx(wanted)
+    assert session.values == approx(wanted)
     click(viewer, "set key")
     assert viewer.messages.is_error and "No control was moved" in viewer.messages.text
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
@@ -168,19 +173,19 @@ def test_the_ruler_scrubs_and_the_wheel_zooms(viewer):
     xdotool(viewer, "click", "--repeat", 3, 4)
     assert axis.span < 3.0
     assert not axis.is_whole
-    assert axis.time(x - on_screen(viewer, 0, 0)[0] + 30) == pytest.approx(kept, abs=0.02)
+    assert axis.time(x - on_screen(viewer, 0, 0)[0] + 30) == approx(kept, abs=0.02)
     start = axis.start
     xdotool(viewer, "keydown", "shift")
     xdotool(viewer, "click", 5)
     xdotool(viewer, "keyup", "shift")
     assert axis.start > start
-    xdotool(viewer, "key", "shift+f")
+    press_keys(viewer, "shift+f")
     assert axis.is_whole
     assert axis.start == 0.0
     end = on_screen(viewer, axis.x(4.0) + 3, 0)[0]
     drag_and_release(viewer, (end, y), (-60, 0))
     assert 2.0 < session.script.duration < 3.9
-    xdotool(viewer, "key", "ctrl+z")
+    press_keys(viewer, "ctrl+z")
     assert session.script.duration == 4.0
 
 
@@ -199,28 +204,7 @@ def test_tracks_unfold_into_rows(viewer):
     assert viewer.selection.places == {KeyPlace("blink", 2.4)}
 
 
-@pytest.fixture(scope="module")
-def dense(viewer: Viewer, tmp_path_factory: pytest.TempPathFactory) -> Script:
-    """A script of half a million keys in 60 tracks."""
-    names = [name for name, (low, _) in viewer.session.controls.limits.items() if low == 0.0][:60]
-    times = np.arange(9000) / 15.0
-    chance = np.random.default_rng(5)
-    tracks = {name: Channel(times, chance.uniform(0.0, 0.4, 9000).round(3)) for name in names}
-    path = tmp_path_factory.mktemp("dense") / "take.toml"
-    save_script(path, Script("take", 600.0, "take", tracks=tracks))
-    return load_script(path)
-
-
-@pytest.fixture
-def take(viewer: Viewer, own: Path, dense: Script) -> Script:
-    """The dense script, opened, with a row for each of its tracks."""
-    viewer.session.work.open(dense)
-    viewer.settings.folds["Tracks"] = True
-    settle(viewer)  # until the rows are in their places
-    return viewer.session.script
-
-
-def open_jaw(viewer: Viewer) -> float:
+def open_jaw(viewer):
     """Drag the jaw's slider with the mouse, and let it go; its value then."""
     show_controls(viewer, "jaw open")
     drag_and_release(viewer, middle(viewer, "jaw_open"), (40, 0))
@@ -230,7 +214,7 @@ def open_jaw(viewer: Viewer) -> float:
     return value
 
 
-def scrub(viewer: Viewer, time: float) -> None:
+def scrub(viewer, time):
     """Click in the ruler."""
     x = on_screen(viewer, viewer.time_axis.x(time), 0.0)[0]
     press(viewer, (x, middle(viewer, "time")[1]))
@@ -242,10 +226,10 @@ def test_auto_key(viewer):
     click(viewer, "auto-key")
     value = open_jaw(viewer)
     assert "jaw_open" in viewer.session.script.tracks
-    assert viewer.session.script.at(2.0)["jaw_open"] == pytest.approx(value)
+    assert viewer.session.script.at(2.0)["jaw_open"] == approx(value)
     scrub(viewer, 3.5)
     assert not viewer.messages.text
-    xdotool(viewer, "key", "ctrl+z")
+    press_keys(viewer, "ctrl+z")
     assert "jaw_open" not in viewer.session.script.tracks
     click(viewer, "auto-key")
     open_jaw(viewer)
@@ -259,41 +243,37 @@ def curves(viewer: Viewer, own: Path) -> None:
     settle(viewer)
 
 
-def place_of(viewer: Viewer, when: float, value: float) -> tuple[float, float]:
+def place_of(viewer, when, value):
     """Where a time and a value are in the graph [window units]."""
     return viewer.time_axis.x(when), float(viewer.timeline.dope_sheet.graph.y(value))
 
 
-def at(viewer: Viewer, when: float, value: float) -> tuple[int, int]:
+def at(viewer, when, value):
     """The same, on the screen."""
     return on_screen(viewer, *place_of(viewer, when, value))
 
 
-def move(viewer: Viewer, x: float, y: float) -> None:
+def move(viewer, x, y):
     """Move the mouse on, in two steps, and let go."""
     xdotool(viewer, "mousemove_relative", "--", round(x), round(y))
     xdotool(viewer, "mouseup", 1)
 
 
-def values(viewer: Viewer, control: str) -> list[float]:
-    """The value of a control in each pose."""
-    return [pose.values.get(control, 0.0) for pose in viewer.session.script.poses]
-
-
 @pytest.mark.usefixtures("curves")
 def test_a_key_is_dragged_in_time_and_value(viewer):
     """Both at once, to frames and within limits; Escape puts it back."""
-    before = viewer.session.script
+    session = viewer.session
+    before = session.script
     drag(viewer, at(viewer, 1.0, 1.0), (-10, 10))
     xdotool(viewer, "mousemove_relative", "--", -10, 10)
-    pose = viewer.session.script.poses[1]
+    pose = session.script.poses[1]
     assert pose.time == on_frame(pose.time) < 0.9
     assert 0.3 < pose.values["joy"] < 0.95
     xdotool(viewer, "mousemove_relative", "--", 0, -300)
-    assert viewer.session.script.poses[1].values["joy"] == 1.0
-    xdotool(viewer, "key", "Escape")
+    assert session.script.poses[1].values["joy"] == 1.0
+    press_keys(viewer, "Escape")
     xdotool(viewer, "mouseup", 1)
-    assert viewer.session.script == before
+    assert session.script == before
 
 
 @pytest.mark.usefixtures("curves")
@@ -306,12 +286,11 @@ def test_easings_are_chosen_and_seen(viewer):
     assert script.poses[2].easing == "hold"
     times, drawn = script.posed_channel("joy").outline(0.0, 4.0, 200)
     played = [script.posed(when)["joy"] for when in times.tolist()]
-    assert drawn == pytest.approx(played)
-    assert max(np.abs(np.diff(drawn))) == pytest.approx(0.4)  # it jumps
+    assert drawn == approx(played)
+    assert max(np.abs(np.diff(drawn))) == approx(0.4)  # it jumps
     xdotool(viewer, "mousemove", *at(viewer, 2.9, 1.0))  # on the curve that now stays
     graph = viewer.timeline.dope_sheet.graph
     hit = graph.at(*place_of(viewer, 2.9, 1.0))
-    assert hit is not None
     assert hit.curve.name == "pose joy"
     assert not hit.key
 
@@ -319,7 +298,8 @@ def test_easings_are_chosen_and_seen(viewer):
 @pytest.mark.usefixtures("curves")
 def test_handles_set_slopes(viewer):
     """Handles of the way to a selected key bend it; face and file get the same; undo, Escape."""
-    before = viewer.session.script
+    session = viewer.session
+    before = session.script
     viewer.selection.places = Places.of(KeyPlace(POSES, 1.0))
     settle(viewer)
     graph = viewer.timeline.dope_sheet.graph
@@ -329,19 +309,19 @@ def test_handles_set_slopes(viewer):
     move(viewer, 0, round(first.root[1] - first.place[1]))  # as low as the key before
     drag(viewer, on_screen(viewer, *last.place), (0, 8))
     move(viewer, 0, 12)
-    pose = viewer.session.script.poses[1]
+    pose = session.script.poses[1]
     start, end = map(float, pose.easing.split(","))
     assert start == 0.0 < end < 3.0
     assert pose.values == before.poses[1].values
-    again = parse_script(script_text(viewer.session.script), source="again")
-    assert again.at(0.4) == viewer.session.script.at(0.4) != before.at(0.4)
-    viewer.session.seek(0.4)
-    assert viewer.session.values["joy"] == pytest.approx(again.at(0.4)["joy"])
-    xdotool(viewer, "key", "ctrl+z")
-    xdotool(viewer, "key", "ctrl+z")
-    assert viewer.session.script == before
+    again = parse_script(script_text(session.script), source="again")
+    assert again.at(0.4) == session.script.at(0.4) != before.at(0.4)
+    session.seek(0.4)
+    assert session.values["joy"] == approx(again.at(0.4)["joy"])
+    press_keys(viewer, "ctrl+z")
+    press_keys(viewer, "ctrl+z")
+    assert session.script == before
     drag(viewer, on_screen(viewer, *last.place), (0, 8))
-    assert viewer.session.script != before
-    xdotool(viewer, "key", "Escape")
+    assert session.script != before
+    press_keys(viewer, "Escape")
     xdotool(viewer, "mouseup", 1)
-    assert viewer.session.script == before
+    assert session.script == before

@@ -11,6 +11,7 @@ from risorius.app.script.script_file import load_script
 from risorius.app.viewer.picture.stage import FULL_DETAIL, LEVELS, PATIENCE_FRAMES, LevelOfDetail
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.timeline.keys import KeySelection
+from risorius.assets.loading import read_words
 
 from .driving import HELLO, run, set_by_hand
 
@@ -64,7 +65,7 @@ COMMANDS = {
 class Still(FaceScene):
     """A face that takes no time."""
 
-    def step(self, seconds: float) -> None:
+    def step(self, seconds):
         """Stay."""
 
 
@@ -74,7 +75,7 @@ def test_undo_gives_the_state_before(steps):
     """After any commands: back through all states, and forward again to the last one."""
     session = Session(SHARED, load_script(HELLO))
 
-    def state() -> tuple[object, ...]:
+    def state():
         by_hand = None if session.is_following else dict(session.values)
         return session.script, session.file, by_hand
 
@@ -136,3 +137,32 @@ def test_detail_falls_once_and_does_not_flicker():
     for _ in range(100):
         chosen.note(0.08)
     assert chosen.detail == LEVELS[-1]
+
+
+@pytest.mark.parametrize(
+    ("source", "copied"),
+    [
+        ("left", {"AU12_left": 0.5, "AU12_right": 0.5, "wink": 0.2, "wink_right": 0.2}),
+        ("right", {"mouthSmileLeft": 0.3, "mouthSmileRight": 0.3}),
+    ],
+)
+def test_one_side_is_copied_to_the_other(session, source, copied):
+    """In all spellings of sides; eyes and jaw stay where they are."""
+    middle = {"gaze_horizontal_left": 0.4, "jaw_sideways": 0.1, "AU61": 0.2}
+    session.neutral()
+    set_by_hand(session, AU12_left=0.5, mouthSmileRight=0.3, wink=0.2, **middle)
+    session.mirror(source)
+    assert {name: value for name, value in session.values.items() if value} == copied | middle
+
+
+def test_words_are_of_controls_that_there_are(session):
+    """Names, synonyms and filters of the table all mean something."""
+    limits = session.controls.limits
+    words = read_words()
+
+    def is_known(name):
+        return any(f"{name}{side}" in limits for side in ("", "_left", "Left"))
+
+    found = {name for names in words["synonyms"].values() for name in names}
+    assert all(map(is_known, [*words["names"], *found]))
+    assert words["order"] == list(session.controls.groups)

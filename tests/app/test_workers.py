@@ -4,7 +4,6 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -28,14 +27,14 @@ list(run_all(working.write_slowly, [folder / "a", folder / "b"]))
 """
 
 
-def run(work: Callable[..., object], *arguments: Any, jobs: int = 1, **options: Any) -> list[Any]:
+def run(work, *arguments, jobs=1, **options):
     """What a piece of work hands over."""
     messages = list[Any]()
     WorkerPool(jobs).run(work, *arguments, on_message=messages.append, **options)
     return messages
 
 
-def wait_until(is_so: Callable[[], bool]) -> None:
+def wait_until(is_so):
     """Wait for something; a failure where it does not come."""
     for _ in range(6000):
         if is_so():
@@ -44,7 +43,7 @@ def wait_until(is_so: Callable[[], bool]) -> None:
     raise AssertionError("nothing happened for a minute")
 
 
-def is_running(process: int) -> bool:
+def is_running(process):
     """Whether a process is there, and not only its end that nobody has asked for."""
     try:
         state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
@@ -125,7 +124,7 @@ def test_whoever_stops_early_leaves_no_process():
     """The caller breaks off after the first message."""
     running = run_all(working.double, [list(range(10_000))])
     process = next(running)[1]
-    running.close()  # type: ignore[attr-defined]
+    running.close()
     assert not is_running(process)
 
 

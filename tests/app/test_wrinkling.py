@@ -3,14 +3,12 @@
 from types import SimpleNamespace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from risorius.app.refining.wrinkling import Compression, on_rows
 from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
 
-Array = npt.NDArray[np.float64]
 SETTLED = 1.2  # [s]
 
 
@@ -20,7 +18,7 @@ def wrinkling(scene: FaceScene) -> Compression:
     return Compression(scene)
 
 
-def amounts(scene: FaceScene, wrinkling: Compression, **pose: float) -> Array:
+def amounts(scene, wrinkling, **pose):
     """How far the face wrinkles in a pose that it has settled in."""
     scene.reset()
     scene.pose(pose)
@@ -28,13 +26,13 @@ def amounts(scene: FaceScene, wrinkling: Compression, **pose: float) -> Array:
     return wrinkling.amounts(scene.positions).astype(np.float64)
 
 
-def region(scene: FaceScene, low: tuple[float, ...], high: tuple[float, ...]) -> Array:
+def region(scene, low, high):
     """The vertices at rest in a box [mm]."""
     rest = scene.rest_positions
     return ((rest > low) & (rest < high)).all(axis=1)
 
 
-def forehead(scene: FaceScene) -> Array:
+def forehead(scene):
     return region(scene, (-30, 36, 60), (30, 62, 120))
 
 
@@ -42,7 +40,7 @@ def test_nothing_wrinkles_at_rest(scene, wrinkling):
     """Exactly nothing, so that the picture without wrinkles is drawn."""
     found = amounts(scene, wrinkling)
     assert not found.any()
-    assert on_rows(found.astype(np.float32), SimpleNamespace()) is None  # type: ignore[arg-type]
+    assert on_rows(found.astype(np.float32), SimpleNamespace()) is None
 
 
 @pytest.mark.parametrize(

@@ -2,10 +2,13 @@
 
 import numpy as np
 import numpy.typing as npt
+from numpy.linalg import norm
 from scipy import sparse
 from scipy.sparse import csgraph
 
+from risorius.assets.model import Head, Part
 from risorius.assets.topology import Edge, Faces
+from risorius.geometry.normals import cross_products
 
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.int32]
@@ -55,3 +58,40 @@ def is_mirrored(faces: IndexArray, mirror: IndexArray) -> bool:
         return set(map(tuple, np.take_along_axis(triangles, order, axis=1).tolist()))
 
     return normalised(faces) == normalised(mirror[faces][:, ::-1])
+
+
+def check_part(part: Part, *, least_agreeing: float = 0.98) -> None:
+    """Arrays fit each other, and normals are unit and look to the side that is drawn."""
+    assert part.vertices.dtype == part.normals.dtype == part.colours.dtype == np.float32
+    assert part.faces.dtype == np.int32
+    rows = np.hstack([part.vertices, part.normals, part.colours])
+    assert rows.shape == (len(part.vertices), 9)
+    assert np.isfinite(rows).all()
+    assert part.faces.min() >= 0
+    assert part.faces.max() < len(rows)
+    assert part.colours.min() >= 0.0
+    assert part.colours.max() <= 1.0
+    assert np.allclose(norm(part.normals, axis=1), 1.0, atol=1e-4)
+    facing = cross_products(part.vertices.astype(np.float64), part.faces)
+    agreeing = (facing * part.normals[part.faces].sum(axis=1)).sum(axis=1)
+    assert (agreeing > 0.0).mean() > least_agreeing, part.name
+
+
+def part(head: Head, name: str) -> Part:
+    """The part of that name."""
+    return next(found for found in head.parts if found.name == name)
+
+
+def winding_numbers(vertices: FloatArray, faces: IndexArray, points: FloatArray) -> FloatArray:
+    """How often a surface goes around points, shape (n,): 1 deep inside, 0 outside.
+
+    Less than 1 where it is open. Source: Jacobson et al. 2013, "Robust inside-outside
+    segmentation using generalized winding numbers", equation 5 (van Oosterom, Strackee 1983).
+    """
+    a, b, c = (vertices[faces[:, k]] - points[:, None].astype(float) for k in range(3))
+    length_a, length_b, length_c = (norm(each, axis=2) for each in (a, b, c))
+    volume = (a * np.cross(b, c)).sum(axis=2)
+    share = length_a * length_b * length_c
+    share += (a * b).sum(axis=2) * length_c + (b * c).sum(axis=2) * length_a
+    share += (c * a).sum(axis=2) * length_b
+    return np.asarray(np.arctan2(volume, share).sum(axis=1) / (2.0 * np.pi))

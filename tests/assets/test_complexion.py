@@ -1,15 +1,12 @@
 """Skin of any tone and eyes of any colour: as the painter would paint them, from one number."""
 
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from risorius import assets
 from risorius.assets.identities import (
     DARKEST,
     LIGHTEST,
@@ -25,16 +22,15 @@ from risorius.assets.identities import (
 from risorius.assets.identities.brows import Brows
 from risorius.assets.identities.complexion import IRIS_SHARES, _tints, typology_angle
 from risorius.assets.identities.hair import Hairline
-from risorius.assets.model import Head, Segment
+from risorius.assets.model import Segment
 from risorius.assets.pigments import OWN
 from risorius.geometry.colour import to_linear
 
 TONES = (70.0, 55.0, 41.0, 28.0, 10.0, -10.0, -30.0, -55.0)
 ANGLES = st.floats(DARKEST, LIGHTEST)
-Light = npt.NDArray[np.float64]
 
 
-def light_at(head: Head, image: npt.NDArray[np.uint8], *names: str) -> Light:
+def light_at(head, image, *names):
     """Linear light around anatomical points, the median, shape (3,)."""
     height, width = image.shape[:2]
     found = []
@@ -46,7 +42,7 @@ def light_at(head: Head, image: npt.NDArray[np.uint8], *names: str) -> Light:
     return np.median(to_linear(np.concatenate(found) / 255.0), axis=0)
 
 
-def skin_of(head: Head, image: npt.NDArray[np.uint8]) -> Light:
+def skin_of(head, image):
     """The bare skin of the forehead and the temples."""
     return light_at(head, image, "metopion", "temple_left", "temple_right")
 
@@ -73,9 +69,8 @@ def test_tones_are_in_order(head):
 @pytest.mark.slow
 @given(ANGLES)
 @settings(max_examples=12, deadline=None)
-def test_faces_keep_their_features(angle):
+def test_faces_keep_their_features(head, angle):
     """Lips are redder than skin, brows and nostrils darker, skin never grey, in any tone."""
-    head = assets.load("head")
     image = recoloured(angle)
     skin = skin_of(head, image)
     lips = light_at(head, image, "labiale_superius")  # on the border: half of it is red
@@ -89,7 +84,7 @@ def test_faces_keep_their_features(angle):
     assert skin[0] > 1.25 * skin[1] > 1.25 * skin[2]
 
 
-def _texel(head: Head, image: npt.NDArray[np.uint8], vertex: int) -> tuple[int, int]:
+def _texel(head, image, vertex):
     """Row and column of a vertex."""
     u, v = head.uv[vertex]
     return int((1.0 - v) * image.shape[0]), int(u * image.shape[1])
@@ -155,7 +150,7 @@ def test_features_do_what_their_names_say(head):
     """Brows have their own form, beards darken, lips redden, hair is grey or gone."""
     plain = recoloured(40.0).astype(int)
 
-    def changed(**features: Any) -> Light:
+    def changed(**features):
         """Mean change of the picture in each segment, by its number; shape (16, 3)."""
         off = recoloured(40.0, features=Features(**features)).astype(int) - plain
         return np.array([off[head.segments == n].mean(axis=0) for n in range(1, 14)])
@@ -182,7 +177,7 @@ def test_features_do_what_their_names_say(head):
 def test_hair_turns_grey_as_in_the_survey():
     """From 45 to 65 years a quarter of it is, with dark skin less; the young have none."""
 
-    def grey(angle: float, years: tuple[float, float]) -> float:
+    def grey(angle, years):
         """The mean share of people of ages, all alike but for chance."""
         random = np.random.default_rng(2)
         ages = random.uniform(*years, 300)

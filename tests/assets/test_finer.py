@@ -3,16 +3,14 @@
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from numpy.linalg import norm
 
 from risorius.assets.intersections import self_intersections
 from risorius.assets.model import FineMesh, Head
 from risorius.assets.topology import boundary_loops, quarter
 from risorius.geometry.normals import cross_products
 from tests.assets import checks
-
-Points = npt.NDArray[np.float64]
 
 
 @pytest.fixture(scope="module", params=[1, 2])
@@ -59,7 +57,7 @@ def test_each_level_comes_nearer_to_the_form(head):
     ways = []
     for (vertices, faces), (finer, _) in pairwise(meshes):
         middle = vertices[quarter(faces, len(vertices)).edges].mean(axis=1)
-        way = np.linalg.norm(finer[len(vertices) :] - middle, axis=1)
+        way = norm(finer[len(vertices) :] - middle, axis=1)
         ways.append(float(np.sqrt((way**2).mean())))
     assert 0.1 < ways[0] < 1.5
     assert ways[1] < 0.4 * ways[0]
@@ -87,7 +85,7 @@ def test_no_triangle_is_turned_over(head, fine):
         cross_products(head.vertices, head.faces), len(fine.faces) // len(head.faces), axis=0
     )
     cosine = (cross * parent).sum(axis=1)
-    cosine /= np.linalg.norm(cross, axis=1) * np.linalg.norm(parent, axis=1)
+    cosine /= norm(cross, axis=1) * norm(parent, axis=1)
     assert cosine.min() > 0.1
 
 
@@ -99,11 +97,11 @@ def test_finer_mesh_does_not_cut_itself(fine):
 def test_boundaries_become_smooth(head):
     """At half the spacing a smooth curve turns half as much from edge to edge."""
 
-    def turns(vertices: Points, faces: npt.NDArray[np.int32]) -> list[float]:
+    def turns(vertices, faces):
         found = []
         for loop in boundary_loops(faces):
             along = np.diff(vertices[[*loop, loop[0]]], axis=0)
-            along /= np.linalg.norm(along, axis=1, keepdims=True)
+            along /= norm(along, axis=1, keepdims=True)
             cosine = (along * np.roll(along, 1, axis=0)).sum(axis=1)
             found.append(float(np.median(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))))
         return found
@@ -116,12 +114,12 @@ def test_boundaries_become_smooth(head):
 
 def test_normals_are_unit_and_agree_with_the_faces(fine):
     """A normal is that of the form, or of the mesh where the mesh left the form."""
-    assert np.allclose(np.linalg.norm(fine.normals, axis=1), 1.0)
+    assert np.allclose(norm(fine.normals, axis=1), 1.0)
     cross = cross_products(fine.vertices, fine.faces)
     total = np.zeros_like(fine.vertices)
     for corner in range(3):
         np.add.at(total, fine.faces[:, corner], cross)
-    cosine = (total * fine.normals).sum(axis=1) / np.linalg.norm(total, axis=1)
+    cosine = (total * fine.normals).sum(axis=1) / norm(total, axis=1)
     assert np.percentile(cosine, 1) > 0.8
     assert cosine.min() > 0.0
 

@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import trimesh
+from numpy.linalg import norm
+from pytest import approx
 
 from risorius import assets, sim
 from risorius.assets import AssetError
@@ -54,24 +56,23 @@ def test_head_comes_to_millimetres_and_the_face_space(fitted):
     """Whatever unit and axes the file has, landmarks lie near those of the built-in head."""
     known = assets.load("head")
     off = fitted.vertices[fitted.landmarks] - known.vertices[known.landmarks]
-    assert np.linalg.norm(off, axis=1).mean() < 10.0
-    assert fitted.to_millimetres.scale == pytest.approx(1000.0, rel=0.1)
+    assert norm(off, axis=1).mean() < 10.0
+    assert fitted.to_millimetres.scale == approx(1000.0, rel=0.1)
 
 
 def test_eyes_lie_behind_their_lids(fitted):
     """No skin of the lids is inside of an eyeball, and some of it touches it."""
     for eye, numbers in zip(fitted.eyes, ((37, 38, 40, 41), (43, 44, 46, 47)), strict=True):
         lids = fitted.vertices[fitted.landmarks[list(numbers)]]
-        reach = np.linalg.norm(fitted.vertices[:, None] - lids, axis=2).min(axis=1)
+        reach = norm(fitted.vertices[:, None] - lids, axis=2).min(axis=1)
         near = np.vstack([lids, fitted.vertices[reach < 5.0]])
-        gap = np.linalg.norm(near - eye.centre, axis=1) - eye.radius
+        gap = norm(near - eye.centre, axis=1) - eye.radius
         assert 0.0 < gap.min() < 1.0
         assert 9.0 < eye.radius < 15.0
 
 
-def test_the_built_in_head_fits_itself(tmp_path):
+def test_the_built_in_head_fits_itself(head, tmp_path):
     """Its own landmarks give it back its own eyes: lids close over them as they did."""
-    head = assets.load("head")
     mesh = tmp_path / "same.ply"
     numbers = tmp_path / "same.json"
     trimesh.Trimesh(head.vertices, head.faces, process=False).export(mesh)
@@ -79,13 +80,12 @@ def test_the_built_in_head_fits_itself(tmp_path):
     same = fit_head(mesh, numbers)
     for eye, own in zip(same.eyes, head.eyes, strict=True):
         assert np.abs(eye.centre - own.centre).max() < 0.2
-        assert eye.radius == pytest.approx(own.radius, rel=0.01)
+        assert eye.radius == approx(own.radius, rel=0.01)
 
 
 def test_the_edge_of_the_neck_fades(fitted):
     """Nothing shows of a head where it ends, all of it at the chin; a closed neck has no end."""
     plane = fitted.fade()
-    assert plane is not None
     shown = fitted.vertices @ plane[:3] + plane[3]
     edge = max(boundary_loops(fitted.faces), key=lambda x: -fitted.vertices[x, 1].mean())
     assert shown[edge].max() < 0.05
@@ -102,7 +102,7 @@ def test_teeth_lie_behind_the_skin(fitted):
     front = fitted.vertices[fitted.vertices[:, 2] > 40.0]
     for part in fitted.parts:
         if part.name.startswith(("teeth", "gums")):
-            away = np.linalg.norm(part.vertices[:, None, :2] - front[None, :, :2], axis=2)
+            away = norm(part.vertices[:, None, :2] - front[None, :, :2], axis=2)
             beside = away.argmin(axis=1)
             is_covered = away.min(axis=1) < 3.0
             assert (part.vertices[:, 2] < front[beside, 2])[is_covered].all(), part.name
@@ -123,11 +123,11 @@ def test_texture_runs_evenly_beside_the_mouth(fitted):
     uv = fitted.uv.astype(np.float64)[fitted.faces]
     slopes = np.linalg.pinv(corners[:, 1:] - corners[:, :1]) @ (uv[:, 1:] - uv[:, :1])
     mouth = fitted.vertices[fitted.landmarks[[48, 54]]]
-    away = np.linalg.norm(corners.mean(axis=1)[:, None] - mouth, axis=2).min(axis=1)
+    away = norm(corners.mean(axis=1)[:, None] - mouth, axis=2).min(axis=1)
     beside = [pair for pair in edge_faces(fitted.faces).values() if len(pair) == 2]
     pairs = np.array([pair for pair in beside if away[pair].max() < 20.0])
-    step = np.linalg.norm(slopes[pairs[:, 0]] - slopes[pairs[:, 1]], axis=(1, 2))
-    size = np.linalg.norm(slopes[pairs], axis=(2, 3)).mean(axis=1)
+    step = norm(slopes[pairs[:, 0]] - slopes[pairs[:, 1]], axis=(1, 2))
+    size = norm(slopes[pairs], axis=(2, 3)).mean(axis=1)
     assert np.percentile(step / size, 80) < 0.31
 
 
@@ -179,7 +179,7 @@ def test_other_pieces_and_inside_out_meshes_do_no_harm(other):
     assert cross[(corners[:, :, 2] > 60.0).all(axis=1), 2].sum() > 0.0
 
 
-def _numbers(other: Stranger, **places: int) -> list[int]:
+def _numbers(other, **places):
     numbers = other.landmarks.tolist()
     for place, number in places.items():
         numbers[int(place[1:])] = number
@@ -193,8 +193,8 @@ def test_points_lie_on_the_mesh(other, tmp_path, off, is_allowed):
     points = other.mesh.vertices[other.landmarks]
     tip = points[30]
     outward = tip - points[[1, 15]].mean(axis=0)
-    outward /= np.linalg.norm(outward)
-    points[30] = tip + off * np.linalg.norm(points[36] - points[45]) * outward
+    outward /= norm(outward)
+    points[30] = tip + off * norm(points[36] - points[45]) * outward
     file.write_text(json.dumps(points.tolist()))
     if is_allowed:
         fit_head(mesh, file)

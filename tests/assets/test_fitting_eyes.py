@@ -3,12 +3,13 @@
 import numpy as np
 import numpy.typing as npt
 import pytest
+from numpy.linalg import norm
 
 from risorius import assets
 from risorius.assets.fitting import FittedHead, fit
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops
-from risorius.geometry.normals import cross_products
+from tests.assets.checks import check_part
 from tests.heads import shape
 
 Array = npt.NDArray[np.float64]
@@ -25,7 +26,7 @@ def fitted() -> FittedHead:
     return fit(Mesh(shape(head.vertices), faces), head.landmarks)
 
 
-def _across(edge: Array) -> Array:
+def _across(edge):
     """Where lines of sight go through a hole with this edge (n, 3), seen along z; shape (m, 2)."""
     middle = edge.mean(axis=0)
     first, second = (each - middle for each in (edge, np.roll(edge, 1, axis=0)))
@@ -33,11 +34,10 @@ def _across(edge: Array) -> Array:
     share = np.linspace(0.0, 1.0, SIDES, endpoint=False)[:, None, None]
     toward = np.linspace(0.0, 0.99, RINGS)[:, None, None]
     rim = ((1.0 - share) * first[enters] + share * second[enters]).reshape(-1, 3)
-    points: Array = (middle + toward * rim).reshape(-1, 3)[:, :2]
-    return points
+    return (middle + toward * rim).reshape(-1, 3)[:, :2]
 
 
-def _meets(points: Array, triangles: Array) -> npt.NDArray[np.bool_]:
+def _meets(points, triangles):
     """Where lines along z meet a triangle (m, 3, 3) that faces the viewer, shape (n,)."""
     a, b, c = (triangles[:, corner, :2] for corner in range(3))
     u = b - a
@@ -47,10 +47,7 @@ def _meets(points: Array, triangles: Array) -> npt.NDArray[np.bool_]:
     to = points[:, None] - a
     of_b = (to[..., 0] * v[:, 1] - to[..., 1] * v[:, 0]) / area
     of_c = (u[:, 0] * to[..., 1] - u[:, 1] * to[..., 0]) / area
-    met: npt.NDArray[np.bool_] = (
-        (of_b >= -1e-6) & (of_c >= -1e-6) & (of_b + of_c <= 1.0 + 1e-6)
-    ).any(axis=1)
-    return met
+    return ((of_b >= -1e-6) & (of_c >= -1e-6) & (of_b + of_c <= 1.0 + 1e-6)).any(axis=1)
 
 
 @pytest.mark.parametrize("yaw", [-50.0, -40.0, -25.0, 0.0, 25.0, 40.0, 50.0])
@@ -62,20 +59,16 @@ def test_nothing_is_seen_behind_an_eye(fitted, yaw):
     parts = np.concatenate([part.vertices.astype(np.float64)[part.faces] for part in fitted.parts])
     loops = [fitted.vertices[loop] for loop in boundary_loops(fitted.faces)]
     for eye in fitted.eyes:
-        edge = min(loops, key=lambda loop: np.linalg.norm(loop - eye.centre, axis=1).max())
-        near = parts[np.linalg.norm(parts.mean(axis=1) - eye.centre, axis=1) < NEAR]
+        edge = min(loops, key=lambda loop: norm(loop - eye.centre, axis=1).max())
+        near = parts[norm(parts.mean(axis=1) - eye.centre, axis=1) < NEAR]
         assert _meets(_across(edge @ view.T), near @ view.T).all()
 
 
 def test_the_flesh_of_the_eyes_is_well_formed(fitted):
-    """Unit normals that agree with the faces; each eye's collar reaches behind the ball."""
+    """It is a sound part, and each eye's collar reaches behind the ball."""
     flesh = next(part for part in fitted.parts if part.name == "eye_corners")
-    assert flesh.faces.max() < len(flesh.vertices) == len(flesh.colours)
-    assert flesh.vertices.dtype == flesh.normals.dtype == flesh.colours.dtype == np.float32
-    assert np.allclose(np.linalg.norm(flesh.normals, axis=1), 1.0, atol=1e-4)
-    cross = cross_products(flesh.vertices.astype(np.float64), flesh.faces)
-    assert ((cross * flesh.normals[flesh.faces].sum(axis=1)).sum(axis=1) > 0.0).mean() > 0.98
+    check_part(flesh)
     for eye in fitted.eyes:
         to = flesh.vertices - eye.centre
-        is_behind = (to[:, 2] < -2.0) & (np.linalg.norm(to, axis=1) < eye.radius)
+        is_behind = (to[:, 2] < -2.0) & (norm(to, axis=1) < eye.radius)
         assert is_behind.sum() >= 20

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from numpy.linalg import norm
+from pytest import approx
 
 from risorius import assets
 from risorius.assets import AssetError
@@ -10,22 +12,21 @@ from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.identities import make_person, sample_identity
 from risorius.assets.meshes import Mesh
 from risorius.sim.landmarks import MIRRORED
-from tests.heads import METRES, Array, Stranger, stranger
+from tests.heads import METRES, stranger
 
 JAW = 17  # the first landmarks: of the line along the jaw nobody says where on it a point belongs
 
 
-def errors(mesh: Mesh, true: Array) -> Array:
+def errors(mesh, true):
     """How far from the true points those lie that are guessed from the first ones."""
     found = guess(mesh, {number: true[number] for number in FIRST})
-    off: Array = np.linalg.norm(found - true, axis=1)
+    off = norm(found - true, axis=1)
     assert not off[list(FIRST)].max() > 1e-9 * np.abs(true).max()
     return off
 
 
-def test_the_built_in_head_is_found_again():
+def test_the_built_in_head_is_found_again(head):
     """Of finer triangles, all of it lies where it was."""
-    head = assets.load("head")
     fine = head.finer(1)
     assert errors(Mesh(fine.vertices, fine.faces), head.vertices[head.landmarks]).max() < 1.0
 
@@ -43,7 +44,7 @@ def test_other_persons_are_found(seed):
 @pytest.mark.slow
 def test_unit_axes_and_other_pieces_do_not_matter():
     """In metres, z up, facing inward, with balls in its eyes: guessed on the skin, not on these."""
-    other: Stranger = stranger()
+    other = stranger()
     true = other.mesh.vertices[other.landmarks]
     balls = [true[list(eye)].mean(axis=0) for eye in (range(36, 42), range(42, 48))]
     corners = np.vstack([np.eye(3), -np.eye(3)]) * 14.0 * METRES
@@ -59,7 +60,7 @@ def test_unit_axes_and_other_pieces_do_not_matter():
     assert off[JAW:].max() < 6.0
     found = guess(mesh, {number: true[number] for number in FIRST})
     skin = nearest_on(found, np.zeros((68, 3)), other.mesh.vertices, other.mesh.faces)
-    gap = np.linalg.norm(skin.interpolate(other.mesh.vertices) - found, axis=1)
+    gap = norm(skin.interpolate(other.mesh.vertices) - found, axis=1)
     assert gap.max() < 1e-3 * METRES
 
 
@@ -71,7 +72,7 @@ def test_more_points_make_it_better_and_stay():
     true = person.vertices[person.landmarks]
     few = errors(mesh, true)
     known = {number: true[number] for number in (*FIRST, 4, 8, 12)}
-    many = np.linalg.norm(guess(mesh, known) - true, axis=1)
+    many = norm(guess(mesh, known) - true, axis=1)
     assert many[[*known]].max() < 1e-9
     assert many[:JAW].mean() < 0.7 * few[:JAW].mean()
 
@@ -85,9 +86,8 @@ def test_more_points_make_it_better_and_stay():
         (np.zeros(68, int), "one point"),
     ],
 )
-def test_points_of_no_face_are_refused(order, words):
+def test_points_of_no_face_are_refused(head, order, words):
     """Landmarks in an unknown order are refused in one line."""
-    head = assets.load("head")
     points = head.vertices[head.landmarks][order]
     with pytest.raises(AssetError, match=words) as raised:
         guess(Mesh(head.vertices, head.faces), {number: points[number] for number in FIRST})
@@ -98,5 +98,5 @@ def test_a_mesh_is_brought_into_the_middle():
     """In any unit, as large as is asked."""
     vertices = assets.load("head").vertices
     seen = centred(0.001 * vertices + 7.0, 140.0).points(0.001 * vertices + 7.0)
-    assert np.linalg.norm(seen, axis=1).max() == pytest.approx(140.0)
-    assert seen.max(axis=0) == pytest.approx(-seen.min(axis=0))
+    assert norm(seen, axis=1).max() == approx(140.0)
+    assert seen.max(axis=0) == approx(-seen.min(axis=0))

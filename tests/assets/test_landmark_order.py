@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.linalg import norm
 
 from risorius import assets
 from risorius.assets import AssetError
@@ -34,7 +35,7 @@ def test_right_landmarks_are_taken(seed, stretch):
     """Of another head, stretched, and each up to 2 mm beside its place."""
     random = np.random.default_rng(seed)
     away = random.normal(size=(68, 3))
-    away *= ROUGHNESS * random.random((68, 1)) / np.linalg.norm(away, axis=1, keepdims=True)
+    away *= ROUGHNESS * random.random((68, 1)) / norm(away, axis=1, keepdims=True)
     assert not groups_in_disorder(shape(TEMPLATE) * stretch + away, TEMPLATE)
 
 
@@ -52,9 +53,9 @@ def test_a_group_in_another_order_is_named(group, data):
     assert group in groups_in_disorder(points, TEMPLATE)
 
 
-def _moves(own: np.ndarray, order: np.ndarray) -> float:
+def _moves(own, order):
     """How far an order moves the points of a group on average [mm]."""
-    return float(np.linalg.norm(TEMPLATE[own] - TEMPLATE[order], axis=1).mean())
+    return float(norm(TEMPLATE[own] - TEMPLATE[order], axis=1).mean())
 
 
 @pytest.mark.parametrize("group", GROUPS, ids=lambda group: group.name)

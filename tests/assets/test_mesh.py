@@ -3,12 +3,11 @@
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 import trimesh
+from numpy.linalg import norm
 
 from risorius.assets.intersections import self_intersections
-from risorius.assets.model import Head
 from risorius.assets.topology import boundary_loops
 from risorius.geometry.normals import cross_products, vertex_normals
 from tests.assets import checks
@@ -68,7 +67,7 @@ def test_lips_are_closed_but_not_welded(head):
     columns = len(row) // 2
     upper = head.vertices[row[:columns]]
     lower = head.vertices[row[: -columns - 1 : -1]]
-    gap = np.linalg.norm(upper - lower, axis=1)
+    gap = norm(upper - lower, axis=1)
     assert gap.max() < 0.6
     assert gap.min() > 0.3
     assert np.array_equal(upper[:, 0], lower[:, 0])
@@ -98,7 +97,7 @@ def test_outline_of_the_crown_is_smooth(head):
     edges = np.vstack([head.faces[:, [0, 1]], head.faces[:, [1, 2]], head.faces[:, [2, 0]]])
     ends = head.vertices[edges]
     on_crown = ends[:, :, 1].min(axis=1) > 45.0
-    length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    length = norm(ends[:, 0] - ends[:, 1], axis=1)
     assert on_crown.sum() > 200
     assert length[on_crown].max() < 34.5
 
@@ -123,11 +122,11 @@ def test_no_face_is_inside_out(head):
     cross = cross_products(head.vertices, head.faces)
     around = vertex_normals(head.vertices, head.faces)[head.faces].sum(axis=1)
     cosine = (cross * around).sum(axis=1)
-    cosine /= np.linalg.norm(cross, axis=1) * np.linalg.norm(around, axis=1)
+    cosine /= norm(cross, axis=1) * norm(around, axis=1)
     assert cosine[outside & ~_nostril_faces(head)].min() > 0.15
 
 
-def ear_faces(head: Head) -> npt.NDArray[np.bool_]:
+def ear_faces(head):
     """Faces of both ears: all with a corner above their roots, shape (F,)."""
     on_ears = []
     for side in ("left", "right"):
@@ -145,7 +144,7 @@ def test_ears_have_their_size_and_place(head):
     along *= np.sign(along[1])
     assert 58.0 < np.ptp(edge @ along) < 67.0
     across = np.cross(along, [1.0, 0.0, 0.0])
-    assert 28.0 < np.ptp(edge @ (across / np.linalg.norm(across))) < 37.0
+    assert 28.0 < np.ptp(edge @ (across / norm(across))) < 37.0
     at = {name: head.vertices[vertex, 1] for name, vertex in head.anatomy.items()}
     assert abs(high[1] - head.vertices[head.landmarks[24], 1]) < 19.0
     assert abs(low[1] - at["subnasale"]) < 8.0
@@ -176,12 +175,12 @@ def test_ear_looks_outward_in_front_and_toward_the_head_behind(head):
     assert np.mean(np.array(behind) < 0.0) > 0.6
 
 
-def _nostril_faces(head: Head) -> npt.NDArray[np.bool_]:
+def _nostril_faces(head):
     """Faces of the caps: all whose corners lie within 6 mm of a nostril's roof."""
     near = np.zeros(len(head.vertices), dtype=bool)
     for side in ("left", "right"):
         roof = head.vertices[head.anatomy[f"nostril_roof_{side}"]]
-        near |= np.linalg.norm(head.vertices - roof, axis=1) < 6.0
+        near |= norm(head.vertices - roof, axis=1) < 6.0
     return np.asarray(near[head.faces].all(axis=1))
 
 

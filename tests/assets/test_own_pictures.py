@@ -3,7 +3,6 @@
 import io
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import PIL.Image
@@ -13,7 +12,7 @@ from scipy import ndimage
 
 from risorius import assets, refine
 from risorius.assets import AssetError
-from risorius.assets.fitting import FittedHead, fit, fit_head
+from risorius.assets.fitting import fit, fit_head
 from risorius.assets.fitting.painting import Layout, drawn_over, maps_in, sampled, texels_within
 from risorius.assets.meshes import Mesh, read_mesh
 from tests.heads import Stranger, stranger
@@ -27,14 +26,14 @@ def other() -> Stranger:
     return stranger()
 
 
-def _striped() -> PIL.Image.Image:
+def _striped():
     """A picture whose colour gives the place: red along u, green along v."""
     steps = np.arange(SIZE, dtype=np.uint8) * (256 // SIZE)
     rows = np.dstack([*np.meshgrid(steps, steps[::-1]), np.full((SIZE, SIZE), 60, np.uint8)])
     return PIL.Image.fromarray(rows)
 
 
-def _uv(other: Stranger) -> tuple[np.ndarray, np.ndarray]:
+def _uv(other):
     """Texture coordinates in two pieces, the right half and the left one, with a seam between."""
     places = other.mesh.vertices[:, [0, 2]]
     places = (places - places.min(axis=0)) / np.ptp(places, axis=0)
@@ -44,7 +43,7 @@ def _uv(other: Stranger) -> tuple[np.ndarray, np.ndarray]:
     return uv, other.mesh.faces + len(places) * is_left[:, None]
 
 
-def _write_obj(folder: Path, other: Stranger, picture: str = "skin.png") -> tuple[Path, Path]:
+def _write_obj(folder, other, picture="skin.png"):
     """The head as OBJ with a material library, and a landmark file."""
     uv, face_uv = _uv(other)
     lines = ["mtllib head.mtl", *(f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in other.mesh.vertices)]
@@ -59,7 +58,7 @@ def _write_obj(folder: Path, other: Stranger, picture: str = "skin.png") -> tupl
     return mesh, marks
 
 
-def _write_glb(folder: Path, other: Stranger) -> tuple[Path, Path]:
+def _write_glb(folder, other):
     """The same as GLB, whose vertices are doubled along the seam."""
     uv, face_uv = _uv(other)
     corners, numbers = np.unique(face_uv, return_inverse=True)
@@ -77,7 +76,7 @@ def _write_glb(folder: Path, other: Stranger) -> tuple[Path, Path]:
     return mesh, marks
 
 
-def _colours(head: FittedHead) -> np.ndarray:
+def _colours(head):
     """The colours of its triangles' middles."""
     return sampled(head.albedo, head.uv[head.face_uv].astype(np.float64).mean(axis=1))
 
@@ -121,9 +120,8 @@ def test_maps_go_along_to_the_own_layout(other, tmp_path):
 
 
 @pytest.mark.slow
-def test_maps_turn_with_the_layout():
+def test_maps_turn_with_the_layout(head):
     """In a layout turned by a quarter and half as large, slopes are turned and doubled."""
-    head = assets.load("head")
     smooth = ndimage.gaussian_filter(head.wrinkles.map.astype(np.float64), (12.0, 12.0, 0.0))
     known = replace(assets.load("head"))  # one whose map may be another
     vars(known)["wrinkles"] = replace(head.wrinkles, map=smooth.round().astype(np.uint8))

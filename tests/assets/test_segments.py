@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from risorius import assets
 from risorius.assets import Segment
 
 MIRRORED = {
@@ -21,12 +20,11 @@ PLACES = {
 }  # fmt: skip
 
 
-def at(head: assets.Head, vertices: object) -> list[int]:
+def at(head, vertices):
     """The classes of vertices."""
     size = len(head.segments)
     columns, rows = (head.uv[np.atleast_1d(vertices)] * [size, -size] + [0.0, size]).astype(int).T
-    found: list[int] = head.segments[rows, columns].tolist()
-    return found
+    return head.segments[rows, columns].tolist()
 
 
 def test_every_texel_has_a_class(head):

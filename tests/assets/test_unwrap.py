@@ -1,37 +1,34 @@
 """Texture coordinates: one flat piece, nothing turned over, little stretched, a mirror image."""
 
 import numpy as np
-import numpy.typing as npt
+from numpy.linalg import norm
 
-from risorius.assets.model import Head
-
-Points = npt.NDArray[np.float64]
 TUCKED_ROWS = ("mouth_0", "mouth_1", "eye_0")  # behind lips and lids: never seen at rest
 
 
-def signed_areas(flat: Points, faces: npt.NDArray[np.int32]) -> Points:
+def signed_areas(flat, faces):
     """Twice the area of flat triangles, positive where they are counter-clockwise."""
     first, second = (flat[faces[:, k]] - flat[faces[:, 0]] for k in (1, 2))
     return np.asarray(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
 
 
-def stretches(head: Head) -> Points:
+def stretches(head):
     """Largest and smallest scale of each face in the picture [1/m], shape (F, 2)."""
     corner = head.vertices[head.faces]
     flat = head.uv.astype(np.float64)[head.face_uv]
     along = corner[:, 1] - corner[:, 0]
-    length = np.linalg.norm(along, axis=1)
+    length = norm(along, axis=1)
     second = corner[:, 2] - corner[:, 0]
     edges = np.zeros((len(corner), 2, 2))
     edges[:, 0, 0] = length
     edges[:, 0, 1] = (along * second).sum(axis=1) / length
-    edges[:, 1, 1] = np.linalg.norm(np.cross(along, second), axis=1) / length
+    edges[:, 1, 1] = norm(np.cross(along, second), axis=1) / length
     pictured = np.stack([flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]], axis=2)
     jacobian = 1000.0 * pictured @ np.linalg.inv(edges)
     return np.asarray(np.linalg.svd(jacobian, compute_uv=False))
 
 
-def seen_in_front(head: Head) -> npt.NDArray[np.bool_]:
+def seen_in_front(head):
     """Faces of the face itself, without what is tucked in, shape (F,)."""
     tucked = [head.rings[f"{row}_{side}"] for row in TUCKED_ROWS for side in ("left", "right")]
     _, y, z = head.vertices[head.faces].mean(axis=1).T

@@ -1,22 +1,19 @@
 """The map of wrinkles: furrows where skin wrinkles, and nothing where it does not."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
-
-from risorius import assets
 
 STEEPEST_FURROW = 0.7  # slope: about 35 degrees
 
 
-def texels(head: assets.Head, vertices: npt.NDArray[np.intp]) -> npt.NDArray[np.uint8]:
+def texels(head, vertices):
     """The map's texels at vertices, shape (n, 4)."""
     size = len(head.wrinkles.map)
     columns, rows = (head.uv[vertices] * [size, -size] + [0.0, size]).astype(int).T
     return np.asarray(head.wrinkles.map[rows, columns])
 
 
-def is_plain(found: npt.NDArray[np.uint8]) -> bool:
+def is_plain(found):
     """Whether there is no furrow in any of the texels, but for the last of one that fades out."""
     slopes = np.abs(found[:, :2].astype(int) - 128)
     return bool(slopes.max() < 4 and found[:, 2].max() < 4)

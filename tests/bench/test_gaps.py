@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from risorius import assets
 from risorius.bench.gaps import LARGEST_FAULTS, Pose, _inverted, measure
 
 
@@ -30,9 +29,8 @@ def test_shut_eyes_are_shut(poses):
     assert {name: gap for name, gap in gaps.items() if gap >= LARGEST_FAULTS["eye"]} == {}
 
 
-def test_a_folded_triangle_is_counted():
+def test_a_folded_triangle_is_counted(head):
     """One that turned over is found amid skin that turned as a whole, which is none."""
-    head = assets.load("head")
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     over = turn @ np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
     now = head.vertices @ over.T

@@ -14,7 +14,6 @@ from risorius.bench.human import (
     targets,
     unexplained,
 )
-from risorius.bench.subjects import Points
 from risorius.geometry.normals import vertex_normals
 
 WEIGHTS = np.array([1.5, -0.8])
@@ -32,7 +31,7 @@ def space() -> IdentitySpace:
     return IdentitySpace(head.vertices, head.faces, head.landmarks, modes)
 
 
-def rest_of(space: IdentitySpace, vertices: Points) -> Rest:
+def rest_of(space, vertices):
     """The rest beside the space of a head that is turned and moved."""
     c = np.cos(TURN)
     s = np.sin(TURN)
@@ -86,9 +85,8 @@ def test_what_looks_at_skin_is_no_region(space):
     assert (regions[marks[[31, 8, 19, 24]]] != "").all()
 
 
-def test_a_folder_without_modes_is_reported(tmp_path):
+def test_a_folder_without_modes_is_reported(head, tmp_path):
     """The file that is missing, or holds other vertices, is named."""
-    head = assets.load("head")
     np.savez(
         tmp_path / "face.npz",
         vertices=head.vertices,

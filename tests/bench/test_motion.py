@@ -4,11 +4,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.linalg import norm
 
 from risorius import assets, sim
 from risorius.app.errors import UserError
 from risorius.bench.motion import Row, _blobs, measure, report, targets
-from tests.heads import METRES, SHIFT, TURN, Stranger, shape, stranger
+from tests.heads import METRES, SHIFT, TURN, shape, stranger
 from tests.sim.poses import settled_displacement
 
 # Fields that are scored: what each is called -> the controls that make it on the built-in head.
@@ -33,8 +34,8 @@ def scored(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Row], li
     head = assets.load("head")
     simulation = sim.create(head)
 
-    def field(moved: np.ndarray) -> np.ndarray:
-        changed: np.ndarray = (shape(head.vertices + moved) - shape(head.vertices)) @ TURN.T
+    def field(moved):
+        changed = (shape(head.vertices + moved) - shape(head.vertices)) @ TURN.T
         return changed * METRES
 
     fields = {
@@ -72,7 +73,7 @@ def test_own_motion_is_known_again(scored):
         assert row.residual < (0.6 if is_guessed else 0.25), name
 
 
-def held_to(*rows: Row) -> list[str]:
+def held_to(*rows):
     """What is missed beside a shape that is sound."""
     sound = Row("jawOpen", 0.99, 1.0, 0.02, 0.5)
     return [target.text for target in targets([sound, *rows], []) if not target.is_met]
@@ -97,16 +98,15 @@ def test_the_blob_stands_beside_each_shape():
     assert [line[-1] for line in lines if line[:1] in (["jawOpen"], ["mean"])] == ["0.901", "0.851"]
 
 
-def test_a_bump_is_known_as_a_blob():
+def test_a_bump_is_known_as_a_blob(head):
     """One of the widths is nearly the field of a bump on one side, and one on both of them."""
-    head = assets.load("head")
     for corners in (["cheek_left"], ["cheek_left", "cheek_right"]):
         places = head.vertices[[head.anatomy[name] for name in corners]]
-        away = np.linalg.norm(head.vertices[:, None] - places, axis=2)
+        away = norm(head.vertices[:, None] - places, axis=2)
         scanned = np.exp(-((away / 20.0) ** 2)).sum(axis=1)[:, None] * [0.0, 1.0, 0.5]
-        size = np.linalg.norm(scanned)
+        size = norm(scanned)
         cosines = [
-            float((blob * scanned).sum() / (np.linalg.norm(blob) * size))
+            float((blob * scanned).sum() / (norm(blob) * size))
             for blob in _blobs(head.vertices, scanned)
         ]
         assert max(cosines) > 0.99 > min(cosines)
@@ -115,7 +115,7 @@ def test_a_bump_is_known_as_a_blob():
 @pytest.fixture(scope="module")
 def arrays() -> dict[str, Any]:
     """A head that can be fitted, with one field of the right shape."""
-    other: Stranger = stranger()
+    other = stranger()
     return {
         "vertices": other.mesh.vertices,
         "triangles": other.mesh.faces,

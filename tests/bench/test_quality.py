@@ -1,7 +1,6 @@
 """The measure of quality: subjects and errors."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from risorius import assets
@@ -11,16 +10,14 @@ from risorius.bench.subjects import PosePair, Subject
 from risorius.geometry.closest import closest_points
 from tests.meshes import open_grid
 
-Points = npt.NDArray[np.float64]
 
-
-def bent(points: Points, angle: float) -> Points:
+def bent(points, angle):
     """A plane rolled up to an arc of `angle` [radians] per unit of length."""
     x = points[:, 0] * angle
     return np.stack([np.sin(x), points[:, 1] * angle, np.cos(x) - 1.0], axis=1) / angle
 
 
-def rolled_plane() -> Subject:
+def rolled_plane():
     """A flat plane, coarse and dense, and both rolled up: the truth is a cylinder."""
     meshes = []
     for cells in (6, 48):
@@ -93,10 +90,9 @@ def test_scans_are_read(tmp_path):
 
 
 @pytest.mark.slow
-def test_built_in_head():
+def test_built_in_head(head):
     """The finer head moves by its own muscles, and the coarse one is its first vertices."""
     subject = subjects.built_in(1)
-    head = assets.load("head")
     assert set(subject.poses) == set(head.expressions)
     assert len(subject.dense_faces) == 4 * len(subject.coarse_faces)
     assert (subject.rest.coarse == head.vertices).all()

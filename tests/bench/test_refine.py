@@ -36,7 +36,7 @@ def test_rows_of_the_card():
 
 def test_calls_are_timed_in_turn():
     """Forwards, then backwards; no garbage is collected meanwhile."""
-    order: list[str] = []
+    order = []
     calls = [lambda name=name: order.append(f"{name}{gc.isenabled():d}") for name in "ab"]
     assert refine.interleaved(calls, 2).shape == (2, 2)
     assert order == ["a0", "b0", "b0", "a0"]

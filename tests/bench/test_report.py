@@ -1,8 +1,5 @@
 """What benchmarks print, and are held to: a target that is missed ends with exit code 1."""
 
-from typing import Any
-
-import click
 import pytest
 from click.testing import CliRunner
 
@@ -15,9 +12,7 @@ ALIKE = motion.Row("joy", 0.96, 1.0, 0.1, 0.8)
 NEARER = [Score(STATIC, "joy", 1.0, 1.0, 10.0, 9.0), Score(BEST, "joy", 2.0, 0.6, 6.0, 9.0)]
 
 
-def run(
-    command: click.Command, measured: dict[tuple[Any, str], Any], *words: str
-) -> tuple[int, str]:
+def run(command, measured, *words):
     """Exit code and output of a benchmark that measured this."""
     with pytest.MonkeyPatch.context() as patch:
         for (module, name), value in measured.items():
@@ -26,17 +21,17 @@ def run(
     return ended.exit_code, ended.output
 
 
-def of_gaps(**change: Any) -> tuple[int, str]:
+def of_gaps(**change):
     poses = [*[WHOLE] * 99, WHOLE._replace(**change)]
     return run(commands.bench_gaps, {(gaps, "measure"): poses})
 
 
-def of_motion(**change: Any) -> tuple[int, str]:
+def of_motion(**change):
     measured = [*[ALIKE] * 9, ALIKE._replace(**change)], []
     return run(commands.bench_motion, {(motion, "measure"): measured}, "--reference", ".")
 
 
-def of_quality(**change: Any) -> tuple[int, str]:
+def of_quality(**change):
     scores = [NEARER[0], NEARER[1]._replace(**change)]
     measured = {(subjects, "built_in"): None, (quality, "measure"): scores}
     return run(commands.bench_quality, measured)

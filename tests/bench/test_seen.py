@@ -10,12 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import FaceScene
 from risorius.bench import seen
-from risorius.bench.seen import Scores, face_tracker
+from risorius.bench.seen import face_tracker
 from tests.app.command_line import risorius
 
 MODEL = Path(os.environ.get("FACE_LANDMARKER", "not given"))
@@ -25,7 +26,7 @@ needs_model = pytest.mark.skipif(
 CALM = dict.fromkeys(ARKIT, 0.05)
 
 
-def over(**scores: float) -> Scores:
+def over(**scores):
     """Scores that are so far above those of the neutral face."""
     return {**CALM, **{name: 0.05 + score for name, score in scores.items()}}
 
@@ -43,7 +44,7 @@ def test_a_pair_counts_by_its_mean():
     """A smile of both sides is seen beside one side of a squint; the neutral face is taken off."""
     scores = over(mouthSmileLeft=0.5, mouthSmileRight=0.3, eyeSquintLeft=0.7)
     shape = seen.compared(scores, CALM, ("mouthSmileLeft", "mouthSmileRight"))
-    assert shape == (pytest.approx(0.4), "eyeSquint", pytest.approx(0.35))
+    assert shape == (approx(0.4), "eyeSquint", approx(0.35))
     assert shape.verdict == "seen"
     assert seen.Shape(0.2, "jawOpen", 0.3).verdict == "as jawOpen"
 

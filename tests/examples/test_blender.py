@@ -41,8 +41,7 @@ def seen(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     lines = [line for line in ended.stdout.splitlines() if line.startswith("SEEN ")]
     assert ended.returncode == 0 and lines, ended.stdout + ended.stderr
     assert "Traceback" not in ended.stderr
-    answer: dict[str, Any] = json.loads(lines[0].removeprefix("SEEN "))
-    return answer
+    return json.loads(lines[0].removeprefix("SEEN "))
 
 
 @pytest.mark.blender

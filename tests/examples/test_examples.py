@@ -19,8 +19,6 @@ FOLDER = Path(__file__).parents[2] / "examples"
 def example(name: str) -> ModuleType:
     """Import a program without running it."""
     spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -49,11 +47,9 @@ def test_plain_script(tmp_path):
     assert sum(line.startswith("v ") for line in lines) > 204
 
 
-def test_own_refiner(monkeypatch):
+@pytest.mark.usefixtures("own_refiners")
+def test_own_refiner():
     """A refiner from outside is registered, known by name, passes the checker, and cuts in four."""
-    from risorius.refine.border import registry
-
-    monkeypatch.setattr(registry.refiners, "_factories", dict(registry.refiners._factories))
     assert "quarters" not in refine.refiners.available()
     module = example("own_refiner")
     assert module.main() == [8, 8, 32, 32]

@@ -10,7 +10,7 @@ from .sandbox import check_end, contents, run_command
 pytestmark = pytest.mark.usefixtures("ready_face", "no_long_work")
 
 
-def _short(words: str) -> str:
+def _short(words):
     return words if len(words) < 120 else f"{words[:100]}...{len(words)}"
 
 

@@ -2,7 +2,6 @@
 
 import re
 import warnings
-from collections.abc import Iterator
 from contextlib import contextmanager
 
 import numpy as np
@@ -22,7 +21,7 @@ MOST_MEMORY = 400_000_000  # [bytes] more than before
 
 
 @contextmanager
-def quiet_and_bounded() -> Iterator[None]:
+def quiet_and_bounded():
     """A failure where what is done takes too long or too much memory, or warns on the screen.
 
     An underflow shows nothing (numpy's default), and where it happens depends on the processor.

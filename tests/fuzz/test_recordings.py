@@ -9,7 +9,6 @@ import pytest
 from risorius.app.errors import UserError
 from risorius.app.recordings.names import ANGLES, ARKIT, NONSENSE, VISEMES
 from risorius.app.recordings.reading import is_recording, read_take
-from risorius.app.recordings.take import Take
 from tests.app.recording_files import live_link, openface, pyfeat, table
 
 from .damage import SEED, changed
@@ -23,7 +22,7 @@ TRACKS = {"channels": [{"name": "PP", "keys": [[0, 0.1], [0.2, 0.4], [0.4, 0]]}]
 CUES = {"mouthCues": [{"start": 0.0, "end": 0.2, "value": "A"}, {"start": 0.2, "value": "X"}]}
 FILM = {"frames": [{"t": n / 30, "blendshapes": {"jawOpen": n / 9}} for n in range(9)]}
 SIDES = {"time": np.arange(9) / 30, "mouthSmile_L": np.arange(9) / 9, "AU12_L": np.zeros(9)}
-GOOD: dict[str, bytes] = {
+GOOD = {
     "Live Link Face": table(live_link(20)).encode(),
     "OpenFace": table(openface(20)).encode(),
     "py-feat": table(pyfeat(10)).encode(),
@@ -40,7 +39,7 @@ TOKENS = (
 )  # fmt: skip
 
 
-def check(take: Take) -> None:
+def check(take):
     """Whatever was in the file, a Take keeps its promises."""
     assert len(take.times) > 0
     assert take.times[0] == 0.0
@@ -65,7 +64,7 @@ def test_good_recordings(name, tmp_path):
     check(read_take(path))
 
 
-def damaged(chance: random.Random) -> bytes:
+def damaged(chance):
     """A good recording with a few places changed, more often near its beginning."""
     content = bytearray(GOOD[chance.choice(sorted(GOOD))])
     if chance.random() < 0.2:

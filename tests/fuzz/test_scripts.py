@@ -9,7 +9,6 @@ from risorius.app.capture.drawing import camera_for
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import SCENES, FaceScene, Scene
-from risorius.app.script import Script
 from risorius.app.script.script_file import parse_script, script_text
 
 from .damage import SEED, changed
@@ -22,7 +21,7 @@ GOOD = [path.read_bytes() for path in sorted((ROOT / "assets" / "scripts").glob(
 GOOD.append(b"[tracks]\njoy = '''\n" + b"".join(b"%d 0.5 hold\n" % n for n in range(99)) + b"'''\n")
 ROUNDS = 400
 KEY = "[[pose]]\ntime = 1\njoy = 1\n"
-ACCEPTED: dict[str, bytes] = {
+ACCEPTED = {
     "a mark of byte order": b"\xef\xbb\xbf" + KEY.encode(),
     "line ends of Windows": KEY.replace("\n", "\r\n").encode(),
     "tiny value": b"[[pose]]\ntime = 1\njoy = 1e-320\n",
@@ -47,7 +46,7 @@ def scenes(face: FaceScene) -> dict[str, Scene]:
     return {"face": face, "plane": SCENES["plane"]()}
 
 
-def opened(path: Path, scenes: dict[str, Scene]) -> Script:
+def opened(path, scenes):
     """Read a script and look at all that is asked of it before anything is drawn."""
     with bounded():
         script = script_for(path, None)
@@ -64,7 +63,7 @@ def test_odd_scripts(name, tmp_path, scenes):
     assert opened(path, scenes).duration > 0.0
 
 
-def damaged(chance: random.Random) -> bytes:
+def damaged(chance):
     """A good script with a few places changed."""
     content = bytearray(chance.choice(GOOD))
     start = chance.randrange(len(content))

@@ -5,7 +5,6 @@ import resource
 import shlex
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -24,7 +23,7 @@ STARTING = 60.0  # [s] a process of its own may have to compile first
 Row = tuple[dict[str, str | None], str, int]
 IMAGE = "capture --scene plane --set amplitude -o x.png --size 16x16 --quiet"
 FILM = "capture --scene plane --set amplitude -o x.mp4 --size 16x16 --quiet"
-ENVIRONMENTS: dict[str, Row] = {
+ENVIRONMENTS = {
     "nothing at all": ({"PATH": None, "HOME": None, "LANG": None}, IMAGE, 0),
     "home is nowhere": ({"HOME": "/proc/nowhere", "XDG_CACHE_HOME": None}, IMAGE, 0),
     "wrong language": ({"LC_ALL": "xx_YY.nothing"}, IMAGE, 0),
@@ -47,9 +46,7 @@ def test_places_of_settings(folder, sandbox, monkeypatch):
         check_line(message)
 
 
-def start(
-    words: str, folder: Path, environment: dict[str, str], limit: Callable[[], None] | None = None
-) -> End:
+def start(words, folder, environment, limit=None):
     """Run the command in a process of its own."""
     process = subprocess.run(
         [sys.executable, "-c", COMMAND, *shlex.split(words)],
@@ -66,7 +63,7 @@ def start(
     return End(process.returncode, process.stdout, process.stderr)
 
 
-def surroundings(**changed: str | None) -> dict[str, str]:
+def surroundings(**changed):
     """The environment of this process, changed, without a screen unless one is named."""
     now = {**os.environ, "DISPLAY": None, **changed}
     return {name: value for name, value in now.items() if value is not None}
@@ -82,8 +79,8 @@ def test_environments(name, sandbox):
     check_end(ended, sandbox, before)
 
 
-def _limit(kind: int, most: int) -> Callable[[], None]:
-    def set_limit() -> None:
+def _limit(kind, most):
+    def set_limit():
         resource.setrlimit(kind, (most, most))
 
     return set_limit

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.linalg import norm
 
 from risorius.geometry.closest import closest_points
 from tests import meshes
@@ -15,12 +16,12 @@ def test_equals_brute_force(name):
     points = generator.uniform(-2.0, 4.0, (100, 3))
     found = closest_points(points, mesh.vertices, mesh.faces)
     there = found.interpolate(mesh.vertices)
-    np.testing.assert_allclose(np.linalg.norm(there - points, axis=1), found.distances, atol=1e-12)
+    np.testing.assert_allclose(norm(there - points, axis=1), found.distances, atol=1e-12)
     assert (found.corners == mesh.faces[found.triangles]).all()
     assert (found.weights >= -1e-12).all()
     weights = generator.dirichlet([0.5, 0.5, 0.5], 1000)
     samples = np.einsum("wi,fij->fwj", weights, mesh.vertices[mesh.faces]).reshape(-1, 3)
-    sampled = np.linalg.norm(points[:, None] - samples[None], axis=2).min(axis=1)
+    sampled = norm(points[:, None] - samples[None], axis=2).min(axis=1)
     assert (found.distances <= sampled + 1e-12).all()
     assert (sampled - found.distances).max() < 0.2
 

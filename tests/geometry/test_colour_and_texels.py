@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from risorius.geometry.colour import to_linear, to_screen
 from risorius.geometry.texels import Texels
@@ -10,7 +11,7 @@ from risorius.geometry.texels import Texels
 def test_colours_come_back():
     """Screen colours come back from linear light; middle grey is a fifth of white's light."""
     screen = np.linspace(0.0, 1.0, 256)
-    np.testing.assert_allclose(to_screen(to_linear(screen)), screen, atol=1e-7)
+    assert_allclose(to_screen(to_linear(screen)), screen, atol=1e-7)
     assert to_linear(0.5) == pytest.approx(0.214, abs=1e-3)
 
 
@@ -25,7 +26,7 @@ def test_texels_of_a_square():
     assert places.max() == 47
     uv = found.interpolate(corners)
     expected = np.stack([(found.columns + 0.5) / 64, 1.0 - (found.rows + 0.5) / 64], axis=1)
-    np.testing.assert_allclose(uv, expected, atol=1e-9)
+    assert_allclose(uv, expected, atol=1e-9)
     wider = Texels.within(corners, (64, 64), margin=2.0)
     assert wider.rows.min() == wider.columns.min() == 14
     assert wider.weights.min() >= 0.0

@@ -1,7 +1,6 @@
 """Where lines meet triangles."""
 
 import numpy as np
-import numpy.typing as npt
 from numpy.testing import assert_allclose
 
 from risorius.geometry.normals import cross_products
@@ -50,7 +49,7 @@ def test_what_a_ray_enters_is_no_exit():
     assert_allclose(np.sort(distance), [0.8, 1.0])
 
 
-def cube() -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
+def cube():
     """Vertices (8, 3) at -1 and 1, and faces (12, 3) counter-clockwise from outside."""
     vertices = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
     squares = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose
 
 from risorius import refine
 from risorius.refine.beyond.blending import RAMP_WIDTH
@@ -85,10 +86,10 @@ def assert_equals_twin(
     assert set(names) == set(twin.positions)
     expected = np.array([twin.positions[name] for name in names])
     scale = max(1.0, float(abs(expected).max(initial=0.0)))
-    np.testing.assert_allclose(mesh.positions, expected, rtol=0, atol=tolerance[0] * scale)
+    assert_allclose(mesh.positions, expected, rtol=0, atol=tolerance[0] * scale)
     if not normals_cancel:
         normals = np.array([twin.normals[name] for name in names])
-        np.testing.assert_allclose(mesh.normals, normals, rtol=0, atol=tolerance[1])
+        assert_allclose(mesh.normals, normals, rtol=0, atol=tolerance[1])
     triangles = [
         (int(source), plain_twin.starting_at_least([names[v] for v in corners]))
         for source, corners in zip(mesh.source, mesh.triangles, strict=True)

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose
 
 from risorius import refine
 from tests import meshes
 from tests.refine.cases import Forced, as_lists, kahler, soups
 from tests.refine.plain_twin import (
     Surroundings,
-    Vector,
     edge_name,
     first_level_point,
     is_proper,
@@ -23,14 +23,12 @@ from tests.refine.plain_twin import (
 Triangles = list[tuple[int, int, int]]
 
 
-def loop_plainly(
-    points: list[Vector], faces: Triangles, normals: list[Vector]
-) -> tuple[list[Vector], Triangles, list[Vector]]:
+def loop_plainly(points, faces, normals):
     """One step of Loop subdivision over dictionaries; numbers are given in order of first use."""
     around = Surroundings(faces)
     fine_points = [moved_vertex(v, points, around) for v in range(len(points))]
     fine_normals = list(normals)
-    number: dict[tuple[int, int], int] = {}
+    number = {}
     for face in filter(is_proper, faces):
         for i in range(3):
             edge = edge_name(face[i], face[(i + 1) % 3])
@@ -38,7 +36,7 @@ def loop_plainly(
                 number[edge] = len(fine_points)
                 fine_points.append(first_level_point(edge, points, around))
                 fine_normals.append(unit(mix((0.5, normals[edge[0]]), (0.5, normals[edge[1]]))))
-    fine_faces: Triangles = []
+    fine_faces = []
     for face in faces:
         if not is_proper(face):
             fine_faces.append(face)
@@ -49,7 +47,7 @@ def loop_plainly(
     return fine_points, fine_faces, fine_normals
 
 
-def assert_is_plain(mesh: meshes.Mesh, deformed: np.ndarray, levels: int) -> None:
+def assert_is_plain(mesh, deformed, levels):
     """Compare `loop` with the plain implementation, number by number."""
     refiner = refine.create("loop", mesh.faces, mesh.vertices, levels=levels)
     refined = refiner.refine(deformed)
@@ -59,7 +57,8 @@ def assert_is_plain(mesh: meshes.Mesh, deformed: np.ndarray, levels: int) -> Non
     for _ in range(levels):
         points, faces, normals = loop_plainly(points, faces, normals)
     assert refined.triangles.tolist() == [list(face) for face in faces]
-    np.testing.assert_allclose(refined.positions, np.array(points), rtol=0, atol=3e-6)
+    assert_allclose(refined.positions, np.array(points), rtol=0, atol=3e-6)
+    return refined, np.array(normals)
 
 
 @pytest.mark.parametrize("levels", [1, 2, 3])
@@ -81,13 +80,8 @@ def test_soups(soup, levels):
 def test_interpolated_normals():
     """Normals are interpolated along the edges of each level, as in the plain implementation."""
     mesh = meshes.irregular(7)
-    deformed = meshes.wrinkled(mesh, 8)
-    refined = refine.create("loop", mesh.faces, mesh.vertices, levels=2).refine(deformed)
-    points, faces = as_lists(deformed, mesh.faces)
-    normals = vertex_normals(points, faces)
-    for _ in range(2):
-        points, faces, normals = loop_plainly(points, faces, normals)
-    np.testing.assert_allclose(refined.normals, np.array(normals), rtol=0, atol=4e-6)
+    refined, normals = assert_is_plain(mesh, meshes.wrinkled(mesh, 8), 2)
+    assert_allclose(refined.normals, normals, rtol=0, atol=4e-6)
 
 
 def test_equals_kahler_at_one_level():

@@ -4,7 +4,6 @@ import gc
 import subprocess
 import sys
 import weakref
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +11,7 @@ import pytest
 from risorius import refine
 from tests import meshes
 
-LOOKS: dict[str, dict[str, Any]] = {
+LOOKS = {
     "paper": {},
     "coherent": {"coherent": True},
     "blended": {"blend": True},

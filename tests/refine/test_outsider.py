@@ -6,10 +6,8 @@ triangle's pieces is walked, and along an edge all triangles must show the same 
 """
 
 from collections import Counter, defaultdict
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -32,7 +30,7 @@ INDEX_TYPES = ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", ">i4")
 
 
 @st.composite
-def options(draw: st.DrawFn) -> dict[str, Any]:
+def options(draw):
     """Options that go together."""
     scheme = draw(st.sampled_from(["loop", "cubic", "detail"]))
     blend = draw(st.sampled_from([None, False, True]))
@@ -46,7 +44,7 @@ def options(draw: st.DrawFn) -> dict[str, Any]:
     }
 
 
-def in_other_order(array: npt.NDArray[Any], order: str) -> npt.NDArray[Any]:
+def in_other_order(array, order):
     """The same numbers, laid out otherwise in memory, and not to be written."""
     if order == "fortran":
         array = np.asfortranarray(array)
@@ -59,9 +57,7 @@ def in_other_order(array: npt.NDArray[Any], order: str) -> npt.NDArray[Any]:
     return view
 
 
-def borders(
-    mesh: refine.RefinedMesh, face: list[int], pieces: npt.NDArray[Any], names: npt.NDArray[Any]
-) -> list[list[int]]:
+def borders(mesh, face, pieces, names):
     """Rows along the three edges of an input triangle, walked along the border of its pieces."""
     sides = Counter((int(t[i]), int(t[(i + 1) % 3])) for t in pieces for i in range(3))
     assert max(sides.values()) == 1
@@ -80,17 +76,15 @@ def borders(
     return [loop[begin : end + 1] for begin, end in zip(places, ends, strict=True)]
 
 
-def assert_no_crack(
-    refiner: refine.Refiner, mesh: refine.RefinedMesh, faces: npt.NDArray[Any]
-) -> None:
+def assert_no_crack(refiner, mesh, faces):
     """Along every edge of the input all triangles that have it show the same bytes."""
     origins = refiner.origins()
     is_vertex = origins.weights.max(axis=1) == 1.0
     vertex = origins.vertices[np.arange(len(is_vertex)), origins.weights.argmax(axis=1)]
     names = np.where(is_vertex, vertex, -1)
     shown = np.concatenate([mesh.positions, mesh.normals], axis=1)
-    seen: dict[tuple[int, int], set[bytes]] = defaultdict(set)
-    counts: dict[tuple[int, int], int] = {}
+    seen = defaultdict(set)
+    counts = {}
     for number, face in enumerate(faces.tolist()):
         pieces = mesh.triangles[mesh.source == number].astype(np.int64)
         if len(set(face)) < 3:
@@ -144,12 +138,7 @@ def test_anything_goes(mesh, chosen, seed, precision, index, order, textured):
     assert rest.tobytes() == mesh[0].astype(precision).tobytes()
 
 
-def assert_linear(
-    refiner: refine.Refiner,
-    mesh: refine.RefinedMesh,
-    faces: npt.NDArray[Any],
-    corner_values: npt.NDArray[np.float64],
-) -> None:
+def assert_linear(refiner, mesh, faces, corner_values):
     """Texture coordinates are those of their place in their own triangle, (F, 3, 2) at corners."""
     origins = refiner.origins()
     proper = np.array([len(set(face)) == 3 for face in faces.tolist()])[mesh.source]
@@ -157,5 +146,4 @@ def assert_linear(
     source = mesh.source[proper]
     places = places_in_source(origins, triangles, faces[source])
     expected = np.einsum("tci,tiu->tcu", places, corner_values[source])
-    assert mesh.uv is not None
     np.testing.assert_allclose(mesh.uv[triangles], expected, rtol=0, atol=1e-5)

@@ -11,6 +11,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 import pytest
+from numpy.testing import assert_array_equal
 
 from risorius import refine
 from risorius.refine_gl import KahlerGl
@@ -105,19 +106,19 @@ def assert_same(
     """Refine a frame by both; splits, triangles, rows and attributes are the same to the bit."""
     wanted = processor.refine(positions, view=view)
     got = card.refine(positions, view=view)
-    np.testing.assert_array_equal(card.splits, processor.splits)
+    assert_array_equal(card.splits, processor.splits)
     assert (got.vertex_count, got.triangle_count) == (wanted.vertex_count, wanted.triangle_count)
-    np.testing.assert_array_equal(got.triangles, wanted.triangles)
-    np.testing.assert_array_equal(got.source, wanted.source)
-    np.testing.assert_array_equal(bits(got.positions), bits(wanted.positions))
-    np.testing.assert_array_equal(bits(got.normals), bits(wanted.normals))
+    assert_array_equal(got.triangles, wanted.triangles)
+    assert_array_equal(got.source, wanted.source)
+    assert_array_equal(bits(got.positions), bits(wanted.positions))
+    assert_array_equal(bits(got.normals), bits(wanted.normals))
     assert (got.uv is None) == (wanted.uv is None)
     values = {"uv": (got.uv, wanted.uv)} if got.uv is not None else {}
     values |= {name: (got.attributes[name], wanted.attributes[name]) for name in wanted.attributes}
     for ours, theirs in values.values():
-        np.testing.assert_array_equal(bits(ours), bits(theirs))
+        assert_array_equal(bits(ours), bits(theirs))
     for ours, theirs in zip(card.origins(), processor.origins(), strict=True):
-        np.testing.assert_array_equal(ours, theirs)
+        assert_array_equal(ours, theirs)
     return got
 
 

@@ -4,10 +4,8 @@ To the bit, where the driver rounds as the processor does (agreement.py).
 """
 
 import copy
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from risorius import refine, sim
@@ -40,7 +38,7 @@ def poses(head: Head) -> dict[str, Points]:
     return found
 
 
-def with_seam(head: Head) -> dict[str, npt.NDArray[Any]]:
+def with_seam(head):
     """Texture coordinates that part along a made-up seam, x = 0."""
     is_left = head.vertices[head.faces].mean(axis=1)[:, 0] > 0
     uv = np.random.default_rng(1).random((len(head.vertices), 2))
@@ -153,7 +151,7 @@ def test_criteria(options):
         refine.check(card, assert_same(processor, card, positions, VIEW), positions)
 
 
-def random_mesh(seed: int) -> tuple[meshes.Mesh, dict[str, Any]]:
+def random_mesh(seed):
     """A bumpy grid with holes, or any triangles over any vertices; some with texture seams."""
     generator = np.random.default_rng(seed)
     if seed % 2:
@@ -163,7 +161,7 @@ def random_mesh(seed: int) -> tuple[meshes.Mesh, dict[str, Any]]:
         face_count = generator.integers(1, 200)
         faces = generator.integers(0, count, (face_count, 3)).astype(np.int32)
         mesh = meshes.Mesh(generator.normal(size=(count, 3)), faces)
-    options: dict[str, Any] = {"threshold_once": 0.1, "threshold_twice": 0.6} if seed % 3 else {}
+    options = {"threshold_once": 0.1, "threshold_twice": 0.6} if seed % 3 else {}
     if seed % 5 == 0:
         options["face_uv"] = generator.integers(0, 4, mesh.faces.shape)
         options["uv"] = generator.random((4, 2))
@@ -174,9 +172,9 @@ def random_mesh(seed: int) -> tuple[meshes.Mesh, dict[str, Any]]:
     return mesh, options
 
 
-def assert_random_meshes_same(seeds: range) -> set[int]:
+def assert_random_meshes_same(seeds):
     """Two frames of a mesh for each seed; returns the configurations that were met."""
-    met: set[int] = set()
+    met = set()
     for seed in seeds:
         mesh, options = random_mesh(seed)
         processor, card = bound_twice(mesh.faces, mesh.vertices, **options)
@@ -204,7 +202,6 @@ def test_coherent_frames(frames, rules, head):
         face.step(1 / 60)
         assert_same(processor, card, face.positions)
     assert isinstance(processor, refine.Kahler)
-    assert processor.history is not None
     assert card.removals_out_of_order == processor.history.removals_out_of_order > 0
 
 

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from PIL import Image
 
@@ -15,11 +14,10 @@ from risorius.app.dataset.request import request_of
 from risorius.app.dataset.studio import Studio
 from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining import drawn_mesh
-from risorius.app.refining.drawn_mesh import DrawnMesh
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 from risorius.refine_gl import LEAST_VERSION, KahlerGl
-from tests.app.command_line import risorius
+from tests.app.command_line import succeeded
 
 from .agreement import needs_exact_driver
 
@@ -53,7 +51,7 @@ def pipeline(request: pytest.FixtureRequest, scene: FaceScene) -> Iterator[Pipel
         yield Pipeline(scene, render.Renderer(surface))
 
 
-def image(pipeline: Pipeline, drawn: DrawnMesh, style: render.Style) -> npt.NDArray[np.uint8]:
+def image(pipeline, drawn, style):
     """The picture of it."""
     surface = pipeline.renderer.surface
     camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="three-quarter")
@@ -61,7 +59,7 @@ def image(pipeline: Pipeline, drawn: DrawnMesh, style: render.Style) -> npt.NDAr
     return surface.read()
 
 
-def both(pipeline: Pipeline, look: str = "paper") -> tuple[DrawnMesh, DrawnMesh]:
+def both(pipeline, look="paper"):
     """Made by the processor, and on the card."""
     drawn = [pipeline.bind(Refinement(look, name)) for name in ("kahler", "kahler-gl")]
     assert isinstance(drawn[1].refiner, KahlerGl)
@@ -69,7 +67,7 @@ def both(pipeline: Pipeline, look: str = "paper") -> tuple[DrawnMesh, DrawnMesh]
     return drawn[0], drawn[1]
 
 
-def drawn_by(monkeypatch: pytest.MonkeyPatch, kind: str) -> None:
+def drawn_by(monkeypatch, kind):
     """Let the driver, whatever it is, count as software or as hardware."""
     is_software = kind == "software"
     monkeypatch.setattr(render.Surface, "is_software", property(lambda _: is_software))
@@ -115,7 +113,7 @@ def test_nothing_comes_back(scene, monkeypatch):
         _, card = both(pipeline)
         image(pipeline, card, PLAIN)
         assert not {"_counts", "vertices", "triangles", "source"} & set(vars(card.mesh))
-        assert card.refiner._fetched_splits is None  # type: ignore[attr-defined]
+        assert card.refiner._fetched_splits is None
 
 
 @pytest.mark.parametrize("options", [["paper", "--compare", "none"], ["smooth"]])
@@ -125,8 +123,7 @@ def test_films_are_the_same(tmp_path, options):
     for name in ("kahler-gl", "kahler"):
         path = tmp_path / f"{name}.png"
         still = ("--set", "joy=1", "--size", "160x120", "--look")
-        result = risorius("capture", "-o", path, *still, *options, "--refiner", name)
-        assert result.exit_code == 0, result.output
+        succeeded("capture", "-o", path, *still, *options, "--refiner", name)
         pictures.append(np.asarray(Image.open(path)))
     assert np.array_equal(*pictures)
 
@@ -167,7 +164,7 @@ def test_a_window_that_is_resized(scene, look):
             assert np.array_equal(wanted, got)
 
 
-def resize(window: render.WindowSurface, size: tuple[int, int]) -> None:
+def resize(window, size):
     """Ask for a size, and wait until the screen has given it."""
     window._glfw.set_window_size(window.handle, *size)
     for _ in range(10_000):

@@ -4,13 +4,13 @@ import logging
 import re
 from collections.abc import Iterator
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from risorius import refine, render
-from risorius.refine_gl import GpuError, KahlerGl, frames, refiner, tables
+from risorius.refine_gl import GpuError, frames, refiner, tables
 from risorius.refine_gl.refined import GpuBuffers
 from tests import meshes
 
@@ -20,7 +20,7 @@ MESH = meshes.irregular(1, columns=6, rows=5, holes=1)
 BENT = meshes.wrinkled(MESH, 3, 0.5)
 
 
-def bound(**options: Any) -> tuple[refine.Refiner, KahlerGl]:
+def bound(**options):
     """Both refiners of a small mesh, with the same options."""
     return bound_twice(MESH.faces, MESH.vertices, **options)
 
@@ -50,7 +50,7 @@ def test_wrong_frames_are_refused():
     assert_same(processor, card, BENT)
 
 
-def lent(card: refine.Refiner) -> Any:
+def lent(card):
     """Arrays with room for any frame."""
     return SimpleNamespace(
         vertices=np.zeros((card.vertex_capacity, card.vertex_columns), np.float32),
@@ -66,9 +66,9 @@ def test_lent_arrays_are_filled():
     wanted = processor.refine(BENT)
     mesh = card.refine(BENT, out=stream)
     assert np.shares_memory(mesh.positions, stream.vertices)
-    np.testing.assert_array_equal(bits(mesh.positions), bits(wanted.positions))
-    np.testing.assert_array_equal(mesh.triangles, wanted.triangles)
-    np.testing.assert_array_equal(mesh.source, wanted.source)
+    assert_array_equal(bits(mesh.positions), bits(wanted.positions))
+    assert_array_equal(mesh.triangles, wanted.triangles)
+    assert_array_equal(mesh.source, wanted.source)
     with pytest.raises(ValueError, match=re.escape("stream.triangles must be a writable")):
         card.refine(BENT, out=SimpleNamespace(**{**vars(stream), "triangles": None}))
 
@@ -90,7 +90,7 @@ def test_buffers_of_another_context(surface):
     assert not {"vertices", "triangles", "source", "_counts"} & set(vars(mesh))
     assert mesh.triangle_count == wanted.triangle_count
     assert "vertices" not in vars(mesh)
-    np.testing.assert_array_equal(bits(mesh.positions), bits(wanted.positions))
+    assert_array_equal(bits(mesh.positions), bits(wanted.positions))
     refine.check(card, mesh, BENT)
     command = np.frombuffer(stream.command_buffer.read(), np.uint32)
     assert command.tolist() == [
@@ -108,7 +108,7 @@ def test_a_lost_context_is_made_anew(rules):
     for size in ((32, 32), (64, 48)):
         with render.open_offscreen(size) as surface:
             mesh = card.refine_on_card(BENT, GpuBuffers(surface.gl, *room))
-            np.testing.assert_array_equal(bits(mesh.positions), bits(wanted.positions))
+            assert_array_equal(bits(mesh.positions), bits(wanted.positions))
     assert_same(processor, card, BENT)
 
 
@@ -126,7 +126,7 @@ def test_the_callers_context_stays_current(surface):
 def without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
     """OpenGL that is too old."""
 
-    def fails() -> None:
+    def fails():
         """Fail as `own_context` does then."""
         raise GpuError("no OpenGL 4.3 without a window (it has 4.1)")
 
@@ -146,7 +146,7 @@ def test_without_opengl_the_processor_refines(caplog):
     ]
     assert type(other) is refine.Kahler
     wanted = refine.create("kahler", MESH.faces, MESH.vertices, threshold_once=0.01).refine(BENT)
-    np.testing.assert_array_equal(other.refine(BENT).triangles, wanted.triangles)
+    assert_array_equal(other.refine(BENT).triangles, wanted.triangles)
 
 
 def test_a_driver_that_refuses_a_shader(monkeypatch, caplog):

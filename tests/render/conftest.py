@@ -23,3 +23,9 @@ def window() -> Iterator[render.WindowSurface]:
         pytest.skip("DISPLAY is not set: run the tests under `xvfb-run -a` to test windows, too")
     with render.open_window((96, 96), "test") as opened:
         yield opened
+
+
+@pytest.fixture
+def renderer(surface: render.Surface) -> render.Renderer:
+    """A renderer of the small frame."""
+    return render.Renderer(surface)

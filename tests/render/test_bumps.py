@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from risorius import render
@@ -14,12 +13,7 @@ LEVEL = (128, 128, 0, 0)  # a slope of 1 over a square of 100 mm
 STEEP = 100.0
 
 
-def furrowed(
-    surface: render.Surface,
-    texel: tuple[int, int, int, int],
-    amounts: tuple[float, float] | None,
-    style: render.Style = PLAIN,
-) -> npt.NDArray[np.int32]:
+def furrowed(surface, texel, amounts, style=PLAIN):
     """A square whose right half has `texel` in its map and bumps by `amounts`."""
     texels = np.full((32, 32, 4), LEVEL, np.uint8)
     texels[:, 16:] = texel
@@ -80,10 +74,9 @@ def test_per_pixel_shading_alone_has_them(surface, shading):
     assert (furrows == furrowed(surface, texel, None, style)).all()
 
 
-def test_part_of_a_mesh_has_bumps_without_a_crack(surface):
+def test_part_of_a_mesh_has_bumps_without_a_crack(renderer):
     """With a level map, a sphere half of whose vertices bump looks as it does without."""
     shape = sphere()
-    renderer = render.Renderer(surface)
     stream = lent(renderer, shape, columns=8)
     level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
     frames = []
@@ -95,9 +88,8 @@ def test_part_of_a_mesh_has_bumps_without_a_crack(surface):
     assert np.abs(frames[0] - frames[1]).max() <= 1
 
 
-def test_what_does_not_fit_is_refused(surface):
+def test_what_does_not_fit_is_refused(renderer):
     """A map that is none, amounts for other vertices, a stream without texture coordinates."""
-    renderer = render.Renderer(surface)
     with pytest.raises(ValueError, match="the bump map has shape"):
         render.BumpMap(renderer.surface, np.zeros((4, 4, 3), np.uint8), STEEP)
     shape = square()

@@ -1,17 +1,15 @@
 """Camera maths: a framed scene is seen whole, and moves of the camera have their effect."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from pytest import approx
 
 from risorius import render
 
 HEAD = np.random.default_rng(7).normal(size=(400, 3)) * (60.0, 90.0, 50.0) + (3.0, -20.0, 60.0)
 
 
-def seen(
-    camera: render.OrbitCamera, points: npt.ArrayLike, aspect: float = 1.5
-) -> npt.NDArray[np.float64]:
+def seen(camera, points, aspect=1.5):
     """Where points are in the frame: -1..1 from left to right, bottom to top, near to far."""
     rows = np.column_stack([np.atleast_2d(points), np.ones(len(np.atleast_2d(points)))])
     clip = rows @ np.asarray(camera.view_matrix()) @ np.asarray(camera.projection_matrix(aspect))
@@ -25,18 +23,18 @@ def test_framing_fits_everything(view, aspect):
     camera = render.OrbitCamera.framing(HEAD, view=view)
     places = seen(camera, HEAD, aspect)
     assert np.abs(places).max() <= 1.0
-    assert np.abs(places[:, :2]).max() == pytest.approx(0.88, abs=0.03)
+    assert np.abs(places[:, :2]).max() == approx(0.88, abs=0.03)
 
 
 def test_views_look_from_where_they_say():
     """Front is +z, the profile is from the subject's left (+x), below is from below."""
     eyes = {view: render.OrbitCamera.framing(HEAD, view=view).axes()[2] for view in render.VIEWS}
-    assert eyes["front"] == pytest.approx((0, 0, 1))
-    assert eyes["profile"] == pytest.approx((1, 0, 0))
+    assert eyes["front"] == approx((0, 0, 1))
+    assert eyes["profile"] == approx((1, 0, 0))
     assert eyes["three-quarter"][0] > 0.4
     assert eyes["three-quarter-right"][0] < -0.4
     assert eyes["below"][1] < -0.4
-    assert eyes["top"] == pytest.approx((0, 1, 0))
+    assert eyes["top"] == approx((0, 1, 0))
 
 
 def test_orbit_stops_at_the_poles():
@@ -52,9 +50,9 @@ def test_zoom_has_an_end_on_both_sides():
     """A wheel that is turned for ever never takes the eye into the target, nor out of view."""
     camera = render.OrbitCamera.framing(HEAD)
     camera.zoom(1e30)
-    assert camera.distance == pytest.approx(0.02 * camera.scene_radius)
+    assert camera.distance == approx(0.02 * camera.scene_radius)
     camera.zoom(1e-30)
-    assert camera.distance == pytest.approx(100.0 * camera.scene_radius)
+    assert camera.distance == approx(100.0 * camera.scene_radius)
 
 
 def test_clipping_planes_hold_the_scene_from_anywhere():
@@ -96,6 +94,6 @@ def test_what_is_seen_can_be_found_again(seed):
     points = HEAD[random.integers(len(HEAD), size=20)]
     places = seen(camera, points, aspect)
     back = np.column_stack([places, np.ones(20)]) @ np.linalg.inv(matrix)
-    assert back[:, :3] / back[:, 3:] == pytest.approx(points, abs=1e-6)
+    assert back[:, :3] / back[:, 3:] == approx(points, abs=1e-6)
     farther = seen(camera, points + 0.1 * (points - camera.eye), aspect)
-    assert farther[:, :2] == pytest.approx(places[:, :2], abs=1e-6)
+    assert farther[:, :2] == approx(places[:, :2], abs=1e-6)

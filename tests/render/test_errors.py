@@ -18,7 +18,7 @@ on_linux = pytest.mark.skipif(
 )
 
 
-def run_python(code: str, **environment: str) -> str:
+def run_python(code, **environment):
     """Run code in a Python of its own without a screen; returns its output."""
     clean = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
     clean.pop("WAYLAND_DISPLAY", None)
@@ -56,7 +56,7 @@ def test_broken_egl_is_one_line(monkeypatch, name, value, message):
 def test_a_frame_that_does_not_fit_is_one_line(monkeypatch):
     """Where memory for a frame is refused, the text says what to ask for instead."""
 
-    def refused(*_: object) -> None:
+    def refused(*_):
         raise moderngl.Error("the framebuffer is not complete (INCOMPLETE_ATTACHMENT)")
 
     monkeypatch.setattr("risorius.render.surface.RenderTarget", refused)

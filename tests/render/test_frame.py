@@ -24,7 +24,7 @@ def renderer(request: pytest.FixtureRequest) -> Iterator[render.Renderer]:
         yield render.Renderer(surface)
 
 
-def frames_of(renderer: render.Renderer) -> list[render.Frame]:
+def frames_of(renderer):
     """Frames that need everything: shadows, hidden triangles, opened skin, hair, maps, clips."""
     shape = joined(square(70.0, z=-45.0), sphere(2, 30.0))
     stream = lent(renderer, shape, columns=8)
@@ -54,7 +54,7 @@ def frames_of(renderer: render.Renderer) -> list[render.Frame]:
     ]
 
 
-def picture(renderer: render.Renderer, *frames: render.Frame) -> render.Image:
+def picture(renderer, *frames):
     """What is seen after one call."""
     renderer.draw(*frames)
     return renderer.surface.read()
@@ -118,16 +118,16 @@ def test_a_frame_keeps_camera_and_shapes(renderer):
 class Moving(Ball):
     """A ball that changes its shape."""
 
-    def __init__(self, ball: Ball) -> None:
+    def __init__(self, ball):
         object.__setattr__(self, "_now", ball.vertices)
         super().__init__(shape=ball.shape)
 
     @property
-    def vertices(self) -> np.ndarray:
+    def vertices(self):
         return self._now  # type: ignore[attr-defined,no-any-return]
 
     @vertices.setter
-    def vertices(self, now: np.ndarray) -> None:
+    def vertices(self, now):
         object.__setattr__(self, "_now", now)
 
 

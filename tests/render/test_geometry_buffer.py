@@ -1,7 +1,6 @@
 """Numbers of what each pixel shows: against spheres and planes that are known exactly."""
 
 import numpy as np
-import numpy.typing as npt
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -12,7 +11,7 @@ from .scenes import PLAIN, Ball, Shape, facing, joined, lent, sphere, square, st
 CHORD = 0.2  # [unit of the scene] a sphere of 8192 triangles lies this far within its ball, at most
 
 
-def rays(camera: render.OrbitCamera, size: tuple[int, int]) -> npt.NDArray[np.float64]:
+def rays(camera, size):
     """Through the middle of each pixel, one unit along the camera's axis long, (H, W, 3)."""
     width, height = size
     focal = camera.focal(width / height, height)
@@ -21,13 +20,7 @@ def rays(camera: render.OrbitCamera, size: tuple[int, int]) -> npt.NDArray[np.fl
     return np.asarray(x[..., None] / focal * right - y[..., None] / focal * up - back)
 
 
-def drawn(
-    surface: render.Surface,
-    shape: Shape,
-    camera: render.OrbitCamera,
-    *,
-    parts: tuple[Ball, ...] = (),
-) -> render.Geometry:
+def drawn(surface, shape, camera, *, parts=()):
     """The numbers of one shape and parts."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape)
@@ -126,9 +119,8 @@ def test_the_back_of_the_mesh_differs_from_its_front(surface):
     assert found.normal[48, 48, 2] < -0.99
 
 
-def test_a_picture_is_the_same_before_and_after(surface):
+def test_a_picture_is_the_same_before_and_after(surface, renderer):
     """Reading numbers leaves the colours of a frame alone, and those of the next."""
-    renderer = render.Renderer(surface)
     stream = lent(renderer, sphere())
     parts = still(Ball(shape=sphere(3, 60.0)))
     frame = render.Frame(render.CameraView(facing()), render.Style(), render.Skin(stream), parts)

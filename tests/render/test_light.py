@@ -13,7 +13,6 @@ from .scenes import (
     LIGHT_SKIN,
     PLAIN,
     Ball,
-    SignedImage,
     draw,
     draw_image,
     drawn,
@@ -28,14 +27,14 @@ SHADED = replace(PLAIN, shadows=True, albedo=render.CLAY)
 NO_RIM = replace(render.Light(), rim=(0.0, 0.0, 0.0))
 
 
-def swapped(light: render.Light) -> render.Light:
+def swapped(light):
     """The same light with left and right exchanged."""
     (a, b, c) = light.to_key
     (d, e, f) = light.to_fill
     return replace(light, to_key=(-a, b, c), to_fill=(-d, e, f))
 
 
-def scene(surface: render.Surface, light: render.Light) -> SignedImage:
+def scene(surface, light):
     """A ball before a wall, in a mesh of its own mirror image."""
     shape = joined(square(70.0, z=-45.0), sphere(3, 30.0))
     return draw_image(surface, shape, replace(SHADED, light=light))
@@ -52,13 +51,12 @@ def test_light_of_the_other_side_makes_the_mirror_image(surface):
         assert np.percentile(off, 99.0) <= 4
 
 
-def test_other_light_leaves_nothing_behind(surface):
+def test_other_light_leaves_nothing_behind(surface, renderer):
     """One renderer: the studio, each other light, the studio again, bit for bit; parts, too."""
-    renderer = render.Renderer(surface)
     stream = lent(renderer, joined(square(70.0, z=-45.0), sphere(2, 30.0)))
     camera = render.OrbitCamera.framing(stream.vertices[:, :3])
 
-    def picture(style: render.Style) -> render.Image:
+    def picture(style):
         """The mesh and a part in front of it."""
         draw(renderer, stream, style, parts=still(Ball()), camera=camera)
         return surface.read()

@@ -1,9 +1,8 @@
 """Polylines over the scene."""
 
 import numpy as np
-import pytest
+from pytest import approx
 
-from risorius import render
 from risorius.render import Lines
 
 from .scenes import at, draw, drawn, lent, square
@@ -11,9 +10,8 @@ from .scenes import at, draw, drawn, lent, square
 RED = (1.0, 0.0, 0.0)
 
 
-def test_lines_before_and_behind(surface):
+def test_lines_before_and_behind(renderer):
     """A line in front has its full colour, one behind shines through, and 0 hides it."""
-    renderer = render.Renderer(surface)
     wall = lent(renderer, square())
     over = np.array([(-40, 20, 5), (0, 20, 5), (40, 20, 5)], np.float64)
     under = over - (0, 40, 10)
@@ -24,14 +22,13 @@ def test_lines_before_and_behind(surface):
         frames.append(draw(renderer, wall, lines=[lines]))
     skin = at(frames[0], 0.0, 0.0)
     for frame in frames:
-        assert at(frame, 10.0, 20.4) == pytest.approx((0, 204, 0), abs=3)
-    assert at(frames[0], 10.0, -20.0) == pytest.approx(skin * 0.5 + np.array((0, 0, 115)), abs=6)
-    assert at(frames[1], 10.0, -20.0) == pytest.approx(skin, abs=3)
+        assert at(frame, 10.0, 20.4) == approx((0, 204, 0), abs=3)
+    assert at(frames[0], 10.0, -20.0) == approx(skin * 0.5 + np.array((0, 0, 115)), abs=6)
+    assert at(frames[1], 10.0, -20.0) == approx(skin, abs=3)
 
 
-def test_lines_are_not_joined(surface):
+def test_lines_are_not_joined(renderer):
     """Nothing is drawn from the end of one line to the start of the next; empty lines are fine."""
-    renderer = render.Renderer(surface)
     left = np.array([(-40.0, -10, 0), (-40, 10, 0)])
     right = np.array([(40.0, -10, 0), (40, 10, 0)])
     lines = Lines([np.zeros((0, 3)), left, np.zeros((1, 3)), right], RED)

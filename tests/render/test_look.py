@@ -27,7 +27,7 @@ STYLES = {
 }
 
 
-def scene(surface: render.Surface, style: render.Style) -> render.Image:
+def scene(surface, style):
     """A sphere before a wall, a wet ball beside it, and a line through both."""
     renderer = render.Renderer(surface)
     shape = joined(square(70.0, z=-45.0), sphere(2, 40.0))

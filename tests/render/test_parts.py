@@ -2,18 +2,17 @@
 
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from pytest import approx
 
 from risorius import render
 
 from .scenes import PLAIN, Ball, Shape, at, draw, drawn, facing, lent, square, still
 
 
-def reshaped(ball: Ball, **changes: npt.NDArray[Any]) -> Any:
+def reshaped(ball, **changes):
     """A ball of which arrays are others."""
     names = ("vertices", "normals", "faces", "colours", "striation")
     part = SimpleNamespace(**vars(ball), **{name: getattr(ball, name) for name in names})
@@ -21,9 +20,8 @@ def reshaped(ball: Ball, **changes: npt.NDArray[Any]) -> Any:
     return part
 
 
-def test_parts_move_with_their_bones(surface):
+def test_parts_move_with_their_bones(renderer):
     """A part is drawn where the column-vector matrix of its bone puts it."""
-    renderer = render.Renderer(surface)
     ball = Ball(bone="eye_left")
     places = []
     for x in (-25.0, 25.0):
@@ -32,13 +30,12 @@ def test_parts_move_with_their_bones(surface):
         frame = draw(renderer, parts=[render.PlacedPart.of(ball, {"eye_left": moved})])
         assert at(frame, x, 0.0)[2] > at(frame, x, 0.0)[0] + 30
         places.append(np.nonzero(drawn(frame))[1].mean())
-    assert places[0] == pytest.approx(47.5 - 21.5, abs=1.5)
-    assert places[1] == pytest.approx(47.5 + 21.5, abs=1.5)
+    assert places[0] == approx(47.5 - 21.5, abs=1.5)
+    assert places[1] == approx(47.5 + 21.5, abs=1.5)
 
 
-def test_a_part_that_changes_its_shape_is_drawn_anew(surface):
+def test_a_part_that_changes_its_shape_is_drawn_anew(renderer):
     """Other arrays of the same part are uploaded, after any other drawing."""
-    renderer = render.Renderer(surface)
     pixels = []
     ball = Ball()
     part = reshaped(ball)
@@ -48,9 +45,8 @@ def test_a_part_that_changes_its_shape_is_drawn_anew(surface):
     assert 0.2 * pixels[0] < pixels[1] < 0.3 * pixels[0]
 
 
-def test_wet_parts_have_a_crisp_highlight(surface):
+def test_wet_parts_have_a_crisp_highlight(renderer):
     """Shine makes a few pixels nearly white, and leaves the others as they are."""
-    renderer = render.Renderer(surface)
     frames = []
     for shine in (0.0, 1.0):
         style = replace(PLAIN, background=render.DARK)
@@ -63,21 +59,19 @@ def test_wet_parts_have_a_crisp_highlight(surface):
     assert ((wet - dull) > 150).mean() < 0.03
 
 
-def test_parts_and_mesh_hide_each_other(surface):
+def test_parts_and_mesh_hide_each_other(renderer):
     """Depth decides."""
-    renderer = render.Renderer(surface)
     wall = lent(renderer, square(z=10.0))
     frame = draw(renderer, wall, parts=still(Ball()))
     assert at(frame, 0.0, 0.0)[2] > at(frame, 0.0, 0.0)[0]  # the ball's front comes through
     assert at(frame, 19.0, 0.0)[0] > at(frame, 19.0, 0.0)[2]  # its rim is behind the wall
 
 
-def test_parts_have_one_side(surface):
+def test_parts_have_one_side(renderer):
     """Of a part, only the side from which its triangles run counter-clockwise is drawn."""
     ball = Ball()
     behind = ball.vertices[ball.faces].mean(axis=1)[:, 2] < 0.0
     bowl = ball.shape.triangles[behind]
-    renderer = render.Renderer(surface)
     shown = []
     for triangles, normals in ((bowl, ball.normals), (bowl[:, ::-1], -ball.normals)):
         part = Ball(shape=Shape(ball.vertices, normals, triangles))
@@ -120,9 +114,8 @@ def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples):
     assert max(taken) < 1.35 * min(taken)
 
 
-def test_hair_is_dense_up_to_its_outline(surface):
+def test_hair_is_dense_up_to_its_outline(renderer):
     """It covers the skin under it, no veil stands off its outline; it is away where none grows."""
-    renderer = render.Renderer(surface)
     ball = Ball(colour=(0.1, 0.1, 0.1))
     covers = []
     for dense in (1.0, 0.0):
@@ -139,9 +132,8 @@ def test_hair_is_dense_up_to_its_outline(surface):
     assert ((pixels > 5.0) & (pixels < 200.0)).sum() <= 2
 
 
-def test_hair_hides_the_skin_behind_it(surface):
+def test_hair_hides_the_skin_behind_it(renderer):
     """An outline of skin under hair is not seen through it."""
-    renderer = render.Renderer(surface)
     wall = lent(renderer, square(z=-5.0))
     ball = Ball(colour=(0.1, 0.1, 0.1))
     striation = np.column_stack([ball.vertices[:, :2], 6.0 * ball.normals, ball.normals[:, 0]])

@@ -2,9 +2,7 @@
 
 import weakref
 from collections import Counter, namedtuple
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import moderngl
 import numpy as np
@@ -19,12 +17,12 @@ KINDS = ("program", "buffer", "texture", "depth_texture", "renderbuffer", "frame
 KINDS += ("vertex_array", "simple_framebuffer", "depth_renderbuffer", "sampler")
 
 
-def counting(monkeypatch: pytest.MonkeyPatch) -> Callable[[], Counter[str]]:
+def counting(monkeypatch):
     """What says how many objects of each kind were made from now on and not given back."""
-    made: list[weakref.ref[Any]] = []
+    made = []
 
-    def noting(make: Callable[..., Any]) -> Callable[..., Any]:
-        def noted(*arguments: Any, **options: Any) -> Any:
+    def noting(make):
+        def noted(*arguments, **options):
             found = make(*arguments, **options)
             made.append(weakref.ref(found))
             return found
@@ -34,7 +32,7 @@ def counting(monkeypatch: pytest.MonkeyPatch) -> Callable[[], Counter[str]]:
     for name in KINDS:
         monkeypatch.setattr(moderngl.Context, name, noting(getattr(moderngl.Context, name)))
 
-    def left() -> Counter[str]:
+    def left():
         held = [each for each in (seen() for seen in made) if each is not None]
         return Counter(
             type(each).__name__
@@ -45,7 +43,7 @@ def counting(monkeypatch: pytest.MonkeyPatch) -> Callable[[], Counter[str]]:
     return left
 
 
-def draw_all(surface: render.Surface) -> np.ndarray:
+def draw_all(surface):
     """A picture that needs every program and buffer; nobody holds anything after it."""
     renderer = render.Renderer(surface)
     shape = sphere()
@@ -106,7 +104,7 @@ def test_a_part_without_weak_references_is_drawn():
     ball = Ball()
     names = ("name", "vertices", "normals", "faces", "colours", "bone", "shine")
     names += ("is_enclosed", "strand_radius", "striation")
-    part_type = namedtuple("part_type", names)  # type: ignore[misc]
+    part_type = namedtuple("part_type", names)
     kept = part_type(*(getattr(ball, name) for name in names))
     images = []
     with render.open_offscreen((96, 96)) as surface:
@@ -140,7 +138,7 @@ def test_a_closed_frame_hands_its_context_on(monkeypatch):
 def test_frames_that_are_opened_and_closed_take_no_memory():
     """Two hundred frames, each with a picture: less than 3 MB."""
 
-    def draw_frames(number: int) -> None:
+    def draw_frames(number):
         for _ in range(number):
             with render.open_offscreen((96, 96)) as surface:
                 draw_all(surface)

@@ -67,9 +67,8 @@ def test_inner_side_is_dark_flesh(surface):
         assert behind[0] > 20
 
 
-def test_skin_fades_toward_a_plane(surface):
+def test_skin_fades_toward_a_plane(renderer):
     """All of it at 1, half where the way is half done, nothing at 0."""
-    renderer = render.Renderer(surface)
     stream = lent(renderer, square(30.0))
     pictures = []
     for fade in (None, (0.0, 1.0 / 60.0, 0.0, 0.5)):  # from the lower edge to the upper one

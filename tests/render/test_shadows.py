@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from risorius import render
@@ -12,7 +11,6 @@ from .scenes import (
     PLAIN,
     Ball,
     Shape,
-    SignedImage,
     at,
     draw,
     draw_image,
@@ -38,7 +36,7 @@ def test_shadow_of_the_key_light(surface):
     assert (at(within, 0.0, 0.0) == at(without, 0.0, 0.0)).all()
 
 
-def wall_in_shadow(style: render.Style) -> tuple[SignedImage, SignedImage]:
+def wall_in_shadow(style):
     """A wall with the shadow of a square, and without: the row 25 mm below the middle, x >= 0."""
     blocker = square(20.0, z=30.0)
     rows = []
@@ -80,13 +78,12 @@ def test_convex_things_do_not_shadow_themselves(surface, shading):
 
 
 @pytest.mark.parametrize("shadows", [True, False])
-def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(surface, shadows):
+def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(renderer, shadows):
     """A ball of hair before a wall darkens it to its lower right, where shadows are on.
 
     The ball keeps its colours: hair only a little nearer to the light does not shade it.
     """
     style = replace(PLAIN, albedo=render.CLAY, shadows=shadows)
-    renderer = render.Renderer(surface)
     wall = lent(renderer, square())
     before_wall = np.eye(4)
     before_wall[2, 3] = 30.0
@@ -105,7 +102,7 @@ class HairyBall(Ball):
     """A ball whose strands stand up, and lie down a little."""
 
     @property
-    def striation(self) -> npt.NDArray[np.float32]:
+    def striation(self):
         """Across and along [mm], the way from the root to the tip, and 1, shape (n, 6)."""
         normals = self.normals.astype(np.float64)
         way = 0.5 * normals - [0.0, 1.0, 0.0] + normals[:, 1:2] * normals

@@ -21,20 +21,18 @@ def test_lent_arrays_fit_the_contract(surface):
     assert stream.vertices.flags.writeable
 
 
-def test_eight_columns_draw_the_same(surface):
+def test_eight_columns_draw_the_same(surface, renderer):
     """Texture coordinates are skipped, not taken for positions."""
     expected = draw_image(surface, sphere())
-    renderer = render.Renderer(surface)
     stream = lent(renderer, sphere(), columns=8)
     stream.vertices[:, 6:] = 1e6
     stream.upload(len(stream.vertices), len(stream.triangles))
     assert (draw(renderer, stream) == expected).all()
 
 
-def test_only_the_used_part_is_drawn(surface):
+def test_only_the_used_part_is_drawn(surface, renderer):
     """Rows beyond the counts are rubbish, and do not show."""
     expected = draw_image(surface, square())
-    renderer = render.Renderer(surface)
     stream = renderer.lend_stream(1000, 1000, 6)
     stream.vertices[:] = np.nan
     stream.triangles[:] = 999
@@ -46,10 +44,9 @@ def test_only_the_used_part_is_drawn(surface):
     assert (draw(renderer, stream) == expected).all()
 
 
-def test_hundred_frames_use_the_same_buffers(surface):
+def test_hundred_frames_use_the_same_buffers(renderer):
     """Neither the arrays, nor OpenGL's buffers, nor the process grow while a mesh changes."""
     resource = pytest.importorskip("resource", reason="this system does not report memory in use")
-    renderer = render.Renderer(surface)
     shape = sphere(4)
     stream = lent(renderer, shape)
     style = render.Style(wireframe=True, colour_by=render.ColourBy.SPLITS)
@@ -69,17 +66,15 @@ def test_hundred_frames_use_the_same_buffers(surface):
     assert peaks[-1] < 1.03 * peaks[20]
 
 
-def test_mesh_without_triangles_draws_nothing(surface):
+def test_mesh_without_triangles_draws_nothing(renderer):
     """An empty frame of a stream is no error."""
-    renderer = render.Renderer(surface)
     stream = lent(renderer, square())
     stream.upload(0, 0)
     assert (draw(renderer, stream, render.Style(background=render.WHITE)) >= 254).all()
 
 
-def test_positions_that_are_not_finite_are_survived(surface):
+def test_positions_that_are_not_finite_are_survived(renderer):
     """A simulation that blew up still gives a frame."""
-    renderer = render.Renderer(surface)
     stream = lent(renderer, sphere())
     stream.vertices[3, 0] = np.inf
     stream.vertices[4, 1] = np.nan
@@ -102,9 +97,8 @@ def test_upload_beyond_capacity(surface, counts, message):
         stream.upload(*counts)
 
 
-def test_bad_stream_sizes(surface):
+def test_bad_stream_sizes(renderer):
     """Streams without room, or with an unknown layout, are refused."""
-    renderer = render.Renderer(surface)
     with pytest.raises(ValueError, match=r"columns is 7; it must be 6 \(position, normal\) or 8"):
         renderer.lend_stream(3, 1, 7)
     with pytest.raises(ValueError, match="a stream of 0 vertices and 1 triangles"):

@@ -8,7 +8,7 @@ from risorius import render
 from .scenes import Shape, draw_image, drawn, needs_samples, sphere, square
 
 
-def upper_square() -> Shape:
+def upper_square():
     """A square in the upper half of the view."""
     shape = square(20.0)
     return Shape(shape.positions + np.array((0, 30, 0), np.float32), shape.normals, shape.triangles)

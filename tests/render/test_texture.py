@@ -3,27 +3,24 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from risorius import render
 
 from .scenes import PLAIN, Shape, draw, draw_image, lent, sphere, square
 
-SignedImage = npt.NDArray[np.int32]
-
 
 def textured(
-    surface: render.Surface,
-    image: npt.NDArray[np.uint8],
-    style: render.Style = PLAIN,
+    surface,
+    image,
+    style=PLAIN,
     *,
-    shape: Shape | None = None,
-    camera: render.OrbitCamera | None = None,
-    values: npt.NDArray[np.uint8] | None = None,
-    occlusion: npt.NDArray[np.uint8] | None = None,
-    fine_shape: tuple[npt.NDArray[np.uint8], float] | None = None,
-) -> SignedImage:
+    shape=None,
+    camera=None,
+    values=None,
+    occlusion=None,
+    fine_shape=None,
+):
     """A square (or another shape) under the image, which spans x and y from -50 to 50."""
     shape = shape or square()
     renderer = render.Renderer(surface)
@@ -35,12 +32,12 @@ def textured(
     return draw(renderer, skin, style, camera=camera)
 
 
-def plain_image(colour: tuple[int, int, int], size: tuple[int, int] = (8, 8)) -> render.Image:
+def plain_image(colour, size=(8, 8)):
     """An image of one colour."""
     return np.full((size[1], size[0], 3), colour, np.uint8)
 
 
-def quarters() -> render.Image:
+def quarters():
     """Red up left, green up right, blue down left, grey down right."""
     image = np.zeros((48, 64, 3), np.uint8)
     image[:24, :32] = (200, 30, 30)
@@ -135,9 +132,8 @@ def test_back_faces_keep_the_inner_albedo(surface):
     assert (blue == draw_image(surface, turned))[20:76, 20:76].all()
 
 
-def test_texture_needs_eight_columns(surface):
+def test_texture_needs_eight_columns(renderer):
     """Without texture coordinates there is nothing to look up."""
-    renderer = render.Renderer(surface)
     stream = lent(renderer, square())
     texture = render.Texture(renderer.surface, quarters())
     with pytest.raises(ValueError, match="a texture meets a stream of 6 columns; it needs texture"):

@@ -12,7 +12,7 @@ from .scenes import draw_image, facing, needs_samples, sphere
 pytestmark = pytest.mark.window
 
 
-def needs_one_driver(window: render.Surface, offscreen: render.Surface) -> None:
+def needs_one_driver(window, offscreen):
     """Skip a comparison where a card draws offscreen, and software in a window of Xvfb."""
     drivers = [surface.gl.info["GL_RENDERER"] for surface in (window, offscreen)]
     if drivers[0] != drivers[1]:

@@ -5,12 +5,26 @@ import pytest
 from risorius import sim
 from risorius.assets.model import Head
 from risorius.sim.controls import Controls
+from risorius.sim.face_model import FaceModel, build_face_model
+from risorius.sim.state import State
 
 
 @pytest.fixture(scope="session")
-def shared_simulation(head: Head) -> sim.Simulation:
+def model(head: Head) -> FaceModel:
+    """What the simulation of the built-in head is made of."""
+    return build_face_model(head)
+
+
+@pytest.fixture(scope="session")
+def state(model: FaceModel) -> State:
+    """The arrays that the kernels of the shared simulation read and write."""
+    return State.at_rest(model.surface, len(model.muscles.bundle.muscle))
+
+
+@pytest.fixture(scope="session")
+def shared_simulation(model: FaceModel, state: State) -> sim.Simulation:
     """One simulation for the session; use the `simulation` fixture, which puts it back to rest."""
-    return sim.create(head)
+    return sim.Simulation(model, state)
 
 
 @pytest.fixture

@@ -11,13 +11,13 @@ from tests.meshes import open_grid
 from tests.sim.poses import FRAME, both_sides, moved_landmarks, settled_displacement, without
 
 
-def _grid() -> SimpleNamespace:
+def _grid():
     """A flat open grid."""
     grid = open_grid(7, 5)
     return SimpleNamespace(vertices=grid.vertices, faces=grid.faces)
 
 
-def _with_flaws() -> SimpleNamespace:
+def _with_flaws():
     """A degenerate triangle, a vertex in no triangle, a second component, vertices on one spot."""
     vertices = [
         [0, 0, 0],

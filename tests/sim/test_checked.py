@@ -1,9 +1,7 @@
 """Public calls of `sim`: every wrong argument is a ValueError that names the allowed values."""
 
-from collections.abc import Callable
 from operator import attrgetter
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -39,7 +37,7 @@ TABLES = (*NONSENSE[:-1], 3, NAN, ["jaw_open"], np.zeros(3))
 TRIANGLE = {"vertices": np.eye(3) * 10.0, "faces": np.array([[0, 1, 2]])}
 
 # Method, the wrong argument, its name in the text, and its values in turn.
-WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
+WRONG = [
     ("controls.set", "name", "control", (*NAMES, [], {})),
     ("controls.set", "value", "control 'jaw_open'", (*NO_NUMBER, -1, 2)),
     ("controls.set_all", "values", "values", TABLES),
@@ -55,7 +53,7 @@ WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
     ("touch.drag", "firmness", "firmness", SHARES),
     ("step", "dt", "dt", (*NO_NUMBER, 0, -1, 1, True)),
 ]
-RIGHT: dict[str, dict[str, Any]] = {
+RIGHT = {
     "controls.set": {"name": "jaw_open", "value": 0.5},
     "controls.set_all": {"values": {"jaw_open": 0.5}},
     "controls.pose": {"values": {"jaw_open": 0.5}},
@@ -65,7 +63,7 @@ RIGHT: dict[str, dict[str, Any]] = {
 }
 
 
-def grid() -> SimpleNamespace:
+def grid():
     """A small mesh without anything else."""
     mesh = open_grid(2, 2)
     return SimpleNamespace(vertices=10.0 * mesh.vertices, faces=mesh.faces)
@@ -80,7 +78,7 @@ def small() -> sim.Simulation:
     return sim.create(mesh)
 
 
-def refused(call: Callable[[], object], begins: str) -> None:
+def refused(call, begins):
     """The call is a ValueError with our text: the wrong value, in short, and the allowed ones."""
     with pytest.raises(ValueError, match=MAY_BE) as error:
         call()
@@ -94,7 +92,7 @@ def test_wrong_arguments_are_reported(small, method, argument, begins, values):
     small.reset()
     for value in values:
         wrong = {**RIGHT.get(method, {}), argument: value}
-        refused(lambda wrong=wrong: attrgetter(method)(small)(**wrong), begins)  # type: ignore[misc]
+        refused(lambda wrong=wrong: attrgetter(method)(small)(**wrong), begins)
     assert not any(small.controls.values.values())
     small.step(1 / 60)
     assert np.array_equal(small.positions, small.rest_positions)
@@ -105,21 +103,21 @@ PART = SimpleNamespace(name="teeth_upper", bone="cranium", vertices=np.zeros((2,
 LISTS = (*NONSENSE[1:3], object(), 3, NAN, [3], [None], [[]])  # that hold no such things
 
 
-def with_(thing: SimpleNamespace, name: str, *values: Any) -> tuple[list[SimpleNamespace], ...]:
+def with_(thing, name, *values):
     """Lists of a thing that is wrong in one attribute."""
     return tuple([SimpleNamespace(**{**vars(thing), name: value})] for value in values)
 
 
-def under(*keys: str) -> Callable[..., tuple[dict[str, Any], ...]]:
+def under(*keys):
     """Makes rigs that are wrong at one place."""
 
-    def rigs(*values: Any) -> tuple[dict[str, Any], ...]:
+    def rigs(*values):
         return tuple({keys[0]: {keys[1]: value}} for value in values)
 
     return rigs
 
 
-HEADS: list[tuple[str, str, tuple[Any, ...]]] = [
+HEADS = [
     ("vertices", "head.vertices", (*ARRAYS, np.zeros((0, 3)))),
     ("faces", "head.faces", NONSENSE[:3] + NONSENSE[4:]),
     ("faces", "head.faces", ([[0, 1, COUNT]], [[0, 1, -1]], [[0.0, 1, 2]], [[0, 1, HUGE]])),
@@ -145,7 +143,7 @@ def test_wrong_heads_are_refused(attribute, begins, values):
     for value in values:
         head = grid()
         setattr(head, attribute, value)
-        refused(lambda head=head: sim.create(head), begins)  # type: ignore[misc]
+        refused(lambda head=head: sim.create(head), begins)
 
 
 @pytest.mark.parametrize("given", LISTS)

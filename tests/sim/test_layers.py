@@ -1,12 +1,12 @@
 """Layers: tables above the muscles add up, take sides, and name the row that is wrong."""
 
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pytest import approx
 
 from risorius.sim.controls import Control, Controls
 from risorius.sim.layers import BOTH_SIDES, LEAST_WHOLE, read_layers
@@ -30,12 +30,12 @@ TITLES = ("Action units", "Expressions", "Visemes", "ARKit shapes")
 VISEMES = "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
 
 
-def layer(title: str, **rows: Any) -> SimpleNamespace:
+def layer(title, **rows):
     """A table as assets reads it."""
     return SimpleNamespace(title=title, source=f"{title}.toml", rows=rows)
 
 
-def controls(*layers: SimpleNamespace) -> Controls:
+def controls(*layers):
     """Four lowest controls, one of them with two directions, under some layers."""
     lowest = tuple(Control(name, "Lowest", -1.0 if name == "slide" else 0.0) for name in LOWEST)
     return Controls(lowest, read_layers(layers, LOWEST))
@@ -50,7 +50,7 @@ UNITS = layer(
 FACES = layer("Faces", both={"A": 0.5, "slide": 0.25}, lopsided={"A_left": 1.5})
 
 
-def wanted(subject: Controls, **values: float) -> dict[str, float]:
+def wanted(subject, **values):
     """The sums of the lowest controls when these values are set and no others."""
     subject.pose(values)
     return subject.sums
@@ -59,10 +59,10 @@ def wanted(subject: Controls, **values: float) -> dict[str, float]:
 def test_rows_share_into_the_layers_below():
     """A row scales its entries, through every layer down to the muscles."""
     subject = controls(UNITS, FACES)
-    assert wanted(subject, both=1.0) == pytest.approx(
+    assert wanted(subject, both=1.0) == approx(
         {"puller_left": 0.4, "puller_right": 0.4, "middle": 0.3, "slide": 0.25}
     )
-    assert wanted(subject, both=0.5)["puller_left"] == pytest.approx(0.2)
+    assert wanted(subject, both=0.5)["puller_left"] == approx(0.2)
     assert wanted(subject, puller=0.7) == {
         "puller_left": 0.7, "puller_right": 0.7, "middle": 0.0, "slide": 0.0,
     }  # fmt: skip
@@ -73,10 +73,8 @@ def test_sides_of_a_pair_add_up_to_the_whole():
     subject = controls(UNITS)
     left = wanted(subject, A_left=1.0)
     right = wanted(subject, A_right=1.0)
-    assert left == pytest.approx(
-        {"puller_left": 0.8, "puller_right": 0.0, "middle": 0.3, "slide": 0.0}
-    )
-    assert wanted(subject, A=1.0) == pytest.approx({n: left[n] + right[n] for n in LOWEST})
+    assert left == approx({"puller_left": 0.8, "puller_right": 0.0, "middle": 0.3, "slide": 0.0})
+    assert wanted(subject, A=1.0) == approx({n: left[n] + right[n] for n in LOWEST})
 
 
 def test_sides_may_be_spelled_as_arkit_does():
@@ -84,7 +82,7 @@ def test_sides_may_be_spelled_as_arkit_does():
     subject = controls(layer("Shapes", smile={"pair": "Left Right", "puller": 0.5, "middle": 0.2}))
     assert subject.groups["Shapes"] == ("smileLeft", "smileRight")
     assert "smile" not in subject.names
-    assert wanted(subject, smileLeft=1.0) == pytest.approx(
+    assert wanted(subject, smileLeft=1.0) == approx(
         {"puller_left": 0.5, "puller_right": 0.0, "middle": 0.1, "slide": 0.0}
     )
 
@@ -101,7 +99,7 @@ def test_a_share_counts_as_part_of_the_whole(part, whole):
     share = wanted(subject, part=part, whole=whole)["middle"] / 0.8
     assert 0.0 <= share <= 1.0
     if whole > LEAST_WHOLE:
-        assert share == pytest.approx(min(part / whole, 1.0))
+        assert share == approx(min(part / whole, 1.0))
     assert share <= whole / LEAST_WHOLE + 1e-12
     near = wanted(subject, part=part, whole=min(whole + 1e-4, 1.0))["middle"] / 0.8
     assert abs(near - share) < 2e-4 / LEAST_WHOLE
@@ -113,7 +111,7 @@ def test_a_share_follows_the_whole_that_is_set_later():
     subject.set_all({"part": 0.3})
     assert not subject.wanted.any()
     subject.set_all({"whole": 0.6})
-    assert subject.wanted.tolist() == pytest.approx([0.25, 0.25, 0.4, 0.6])
+    assert subject.wanted.tolist() == approx([0.25, 0.25, 0.4, 0.6])
     assert subject.values["part"] == 0.3
 
 
@@ -128,9 +126,9 @@ def test_what_rows_make_sure_of_does_not_add():
     assert wanted(subject, A=1.0)["slide"] == 0.4
     assert wanted(subject, A=1.0, slide=0.3)["slide"] == 0.4
     assert wanted(subject, A=1.0, slide=0.5)["slide"] == 0.5
-    assert wanted(subject, A=0.5, B=1.0)["slide"] == pytest.approx(0.2)
-    assert wanted(subject, both=1.0)["slide"] == pytest.approx(0.2)
-    assert wanted(subject, both=1.0, slide=0.3)["slide"] == pytest.approx(0.4)
+    assert wanted(subject, A=0.5, B=1.0)["slide"] == approx(0.2)
+    assert wanted(subject, both=1.0)["slide"] == approx(0.2)
+    assert wanted(subject, both=1.0, slide=0.3)["slide"] == approx(0.4)
     assert wanted(subject, slide=-0.5)["slide"] == -0.5
     left = wanted(subject, B_left=1.0)
     assert left == {"puller_left": 0.3, "puller_right": 0.0, "middle": 0.0, "slide": 0.2}
@@ -149,7 +147,7 @@ def test_sums_are_cut_off_once_and_in_any_order():
     assert subject.wanted.tolist() == other.wanted.tolist()
     sums = dict(zip(LOWEST, subject.wanted.tolist(), strict=True))
     assert sums["puller_left"] == 1.0  # 0.5 + 0.72 + 0.4
-    assert sums["slide"] == pytest.approx(1.0 - 0.4 + 0.25)
+    assert sums["slide"] == approx(1.0 - 0.4 + 0.25)
     assert subject.values["puller_left"] == 0.5, "a layer does not change values set below it"
 
 
@@ -214,7 +212,7 @@ def test_each_row_of_the_shipped_tables_does_something(controls):
             assert any(controls.sums.values()) == (name != "viseme_sil"), name
 
 
-def mirrored(sums: dict[str, float]) -> dict[str, float]:
+def mirrored(sums):
     """The same on the other side."""
     other = {"left": "right", "right": "left"}
     found = {}
@@ -228,7 +226,7 @@ def mirrored(sums: dict[str, float]) -> dict[str, float]:
 def test_sides_of_arkit_shapes_ask_for_the_same(controls):
     """A shape of the left moves the left as its twin moves the right."""
 
-    def sums(name: str) -> dict[str, float]:
+    def sums(name):
         controls.pose({name: 1.0})
         return controls.sums
 
@@ -236,28 +234,28 @@ def test_sides_of_arkit_shapes_ask_for_the_same(controls):
     twins = [name.removesuffix("Left") for name in shapes if name.endswith("Left")]
     assert len(twins) == 20
     for base in twins:
-        assert sums(f"{base}Right") == pytest.approx(mirrored(sums(f"{base}Left"))), base
+        assert sums(f"{base}Right") == approx(mirrored(sums(f"{base}Left"))), base
 
 
 def test_expressions_have_sides(controls):
     """Both sides together ask for the whole; a one-sided face has its image on the other side."""
 
-    def sums(*names: str) -> dict[str, float]:
+    def sums(*names):
         controls.pose(dict.fromkeys(names, 0.5))
         return {name: value for name, value in controls.sums.items() if value}
 
     for name in ("joy", "sadness", "surprise", "anger", "disgust", "fear", "blink"):
-        assert sums(f"{name}_left", f"{name}_right") == pytest.approx(sums(name)), name
+        assert sums(f"{name}_left", f"{name}_right") == approx(sums(name)), name
         pulls = {key for key, value in sums(f"{name}_left").items() if value > 0.26}
         assert pulls and not any(key.endswith("_right") for key in pulls), name
     for name in ("wink", "contempt"):
-        assert sums(f"{name}_right") == pytest.approx(mirrored(sums(name))), name
+        assert sums(f"{name}_right") == approx(mirrored(sums(name))), name
 
 
 def test_the_jaw_of_a_funnel_counts_once(controls):
     """Lips that funnel open the jaw where it is shut, and leave it where it is open."""
     controls.pose({"AU22": 1.0, "mouthPucker": 0.5})
-    assert controls.sums["jaw_open"] == pytest.approx(0.22)
+    assert controls.sums["jaw_open"] == approx(0.22)
     controls.pose({"AU22": 1.0, "jawOpen": 0.5})
     assert controls.sums["jaw_open"] == 0.5
 
@@ -292,7 +290,7 @@ def test_units_that_look_alike_differ(simulation, head):
         for name in ("AU9", "AU10", "AU23", "AU24")
     }
 
-    def parted(name: str) -> float:
+    def parted(name):
         return float(face[name][62, 1] - face[name][66, 1])
 
     assert parted("AU9") < 1.0 < 4.0 < parted("AU10")

@@ -1,14 +1,13 @@
 """A closed lid of few triangles stands out so far that the eyeball does not cut through it."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from numpy.linalg import norm
 
 from risorius.sim.landmarks import Side
 from risorius.sim.lid_lift import lift_off
 from risorius.sim.skull import Eyeball
 
-Array = npt.NDArray[np.float64]
 CLEARANCE = 0.3  # mm
 BALL = Eyeball(Side.LEFT, np.array([30.0, 2.0, 70.0]), 13.0)
 AHEAD = np.array([[-6.0, -5.0], [6.0, -5.0], [0.0, 7.0]])  # a triangle before the pupil
@@ -17,22 +16,22 @@ ALL = np.ones(3)
 ABOVE = np.array([0.0, 20.0, 0.0])  # a lid that closes lay there before
 
 
-def at(beside: Array, distance: float) -> Array:
+def at(beside, distance):
     """Points in front of the ball, `distance` [mm] from its centre, shape (n, 3)."""
     ahead = np.sqrt(distance**2 - (beside**2).sum(axis=1))
     return BALL.centre + np.column_stack([beside, ahead])
 
 
-def lifted(x: Array, lift: Array) -> Array:
+def lifted(x, lift):
     """Points moved away from the ball by `lift` [mm]."""
     away = x - BALL.centre
-    return x + lift[:, None] * away / np.linalg.norm(away, axis=1, keepdims=True)
+    return x + lift[:, None] * away / norm(away, axis=1, keepdims=True)
 
 
-def nearest(x: Array) -> float:
+def nearest(x):
     """How near a triangle (3, 3) comes to the ball's centre [mm]."""
     shares = np.random.default_rng(2).dirichlet([1.0, 1.0, 1.0], 20_000)
-    return float(np.linalg.norm(shares @ (x - BALL.centre), axis=1).min())
+    return float(norm(shares @ (x - BALL.centre), axis=1).min())
 
 
 def test_a_flat_triangle_is_lifted_over_the_cornea():

@@ -1,23 +1,19 @@
 """Muscles that lie on others follow them: carried along, lifted by their bulge, and only then."""
 
 import copy
-from types import SimpleNamespace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from risorius import sim
-from risorius.assets.model import Head
 from risorius.sim.fibres import FIBRE_POINTS, SAMPLES, move_lines
 from tests.sim.poses import settled_displacement, without
 
-Array = npt.NDArray[np.float64]
 ABOVE = "zygomaticus_major"
 BENEATH = "buccinator"
 
 
-def stacked(head: Head, stack: dict[str, list[str]], **changes: float) -> SimpleNamespace:
+def stacked(head, stack, **changes):
     """The head with no muscle on another but those of `stack`, `changes` made to BENEATH."""
     face = without(head)
     face.rig = copy.deepcopy(dict(head.rig))
@@ -27,7 +23,7 @@ def stacked(head: Head, stack: dict[str, list[str]], **changes: float) -> Simple
     return face
 
 
-def displaced(simulation: sim.Simulation, muscle: str) -> Array:
+def displaced(simulation, muscle):
     """How far the points of a relaxed muscle are from where they rest, shape (B, n, 3)."""
     now = np.array(simulation.anatomy.fibres()[muscle])
     simulation.reset()
@@ -58,15 +54,14 @@ def test_nothing_is_carried_by_what_does_not_lie_beneath(head):
     assert not displaced(stack, f"{ABOVE}_right").any()
 
 
-def test_carrying_is_the_formula(simulation):
+def test_carrying_is_the_formula(simulation, model, state):
     """Each point moves by shares of the lines beneath, in plain numpy; at most 1 in all."""
-    muscles = simulation._model.muscles
-    mandible = simulation._model.skull.mandible_motion
-    pose = mandible(0.5, 0.3, 0.2)
+    muscles = model.muscles
+    pose = model.skull.mandible_motion(0.5, 0.3, 0.2)
     activation = np.linspace(-0.2, 1.0, len(muscles.names))
     stack = muscles.stack
     bundle = muscles.bundle
-    motion = simulation._state.lines
+    motion = state.lines
     move_lines(bundle, stack, activation, pose, motion)
     active = np.maximum(activation, 0.0)[bundle.muscle]
     carried = np.zeros_like(motion.carried)

@@ -1,13 +1,13 @@
 """Pull to pose: the muscles that hold the skin where it was drawn to are found."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from numpy.linalg import norm
+from pytest import approx
 
 from risorius import sim
 from tests.sim.poses import FRAME
 
-Array = npt.NDArray[np.float64]
 FINGER = 16.0  # mm
 RIGHT_CORNER = 48
 LEFT_CORNER = 54
@@ -19,7 +19,7 @@ INNER_BROW = 22
 LEFT_WING = 35
 
 
-def candidates(face: sim.Simulation) -> list[tuple[str, ...]]:
+def candidates(face):
     """All muscles of one side, and the jaw."""
     names = face.controls.lowest
     return [
@@ -30,26 +30,24 @@ def candidates(face: sim.Simulation) -> list[tuple[str, ...]]:
     ]
 
 
-def pull_at(
-    face: sim.Simulation, vertex: int, offset: npt.ArrayLike, **options: object
-) -> tuple[sim.Pull, float]:
+def pull_at(face, vertex, offset, **options):
     """Solve for skin around a vertex that is drawn by an offset [mm]; how far the middle was."""
-    distance = np.linalg.norm(face.positions - face.positions[vertex], axis=1)
+    distance = norm(face.positions - face.positions[vertex], axis=1)
     finger = np.flatnonzero(distance < FINGER)
     firmness = (1.0 - (distance[finger] / FINGER) ** 2) ** 2
-    pull = sim.Pull(face, finger, firmness, candidates(face), **options)  # type: ignore[arg-type]
+    pull = sim.Pull(face, finger, firmness, candidates(face), **options)
     pull.targets = pull.targets + np.asarray(offset)
     before = pull.short
     pull.solve()
     return pull, before
 
 
-def values_of(pull: sim.Pull) -> dict[str, float]:
+def values_of(pull):
     """The values that were solved, by single controls."""
     return {name: value for names, value in pull.changes.items() for name in names}
 
 
-def settled(face: sim.Simulation, values: dict[str, float]) -> Array:
+def settled(face, values):
     """Where the skin lies at last under these controls."""
     face.controls.set_all(values)
     for _ in range(60):
@@ -69,7 +67,7 @@ def test_a_corner_pulled_up_and_back_smiles(simulation, head):
     assert before > 5.0
     assert pull.short < 2.5
     off = settled(simulation, found)[corner] - simulation.rest_positions[corner] - drawn
-    assert np.linalg.norm(off[:2]) < 2.5
+    assert norm(off[:2]) < 2.5
 
 
 @pytest.mark.parametrize(
@@ -97,7 +95,7 @@ def test_what_no_muscle_can_do_is_not_done(simulation, head):
         simulation, head.landmarks[NOSE - 1], (0.0, 0.0, 10.0), sight=(1.0, 0.0, 0.0)
     )
     assert not pull.changes
-    assert pull.short == pytest.approx(before)
+    assert pull.short == approx(before)
     crown = int(simulation.rest_positions[:, 1].argmax())
     for candidates_there in (candidates(simulation), []):
         pull = sim.Pull(simulation, [crown], [1.0], candidates_there)
@@ -134,8 +132,8 @@ def test_mirrored_pulls_are_mirrored(simulation, head):
     left, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (7.0, 8.0, 0.0))
     right, _ = pull_at(simulation, head.landmarks[RIGHT_CORNER], (-7.0, 8.0, 0.0))
     mirrored = {name.replace("left", "right"): value for name, value in values_of(left).items()}
-    assert values_of(right) == pytest.approx(mirrored, abs=0.01)
-    assert right.short == pytest.approx(left.short, abs=0.02)
+    assert values_of(right) == approx(mirrored, abs=0.01)
+    assert right.short == approx(left.short, abs=0.02)
 
 
 def test_the_answer_does_not_depend_on_the_way(simulation, head):
@@ -173,11 +171,11 @@ def test_few_muscles_are_found_again(simulation, head, generator):
         simulation.reset()
         moved = settled(simulation, {n: float(generator.uniform(0.3, 1.0)) for n in chosen})
         moved -= simulation.rest_positions
-        vertex = int((np.linalg.norm(moved, axis=1) * front).argmax())
-        if np.linalg.norm(moved[vertex]) < 1.5:
+        vertex = int((norm(moved, axis=1) * front).argmax())
+        if norm(moved[vertex]) < 1.5:
             continue
         simulation.reset()
-        distance = np.linalg.norm(simulation.positions - simulation.positions[vertex], axis=1)
+        distance = norm(simulation.positions - simulation.positions[vertex], axis=1)
         finger = np.flatnonzero(distance < FINGER)
         pull = sim.Pull(simulation, finger, np.ones(len(finger)), candidates(simulation))
         pull.targets = pull.targets + moved[finger]

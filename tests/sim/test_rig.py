@@ -1,8 +1,6 @@
 """The rig file: its keys, and that each mistake is answered with muscle, key and cure."""
 
 import copy
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,14 +11,14 @@ from risorius.sim.rig import LinearMuscle, RingMuscle, Tissue, read_rig
 from tests.sim.poses import both_sides, moved_landmarks, settled_displacement, without
 
 
-def _fibre() -> dict[str, Any]:
+def _fibre():
     return {
         "origin": {"landmarks": {"45": 0.6, "14": 0.4}, "offset": [-4.5, -17.6, -5.6]},
         "insertion": {"landmark": 54},
     }
 
 
-def _document() -> dict[str, Any]:
+def _document():
     """A small rig of every kind of muscle."""
     text = {"action": "moves", "group": "Group"}
     return {
@@ -52,11 +50,11 @@ def test_empty_rig_is_plain_tissue():
     assert read_rig({}).muscles == ()
 
 
-def _set(*path: Any, value: Any = None) -> Callable[[dict[str, Any]], None]:
+def _set(*path, value=None):
     """Sets a value at a place of the document; None takes it out."""
 
-    def change(document: dict[str, Any]) -> None:
-        place: Any = document
+    def change(document):
+        place = document
         for key in path[:-1]:
             place = place[key]
         if value is None:

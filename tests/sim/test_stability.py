@@ -10,22 +10,22 @@ from risorius.sim.substep import SEAL_AXES
 from tests.sim.poses import FRAME, both_sides, settled_displacement
 
 
-def test_rest_stays_at_rest(simulation):
+def test_rest_stays_at_rest(simulation, model, state):
     """Two seconds without input move nothing by a millionth of a millimetre."""
     for _ in range(120):
         simulation.step(FRAME)
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-6
-    assert _energy(simulation) < 1e-9
+    assert _energy(model.skin, state, simulation.grip) < 1e-9
 
 
 @pytest.mark.parametrize("speed", [50.0, 500.0])
-def test_energy_only_falls_without_input(simulation, generator, speed):
+def test_energy_only_falls_without_input(simulation, model, state, generator, speed):
     """After a blow the energy falls in every frame and is gone after a second and a half."""
     simulation.touch.kick(generator.normal(scale=speed, size=simulation.positions.shape))
-    energies = [_energy(simulation)]
+    energies = [_energy(model.skin, state, simulation.grip)]
     for _ in range(90):
         simulation.step(FRAME)
-        energies.append(_energy(simulation))
+        energies.append(_energy(model.skin, state, simulation.grip))
     assert np.all(np.diff(energies) <= 1e-9 * energies[0])
     assert energies[-1] < 1e-6 * energies[0]
 
@@ -33,7 +33,7 @@ def test_energy_only_falls_without_input(simulation, generator, speed):
 def test_clones_do_not_disturb_each_other(simulation):
     """In two threads at once each moves, to the bit, as it does alone."""
 
-    def film(name: str) -> list[np.ndarray]:
+    def film(name):
         clone = simulation.clone()
         frames = []
         for frame in range(240):
@@ -109,9 +109,9 @@ def test_frame_length_hardly_matters(simulation):
     assert np.percentile(apart, 99) < 0.06 and np.max(apart) < 0.45  # where a lip slides over teeth
 
 
-def test_broken_state_is_reported(simulation):
+def test_broken_state_is_reported(simulation, state):
     """A state that is not finite raises, and a reset repairs it."""
-    simulation._state.x[10] = np.nan
+    state.x[10] = np.nan
     with pytest.raises(sim.SimulationUnstable, match=r"vertices are not finite.*reset"):
         simulation.step(FRAME)
     simulation.reset()
@@ -119,17 +119,14 @@ def test_broken_state_is_reported(simulation):
     assert np.isfinite(simulation.positions).all()
 
 
-def _moved(simulation: sim.Simulation) -> np.ndarray:
+def _moved(simulation):
     """How far the skin is from rest, seen from the cranium [mm]."""
     head = simulation.bones.transforms()["cranium"]
     return (simulation.positions - head[:3, 3]) @ head[:3, :3] - simulation.rest_positions
 
 
-def _energy(simulation: sim.Simulation) -> float:
+def _energy(skin, state, grip):
     """What moves and what springs hold, muscles at rest, in skin mass units times (mm/s)^2."""
-    skin = simulation._model.skin
-    state = simulation._state
-    grip = simulation._grip
     away = state.x - state.carried
     tissue = skin.tissue
     edges = skin.edges

@@ -5,7 +5,7 @@ import numpy.typing as npt
 import pytest
 
 from risorius import sim
-from risorius.assets.model import Head, Part
+from tests.assets.checks import part, winding_numbers
 from tests.sim.poses import FRAME, settled_displacement, without
 
 Array = npt.NDArray[np.float64]
@@ -21,40 +21,25 @@ POSES = (
 QUICK = {"tongueOut": 1.0}, {"tongue_out": 0.5, "jaw_open": 0.35}, {"viseme_DD": 1.0}
 
 
-def part(head: Head, name: str) -> Part:
-    """The part of that name."""
-    return next(found for found in head.parts if found.name == name)
-
-
-def placed(simulation: sim.Simulation, points: Array, bone: str) -> Array:
+def placed(simulation, points, bone):
     """Points of a part where its bone has them."""
     matrix = simulation.bones.transforms()[bone]
-    moved: Array = points @ matrix[:3, :3].T + matrix[:3, 3]
-    return moved
+    return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def tongue_now(simulation: sim.Simulation) -> Array:
+def tongue_now(simulation):
     """The tongue's vertices in the head's coordinates."""
     bent = simulation.anatomy.tongue()
     assert bent is not None
     return placed(simulation, bent, "mandible")
 
 
-def is_within(
-    points: Array, vertices: Array, faces: npt.NDArray[np.int32]
-) -> npt.NDArray[np.bool_]:
-    """Which points lie in a closed surface: the angles that it fills around them add up."""
-    a, b, c = (vertices[faces[:, k]][None] - points[:, None] for k in range(3))
-    lengths = [np.linalg.norm(side, axis=2) for side in (a, b, c)]
-    triple = np.einsum("ijk,ijk->ij", a, np.cross(b, c))
-    beneath = lengths[0] * lengths[1] * lengths[2]
-    for one, other, third in ((a, b, 2), (b, c, 0), (c, a, 1)):
-        beneath += np.einsum("ijk,ijk->ij", one, other) * lengths[third]
-    winding = 2.0 * np.arctan2(triple, beneath).sum(axis=1) / (4.0 * np.pi)
-    return np.abs(winding) > 0.5
+def is_within(points, vertices, faces):
+    """Which points lie in a closed surface."""
+    return np.abs(winding_numbers(vertices, faces, points)) > 0.5
 
 
-def with_middles(vertices: Array, faces: npt.NDArray[np.int32]) -> Array:
+def with_middles(vertices, faces):
     """Vertices and the middles of faces."""
     return np.vstack([vertices, vertices[faces].mean(axis=1)])
 

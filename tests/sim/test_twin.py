@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from numpy.linalg import norm
 
 from risorius import sim
 from risorius.sim.contact import Grip, watch_eyeballs
@@ -12,11 +12,10 @@ from risorius.sim.face_model import Tick
 from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
 from risorius.sim.lids import turn_lids
 from risorius.sim.skull import REST
+from risorius.sim.state import State
 from risorius.sim.substep import SEAL_AXES, edge_forces, hold_lips, substeps_in, tissue_forces
 from risorius.sim.tissue import carry
 from tests.sim.poses import FRAME, settled_displacement
-
-Array = npt.NDArray[np.float64]
 
 
 @pytest.fixture
@@ -27,17 +26,16 @@ def stirred(simulation: sim.Simulation, generator: np.random.Generator) -> sim.S
     return simulation
 
 
-def test_edge_forces(stirred):
+def test_edge_forces(stirred, model, state):
     """Biphasic tension along each edge plus shear on the difference of the ends' offsets."""
-    edges = stirred._model.skin.edges
-    state = stirred._state
+    edges = model.skin.edges
     x = state.x
     state.offset[:] = x - state.carried
     state.force[:] = 0.0
     edge_forces(state, edges)
     i, j = edges.edges.astype(np.int64).T
     along = x[j] - x[i]
-    length = np.linalg.norm(along, axis=1)
+    length = norm(along, axis=1)
     strain = length / edges.rest_length - 1.0
     beyond = np.maximum(strain - edges.strain_limit, 0.0)
     tension = edges.stiffness * edges.rest_length * (strain + (edges.stiffening - 1.0) * beyond)
@@ -51,10 +49,9 @@ def test_edge_forces(stirred):
     assert np.abs(state.force.sum(axis=0)).max() < 1e-6 * np.abs(state.force).sum()
 
 
-def test_tissue_forces(stirred):
+def test_tissue_forces(stirred, model, state):
     """Anchors are soft along the skin and stiff across it; muscles add hold and pull."""
-    springs = stirred._model.skin.tissue
-    state = stirred._state
+    springs = model.skin.tissue
     tissue_forces(state, springs)
     away = state.x - state.carried
     across = (away * state.normals).sum(axis=1, keepdims=True) * state.normals
@@ -64,9 +61,9 @@ def test_tissue_forces(stirred):
     assert np.allclose(state.force, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
 
-def test_seal_is_an_implicit_spring(stirred, generator):
+def test_seal_is_an_implicit_spring(stirred, model, state, generator):
     """A pair on its own ends a substep at the speed that the spring's force at its end explains."""
-    skin = stirred._model.skin
+    skin = model.skin
     h = 0.002
     grip = Grip(3.0, 0.4)
     rest = skin.rest
@@ -76,35 +73,32 @@ def test_seal_is_an_implicit_spring(stirred, generator):
         alone = lips._replace(
             averaging=np.where(np.arange(len(lips.lower)) == pair, 1.0, 0.0),
         )
-        state = stirred._state._replace(
+        mine = state._replace(
             x=rest + generator.normal(size=rest.shape), v=generator.normal(size=rest.shape)
         )
-        before = state.v.copy()
-        hold_lips(state, skin._replace(lips=alone), Tick(1, h, grip, REST))
+        before = mine.v.copy()
+        hold_lips(mine, skin._replace(lips=alone), Tick(1, h, grip, REST))
         i = lips.lower[pair]
         (a, b) = lips.upper[pair]
         w = lips.share[pair]
-        ends = state.x + h * state.v - rest
+        ends = mine.x + h * mine.v - rest
         apart = ends[i] - w * ends[a] - (1.0 - w) * ends[b] - (0.0, grip.overlap, 0.0)
         force = grip.stiffness * lips.seal[pair] * apart * SEAL_AXES
         expected = np.zeros_like(rest)
         np.add.at(expected, [i, a, b], [-force, w * force, (1.0 - w) * force])
-        gained = mass[:, None] * (state.v - before) / h
+        gained = mass[:, None] * (mine.v - before) / h
         assert np.abs(force).max() > 0.0
         assert np.allclose(gained, expected, rtol=1e-6, atol=1e-9 * np.abs(force).max())
 
 
-def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
+def _sealed_speeds(skin, state, grip, h):
     """Velocities after the seal has acted on all pairs at once, each share averaged."""
-    skin = face._model.skin
     lips = skin.lips
     mass = skin.mass
     rest = skin.rest
-    state = face._state
-    grip = face._grip
     w = lips.share[:, None]
 
-    def difference(of: Array) -> Array:
+    def difference(of):
         return of[lips.lower] - w * of[lips.upper[:, 0]] - (1.0 - w) * of[lips.upper[:, 1]]
 
     inverse = (1.0 / mass)[:, None]
@@ -123,20 +117,19 @@ def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
     return speeds
 
 
-def test_fibres_contract_along_their_own_arc(stirred):
+def test_fibres_contract_along_their_own_arc(stirred, model, state):
     """The point at arc length t goes to f + (t - f)(1 - c a) on the fibre moved by the jaw."""
-    muscles = stirred._model.muscles
     mandible = stirred.bones.mandible
-    bundle = muscles.bundle
+    bundle = model.muscles.bundle
     activation = np.linspace(0.0, 1.0, len(bundle.muscle))
-    table = np.zeros_like(stirred._state.lines.contracted)
+    table = np.zeros_like(state.lines.contracted)
     assert bundle.fixed_at.max() > 0.0
     t = np.linspace(0.0, 1.0, SAMPLES)
     for b in range(1, len(bundle.muscle)):
         points = bundle.points[b]
         moved = points + bundle.mandible[b][:, None] * mandible.displacements(points)
         contract(moved, bundle.contraction[b] * activation[b], bundle.fixed_at[b], table[b])
-        arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))]
+        arc = np.r_[0.0, np.cumsum(norm(np.diff(moved, axis=0), axis=1))]
         remaining = max(1.0 - bundle.contraction[b] * activation[b], LEAST_ARC)
         there = bundle.fixed_at[b] + remaining * (t - bundle.fixed_at[b])
         for k in range(3):
@@ -145,19 +138,18 @@ def test_fibres_contract_along_their_own_arc(stirred):
             assert np.allclose(table[b, :, k], to - at, atol=1e-9)
 
 
-def test_muscle_pull(stirred):
+def test_muscle_pull(stirred, model, state):
     """Attachment and pull of all muscles, summed muscle by muscle and line by line."""
-    anatomy = stirred._model
     mandible = stirred.bones.mandible
-    muscles = anatomy.muscles
-    weight = anatomy.skull.mandible_weight
+    muscles = model.muscles
+    weight = model.skull.mandible_weight
     activation = np.linspace(-0.1, 1.0, len(muscles.names))
     hold = np.zeros(len(weight))
     force = np.zeros((len(weight), 3))
-    muscles.add(activation, mandible, weight, stirred._state._replace(hold=hold, pull=force))
+    muscles.add(activation, mandible, weight, state._replace(hold=hold, pull=force))
     a = np.maximum(activation, 0.0)
     skin = muscles.skin
-    motion = stirred._state.lines
+    motion = state.lines
     assert 0.0 in skin.passive
     tight = skin.passive + (1.0 - skin.passive) * a
     owner = np.repeat(np.arange(len(a)), np.diff(skin.holds.rows))
@@ -185,40 +177,35 @@ def test_muscle_pull(stirred):
     assert np.allclose(force, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
 
-def testbones_carry_anchors(stirred: sim.Simulation) -> None:
+def test_bones_carry_anchors(stirred, model, state):
     """Anchors blend between cranium and mandible by weight; their normals stay unit."""
-    anatomy = stirred._model
     mandible = stirred.bones.mandible
-    state = stirred._state
-    surface = anatomy.surface
-    weight = anatomy.skull.mandible_weight
+    surface = model.surface
+    weight = model.skull.mandible_weight
     carry(state, surface.positions, surface.normals, weight, mandible)
     moved = mandible.displacements(surface.positions)
     assert np.abs(moved).max() > 5.0
     assert np.allclose(state.carried, surface.positions + weight[:, None] * moved, atol=1e-12)
-    assert np.allclose(np.linalg.norm(state.normals, axis=1), 1.0, atol=1e-6)
+    assert np.allclose(norm(state.normals, axis=1), 1.0, atol=1e-6)
 
 
-def test_lids_turn_about_the_eyeball(simulation):
+def test_lids_turn_about_the_eyeball(simulation, model, state):
     """Lids keep their distance to the eyeball's centre but for how far they sink; margins meet."""
-    anatomy = simulation._model
-    state = simulation._state
-    assert anatomy.lids is not None
-    lids = anatomy.lids.vertices
-    rest = anatomy.surface.positions
+    lids = model.lids.vertices
+    rest = model.surface.positions
     closed = np.array([[1.0, 0.4, 0.0]] * len(lids.centres))
     gaze = np.array([[0.1, 0.3], [0.0, -0.2]])
     centre = lids.centres[lids.eye]
     flat = lids._replace(sink=np.zeros_like(lids.sink))
     turn_lids(state, rest, flat, closed, gaze)
-    before = np.linalg.norm(rest[lids.vertex] - centre, axis=1)
-    after = np.linalg.norm(state.carried[lids.vertex] - centre, axis=1)
+    before = norm(rest[lids.vertex] - centre, axis=1)
+    after = norm(state.carried[lids.vertex] - centre, axis=1)
     assert np.allclose(before, after)
     state.carried[:] = rest
     straight = flat._replace(along=np.zeros_like(lids.along))
     turn_lids(state, rest, straight, closed, gaze)
 
-    def angle(x: Array) -> Array:
+    def angle(x):
         """Angle [rad] about the axis of the lids."""
         high = ((x[lids.vertex] - centre) * lids.up[lids.eye]).sum(axis=1)
         far = ((x[lids.vertex] - centre) * lids.forward[lids.eye]).sum(axis=1)
@@ -230,13 +217,10 @@ def test_lids_turn_about_the_eyeball(simulation):
     assert (lids.sink != 0.0).any()
 
 
-def test_an_open_lid_takes_its_fold_along(simulation):
+def test_an_open_lid_takes_its_fold_along(simulation, model, state):
     """Raised and looking up, the fold is held and goes up; at rest nothing holds it."""
-    anatomy = simulation._model
-    state = simulation._state
-    assert anatomy.lids is not None
-    lids = anatomy.lids.vertices
-    rest = anatomy.surface.positions
+    lids = model.lids.vertices
+    rest = model.surface.positions
     still = np.zeros((len(lids.centres), 2))
     up = np.array([[0.0, 0.3]] * len(lids.centres))
     drive = np.zeros((len(lids.centres), 3))
@@ -250,35 +234,33 @@ def test_an_open_lid_takes_its_fold_along(simulation):
     assert (state.carried - rest)[fold, 1].max() > 1.0
 
 
-def test_a_step_is_its_substeps(head):
+def test_a_step_is_its_substeps(model):
     """A frame without contact, done again with plain Euler, lands on the same positions."""
-    anatomy = sim.create(head)._model
-    lips = anatomy.skin.lips
-    without_contact = anatomy.skin._replace(
+    lips = model.skin.lips
+    without_contact = model.skin._replace(
         lips=lips._replace(least_gap=lips.least_gap - 100.0),
-        eyes=watch_eyeballs(anatomy.surface, ()),
+        eyes=watch_eyeballs(model.surface, ()),
     )
-    free = replace(anatomy, skin=without_contact)
+    free = replace(model, skin=without_contact)
+    state = State.at_rest(model.surface, len(model.muscles.bundle.muscle))
     fast = sim.Simulation(free)
-    plain = sim.Simulation(free)
+    plain = sim.Simulation(free, state)
     values = {"zygomaticus_major_left": 1.0, "frontalis_medial_right": 1.0}
     fast.controls.set_all(values)
     plain.controls.set_all(values)
     fast.step(FRAME)
     plain.controls.advance(FRAME / 2.0)
-    plain._place_targets()
+    plain.place_targets()
     for _ in range(substeps_in(FRAME)):
-        _plain_substep(plain, FRAME / substeps_in(FRAME))
-    moved = plain._state.x - anatomy.surface.positions
-    expected = plain.rest_positions + anatomy.space.vectors_to_head(moved)
+        _plain_substep(without_contact, state, plain.grip, FRAME / substeps_in(FRAME))
+    moved = state.x - model.surface.positions
+    expected = plain.rest_positions + model.space.vectors_to_head(moved)
     assert np.abs(fast.positions - expected).max() < 1e-6
     assert np.abs(fast.positions - fast.rest_positions).max() > 0.05
 
 
-def _plain_substep(face: sim.Simulation, h: float) -> None:
+def _plain_substep(skin, state, grip, h):
     """Forces by their kernels, which are tried above; then velocity, then position."""
-    skin = face._model.skin
-    state = face._state
     springs = skin.tissue
     x = state.x
     v = state.v
@@ -287,5 +269,5 @@ def _plain_substep(face: sim.Simulation, h: float) -> None:
     stiff = (springs.tangential + state.hold) / skin.mass
     damping = springs.damping + 2.0 * springs.damping_ratio * np.sqrt(stiff)
     v[:] = (v + h * state.force / skin.mass[:, None]) / (1.0 + h * damping)[:, None]
-    v[:] = _sealed_speeds(face, h)
+    v[:] = _sealed_speeds(skin, state, grip, h)
     x += h * v

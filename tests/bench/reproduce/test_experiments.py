@@ -5,7 +5,6 @@ import re
 import sys
 from importlib import import_module
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -53,7 +52,7 @@ def test_every_claim_can_fail():
             assert each.low > -math.inf or each.high < math.inf, each.value
 
 
-MADE: dict[str, Any] = {
+MADE = {
     "good": lambda: Outcome({"lines": 0}, np.full((8, 8, 3), 200, np.uint8)),
     "bad": lambda: Outcome({"<c_rt>": 3.0}),
 }

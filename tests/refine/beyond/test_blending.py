@@ -1,9 +1,10 @@
 """Nothing pops: the refined surface is a continuous function of the positions."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 import trimesh
+from numpy.linalg import norm
+from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from risorius import refine
@@ -24,9 +25,7 @@ smaller the steps are."""
 STEPS = 400
 
 
-def jumps(
-    scheme: str, blend: bool, criterion: object, mesh: meshes.Mesh | None = None
-) -> tuple[float, float]:
+def jumps(scheme, blend, criterion, mesh=None):
     """Largest motion of the surface per motion of the input, and turn of a normal [rad] per step.
 
     A grid is bent from flat to strongly wrinkled and on, in small steps, so that edges go through
@@ -46,10 +45,10 @@ def jumps(
         positions = mesh.vertices + np.sin(1.6 * step / STEPS * np.pi) * wave
         now = surface_at(refiner, refiner.refine(positions), mesh.faces, places)
         seen.add(refiner.splits.tobytes())
-        moved = np.linalg.norm(positions - positions_before, axis=1).max()
+        moved = norm(positions - positions_before, axis=1).max()
         if before is not None and moved > 1e-6:  # the motion turns back once
-            most = max(most, float(np.linalg.norm((now - before)[..., :3], axis=2).max() / moved))
-            turn = max(turn, float(np.linalg.norm((now - before)[..., 3:], axis=2).max()))
+            most = max(most, float(norm((now - before)[..., :3], axis=2).max() / moved))
+            turn = max(turn, float(norm((now - before)[..., 3:], axis=2).max()))
         before = now
         positions_before = positions
     assert len(seen) > 20
@@ -98,7 +97,7 @@ def test_outlines_do_not_pop(name, scheme):
     places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
     eye = np.array([0.0, 0.0, 8.0])
 
-    def most(blend: bool) -> float:
+    def most(blend):
         refiner = refine.create(
             "kahler",
             body.faces,
@@ -115,8 +114,8 @@ def test_outlines_do_not_pop(name, scheme):
             refined = refiner.refine(positions, view=refine.View(eye))
             points = surface_at(refiner, refined, body.faces, places)[..., :3]
             if before is not None:
-                moved = np.linalg.norm(positions - before[0], axis=1).max()
-                jump = np.linalg.norm(points - before[1], axis=2).max()
+                moved = norm(positions - before[0], axis=1).max()
+                jump = norm(points - before[1], axis=2).max()
                 largest = max(largest, float(jump / moved))
             before = positions, points
         return largest
@@ -138,7 +137,7 @@ def test_any_change_of_needs_is_followed(scheme):
     inner = [numbers[frozenset(edge)] for edge in ((0, 1), (1, 2), (0, 2))]
     places = np.random.default_rng(1).dirichlet([1, 1, 1], 20)
 
-    def surface(metrics: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def surface(metrics):
         metric = np.full(len(edges), -1.0)
         metric[inner] = metrics
         criterion = GivenMetric(metric)
@@ -171,13 +170,13 @@ def test_folds_have_no_scales():
     refined = refiner.refine(rolled)
     corners = refined.positions[refined.triangles].astype(np.float64)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals /= norm(normals, axis=1, keepdims=True)
     inside = np.abs(corners[..., 1] - along.mean()).max(axis=1) < 0.3 * np.ptp(along)
     assert inside.sum() > 100
     assert np.degrees(np.abs(np.arcsin(normals[inside, 1]))).max() < 0.5
 
 
-def _across(grid: meshes.Mesh) -> npt.NDArray[np.float64]:
+def _across(grid):
     """Needs of edges: those along y none, all others one whole split."""
     edges = refine.connect(grid.faces, len(grid.vertices)).edges
     is_along = np.ptp(grid.vertices[edges][..., 0], axis=1) < 1e-9
@@ -198,7 +197,7 @@ def test_begins_at_the_unrefined_surface(scheme):
     detail = {"detail": (mesh.vertices + 0.02, mesh.faces)} if scheme == "detail" else {}
     places = np.random.default_rng(9).dirichlet([1, 1, 1], 8)
 
-    def surface(metric: float) -> npt.NDArray[np.float64]:
+    def surface(metric):
         refiner = kahler(
             mesh,
             scheme=scheme,
@@ -208,8 +207,8 @@ def test_begins_at_the_unrefined_surface(scheme):
         )
         return surface_at(refiner, refiner.refine(deformed), mesh.faces, places)[..., :3]
 
-    np.testing.assert_allclose(surface(1e-6), surface(-1.0), rtol=0, atol=1e-5)
-    np.testing.assert_allclose(surface(1.0 + 1e-6), surface(1.0 - 1e-6), rtol=0, atol=1e-5)
+    assert_allclose(surface(1e-6), surface(-1.0), rtol=0, atol=1e-5)
+    assert_allclose(surface(1.0 + 1e-6), surface(1.0 - 1e-6), rtol=0, atol=1e-5)
     assert abs(surface(0.5) - surface(-1.0)).max() > 0.01
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.linalg import norm
 
 from risorius import refine
 from tests import meshes
@@ -20,14 +21,14 @@ SLIT = meshes.slit()
 EDGES = refine.connect(SLIT.faces, len(SLIT.vertices)).edges
 
 
-def splits_of(mesh: meshes.Mesh, deformed: np.ndarray, criterion: object = "border") -> np.ndarray:
+def splits_of(mesh, deformed, criterion="border"):
     """Splits of every edge."""
     refiner = kahler(mesh, criterion=criterion)
     refine.check(refiner, refiner.refine(deformed), deformed)
     return refiner.splits.copy()
 
 
-def metrics_of(mesh: meshes.Mesh, *poses: np.ndarray) -> list[np.ndarray]:
+def metrics_of(mesh, *poses):
     """Need of every edge in each pose."""
     connectivity = refine.connect(mesh.faces, len(mesh.vertices))
     none = refine.create("none", mesh.faces, mesh.vertices)
@@ -89,7 +90,7 @@ def test_symmetric_in_symmetric_out(height, lower):
         splits = splits_of(SLIT, deformed)
         middles = deformed[EDGES].mean(axis=1)
         mirrored = middles * np.where(np.arange(3) == axis, -1.0, 1.0)
-        distances = np.linalg.norm(mirrored[:, None] - middles, axis=2)
+        distances = norm(mirrored[:, None] - middles, axis=2)
         # The upper side lies on the lower one when the slit is shut; then both are alike anyway.
         assert distances.min(axis=1).max() < 1e-9
         np.testing.assert_array_equal(splits, splits[distances.argmin(axis=1)])
@@ -108,28 +109,27 @@ def test_needs_are_continuous(seed, amplitude):
     shares = np.linspace(0.0, 1.0, 200)
     poses = [start + share * (end - start) for share in shares]
     edges = refine.connect(mesh.faces, len(start)).edges
-    shortest = min(np.linalg.norm(np.diff(pose[edges], axis=1), axis=2).min() for pose in poses)
-    step = np.linalg.norm(end - start, axis=1).max() / 199 / max(shortest, 1e-3)
+    shortest = min(norm(np.diff(pose[edges], axis=1), axis=2).min() for pose in poses)
+    step = norm(end - start, axis=1).max() / 199 / max(shortest, 1e-3)
     for before, after in pairwise(metrics_of(mesh, *poses)):
         assert np.abs(after - before).max() <= 200.0 * step + 1e-3
 
 
-def plain_metric(mesh: meshes.Mesh, normals: np.ndarray, pose: np.ndarray,
-                rest_normals: np.ndarray) -> dict[tuple[int, int], float]:  # fmt: skip
+def plain_metric(mesh, normals, pose, rest_normals):
     """The criterion once more, by dictionaries, from the text of its file."""
     around = Surroundings([tuple(int(v) for v in face) for face in mesh.faces])
 
-    def unit(a: int, b: int, points: np.ndarray) -> np.ndarray:
-        return np.asarray((points[b] - points[a]) / np.linalg.norm(points[b] - points[a]))
+    def unit(a, b, points):
+        return np.asarray((points[b] - points[a]) / norm(points[b] - points[a]))
 
-    def turn(v: int, points: np.ndarray, n: np.ndarray) -> np.ndarray:
+    def turn(v, points, n):
         p, q = sorted(around.border_ring[v])
         u = unit(p, v, points)
         w = unit(v, q, points)
         return np.array([u @ w, n[v] @ np.cross(u, w), n[v] @ (w - u)])
 
-    turns: dict[int, float] = {}
-    squares: dict[int, np.ndarray] = {}
+    turns = {}
+    squares = {}
     for v, ring in around.border_ring.items():
         squares[v] = sum((np.outer(unit(v, w, mesh.vertices), unit(v, w, mesh.vertices)) / 2
                           for w in ring), np.zeros((3, 3)))  # fmt: skip
@@ -137,9 +137,9 @@ def plain_metric(mesh: meshes.Mesh, normals: np.ndarray, pose: np.ndarray,
         turns[v] = 0.0
         if len(ring) == 2 and not is_corner(*points):
             change = turn(v, pose, normals) - turn(v, mesh.vertices, rest_normals)
-            turns[v] = float(np.linalg.norm(change))
+            turns[v] = float(norm(change))
     for k in range(1, 5):
-        nearer: dict[int, list[int]] = defaultdict(list)
+        nearer = defaultdict(list)
         for v, ring in around.ring.items():
             if v not in turns:
                 nearer[v] = [w for w in ring if w in turns]
@@ -176,17 +176,15 @@ def test_equals_plain_twin(seed):
     assert 0.1 < (metric > 0).mean() < 0.95
 
 
-def outline(
-    positions: np.ndarray, triangles: np.ndarray, middle: np.ndarray, reach: float
-) -> np.ndarray:
+def outline(positions, triangles, middle, reach):
     """Angles by which the border around a place turns, less its two corners [degrees]; sorted."""
     mesh = refine.connect(triangles, len(positions))
     after = dict(mesh.edges[~mesh.around.is_interior].tolist())
     before = {b: a for a, b in after.items()}
     curves = np.array([(before[v], v, after[v]) for v in after])
-    curves = curves[np.linalg.norm(positions[curves[:, 1]] - middle, axis=1) < reach]
+    curves = curves[norm(positions[curves[:, 1]] - middle, axis=1) < reach]
     u, w = np.diff(positions[curves].astype(float), axis=1).swapaxes(0, 1)
-    lengths = np.linalg.norm(u, axis=1) * np.linalg.norm(w, axis=1)
+    lengths = norm(u, axis=1) * norm(w, axis=1)
     turns = np.arccos(np.clip((u * w).sum(axis=1) / lengths, -1.0, 1.0))
     return np.sort(np.degrees(turns))[:-2]
 

@@ -1,22 +1,19 @@
 """Creases: edges that are sharp at rest stay where they are, and nothing cracks along them."""
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+from pytest import approx
 
 from risorius import refine
 from risorius.refine.mesh.creases import dihedral_angles, sectors_of
 from tests import meshes
 from tests.refine.cases import Forced, soups
 
-Points = npt.NDArray[np.float64]
-Faces = npt.NDArray[np.int64]
-LOOK: dict[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
-RULES: list[dict[str, Any]] = [
+LOOK = {"scheme": "cubic", "criterion": "displacement+rest"}
+RULES = [
     {},
     {"coherent": True},
     {"normals": "refined", "criterion": "displacement"},
@@ -26,7 +23,7 @@ RULES: list[dict[str, Any]] = [
 ]
 
 
-def prism(sides: int) -> tuple[Points, Faces]:
+def prism(sides):
     """A cylinder of so many sides, radius 1 and height 2, whose lids have a middle."""
     turn = 2.0 * np.pi * np.arange(sides) / sides
     ring = np.column_stack([np.cos(turn), np.sin(turn)])
@@ -42,14 +39,14 @@ def prism(sides: int) -> tuple[Points, Faces]:
     return np.concatenate(points), np.array(faces)
 
 
-def cube() -> tuple[Points, Faces]:
+def cube():
     """Of twelve triangles."""
     points = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
     quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     return points, np.array([half for a, b, c, d in quads for half in ([a, b, c], [a, c, d])])
 
 
-def volume(points: Points, faces: Any) -> float:
+def volume(points, faces):
     """Inside of a closed mesh."""
     a, b, c = points[faces].astype(float).swapaxes(0, 1)
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
@@ -66,7 +63,7 @@ def test_a_cylinder_keeps_its_rims(options):
     refined = refiner.refine(points)
     refine.check(refiner, refined, points)
     assert refined.triangle_count > len(faces)
-    assert volume(refined.positions, refined.triangles) == pytest.approx(2.0 * np.pi, rel=0.01)
+    assert volume(refined.positions, refined.triangles) == approx(2.0 * np.pi, rel=0.01)
     heights = refined.positions[:, 2]
     assert abs(heights).max() == 1.0
     is_lid = abs(points[faces][:, :, 2].mean(axis=1)) == 1.0
@@ -83,7 +80,7 @@ def test_a_cube_stays_one():
                             criterion=Forced(np.full(18, 2)))  # fmt: skip
     refined = refiner.refine(points)
     assert refined.triangle_count == 120
-    assert volume(refined.positions, refined.triangles) == pytest.approx(1.0, abs=1e-6)
+    assert volume(refined.positions, refined.triangles) == approx(1.0, abs=1e-6)
     assert refined.positions.min() >= -1e-6
     assert refined.positions.max() <= 1.0 + 1e-6
 
@@ -110,9 +107,7 @@ def test_new_points_of_creases_lie_on_them(scheme):
     assert (points[refiner.edges[is_sharp]][..., 0] == 2.0).all()
     refined = refiner.refine(points)
     refine.check(refiner, refined, points)
-    np.testing.assert_allclose(
-        refined.positions[:, 2], np.abs(refined.positions[:, 0] - 2.0), atol=1e-6
-    )
+    assert_allclose(refined.positions[:, 2], np.abs(refined.positions[:, 0] - 2.0), atol=1e-6)
 
 
 @pytest.mark.parametrize("levels", [1, 2, 3])
@@ -123,7 +118,7 @@ def test_uniform_subdivision_keeps_them(levels):
     refined = refiner.refine(points)
     assert refined.positions.min() == 0.0
     assert refined.positions.max() == 1.0
-    assert volume(refined.positions, refined.triangles) == pytest.approx(1.0, abs=1e-6)
+    assert volume(refined.positions, refined.triangles) == approx(1.0, abs=1e-6)
     refine.check(refiner, refined, points)
 
 
@@ -173,7 +168,7 @@ def test_angles_by_hand():
     angles = np.degrees(dihedral_angles(mesh, points))
     assert sorted(angles.round(9).tolist()) == [0.0] * 6 + [90.0] * 12
     open_mesh = refine.connect(faces[2:], 8)
-    assert np.degrees(dihedral_angles(open_mesh, points)).max() == pytest.approx(90.0)
+    assert np.degrees(dihedral_angles(open_mesh, points)).max() == approx(90.0)
     sliver = refine.connect([[0, 1, 2], [1, 0, 3]], 4)
     flat = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [2, 0, 0]])
     assert (dihedral_angles(sliver, flat) == 0.0).all()
@@ -188,8 +183,8 @@ def test_off_by_default_and_refused_in_words():
         for more in ({}, {"crease_angle": None}, {"crease_angle": 180.0})
     ]
     for frame in frames[1:]:
-        np.testing.assert_array_equal(frame.positions, frames[0].positions)
-        np.testing.assert_array_equal(frame.normals, frames[0].normals)
+        assert_array_equal(frame.positions, frames[0].positions)
+        assert_array_equal(frame.normals, frames[0].normals)
     for wrong in (-1.0, 181.0, np.nan, "sharp", True):
         with pytest.raises(ValueError, match="crease_angle must be None or an angle from 0 to 180"):
             refine.create("none", mesh.faces, mesh.vertices, crease_angle=wrong)
@@ -203,5 +198,5 @@ def test_on_the_card(rules):
     options = {"crease_angle": 40.0, **rules}
     card = refine.create("kahler-gl", faces, points, **options).refine(moved)
     processor = refine.create("kahler", faces, points, **options).refine(moved)
-    np.testing.assert_array_equal(card.triangles, processor.triangles)
-    np.testing.assert_allclose(card.positions, processor.positions, atol=1e-6)
+    assert_array_equal(card.triangles, processor.triangles)
+    assert_allclose(card.positions, processor.positions, atol=1e-6)

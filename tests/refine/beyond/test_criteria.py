@@ -1,19 +1,15 @@
 """Criteria beside the paper's, and several at once."""
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 import pytest
+from numpy.linalg import norm
 
 from risorius import refine
 from tests import meshes
 from tests.refine.cases import Forced, kahler
 
 
-def splits_of(
-    mesh: meshes.Mesh, deformed: np.ndarray, criterion: object, **view: object
-) -> tuple[np.ndarray, np.ndarray]:
+def splits_of(mesh, deformed, criterion, **view):
     """Splits of every edge, and the edges."""
     refiner = kahler(mesh, criterion=criterion)
     refiner.refine(deformed, **view)
@@ -25,7 +21,7 @@ def test_rest_by_hand():
     tube = meshes.tube(24, 4)
     around = 2 * np.sin(np.pi / 24)
     edges = refine.connect(tube.faces, len(tube.vertices)).edges
-    size = np.linalg.norm(np.ptp(tube.vertices, axis=0))
+    size = norm(np.ptp(tube.vertices, axis=0))
     measure = around**2 / 8 / size * np.cbrt(40.0 * around / size)
     for factor, expected in ((0.9, 1), (1.1, 0)):
         refiner = refine.create(
@@ -105,13 +101,7 @@ def test_one_level_only(blend):
 EYE = np.array([3.0, 2.0, 4.0])
 
 
-def plain_measure(
-    kind: type,
-    positions: np.ndarray,
-    normals: np.ndarray,
-    edges: np.ndarray,
-    most: float,
-) -> np.ndarray:
+def plain_measure(kind, positions, normals, edges, most):
     """What a criterion measures at every edge, written once more, plainly."""
     values = []
     for a, b in edges:
@@ -119,7 +109,7 @@ def plain_measure(
         if kind is refine.NormalDrop:
             values.append(-cosine)
         else:
-            to_eye = [(EYE - positions[v]) / np.linalg.norm(EYE - positions[v]) for v in (a, b)]
+            to_eye = [(EYE - positions[v]) / norm(EYE - positions[v]) for v in (a, b)]
             facing = [float(normals[v] @ s) for v, s in zip((a, b), to_eye, strict=True)]
             aside = 0.0 if facing[0] * facing[1] <= 0 else min(map(abs, facing))
             values.append(min(1 - cosine, most) * max(0.0, 1 - aside / 0.3))
@@ -176,8 +166,8 @@ def test_displacement(scheme):
         mesh, scheme=scheme, blend=False, criterion=Forced(np.ones(len(edges))), **detail
     ).refine(deformed)
     middles = full.positions[len(mesh.vertices) :]
-    heights = np.linalg.norm(middles - deformed[edges].mean(axis=1), axis=1)
-    unit = np.linalg.norm(np.diff(mesh.vertices[edges], axis=1)[:, 0], axis=1).mean()
+    heights = norm(middles - deformed[edges].mean(axis=1), axis=1)
+    unit = norm(np.diff(mesh.vertices[edges], axis=1)[:, 0], axis=1).mean()
     once, twice = np.quantile(heights, [0.4, 0.8])
     refiner = kahler(
         mesh,
@@ -206,7 +196,7 @@ def test_a_rule_of_ones_own_is_asked():
     mesh = meshes.irregular(4)
 
     class Everything(refine.NormalDrop):
-        def mark(self, positions: Any, normals: Any, splits: Any) -> None:
+        def mark(self, positions, normals, splits):
             splits[:] = 2
 
     for criterion in (Everything(), ["rest", Everything()]):
@@ -233,11 +223,11 @@ def test_a_rule_that_says_nothing(options, text):
 class Heat(refine.Criterion):
     """A criterion of somebody, which divides nothing by nothing at one edge."""
 
-    def __init__(self, at: int, frame: int = 0) -> None:
+    def __init__(self, at, frame=0):
         self.at = at
         self.frame = frame
 
-    def measure(self, positions: object, normals: object, metric: npt.NDArray[np.float32]) -> None:
+    def measure(self, positions, normals, metric):
         """Write what is no number from some frame on."""
         metric[:] = 0.5
         if self.frame <= 0:
@@ -248,7 +238,7 @@ class Heat(refine.Criterion):
 class Warmth(Heat):
     """One that decides by itself, and would have spoilt a blended frame alone."""
 
-    def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
+    def mark(self, positions, normals, splits):
         """Split nothing."""
         splits[:] = 0
 
@@ -261,9 +251,9 @@ def test_no_number_is_reported(blend, name, is_part):
     mesh = meshes.irregular(3)
     for first in (0, 2):
         heat = Heat(7, first)
-        asks: Any = ["normal", heat] if is_part else heat
+        asks = ["normal", heat] if is_part else heat
         scheme = "cubic" if blend else "loop"
-        options: dict[str, Any] = {"criterion": asks, "blend": blend, "scheme": scheme}
+        options = {"criterion": asks, "blend": blend, "scheme": scheme}
         refiner = refine.create(name, mesh.faces, mesh.vertices, **options)
         for _ in range(first):
             refiner.refine(mesh.vertices)

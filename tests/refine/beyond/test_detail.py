@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.linalg import norm
+from numpy.testing import assert_allclose
 
 from risorius import refine
 from risorius.geometry.closest import closest_points
@@ -15,7 +17,7 @@ from tests.refine.plain_detail import detail_rules
 from tests.refine.plain_normals import RefinedNormals
 
 
-def bumpy(columns: int, rows: int) -> meshes.Mesh:
+def bumpy(columns, rows):
     """A grid of 4 x 3 with bumps that a coarse grid cannot show."""
     grid = meshes.open_grid(columns, rows)
     vertices = grid.vertices * [4.0 / columns, 3.0 / rows, 1.0]
@@ -29,17 +31,17 @@ COARSE = bumpy(8, 6)
 FINE = bumpy(48, 36)
 
 
-def distances(points: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+def distances(points, positions, triangles):
     """Distance of each point from a mesh."""
     return closest_points(points, positions, triangles).distances
 
 
-def angles(some: np.ndarray, others: np.ndarray) -> np.ndarray:
+def angles(some, others):
     """Degrees between unit vectors, shape (N, 3)."""
     return np.degrees(np.arccos(np.clip((some * others).sum(axis=1), -1.0, 1.0)))
 
 
-def refined(scheme: str, positions: np.ndarray, **options: object) -> refine.RefinedMesh:
+def refined(scheme, positions, **options):
     """The coarse grid with all edges split twice."""
     edge_count = len(refine.connect(COARSE.faces, len(COARSE.vertices)).edges)
     if scheme == "detail":
@@ -72,7 +74,7 @@ def test_normals_of_the_surface_are_the_finer_ones():
         mesh = refined("detail", COARSE.vertices, normals=normals)
         places = mesh.positions.astype(np.float64)
         expected = closest_points(places, FINE.vertices, FINE.faces).interpolate(fine_normals)
-        expected /= np.linalg.norm(expected, axis=1, keepdims=True)
+        expected /= norm(expected, axis=1, keepdims=True)
         off[normals] = np.median(angles(expected, mesh.normals))
     assert off["refined"] < 0.4 * off["linear"]
 
@@ -98,7 +100,7 @@ def test_no_stars_in_folds():
         shown[scheme] = mesh.normals[~is_middle].copy()
         x = mesh.positions[is_middle, 0]
         true = np.stack([-x / np.sqrt(x * x + 0.2), np.zeros_like(x), np.ones_like(x)], axis=1)
-        true /= np.linalg.norm(true, axis=1, keepdims=True)
+        true /= norm(true, axis=1, keepdims=True)
         off[scheme] = angles(true, mesh.normals[is_middle])
     assert angles(shown["cubic"], shown["detail"]).max() < 5.0
     # The middles of triangles lie elsewhere, so the fold itself is what they are held against: up
@@ -112,8 +114,8 @@ def test_turns_with_the_mesh(seed):
     turn = meshes.rotation(seed)
     still = refined("detail", COARSE.vertices)
     moved = refined("detail", COARSE.vertices @ turn.T + [1.0, 2.0, 3.0])
-    np.testing.assert_allclose(moved.positions, still.positions @ turn.T + [1, 2, 3], atol=2e-5)
-    np.testing.assert_allclose(moved.normals, still.normals @ turn.T, atol=2e-4)
+    assert_allclose(moved.positions, still.positions @ turn.T + [1, 2, 3], atol=2e-5)
+    assert_allclose(moved.normals, still.normals @ turn.T, atol=2e-4)
 
 
 @settings(max_examples=25, deadline=None)
@@ -133,7 +135,7 @@ def test_equals_plain_twin(mesh, seed, normals, blend):
     lift = 0.05 * generator.standard_normal(mesh.vertices.shape)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
 
-    def refiner_of(metric: np.ndarray, blend: bool) -> refine.Refiner:
+    def refiner_of(metric, blend):
         return kahler(
             mesh,
             scheme="detail",
@@ -162,7 +164,7 @@ def test_equals_plain_twin(mesh, seed, normals, blend):
         plain_twin.edge_name(int(a), int(b)): int(n > 0) + int(n > 1)
         for (a, b), n in zip(refiner.edges, needed.metric, strict=True)
     }
-    rules: plain_twin.Rules = detail_rules(rest, points, faces, seen)
+    rules = detail_rules(rest, points, faces, seen)
     if normals == "refined":
         rules = RefinedNormals(rules, faces)
     twin = plain_twin.refine(

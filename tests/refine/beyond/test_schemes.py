@@ -10,7 +10,7 @@ from tests import meshes
 from tests.refine import plain_schemes
 from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, kahler, soups
 from tests.refine.plain_normals import RefinedNormals
-from tests.refine.plain_twin import PaperRules, Rules, Twin, edge_name
+from tests.refine.plain_twin import PaperRules, edge_name
 from tests.refine.plain_twin import refine as refine_plainly
 
 SCHEMES = ("loop", "cubic")
@@ -21,21 +21,18 @@ VALENCES = {f"fan of {n}": lambda n=n: meshes.double_cone(n) for n in (3, 4, 5, 
 MESHES = {**meshes.NAMED, **VALENCES, "irregular": lambda: meshes.irregular(3, 6, 5, 1)}
 
 
-def bound(
-    mesh: meshes.Mesh, scheme: str, blend: bool, metric: np.ndarray, **options: object
-) -> refine.Refiner:
+def bound(mesh, scheme, blend, metric, **options):
     """A refiner whose edges have given metrics; the finer mesh of `detail` is the mesh itself."""
     if scheme == "detail":
         options["detail"] = (mesh.vertices + np.array([0.0, 0.0, 0.01]), mesh.faces)
     return kahler(mesh, scheme=scheme, blend=blend, criterion=GivenMetric(metric), **options)
 
 
-def twin_of(mesh: meshes.Mesh, deformed: np.ndarray, scheme: str, normals: str, blend: bool,
-            needed: GivenMetric, edges: np.ndarray) -> Twin:  # fmt: skip
+def twin_of(mesh, deformed, scheme, normals, blend, needed, edges):
     """The same frame by the plain implementations."""
     points, faces = as_lists(deformed, mesh.faces)
     rest, _ = as_lists(mesh.vertices, mesh.faces)
-    rules: Rules = PaperRules(points, faces)
+    rules = PaperRules(points, faces)
     if scheme == "cubic":
         rules = plain_schemes.cubic(rest, points, faces)
     if normals == "refined":
@@ -48,7 +45,7 @@ def twin_of(mesh: meshes.Mesh, deformed: np.ndarray, scheme: str, normals: str, 
     return refine_plainly(points, faces, splits, geomorph=geomorph if blend else None, rules=rules)
 
 
-def random_metrics(mesh: meshes.Mesh, seed: int) -> np.ndarray:
+def random_metrics(mesh, seed):
     """Needs of no, one and two splits, and all shades between, for every edge."""
     count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
     return np.random.default_rng(seed).uniform(-0.7, 2.0, count)
@@ -98,7 +95,7 @@ def test_soups_equal_twin(soup, data, scheme, normals, blend):
         assert_equals_twin(refiner, refined, twin, normals_cancel=True)
 
 
-def _has_normals(refined: refine.RefinedMesh) -> bool:
+def _has_normals(refined):
     """Whether no normal is a rest of rounding, which cubic edges would follow."""
     lengths = np.linalg.norm(refined.normals, axis=1)
     return bool((lengths > 0.5).all())

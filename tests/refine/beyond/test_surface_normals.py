@@ -5,6 +5,8 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.linalg import norm
+from numpy.testing import assert_allclose
 from scipy.spatial import KDTree
 
 from risorius import refine
@@ -17,9 +19,7 @@ STEPS = 800
 Points = npt.NDArray[np.float64]
 
 
-def bound(
-    mesh: meshes.Mesh, scheme: str, criterion: object, normals: str = "refined", blend: bool = True
-) -> refine.Refiner:
+def bound(mesh, scheme, criterion, normals="refined", blend=True):
     """A refiner; the finer mesh of `detail` is the mesh itself, a little higher."""
     options = {"detail": (mesh.vertices + np.array([0.0, 0.0, 0.02]), mesh.faces)}
     return kahler(
@@ -32,9 +32,7 @@ def bound(
     )
 
 
-def metrics(
-    mesh: meshes.Mesh, seed: int | None = None, metric: float = 0.0
-) -> npt.NDArray[np.float64]:
+def metrics(mesh, seed=None, metric=0.0):
     """Metrics of all edges: the same, or random ones of no, one and two splits."""
     count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
     if seed is None:
@@ -42,11 +40,10 @@ def metrics(
     return np.random.default_rng(seed).uniform(-0.7, 2.0, count)
 
 
-def turns(some: npt.NDArray[np.floating], others: npt.NDArray[np.floating]) -> Points:
+def turns(some, others):
     """Angles [rad] between unit vectors, shape (..., 3)."""
-    chords = np.linalg.norm(np.asarray(some, dtype=np.float64) - others, axis=-1)
-    angles: Points = 2.0 * np.arcsin(np.minimum(0.5 * chords, 1.0))
-    return angles
+    chords = norm(np.asarray(some, dtype=np.float64) - others, axis=-1)
+    return 2.0 * np.arcsin(np.minimum(0.5 * chords, 1.0))
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -78,7 +75,7 @@ def test_does_not_depend_on_what_is_split(scheme):
             assert np.array_equal(refined.normals[row], expected)
 
 
-def smooth_wave(mesh: meshes.Mesh, height: float) -> Points:
+def smooth_wave(mesh, height):
     """A grid with one wave along each axis: every normal of an edge's ends within 50 degrees."""
     x = mesh.vertices[:, 0]
     y = mesh.vertices[:, 1]
@@ -97,7 +94,7 @@ def test_normals_do_not_pop(scheme):
     mesh = meshes.open_grid(8, 6)
     places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
 
-    def most(blend: bool) -> float:
+    def most(blend):
         refiner = bound(mesh, scheme, [refine.Displacement(0.02, 0.08)], blend=blend)
         own = bound(mesh, scheme, GivenMetric(metrics(mesh, metric=0.9)))
         before = None
@@ -137,7 +134,7 @@ def test_geomorph_has_no_steps(seed, scheme, edge, at):
     places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
     metric = metrics(mesh, seed)
 
-    def shading(value: float) -> Points:
+    def shading(value):
         metric[edge % len(metric)] = value
         refiner = bound(mesh, scheme, GivenMetric(metric))
         return surface_at(refiner, refiner.refine(positions), mesh.faces, places)[..., 3:]
@@ -145,7 +142,7 @@ def test_geomorph_has_no_steps(seed, scheme, edge, at):
     assert turns(shading(at - 1e-4), shading(at + 1e-4)).max() < 0.05
 
 
-def torus(around: int = 16, across: int = 10) -> meshes.Mesh:
+def torus(around=16, across=10):
     """A torus of radii 1 and 0.4."""
     grid = meshes.open_grid(around, across)
     u = 2.0 * np.pi * grid.vertices[:, 0] / around
@@ -159,15 +156,14 @@ def torus(around: int = 16, across: int = 10) -> meshes.Mesh:
     return meshes.Mesh(points[first], number[grid.faces].astype(np.int32))
 
 
-def exact(name: str, points: Points) -> Points:
+def exact(name, points):
     """Unit normals of the body through points near its surface, shape (..., 3)."""
     if name == "torus":
         ring = points * [1.0, 1.0, 0.0]
-        directions = points - ring / np.linalg.norm(ring, axis=-1, keepdims=True)
+        directions = points - ring / norm(ring, axis=-1, keepdims=True)
     else:
         directions = points / np.square([1.0, 0.6, 1.5])
-    normals: Points = directions / np.linalg.norm(directions, axis=-1, keepdims=True)
-    return normals
+    return directions / norm(directions, axis=-1, keepdims=True)
 
 
 @pytest.mark.parametrize("metric", [0.9, 2.0])
@@ -228,7 +224,7 @@ def test_planar_is_exact(scheme, blend):
     assert (normals[:, :2] == 0.0).all()
     is_used = np.ones(len(normals), dtype=bool)
     is_used[: len(flat)] = np.isin(np.arange(len(flat)), mesh.faces)
-    np.testing.assert_allclose(np.abs(normals[is_used, 2]), 1.0, rtol=0, atol=1e-6)
+    assert_allclose(np.abs(normals[is_used, 2]), 1.0, rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -240,6 +236,6 @@ def test_moves_with_the_mesh(scheme):
     refiner = bound(mesh, scheme, GivenMetric(metrics(mesh, 2)))
     still = refiner.refine(deformed).normals.copy()
     moved = refiner.refine(deformed @ turn.T + [3.0, -2.0, 5.0]).normals
-    np.testing.assert_allclose(moved, still @ turn.T, rtol=0, atol=1e-4)
+    assert_allclose(moved, still @ turn.T, rtol=0, atol=1e-4)
     far = refiner.refine(deformed + 1e5).normals
-    np.testing.assert_allclose(far, still, rtol=0, atol=2e-5)
+    assert_allclose(far, still, rtol=0, atol=2e-5)

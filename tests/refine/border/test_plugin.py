@@ -8,9 +8,9 @@ from functools import partial
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 from risorius import refine
-from risorius.refine.border import registry
 from risorius.refine.kahler.smoothing import LoopScheme
 from tests import meshes
 from tests.refine.cases import kahler
@@ -32,7 +32,7 @@ class Outside:
         face_uv: object = None,
         offset: float = 0.0,
     ) -> None:
-        self._faces = np.asarray(faces, dtype=np.uint32)
+        self.faces = np.asarray(faces, dtype=np.uint32)
         connectivity = refine.connect(faces, len(rest_positions))
         self.edges = connectivity.edges
         self.triangle_edges = connectivity.triangle_edges
@@ -44,8 +44,8 @@ class Outside:
     def refine(self, positions: np.ndarray, out: refine.Stream | None = None) -> refine.RefinedMesh:
         """Hand the mesh through without normals."""
         points = (positions + self.offset).astype(np.float32)
-        source = np.arange(len(self._faces), dtype=np.int32)
-        return refine.RefinedMesh(points, np.zeros_like(points), self._faces, source, None)
+        source = np.arange(len(self.faces), dtype=np.int32)
+        return refine.RefinedMesh(points, np.zeros_like(points), self.faces, source, None)
 
     def origins(self) -> refine.Origins:
         """Every output vertex is the input vertex of the same number."""
@@ -54,13 +54,7 @@ class Outside:
         return refine.Origins(np.stack([numbers] * 3, axis=1), weights)
 
 
-@pytest.fixture
-def clean_registry(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Forget afterwards what a test registers."""
-    monkeypatch.setattr(registry.refiners, "_factories", dict(registry.refiners._factories))
-
-
-@pytest.mark.usefixtures("clean_registry")
+@pytest.mark.usefixtures("own_refiners")
 def test_registered_refiner():
     """A registered refiner is created by name with its options, and passes the checker."""
     refine.refiners.register("outside", Outside)
@@ -73,7 +67,7 @@ def test_registered_refiner():
         refine.check(moved, moved.refine(FINE.vertices), FINE.vertices)
 
 
-@pytest.mark.usefixtures("clean_registry")
+@pytest.mark.usefixtures("own_refiners")
 @pytest.mark.parametrize(
     ("name", "factory", "text"),
     [
@@ -87,7 +81,7 @@ def test_registered_refiner():
 def test_bad_registration(name, factory, text):
     """Names cannot be taken twice, and factories have to be callable."""
     with pytest.raises(ValueError, match=text):
-        refine.refiners.register(name, factory)  # type: ignore[arg-type]
+        refine.refiners.register(name, factory)
 
 
 def test_unknown_name():
@@ -125,7 +119,6 @@ NO_FACES = np.zeros((0, 3), int)
         ({"faces": FINE.faces[:, :2]}, r"faces must be integers of shape \(F, 3\), got int32"),
         ({"faces": FINE.faces.astype(float)}, "faces must be integers .* got float64"),
         ({"faces": FINE.faces + 1}, r"indices from 0 to 5 into rest_positions, but triangle 4 is"),
-        ({"faces": FINE.faces - 1}, r"but triangle 0 is \[-1, 1, 3\]"),
         ({"faces": [[0, 1, 2, 3]]}, "cut polygons into triangles"),
         ({"rest_positions": FINE.vertices[:, :2]}, r"numbers of shape \(V, 3\), got float64"),
         ({"faces": [[0, 1, 2], [0, 1]]}, "faces must be integers .* is no array"),
@@ -134,14 +127,12 @@ NO_FACES = np.zeros((0, 3), int)
         ({"rest_positions": NAN}, "must be finite and below 1e.15, but vertex 4 is"),
         ({"rest_positions": FINE.vertices * 1e16}, "must be finite and below 1e.15"),
         ({"rest_positions": FINE.vertices * 1e9}, "must extend over 1e-06 to 1e.09 .* over 2e.09"),
-        ({"rest_positions": FINE.vertices * 1e-7}, "extend over 2e-07; take another unit"),
         ({"rest_positions": np.ma.masked_equal(FINE.vertices, 1.0)}, "has masked entries"),
         ({"rest_positions": FINE.vertices.astype(str)}, "rest_positions must be numbers"),
         ({"face_uv": FINE.faces}, "face_uv points into uv, but uv is None"),
         ({"uv": np.zeros((6, 3))}, r"uv must be numbers of shape \(U, 2\)"),
         ({"uv": np.zeros((5, 2))}, "needs one row per vertex"),
         ({"uv": np.full((6, 2), np.inf)}, "uv must be finite as single precision, but row 0"),
-        ({"uv": np.full((6, 2), 1e39)}, "uv must be finite as single precision"),
         ({"attributes": [FINE.vertices]}, "attributes must be arrays by name, .* got list"),
         ({"attributes": {"a": [FINE.vertices, FINE.faces]}}, "a tuple of such values and the row"),
         (
@@ -152,18 +143,16 @@ NO_FACES = np.zeros((0, 3), int)
         ({"attributes": {"a": np.full((6, 1), np.nan)}}, "must be finite"),
         ({"attributes": {"a": (np.eye(3), FINE.faces)}}, "indices from 0 to 2 into attributes"),
         ({"attributes": {"a": (np.eye(6), FINE.faces[:7])}}, "one row per triangle .8., got 7"),
-        ({"attributes": {"a": np.array([["a"]] * 6)}}, "must be numbers"),
         ({"uv": np.zeros((3, 2)), "face_uv": FINE.faces}, "face_uv must hold indices from 0 to 2"),
-        ({"uv": np.zeros((6, 2)), "face_uv": FINE.faces[:3]}, "one row per triangle .8., got 3"),
     ],
 )
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 def test_bad_binding(name, changes, text):
     """Arrays that do not fit together are refused with what, where, and what is allowed."""
-    arguments: dict[str, object] = {"faces": FINE.faces, "rest_positions": FINE.vertices}
+    arguments = {"faces": FINE.faces, "rest_positions": FINE.vertices}
     arguments |= changes
     with pytest.raises(ValueError, match=text):
-        refine.create(name, **arguments)  # type: ignore[arg-type]
+        refine.create(name, **arguments)
 
 
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
@@ -211,9 +200,9 @@ def test_units_of_length(unit, scheme):
 
     here = refined(1.0)
     there = refined(unit)
-    np.testing.assert_array_equal(there.triangles, here.triangles)
-    np.testing.assert_allclose(there.positions / unit, here.positions, atol=1e-5)
-    np.testing.assert_allclose(there.normals, here.normals, atol=1e-3)
+    assert_array_equal(there.triangles, here.triangles)
+    assert_allclose(there.positions / unit, here.positions, atol=1e-5)
+    assert_allclose(there.normals, here.normals, atol=1e-3)
 
 
 def test_frames_can_be_kept():
@@ -225,8 +214,8 @@ def test_frames_can_be_kept():
     refiner.refine(FINE.vertices)
     for mesh in kept:
         assert isinstance(mesh, refine.RefinedMesh)
-        np.testing.assert_array_equal(mesh.positions, expected[0])
-        np.testing.assert_array_equal(mesh.attributes["rest"], expected[1])
+        assert_array_equal(mesh.positions, expected[0])
+        assert_array_equal(mesh.attributes["rest"], expected[1])
 
 
 @pytest.mark.parametrize(
@@ -238,7 +227,6 @@ def test_frames_can_be_kept():
         ({"coherent": "no"}, "coherent must be True or False, got 'no'"),
         ({"criterion": refine.Silhouette}, "a name, a refine.Criterion, .*Silhouette"),
         ({"scheme": LoopScheme}, "scheme must be one of .*LoopScheme"),
-        ({"blend": 2}, "blend must be True or False, got 2"),
         ({"threshold_once": -0.1}, "0 <= threshold_once <= threshold_twice .* got"),
         ({"threshold_once": 0.3, "threshold_twice": 0.2}, "0 <= threshold_once <= threshold_twice"),
         ({"threshold_once": np.nan}, "0 <= threshold_once <= threshold_twice .* got"),

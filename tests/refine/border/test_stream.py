@@ -16,7 +16,7 @@ from tests.refine.cases import kahler
 REFINERS = [("none", {}), ("kahler", {}), ("loop", {"levels": 1}), ("loop", {"levels": 2})]
 
 
-def stream_for(refiner: refine.Refiner, spare: int = 0) -> SimpleNamespace:
+def stream_for(refiner, spare=0):
     """A lent stream of exactly the capacity, or some rows more."""
     rows = refiner.triangle_capacity + spare
     shape = (refiner.vertex_capacity + spare, refiner.vertex_columns)
@@ -105,7 +105,7 @@ def test_any_row_of_streams():
     fresh = [kahler(mesh).refine(frame) for frame in frames]
     assert len({len(frame.triangles) for frame in fresh}) == 3
     rng = np.random.default_rng(5)
-    kept: dict[int, list[bytes]] = {}
+    kept = {}
     for _ in range(60):
         k = int(rng.integers(3))
         stream = streams[int(rng.integers(4))]

@@ -1,10 +1,9 @@
 """Points that no triangle uses change nothing of what the triangles become, wherever they lie."""
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 import pytest
+from numpy.testing import assert_array_equal
 
 from risorius import refine
 from tests import meshes
@@ -17,7 +16,7 @@ STRAYS = {
     "not a number": [np.nan, 0.0, 0.0],
     "infinite": [0.0, -np.inf, np.inf],
 }
-REFINERS: list[tuple[str, dict[str, Any]]] = [
+REFINERS = [
     ("none", {}),
     ("loop", {"levels": 2}),
     ("kahler", {}),
@@ -28,9 +27,7 @@ REFINERS: list[tuple[str, dict[str, Any]]] = [
 EYE = refine.View([5.0, 6.0, 30.0])
 
 
-def with_strays(
-    points: Points, faces: npt.NDArray[np.int64], place: list[float]
-) -> tuple[Points, npt.NDArray[np.int64]]:
+def with_strays(points, faces, place):
     """The same mesh, and points at a place before the first, among the others and at the end."""
     where = [0, 0, 3, len(points)]
     number = np.insert(np.arange(len(points)), where, -1)
@@ -52,13 +49,9 @@ def test_triangles_are_the_same(name, options, stray):
     frame, _ = with_strays(bent, faces, STRAYS[stray])
     refiner = refine.create(name, renamed, rest, **options)
     found = refiner.refine(frame, view=EYE)
-    np.testing.assert_array_equal(
-        found.positions[found.triangles], expected.positions[expected.triangles]
-    )
-    np.testing.assert_array_equal(
-        found.normals[found.triangles], expected.normals[expected.triangles]
-    )
-    np.testing.assert_array_equal(refiner.splits, plain.splits)
+    assert_array_equal(found.positions[found.triangles], expected.positions[expected.triangles])
+    assert_array_equal(found.normals[found.triangles], expected.normals[expected.triangles])
+    assert_array_equal(refiner.splits, plain.splits)
     assert np.isfinite(found.positions).all()
     refine.check(refiner, found, frame)
 
@@ -99,6 +92,4 @@ def test_a_stray_twin_moves_nothing():
     frame = np.concatenate([[[np.nan] * 3], meshes.wrinkled(mesh, 5)])
     found = refiner.refine(frame)
     expected = refine.WeldedRefiner(mesh.vertices, faces).refine(frame[1:])
-    np.testing.assert_array_equal(
-        found.positions[found.triangles], expected.positions[expected.triangles]
-    )
+    assert_array_equal(found.positions[found.triangles], expected.positions[expected.triangles])

@@ -14,7 +14,7 @@ from tests import meshes
 Points = npt.NDArray[np.float64]
 
 
-def around(mesh: meshes.Mesh, count: int = 300, away: float = 0.2) -> Points:
+def around(mesh, count=300, away=0.2):
     """Points near the triangles of a mesh, on both sides and beyond borders."""
     rng = np.random.default_rng(5)
     corners = mesh.vertices[mesh.faces[rng.integers(len(mesh.faces), size=count)]]
@@ -22,7 +22,7 @@ def around(mesh: meshes.Mesh, count: int = 300, away: float = 0.2) -> Points:
     return np.einsum("nc,nci->ni", shares, corners) + away * rng.normal(size=(count, 3))
 
 
-def turned(points: Points) -> Points:
+def turned(points):
     """A rigid motion: half a turn and more about a slanted axis, and away."""
     axis = np.array([1.0, 2.0, -0.5]) / np.sqrt(5.25)
     angle = 3.3
@@ -47,7 +47,7 @@ SURFACES = {
 
 
 @pytest.mark.parametrize("mesh", SURFACES.values(), ids=SURFACES)
-def test_rest_is_rest_and_rigid_motion_is_exact(mesh: meshes.Mesh) -> None:
+def test_rest_is_rest_and_rigid_motion_is_exact(mesh):
     """A fine mesh is where it was when the coarse one is, and goes along with it as one piece."""
     fine = around(mesh)
     embedding = refine.Embedding(mesh.faces, mesh.vertices, fine, normals=fine)
@@ -64,7 +64,7 @@ def test_rest_is_rest_and_rigid_motion_is_exact(mesh: meshes.Mesh) -> None:
 
 
 @given(st.integers(0, 2**32 - 1))
-def test_any_soup_is_carried(seed: int) -> None:
+def test_any_soup_is_carried(seed):
     """Soups of any triangles, degenerate ones too: rest is rest, motions are rigid, all finite."""
     rng = np.random.default_rng(seed)
     vertices = rng.normal(size=(8, 3))
@@ -80,7 +80,7 @@ def test_any_soup_is_carried(seed: int) -> None:
     assert np.isfinite(embedding.evaluate(np.zeros((8, 3))).positions).all()
 
 
-def test_continuous_over_coarse_edges() -> None:
+def test_continuous_over_coarse_edges():
     """Fine vertices that are neighbours stay neighbours, on whichever triangle they are."""
     mesh = meshes.ball(2)
     angle = np.linspace(0.0, 2.0 * np.pi, 20_001)
@@ -94,7 +94,7 @@ def test_continuous_over_coarse_edges() -> None:
     assert steps.max() < 4.0 * np.linalg.norm(np.diff(ring, axis=0), axis=1).max()
 
 
-def two_lips() -> tuple[meshes.Mesh, Points, Points]:
+def two_lips():
     """Two sheets that nearly touch and look at each other; fine points on the wrong side of both.
 
     The points lie nearer to the other sheet than to their own, and look as their own does.
@@ -107,7 +107,7 @@ def two_lips() -> tuple[meshes.Mesh, Points, Points]:
     return both, fine, np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
 
 
-def test_normals_and_labels_keep_lips_apart() -> None:
+def test_normals_and_labels_keep_lips_apart():
     """Normals, or labels, bind to the own surface where another one is nearer."""
     lips, fine, normals = two_lips()
     is_upper = np.arange(len(lips.faces)) >= len(lips.faces) // 2
@@ -121,7 +121,7 @@ def test_normals_and_labels_keep_lips_apart() -> None:
     assert is_upper[named.triangles].tolist() == [False, True]
 
 
-def test_unused_points_and_triangles_without_area_do_no_harm() -> None:
+def test_unused_points_and_triangles_without_area_do_no_harm():
     """A point that no triangle uses need not be a number; nothing is bound to a sliver."""
     mesh = meshes.fan()
     vertices = np.vstack([mesh.vertices, [[np.nan, 0.0, 0.0]], [[2.0, 0.0, 0.0]]])
@@ -133,7 +133,7 @@ def test_unused_points_and_triangles_without_area_do_no_harm() -> None:
     np.testing.assert_allclose(embedding.evaluate(vertices).positions, fine, atol=1e-12)
 
 
-def test_offsets_keep_their_length_or_are_stretched() -> None:
+def test_offsets_keep_their_length_or_are_stretched():
     """A larger surface carries offsets as they are, or, where that is wished, as large as it is."""
     mesh = meshes.ball(2)
     fine = 1.3 * mesh.vertices
@@ -145,7 +145,7 @@ def test_offsets_keep_their_length_or_are_stretched() -> None:
     np.testing.assert_allclose(stretched.evaluate(larger).positions, 2.0 * fine, atol=1e-9)
 
 
-def test_inputs_stay_and_values_are_carried() -> None:
+def test_inputs_stay_and_values_are_carried():
     """Not a byte of what is given changes; values at coarse vertices are linear in triangles."""
     mesh = meshes.ball(1)
     fine = around(mesh)
@@ -173,7 +173,7 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
 
 
 @pytest.mark.parametrize(("changes", "message"), BAD.values(), ids=BAD)
-def test_errors_say_what_is_allowed(changes: dict[str, Any], message: str) -> None:
+def test_errors_say_what_is_allowed(changes, message):
     """Bad input is one clear message, and nothing is bound."""
     mesh = meshes.triangle()
     good = {"faces": mesh.faces, "rest_positions": mesh.vertices, "points": np.zeros((2, 3))}
@@ -181,7 +181,7 @@ def test_errors_say_what_is_allowed(changes: dict[str, Any], message: str) -> No
         refine.Embedding(**{**good, **changes})
 
 
-def test_a_bad_frame_is_refused() -> None:
+def test_a_bad_frame_is_refused():
     """Another number of vertices, and positions that are not finite, are refused."""
     mesh = meshes.triangle()
     embedding = refine.Embedding(mesh.faces, mesh.vertices, np.zeros((2, 3)))

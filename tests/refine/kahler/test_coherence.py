@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius.refine import Coherent
 from risorius.refine.kahler import coherence, table
@@ -14,12 +15,12 @@ NUMBER = {sequence: k for k, sequence in enumerate(TABLES.sequences)}
 ALL_SPLITS = list(itertools.product(range(3), repeat=3))
 
 
-def states_of(length: int) -> list[int]:
+def states_of(length):
     """Numbers of the sequences with so many splits."""
     return [k for k, sequence in enumerate(TABLES.sequences) if len(sequence) == length]
 
 
-def inner_lines(state: int) -> set[tuple[int, int]]:
+def inner_lines(state):
     """Sides of subtriangles inside the triangle, as pairs of points."""
     triangles = TABLES.patterns.of(state).tolist()
     sides = [(t[k], t[(k + 1) % 3]) for t in triangles for k in range(3)]
@@ -41,27 +42,27 @@ def test_271_sequences():
 def test_entries(length):
     """Every entry is a valid tessellation with as many subtriangles as the 27-entry table has."""
     for state in states_of(length):
-        splits = coherence._splits_of(TABLES.sequences[state])
+        splits = coherence.splits_in(TABLES.sequences[state])
         triangles = TABLES.patterns.of(state)
         table.verify(splits, [tuple(t) for t in triangles.tolist()])
         configuration = configuration_of(splits)
         assert len(triangles) == table.CONFIGURATIONS.counts[configuration]
         areas = np.linalg.det(table.POINTS[triangles] / 4.0)
         assert (areas > 0.01).all()
-        assert areas.sum() == pytest.approx(1.0, abs=1e-12)
+        assert areas.sum() == approx(1.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("length", range(7))
 def test_splitting_turns_no_line(length):
     """Whatever is split further, every line inside the triangle stays; nothing is out of order."""
     for state in states_of(length):
-        has = coherence._splits_of(TABLES.sequences[state])
+        has = coherence.splits_in(TABLES.sequences[state])
         for splits in ALL_SPLITS:
             if all(want >= had for want, had in zip(splits, has, strict=True)):
                 configuration = configuration_of(splits)
                 following = int(TABLES.transitions[state, configuration])
                 assert TABLES.sequences[following][: sum(has)] == TABLES.sequences[state]
-                assert coherence._splits_of(TABLES.sequences[following]) == splits
+                assert coherence.splits_in(TABLES.sequences[following]) == splits
                 assert inner_lines(state) <= inner_lines(following)
                 assert TABLES.removals[state, configuration] == 0
 
@@ -72,7 +73,7 @@ def test_taking_back_in_reverse(length):
     for state in states_of(length):
         sequence = TABLES.sequences[state]
         for left in range(length):
-            splits = coherence._splits_of(sequence[:left])
+            splits = coherence.splits_in(sequence[:left])
             configuration = configuration_of(splits)
             back = TABLES.transitions[state, configuration]
             assert TABLES.sequences[back] == sequence[:left]
@@ -103,7 +104,7 @@ CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]])
 """Of an equilateral triangle."""
 
 
-def length_of_lines(state: int) -> float:
+def length_of_lines(state):
     """Length of all inner lines of a sequence."""
     places = table.POINTS / 4.0 @ CORNERS
     return sum(float(np.linalg.norm(places[a] - places[b])) for a, b in inner_lines(state))
@@ -115,14 +116,14 @@ def test_new_splits_make_the_shortest_lines(length):
     lengths = [length_of_lines(state) for state in range(len(TABLES.sequences))]
     for state in states_of(length):
         begun = TABLES.sequences[state]
-        best: dict[int, float] = {}
+        best = {}
         for other, sequence in enumerate(TABLES.sequences):
             if sequence[:length] == begun:
-                key = configuration_of(coherence._splits_of(sequence))
+                key = configuration_of(coherence.splits_in(sequence))
                 best[key] = min(best.get(key, np.inf), lengths[other])
         for configuration, shortest in best.items():
             taken = int(TABLES.transitions[state, configuration])
-            assert lengths[taken] == pytest.approx(shortest, abs=1e-9)
+            assert lengths[taken] == approx(shortest, abs=1e-9)
 
 
 def test_states_follow_the_tables():

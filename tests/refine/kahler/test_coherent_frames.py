@@ -1,7 +1,6 @@
 """`coherent=True` through the whole refiner, frame after frame (section 4.4)."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -14,17 +13,16 @@ from tests import meshes
 from tests.refine.cases import Forced, kahler
 
 Positions = npt.NDArray[np.float64]
-Frames = list[Positions]
 Point = tuple[int, int, int]
 """A point of a refined mesh for life: ends of its edge, and quarters from the lower one."""
 Line = tuple[int, Point, Point]
 """Input triangle and end points."""
 
 
-def point_rows(refiner: refine.Refiner) -> dict[Point, int]:
+def point_rows(refiner):
     """A row of the last frame for each of its points on edges and corners."""
     origins = refiner.origins()
-    rows: dict[Point, int] = {}
+    rows = {}
     for row, (vertices, weights) in enumerate(zip(origins.vertices, origins.weights, strict=True)):
         parts = sorted(
             (int(v), round(4.0 * float(w))) for v, w in zip(vertices, weights, strict=True) if w
@@ -38,10 +36,10 @@ def point_rows(refiner: refine.Refiner) -> dict[Point, int]:
     return rows
 
 
-def inner_lines(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> set[Line]:
+def inner_lines(refiner, mesh):
     """The lines inside input triangles in the last frame."""
     names = {row: point for point, row in point_rows(refiner).items()}
-    sides: Counter[Line] = Counter()
+    sides = Counter()
     for source, corners in zip(mesh.source.tolist(), mesh.triangles.tolist(), strict=True):
         for k in range(3):
             a, b = sorted((names[corners[k]], names[corners[(k + 1) % 3]]))
@@ -49,22 +47,22 @@ def inner_lines(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> set[Line]:
     return {line for line, count in sides.items() if count == 2}
 
 
-def turned(before: set[Line], now: set[Line], rows: dict[Point, int]) -> list[Line]:
+def turned(before, now, rows):
     """Lines of the frame before that are gone although `rows` still has both their ends."""
     return sorted(line for line in before - now if line[1] in rows and line[2] in rows)
 
 
-def history_of(refiner: refine.Refiner) -> refine.Coherent:
+def history_of(refiner):
     """What the refiner remembers."""
     assert isinstance(refiner, refine.Kahler)
     assert refiner.history is not None
     return refiner.history
 
 
-def turned_per_frame(refiner: refine.Refiner, frames: Iterable[Positions]) -> list[int]:
+def turned_per_frame(refiner, frames):
     """How many lines turn in each of `frames`, the first one left out."""
-    counts: list[int] = []
-    before: set[Line] | None = None
+    counts = []
+    before = None
     for positions in frames:
         now = inner_lines(refiner, refiner.refine(positions))
         if before is not None:
@@ -73,13 +71,13 @@ def turned_per_frame(refiner: refine.Refiner, frames: Iterable[Positions]) -> li
     return counts
 
 
-def growing(mesh: meshes.Mesh, seed: int, count: int = 25) -> Frames:
+def growing(mesh, seed, count=25):
     """A deformation that grows from nothing."""
     full = meshes.wrinkled(mesh, seed, 0.5) - mesh.vertices
     return [mesh.vertices + share * full for share in np.linspace(0.0, 1.0, count)]
 
 
-def splitting(mesh: meshes.Mesh, seed: int, count: int = 12) -> tuple[Forced, Frames]:
+def splitting(mesh, seed, count=12):
     """A criterion that splits ever more edges at random, and frames that call it."""
     generator = np.random.default_rng(seed)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
@@ -87,7 +85,7 @@ def splitting(mesh: meshes.Mesh, seed: int, count: int = 12) -> tuple[Forced, Fr
     return criterion, [generator.random(edge_count) for _ in range(count)]
 
 
-def played(mesh: meshes.Mesh, criterion: Forced, chances: Frames) -> Iterator[Positions]:
+def played(mesh, criterion, chances):
     """The mesh as it is, again and again, while a fifth of the edges is split further."""
     for chance in chances:
         criterion.wanted = np.minimum(2, criterion.wanted + (chance < 0.2)).astype(np.uint8)

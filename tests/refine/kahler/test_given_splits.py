@@ -22,14 +22,14 @@ LOOKS: dict[str, dict[str, Any]] = {
 }
 
 
-def arrays_of(mesh: refine.RefinedMesh) -> list[bytes]:
+def arrays_of(mesh):
     """All arrays of a frame, as bytes."""
     extra = [] if mesh.uv is None else [mesh.uv]
     return [each.tobytes() for each in (*mesh[:4], *extra, *mesh.attributes.values())]
 
 
 @st.composite
-def clips(draw: st.DrawFn) -> tuple[meshes.Mesh, list[np.ndarray]]:
+def clips(draw):
     """Any triangles, with seams or without, and three frames of them."""
     positions, faces = draw(soups())
     generator = np.random.default_rng(draw(st.integers(0, 2**16)))
@@ -110,7 +110,7 @@ def test_triangles_are_found_once():
         is_constant = True
         calls = 0
 
-        def mark(self, positions: object, normals: object, splits: Any) -> None:
+        def mark(self, positions, normals, splits):
             self.calls += 1
             super().mark(positions, normals, splits)
 

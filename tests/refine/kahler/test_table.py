@@ -24,7 +24,7 @@ def test_rotation(splits):
     assert _as_set(renamed) == _as_set(table.subdivide(splits))
 
 
-def _as_set(triangles: list[tuple[int, ...]]) -> set[tuple[int, ...]]:
+def _as_set(triangles):
     return {min(t, t[1:] + t[:1], t[2:] + t[:2]) for t in triangles}
 
 

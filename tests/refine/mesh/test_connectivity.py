@@ -80,7 +80,7 @@ def test_weld():
 def test_bad_triangles(arguments, text):
     """Indices that point outside are refused before compiled code follows them."""
     with pytest.raises(ValueError, match=text):
-        refine.connect(*arguments)  # type: ignore[arg-type]
+        refine.connect(*arguments)
 
 
 @pytest.mark.parametrize(

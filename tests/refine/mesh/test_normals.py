@@ -1,16 +1,13 @@
 """Normals are of length one or exactly zero, whatever is done to a mesh."""
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from risorius import refine
 from tests import meshes
 from tests.refine.cases import kahler
 
-OPTIONS: dict[str, dict[str, Any]] = {
+OPTIONS = {
     "paper": {},
     "blended": {"blend": True},
     "cubic": {"scheme": "cubic"},
@@ -22,7 +19,7 @@ SCALES = (1e-300, 1e-44, 1e-38, 1e-22, 1e-12, 3e-10, 1e-6, 1.0, 5e9, 5e13)
 FLATTENED = (1.0, 1e-7, 1e-20, 0.0)
 
 
-def lengths(normals: npt.NDArray[np.float32]) -> npt.NDArray[np.float64]:
+def lengths(normals):
     """Lengths of normals, shape (N,)."""
     return np.linalg.norm(normals.astype(np.float64), axis=1)
 

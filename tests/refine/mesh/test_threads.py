@@ -4,18 +4,17 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
-from risorius import assets, refine
+from risorius import refine
 from risorius.refine.mesh import threads
 from tests import meshes
 
 ROOT = Path(__file__).resolve().parents[3]
 LOOK = {"scheme": "cubic", "criterion": "displacement+rest"}
-OPTIONS: dict[str, dict[str, Any]] = {
+OPTIONS = {
     "look": LOOK,
     "paper": {},
     "coherent": {"coherent": True},
@@ -25,7 +24,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
 }
 
 
-def force_threads(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
+def force_threads(monkeypatch, count):
     """Let loops over small meshes be shared by so many threads, in many small parts."""
     monkeypatch.setattr(threads, "ITEMS_OF_PART", 16)
     monkeypatch.setattr(threads, "THREAD_COUNT", count)
@@ -60,13 +59,13 @@ def test_every_item_once(monkeypatch):
     for count in (0, 1, 31, 32, 1000):
         done = np.zeros(count, np.int64)
 
-        def add(first: int, last: int, items: np.ndarray) -> None:
+        def add(first, last, items):
             items[first:last] += 1
 
         threads.share(add, count, done)
         assert (done == 1).all()
 
-    def fail(first: int, last: int) -> None:
+    def fail(first, last):
         if last == 1000:
             raise ValueError("the last part")
 
@@ -74,14 +73,13 @@ def test_every_item_once(monkeypatch):
         threads.share(fail, 1000)
 
 
-def test_small_meshes_start_no_thread(monkeypatch):
+def test_small_meshes_start_no_thread(head, monkeypatch):
     """A face is refined where it is, and so is every mesh where numba has one thread."""
 
-    def refuse() -> None:
+    def refuse():
         raise AssertionError("a thread was started")
 
     monkeypatch.setattr(threads, "_threads", refuse)
-    head = assets.load("head")
     refiner = refine.create("kahler", head.faces, head.vertices, **LOOK)
     assert refiner.refine(1.01 * head.vertices).triangle_count > len(head.faces)
     monkeypatch.setattr(threads, "THREAD_COUNT", 1)
