@@ -12,7 +12,7 @@ import bisect
 import difflib
 import functools
 from array import array
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
@@ -24,82 +24,18 @@ from risorius.schema import REST, OneOf, Record, Within, called
 
 from ..control_names.limits import ControlValues, Limits
 from ..errors import UserError
+from .easings import ALLOWED, Easing, easing_named, easing_names, hermite, shares_of
 
 Floats = npt.NDArray[np.float64]
-Easings = npt.NDArray[np.uint16]  # places in EASING_NAMES
+Easings = npt.NDArray[np.uint8]  # rows of easings.Easing
 
 DECIMALS = 6  # of numbers that come from sliders and clocks
 LONGEST_FILE = 2**25  # [bytes]; three quarters of an hour of capture, and /dev/zero has no end
 POSE_SECONDS = 1.0  # duration of a script that is one pose
 LARGEST = 86_400.0  # of any number in a script; as a time [s] it is a day
-
-
-def linear(fraction: float) -> float:
-    """Constant speed."""
-    return fraction
-
-
-def smooth(fraction: float) -> float:
-    """Starts and stops softly (cubic); the default, since no muscle starts or stops at once."""
-    return fraction * fraction * (3.0 - 2.0 * fraction)
-
-
-def ease_in(fraction: float) -> float:
-    """Starts softly, arrives at speed."""
-    return fraction * fraction
-
-
-def ease_out(fraction: float) -> float:
-    """Starts at speed, arrives softly."""
-    return 1.0 - (1.0 - fraction) ** 2
-
-
-def hold(fraction: float) -> float:
-    """Stays at the previous key until the next one is reached, then jumps."""
-    return fraction // 1.0
-
-
-# Curves between two keys: of a fraction 0..1, each from 0 to 1, for numbers and arrays alike.
-EASINGS: dict[str, Callable[[float], float]] = {
-    "linear": linear,
-    "smooth": smooth,
-    "ease-in": ease_in,
-    "ease-out": ease_out,
-    "hold": hold,
-}
-
-
-def sloped(start: float, end: float) -> Callable[[float], float]:
-    """The cubic curve that leaves and arrives with these slopes, in mean speeds.
-
-    As none is above STEEPEST it never turns back (Fritsch and Carlson, "Monotone piecewise cubic
-    interpolation", 1980).
-    """
-
-    def curve(fraction: float) -> float:
-        rest = 1.0 - fraction
-        return smooth(fraction) + fraction * rest * (start * rest - end * fraction)
-
-    return curve
-
-
-def free_easing(start: float, end: float) -> str:
-    """The name of the easing whose slopes are nearest to these, as "0.5,2"."""
-    return ",".join(f"{min(max(0.0, round(slope, 1)), STEEPEST):g}" for slope in (start, end))
-
-
-STEEPEST = 3.0
-SLOPES = {"linear": (1.0, 1.0), "smooth": (0.0, 0.0), "ease-in": (0.0, 2.0), "ease-out": (2.0, 0.0)}
-_FREE = {(a / 10, b / 10) for a in range(31) for b in range(31)}  # in steps that a mouse can choose
-ALL_EASINGS = EASINGS | {free_easing(*slopes): sloped(*slopes) for slopes in sorted(_FREE)}
-SLOPES |= {free_easing(*slopes): slopes for slopes in _FREE}
-ALLOWED = f"{', '.join(EASINGS)}, or two slopes from 0 to 3 in tenths, as '0.5,2'"
-EASING_NAMES = tuple(ALL_EASINGS)
-
-_CURVES = tuple(ALL_EASINGS.values())
 Number = Annotated[float, Within(-LARGEST, LARGEST)]
 Moment = Annotated[float, Within(0.0, LARGEST)]
-Easing = Annotated[str, OneOf(EASING_NAMES, ALLOWED)]
+EasingName = Annotated[str, OneOf(easing_names, ALLOWED)]
 
 
 @dataclass(frozen=True)
@@ -108,7 +44,7 @@ class Key(Record):
 
     time: Moment
     value: Number
-    easing: Easing = "smooth"
+    easing: EasingName = "smooth"
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +54,7 @@ class Channel:
     A recorded take has half a million keys, so they are kept in arrays, which nobody may write.
 
     times: of the keys [s], shape (K,). values: at these times, shape (K,). easings: how each key is
-    approached, numbers of EASING_NAMES, shape (K,), or the name of one easing for all.
+    approached, a row of `Easing` each, shape (K, 3), or the name of one easing for all.
     """
 
     times: Floats
@@ -129,11 +65,11 @@ class Channel:
         self, times: npt.ArrayLike, values: npt.ArrayLike, easings: npt.ArrayLike | str = "linear"
     ) -> None:
         if isinstance(easings, str):
-            easings = np.full(np.shape(times), EASING_NAMES.index(easings))
+            easings = np.tile(np.array(easing_named(easings)), (len(np.asarray(times)), 1))
         for name, part, kind in (
             ("times", times, np.float64),
             ("values", values, np.float64),
-            ("easings", easings, np.uint16),
+            ("easings", easings, np.uint8),
         ):
             own = np.asarray(part, kind)
             if own.flags.writeable:  # somebody else might write it
@@ -148,14 +84,23 @@ class Channel:
         return cls(
             [key.time for key in keys],
             [key.value for key in keys],
-            [EASING_NAMES.index(key.easing) for key in keys],
+            np.array([easing_named(key.easing) for key in keys]).reshape(-1, 3),
         )
 
     @property
     def keys(self) -> tuple[Key, ...]:
         """The keys one by one, made anew at each call: for a few of them, or few channels."""
-        parts = zip(self.times.tolist(), self.values.tolist(), self.easings.tolist(), strict=True)
-        return tuple(Key(time, value, EASING_NAMES[easing]) for time, value, easing in parts)
+        parts = zip(self.times.tolist(), self.values.tolist(), self.easing_rows(), strict=True)
+        return tuple(Key(time, value, easing.name) for time, value, easing in parts)
+
+    def easing(self, number: int) -> Easing:
+        """How the key of this number is approached."""
+        start, end, is_held = self.easings[number].tolist()
+        return Easing(start, end, bool(is_held))
+
+    def easing_rows(self) -> list[Easing]:
+        """How each key is approached."""
+        return [Easing(start, end, bool(held)) for start, end, held in self.easings.tolist()]
 
     def __len__(self) -> int:
         return len(self.times)
@@ -170,18 +115,20 @@ class Channel:
         )
 
     @functools.cached_property
-    def _parts(self) -> tuple[array[float], array[float], array[int]]:
+    def _parts(self) -> tuple[array[float], array[float], bytes]:
         """The same numbers in sequences of Python's own, which are quicker to look into."""
         times = array("d", self.times.tobytes())
         values = array("d", self.values.tobytes())
-        return times, values, array("H", self.easings.tobytes())
+        return times, values, self.easings.tobytes()
 
     def value(self, time: float) -> float:
         """The eased value at `time` [s]; constant before the first and after the last key."""
         times, values, easings = self._parts
         previous, following, share = _between(times, time)
         start = values[previous]
-        return start + (values[following] - start) * _CURVES[easings[following]](share)
+        slope, arrival, is_held = easings[3 * following : 3 * following + 3]
+        way = share // 1.0 if is_held else hermite(share, slope / 10, arrival / 10)
+        return start + (values[following] - start) * way
 
     @functools.cached_property
     def ends(self) -> tuple[float, float]:
@@ -202,11 +149,9 @@ class Channel:
         following = np.minimum(after, len(self) - 1)
         seconds = np.where(before < following, self.times[following] - self.times[before], 1.0)
         shares = np.where(before < following, (times - self.times[before]) / seconds, 0.0)
-        for easing in set(self.easings[following].tolist()):
-            is_eased = self.easings[following] == easing
-            shares[is_eased] = _CURVES[easing](shares[is_eased])
         start = self.values[before]
-        values: Floats = start + (self.values[following] - start) * shares
+        ways = shares_of(shares, self.easings[following])
+        values: Floats = start + (self.values[following] - start) * ways
         return values
 
     def outline(self, start: float, end: float, count: int) -> tuple[Floats, Floats]:
@@ -234,7 +179,7 @@ class Pose(Record):
 
     time: Moment
     values: Annotated[Mapping[str, Number], called(REST)] = field(default_factory=dict)
-    easing: Easing = "smooth"
+    easing: EasingName = "smooth"
     name: str | None = None  # one that has a name gets a picture on a contact sheet
 
     def raised(self, names: Iterable[str], amount: float, limits: Limits) -> Pose:
@@ -296,7 +241,7 @@ class Script:
         before, after, share = _between(self._pose_times, time)
         start = self._pose_rows[before]
         end = self._pose_rows[after]
-        posed: Floats = start + (end - start) * ALL_EASINGS[self.poses[after].easing](share)
+        posed: Floats = start + (end - start) * easing_named(self.poses[after].easing).of(share)
         return posed
 
     def posed_channel(self, name: str) -> Channel:

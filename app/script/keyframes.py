@@ -16,7 +16,8 @@ import numpy.typing as npt
 
 from ..control_names.limits import ControlValues, Limits
 from ..errors import UserError
-from . import DECIMALS, EASING_NAMES, LARGEST, Channel, Key, Pose, Script, rounded
+from . import DECIMALS, LARGEST, Channel, Key, Pose, Script, rounded
+from .easings import easing_named
 from .places import Places, among
 
 POSES = ""  # the track of whole poses; any other is called as its control is
@@ -108,7 +109,7 @@ def eased(script: Script, places: Places, easing: str) -> Script:
         if name == POSES:
             last[is_chosen] = [replace(pose, easing=easing) for pose in last[is_chosen]]
         else:
-            last[is_chosen] = EASING_NAMES.index(easing)
+            last[is_chosen] = easing_named(easing)
         changed[name] = (*columns[:-1], last)
     return _with(script, changed)
 
@@ -211,7 +212,7 @@ def _with_track_keys(script: Script, time: float, values: Values) -> Script:
         track = script.tracks.get(name, Channel([], []))
         near = np.flatnonzero(np.abs(track.times - time) < SAME)[:1]
         after = near if len(near) else np.flatnonzero(track.times > time)[:1]
-        easing = EASING_NAMES[track.easings[after[0]]] if len(after) else "smooth"
+        easing = track.easing(after[0]).name if len(after) else "smooth"
         key = Key(float(track.times[near[0]]) if len(near) else time, rounded(value), easing)
         changed[name] = _joined(_channel_columns(track), _channel_columns(Channel.of([key])))
     return _with(script, changed)

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..control_names.limits import ControlValues
-from . import EASING_NAMES, Channel, Key, Script, rounded
+from . import Channel, Key, Script, rounded
 from .keyframes import FRAME, differing
 from .thinning import thinned
 
@@ -107,7 +107,7 @@ class Recorder:
 def _along(track: Channel, first: float, last: float) -> list[Key]:
     """Keys that follow a track after one time, up to another [s], with no key of its between."""
     following = np.searchsorted(track.times, last)
-    easing = EASING_NAMES[track.easings[following]] if following < len(track) else "linear"
+    easing = track.easing(int(following)).name if following < len(track) else "linear"
     end = Key(last, track.value(last) if len(track) else 0.0, easing)
     if easing in ("linear", "hold") or {first, last} <= set(track.times.tolist()):
         return [end]  # a part of such a way is eased as all of it

@@ -8,6 +8,7 @@ is a script with one [[pose]] at time 0.
 from __future__ import annotations
 
 import contextlib
+import functools
 import io
 import itertools
 import json
@@ -29,8 +30,6 @@ from risorius.schema import MadeFrom, Record, parsed_toml, quoted, read
 from ..errors import UserError, as_text, in_one_line
 from ..files import read_text, save_text
 from . import (
-    ALLOWED,
-    EASING_NAMES,
     LARGEST,
     LONGEST_FILE,
     POSE_SECONDS,
@@ -41,6 +40,7 @@ from . import (
     Script,
     rounded,
 )
+from .easings import ALLOWED, Easing, easing_named
 
 
 def _channel(entries: Any) -> Channel:
@@ -64,19 +64,19 @@ def _channel_of_lines(text: str) -> Channel:
     """
     times = array("d")
     values = array("d")
-    easings = array("H")
+    easings = array("B")
     for number, words in enumerate(filter(None, map(str.split, io.StringIO(text))), start=1):
         try:
             time, value, easing = words if len(words) == 3 else (*words, "linear")
             times.append(float(time))
             values.append(float(value))
-            easings.append(EASING_NAMES.index(easing))
+            easings.extend(easing_named(easing))
         except ValueError:
             raise ValueError(
                 f"key {number}: was {quoted(' '.join(words))}, must be a time, a value and perhaps "
                 f"an easing: {ALLOWED}"
             ) from None
-    channel = Channel(times, values, easings)
+    channel = Channel(times, values, np.array(easings).reshape(-1, 3))
     is_wrong = ~(np.abs(channel.values) <= LARGEST) | ~(channel.times <= LARGEST)
     for place in np.flatnonzero(is_wrong | (channel.times < 0.0))[:1].tolist():
         read(Key, {"time": times[place], "value": values[place]}, f"key {place + 1}")
@@ -248,15 +248,20 @@ def _pose(pose: Pose) -> str:
 def _track(name: str, channel: Channel) -> str:
     # Tables of more keys would be too long to read.
     if len(channel) > 24:
-        names = ["", *(f" {easing}" for easing in EASING_NAMES[1:])]  # linear is not said
-        parts = (each.tolist() for each in (channel.times, channel.values, channel.easings))
-        keys = "\n".join(f"{t!r} {v!r}{names[e]}" for t, v, e in zip(*parts, strict=True))
+        parts = (channel.times.tolist(), channel.values.tolist(), channel.easing_rows())
+        keys = "\n".join(f"{t!r} {v!r}{_ending(e)}" for t, v, e in zip(*parts, strict=True))
         return f"{_key(name)} = '''\n{keys}\n'''"
     lines = [f"{_key(name)} = ["]
     for key in channel.keys:
         easing = "" if key.easing == "smooth" else f", easing = {_quoted(key.easing)}"
         lines.append(f"    {{ time = {_number(key.time)}, value = {_number(key.value)}{easing} }},")
     return "\n".join([*lines, "]"])
+
+
+@functools.cache
+def _ending(easing: Easing) -> str:
+    """The end of a line for a key approached so; none for a linear way."""
+    return "" if easing.name == "linear" else f" {easing.name}"
 
 
 def _number(value: float) -> str:

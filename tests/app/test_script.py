@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+import scipy
 from hypothesis import given
 from hypothesis import strategies as st
 from pytest import approx
 
 from risorius.app.errors import UserError
-from risorius.app.script import ALL_EASINGS, LARGEST, Channel, Key, Pose, Script
+from risorius.app.script import LARGEST, Channel, Key, Pose, Script
+from risorius.app.script.easings import EASINGS, easing_named, easing_names
 from risorius.app.script.script_file import load_script, parse_script, script_text
 
 HELLO = """
@@ -62,7 +64,7 @@ def channels(draw):
     size = {"min_size": len(times), "max_size": len(times)}
     values = draw(st.lists(st.floats(-LARGEST, LARGEST), **size))
     easings = draw(
-        st.just(len(times) * ["linear"]) | st.lists(st.sampled_from([*ALL_EASINGS]), **size)
+        st.just(len(times) * ["linear"]) | st.lists(st.sampled_from([*easing_names()]), **size)
     )
     return Channel.of(map(Key, times, values, easings))
 
@@ -88,9 +90,8 @@ def test_a_channel_has_the_values_of_its_keys(channel, data):
     before = [key for key in keys if key.time <= time][-1:] or keys[:1]
     after = [key for key in keys if key.time > time][:1] or before
     share = (time - before[0].time) / (after[0].time - before[0].time or 1.0)
-    way = (after[0].value - before[0].value) * ALL_EASINGS[after[0].easing](
-        min(max(share, 0.0), 1.0)
-    )
+    easing = easing_named(after[0].easing)
+    way = (after[0].value - before[0].value) * easing.of(min(max(share, 0.0), 1.0))
     assert channel.value(time) == before[0].value + (way if before[0].time <= time else 0.0)
 
 
@@ -108,10 +109,42 @@ def test_a_drawn_curve_is_what_is_played(channel, start, span):
     assert times[-1] <= start + span
 
 
-@given(fraction=st.floats(0.0, 1.0), name=st.sampled_from(sorted(ALL_EASINGS)))
+@given(
+    fraction=st.floats(0.0, 1.0),
+    name=st.sampled_from([*easing_names()]).filter(lambda name: name != "hold"),
+)
+def test_easings_are_hermite_curves(fraction, name):
+    """Each is the cubic from 0 to 1 with the slopes of its name; words are slopes, too."""
+    easing = easing_named(name)
+    assert easing_named(easing.name) == easing
+    curve = scipy.interpolate.CubicHermiteSpline([0.0, 1.0], [0.0, 1.0], easing.slopes)
+    assert easing.of(fraction) == pytest.approx(float(curve(fraction)), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "formula"),
+    [
+        ("linear", lambda x: x),
+        ("smooth", lambda x: x * x * (3.0 - 2.0 * x)),
+        ("ease-in", lambda x: x * x),
+        ("ease-out", lambda x: 1.0 - (1.0 - x) ** 2),
+        ("hold", np.floor),
+    ],
+)
+def test_words_for_easings_keep_their_formulas(name, formula):
+    """A script moves as the page on scripts describes, at one time and at many."""
+    fractions = np.linspace(0.0, 1.0, 41)
+    found = [EASINGS[name].of(each) for each in fractions.tolist()]
+    assert found == pytest.approx(formula(fractions), abs=1e-12)
+    channel = Channel([0.0, 1.0], [0.0, 1.0], name)
+    assert channel.values_at(fractions) == pytest.approx(formula(fractions), abs=1e-12)
+    assert [channel.value(each) for each in fractions.tolist()] == pytest.approx(found, abs=1e-12)
+
+
+@given(fraction=st.floats(0.0, 1.0), name=st.sampled_from([*easing_names()]))
 def test_easings_stay_between_the_keys(fraction, name):
     """Every easing goes from 0 to 1 and never leaves that range."""
-    ease = ALL_EASINGS[name]
+    ease = easing_named(name).of
     assert ease(0.0) == 0.0
     assert ease(1.0) == 1.0
     assert -1e-12 <= ease(fraction) <= 1.0 + 1e-12

@@ -4,7 +4,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from risorius.app.script import EASINGS, Channel, Key, Pose, Script, keyframes
+from risorius.app.script import Channel, Key, Pose, Script, keyframes
+from risorius.app.script.easings import EASINGS
 from risorius.app.script.keyframes import POSES, places_of
 from risorius.app.script.places import KeyPlace, Places
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from imgui_bundle import imgui
 
-from ...script import EASING_NAMES, SLOPES, free_easing
+from ...script.easings import free_easing
 from ...script.keyframes import SAME
 from ...script.places import NOWHERE, KeyPlace, Places, among
 from ..interface.gui import Gui, em, ink_of
@@ -111,14 +111,15 @@ class Graph:
             begin, end = np.searchsorted(channel.times, (axis.start, axis.end))
             visible = np.arange(max(begin, 1), min(end + 1, len(channel)))
             for number in visible[among(channel.times[visible], chosen)].tolist():
-                slopes = SLOPES.get(EASING_NAMES[channel.easings[number]])
+                easing = channel.easing(number)
+                slopes = easing.slopes
                 times, values = (
                     part[number - 1 : number + 1] for part in (channel.times, channel.values)
                 )
                 (x, right) = axis.x(times).tolist()
                 (y, there) = self.y(values).tolist()
                 reach = em(MOUSE_REACH)
-                if slopes is None or right - x < 3.0 * reach or abs(there - y) < reach:
+                if easing.is_held or right - x < 3.0 * reach or abs(there - y) < reach:
                     continue  # held, or no room
                 key = Places.of(KeyPlace(curve.track, float(times[1])))
                 across = (right - x) / 3.0

@@ -13,7 +13,7 @@ from ...control_names import readable
 from ...errors import as_text
 from ...refining.presets import FIRST_PRESET, PAPERS_PRESET
 from ...scenes import BUILT_IN
-from ...script import EASINGS
+from ...script.easings import EASINGS
 from ..documents.export import Exporter
 from ..documents.file_drop import FileDrop
 from ..documents.scripts import ScriptCommands
