@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace
 from importlib.resources import files
 from pathlib import Path
@@ -53,6 +53,22 @@ def script_for(
     if script.scene not in SCENES:
         raise UserError(f"{path}: scene '{script.scene}'; allowed are {', '.join(SCENES)}")
     return script
+
+
+def new_script(
+    scene: str = "face", camera: str | None = None, values: Mapping[str, float] | None = None
+) -> Script:
+    """A script of one pose, to which keys can be added; values: of the pose, by default neutral."""
+    nonzero = {name: value for name, value in (values or {}).items() if value}
+    duration = 4.0  # [s]
+    poses = (Pose(0.0, nonzero),)
+    return Script("", duration, "a new script", scene, camera, poses=poses)
+
+
+def examples(scene: str) -> list[Path]:
+    """The scripts of a scene that come along."""
+    folder = Path(str(files("risorius.assets") / "scripts"))
+    return [path for path in sorted(folder.glob("*.toml")) if load_script(path).scene == scene]
 
 
 def read_performance(

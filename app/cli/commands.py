@@ -81,7 +81,7 @@ class Live:
 
 
 @click.command(cls=GroupedCommand)
-@click.option("--size", type=Size(), help="Size of the window: as it was last, or 1280x800.")
+@click.option("--size", type=Size(), help="Size of the window; by default as it was last.")
 @click.option("--scene", type=SCENE_NAMES, help="The scene to animate, face by default.")
 @click.option("--script", type=PATH, help="The script or recording that the space key plays.")
 @SOUND
@@ -207,14 +207,15 @@ def open_window(
 ) -> None:
     """Open the viewer on a script's scene; or on a mesh whose landmarks are to be marked.
 
-    performance: None for the face's own, which is read while the window shows a picture already.
+    performance: None for a new script of the face at rest.
     """
+    from ..performances import new_script
     from ..viewer.settings import settings_path
     from ..viewer.window.splash_screen import SplashScreen
 
     def load() -> tuple[Script, FittedHead | None]:
         """All that takes long."""
-        script = performance or played(None, None, quiet=True)
+        script = performance or new_script()
         head = drawing.fitted_head() if mesh is None else None
         import risorius.app.viewer.window.window  # noqa: F401
 

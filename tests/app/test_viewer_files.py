@@ -171,6 +171,15 @@ def test_saving_goes_to_the_known_file(viewer, tmp_path):
     assert len(load_script(script).poses) == 3
 
 
+def test_examples_are_opened_by_the_menu(viewer):
+    """*File > Examples* has the scripts that come along; one of them then lies in the timeline."""
+    click(viewer, "menu File")
+    click(viewer, "menu File: Examples")
+    click(viewer, "menu File: Speech")
+    assert viewer.session.script.duration > 1.0
+    assert "speech.toml: opened" in viewer.messages.text.lower()
+
+
 def test_saving_asks_where_it_did_not_open(viewer, tmp_path):
     """New scripts and the program's own ask for a name; a file changed elsewhere is not lost."""
     taken = tmp_path / "script.toml"

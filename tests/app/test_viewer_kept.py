@@ -277,7 +277,7 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
         # Keys are lost until the window listens. Each answer is awaited: the next try begins with
         # "neutral", and nothing would be there to be recovered if the process ended at that moment.
         subprocess.run(["xdotool", "mousemove", "450", "200", "key", "n", "1", "m"], check=True)
-        title = [*search, r"^Risorius: Expressions \*$"]
+        title = [*search, r"^Risorius: Untitled \*$"]
         end = time.monotonic() + 5.0
         while time.monotonic() < end:
             if subprocess.run(title, capture_output=True, check=False).stdout:
@@ -285,7 +285,7 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
         return False
 
     try:
-        shown = [*search[:2], "--sync", *search[2:], "^Risorius: Expressions$"]
+        shown = [*search[:2], "--sync", *search[2:], "^Risorius: Untitled$"]
         subprocess.run(shown, check=True, capture_output=True, timeout=60)
         wait_for(is_posed)
         yield process

@@ -92,7 +92,7 @@ class ScriptCommands:
         def begin() -> Message:
             """Do so."""
             self._session.work.begin_script()
-            return "A new script; K keys the face as it is"
+            return "A new script of this face; [Set key] keys the controls that you move"
 
         return self._question.before("Begin", begin)
 

@@ -12,8 +12,9 @@ from ...control_names import copied, mirrored, readable, twin_of
 from ...control_names.limits import ControlValues
 from ...errors import UserError, as_text, counted
 from ...motion import SETTLING
+from ...performances import new_script
 from ...scenes import Scene
-from ...script import Pose, Script, keyframes, rounded
+from ...script import Script, keyframes, rounded
 from ...script.recorder import Recorder
 from ...script.script_file import is_pose, pose_script, save_script
 from ..messages import Message
@@ -349,12 +350,8 @@ class Work:
 
     def begin_script(self) -> None:
         """Begin a script of one pose: the face as it is, to which keys can be added."""
-        scene = self._session.script.scene
-        camera = self._session.script.camera
-        duration = 4.0  # [s]
-        values = {name: value for name, value in self._session.values.items() if value}
-        poses = (Pose(0.0, values),)
-        script = Script("", duration, "a new script", scene, camera, poses=poses)
+        old = self._session.script
+        script = new_script(old.scene, old.camera, self._session.values)
         self._session.replace_script(script, ScriptFile(None, script))
 
     def save_script(self, path: Path) -> None:

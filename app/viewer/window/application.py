@@ -94,9 +94,7 @@ class Application(ApplicationContext):
         if complaint:
             self.messages.say(complaint, error=True)
         elif settings_path is not None and not settings_path.exists():
-            self.messages.say(
-                "Drag the skin, or press [Play]; menus show every key, and Help the mouse"
-            )
+            self.messages.say("Drag the skin, or open one of File > Examples; menus show every key")
 
     def _join_commands(self) -> None:
         """Make all commands, each with the parts that it needs."""

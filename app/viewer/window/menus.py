@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ...control_names import readable
 from ...errors import as_text
+from ...performances import examples
 from ...refining.presets import FIRST_PRESET, PAPERS_PRESET
 from ...scenes import BUILT_IN
 from ...script.easings import EASINGS
@@ -54,12 +55,18 @@ def file_menu(
             label = as_text(f"{names}   {Path(paths[0]).parent}").replace("##", "# #")
             yield command(label, "", partial(file_drop.open, paths))
 
+    def example() -> Iterator[Command]:
+        """The scripts that come along."""
+        for path in examples(exporter.session.script.scene):
+            yield command(readable(path.stem), "", partial(file_drop.open, [str(path)]))
+
     other = partial(command, can_run=lambda: exporter.session.scene.called not in ("", BUILT_IN))
     export = partial(command, can_run=lambda: exporter.job is None)
     return (
         command("New script", "Ctrl+N", scripts.new),
         command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
         command("Recent", "", lambda: None, submenu=recent),
+        command("Examples", "", lambda: None, submenu=example),
         command("Open head ...", "Ctrl+H", file_drop.ask_head, begins_section=True),
         other("Built-in head", "", partial(file_drop.show_person, None)),
         command("Open sound ...", "Ctrl+U", scripts.ask_sound, begins_section=True),
