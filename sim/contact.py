@@ -1,6 +1,7 @@
 """Contact of skin with the eyeballs and the other lip, and the seal that keeps closed lips closed.
 
-Each vertex of the lower lip's edge is paired with a point on the edge of the upper lip. A spring
+Each vertex on the edge of either lip is paired with a point on the edge of the other lip, as a mesh
+may have more vertices on one of them: those in no pair would stand out as teeth of a saw. A spring
 holds the pair together as long as nothing opens the mouth (moist lips stick; without it a smile
 parts them by a millimetre). It must be stiffer than any muscle or one sees teeth through closed
 lips, so it is integrated implicitly, pair by pair, and costs the time step nothing. Pairs and
@@ -24,34 +25,37 @@ from .skull import Eyeball
 from .substep import SLIDE_DISTANCE
 from .surface import Surface
 
-PAIR_GAP = 2.0  # mm: lips further apart at rest are no pair; their red must not fold on the line
+PAIR_GAP = 2.2  # mm: lips further apart at rest are no pair; their red must not fold on the line
 PRESSED_OVERLAP = 1.5  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
 EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the eyeball
 
 
 class LipPairs(NamedTuple):
-    """Lower-lip vertices and the upper-lip points that lie on them when the mouth is closed."""
+    """Vertices of one lip and the points of the other that lie on them when the mouth is closed."""
 
-    lower: npt.NDArray[np.int32]  # (P,)
-    upper: npt.NDArray[np.int32]  # (P, 2) ends of an edge-like segment of the upper lip
+    vertex: npt.NDArray[np.int32]  # (P,)
+    beside: npt.NDArray[np.int32]  # (P, 2) ends of an edge-like segment of the other lip
     share: Array  # (P,) of the first end
+    below: Array  # (P,) 1 for a vertex of the lower lip, -1 for one of the upper
     least_gap: Array  # (P,) mm, vertical; small negative where lips overlap at rest
     seal: Array  # (P,) stiffness
     averaging: Array  # (P,) 1 / number of pairs its vertices are in
     members: npt.NDArray[np.int32]  # (M,) all vertices in pairs
+
+    def apart(self, values: Array) -> Array:
+        """Values (V, 3) of the vertices of all pairs minus those of their points, shape (P, 3)."""
+        a, b = self.beside.T
+        share = self.share[:, None]
+        apart: Array = values[self.vertex] - share * values[a] - (1.0 - share) * values[b]
+        return apart
 
     def deepest(self, x: Array, rest: Array, pressed: float) -> float:
         """How far the lips cross at most at positions (V, 3), more than `pressed` and at rest [mm].
 
         A lower lip in front of the upper one, or rolled in behind it (substep.py), crosses nothing.
         """
-        if not len(self.lower):
-            return 0.0
-        a, b = self.upper.T
-        above = self.share[:, None] * x[a] + (1.0 - self.share)[:, None] * x[b]
-        below = self.share[:, None] * rest[a] + (1.0 - self.share)[:, None] * rest[b]
-        forward = (x - rest)[self.lower, 2] - (above - below)[:, 2]
-        crossing = self.least_gap - pressed - (above[:, 1] - x[self.lower, 1])
+        forward = self.apart(x - rest)[:, 2]
+        crossing = self.least_gap - pressed + self.below * self.apart(x)[:, 1]
         return float(np.where(np.abs(forward) < SLIDE_DISTANCE, crossing, 0.0).max(initial=0.0))
 
 
@@ -85,46 +89,58 @@ def pair_lips(surface: Surface, landmarks: Array, lip_side: Array, seal: float) 
     at_edge &= np.abs(x[:, 0] - line[2, 0]) < 0.51 * abs(line[-1, 0] - line[0, 0])
     own_side_level = 0.1  # of the lip side field: nearer to the corner lips are one
     upper = np.flatnonzero(at_edge & (lip_side > own_side_level))
+    lower = np.flatnonzero(at_edge & (lip_side < -own_side_level))
     pairs = []
-    for i in np.flatnonzero(at_edge & (lip_side < -own_side_level)):
-        found = _upper_point(x, int(i), upper)
-        if found is not None:
-            pairs.append((int(i), *found))
+    for own, other, below in ((lower, upper, 1.0), (upper, lower, -1.0)):
+        for i in own.tolist():
+            found = _point_beside(x, i, other)
+            if found is not None:
+                pairs.append(_LipPair(i, *found, below))
     return _lip_pairs(surface, pairs, seal)
 
 
-def _upper_point(
-    x: Array, lower: int, upper: npt.NDArray[np.int64]
-) -> tuple[int, int, float] | None:
-    """The upper-lip point above a lower-lip vertex: nearest vertices right and left, mixed."""
-    reach = np.linalg.norm(x[upper] - x[lower], axis=1)
-    right = x[upper, 0] <= x[lower, 0] + 1e-9
-    left = x[upper, 0] >= x[lower, 0] - 1e-9
+class _LipPair(NamedTuple):
+    """A pair, by the names of `LipPairs`."""
+
+    vertex: int
+    beside: tuple[int, int]
+    share: float
+    below: float
+
+
+def _point_beside(
+    x: Array, vertex: int, other: npt.NDArray[np.int64]
+) -> tuple[tuple[int, int], float] | None:
+    """The other lip's point beside a lip's vertex: nearest vertices right and left, mixed."""
+    reach = np.linalg.norm(x[other] - x[vertex], axis=1)
+    right = x[other, 0] <= x[vertex, 0] + 1e-9
+    left = x[other, 0] >= x[vertex, 0] - 1e-9
     if not right.any() or not left.any():
         return None
-    a = int(upper[right][reach[right].argmin()])
-    b = int(upper[left][reach[left].argmin()])
+    a = int(other[right][reach[right].argmin()])
+    b = int(other[left][reach[left].argmin()])
     span = x[b, 0] - x[a, 0]
-    share = float((x[b, 0] - x[lower, 0]) / span) if span > 1e-6 else 1.0
-    apart = np.linalg.norm(share * x[a] + (1.0 - share) * x[b] - x[lower])
-    return (a, b, share) if apart < PAIR_GAP else None
+    share = float((x[b, 0] - x[vertex, 0]) / span) if span > 1e-6 else 1.0
+    apart = np.abs(share * x[a] + (1.0 - share) * x[b] - x[vertex])
+    overhang = 3.0  # mm that one lip's edge may lie in front of the other's
+    return ((a, b), share) if apart[1] < PAIR_GAP and apart[2] < overhang else None
 
 
-def _lip_pairs(surface: Surface, pairs: list[tuple[int, int, int, float]], seal: float) -> LipPairs:
+def _lip_pairs(surface: Surface, pairs: list[_LipPair], seal: float) -> LipPairs:
     """Arrays of found pairs."""
-    lower = np.array([p[0] for p in pairs], dtype=np.int32)
-    upper = np.array([p[1:3] for p in pairs], dtype=np.int32).reshape(-1, 2)
-    share = np.array([p[3] for p in pairs], dtype=np.float64)
-    x = surface.positions
-    gap = share * x[upper[:, 0], 1] + (1.0 - share) * x[upper[:, 1], 1] - x[lower, 1]
-    count = np.bincount(lower, minlength=surface.vertex_count)
-    count += np.bincount(upper[share > 0.0, 0], minlength=surface.vertex_count)
-    count += np.bincount(upper[share < 1.0, 1], minlength=surface.vertex_count)
-    most = np.maximum(count[lower], count[upper].max(axis=1, initial=1))
-    least_seal_area = 4.0  # mm2: tiny vertices of a lip edge still carry their share
-    strength = seal * np.maximum(surface.areas[lower], least_seal_area)
+    vertex = np.array([pair.vertex for pair in pairs], dtype=np.int32)
+    beside = np.array([pair.beside for pair in pairs], dtype=np.int32).reshape(-1, 2)
+    share = np.array([pair.share for pair in pairs], dtype=np.float64)
+    below = np.array([pair.below for pair in pairs], dtype=np.float64)
+    count = np.bincount(vertex, minlength=surface.vertex_count)
+    count += np.bincount(beside[share > 0.0, 0], minlength=surface.vertex_count)
+    count += np.bincount(beside[share < 1.0, 1], minlength=surface.vertex_count)
+    most = np.maximum(count[vertex], count[beside].max(axis=1, initial=1))
+    strength = seal * surface.areas[vertex]
     members = np.flatnonzero(count).astype(np.int32)
-    return LipPairs(lower, upper, share, np.minimum(gap, 0.0), strength, 1.0 / most, members)
+    lips = LipPairs(vertex, beside, share, below, share, strength, 1.0 / most, members)
+    gap = -below * lips.apart(surface.positions)[:, 1]
+    return lips._replace(least_gap=np.minimum(gap, 0.0))
 
 
 class EyeContact(NamedTuple):

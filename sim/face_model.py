@@ -95,7 +95,7 @@ class FaceModel:
         activation: of each muscle, shape (M,); jaw: its values open, forward, sideways; closed: how
         far the lips are kept together over an open jaw, 0..1.
         """
-        if not len(self.skin.lips.lower):
+        if not len(self.skin.lips.vertex):
             return Grip(0.0, 0.0)
         muscles = self.muscles
         strength = max(0.0, 1.0 - (1.0 - closed) * jaw[0] / SEAL_BROKEN_BY_JAW)

@@ -56,7 +56,7 @@ def parts(whole: float, longest: float) -> int:
 def advance(state, skin, tick):  # type: ignore[no-untyped-def]
     """Advance a face by one tick in substeps: the list of all forces and constraints."""
     damp(state, skin, tick.h)
-    lip_passes = 5  # averaged projections need a second pass where lips are pressed hard
+    lip_passes = 7  # averaged projections need several where lips are pressed hard
     for _ in range(tick.substeps):
         tissue_forces(state, skin.tissue)
         edge_forces(state, skin.edges)
@@ -188,6 +188,8 @@ def hold_lips(state, skin, tick):  # type: ignore[no-untyped-def]
 
     An implicit spring on the distance c of a pair, growing at speed s, with inverse mass w:
     s' = (s - h k w c) / (1 + h^2 k w), stable for any stiffness k.
+    A vertex in several pairs takes part in each with its share of its mass (mass splitting, Tonge
+    et al. 2012), so a weak seal pulls with its whole force, however many pairs there are.
     """
     rest = skin.rest
     mass = skin.mass
@@ -200,21 +202,22 @@ def hold_lips(state, skin, tick):  # type: ignore[no-untyped-def]
     v = state.v
     change = state.work
     change[:] = 0.0
-    for p in range(len(lips.lower)):
-        i = lips.lower[p]
-        a = lips.upper[p, 0]
-        b = lips.upper[p, 1]
+    for p in range(len(lips.vertex)):
+        i = lips.vertex[p]
+        a = lips.beside[p, 0]
+        b = lips.beside[p, 1]
         w = lips.share[p]
         inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
+        inverse /= lips.averaging[p]
         for k in range(3):
             apart = x[i, k] - rest[i, k]
             apart -= w * (x[a, k] - rest[a, k]) + (1.0 - w) * (x[b, k] - rest[b, k])
             if k == 1:
-                apart -= grip.overlap
+                apart -= lips.below[p] * grip.overlap
             speed = v[i, k] - w * v[a, k] - (1.0 - w) * v[b, k]
             give = h * inverse * grip.stiffness * lips.seal[p] * SEAL_AXES[k]
             slowed = (speed - give * apart) / (1.0 + h * give)
-            impulse = lips.averaging[p] * (slowed - speed) / inverse
+            impulse = (slowed - speed) / inverse
             change[i, k] += impulse / mass[i]
             change[a, k] -= w * impulse / mass[a]
             change[b, k] -= (1.0 - w) * impulse / mass[b]
@@ -248,12 +251,13 @@ def keep_lips_apart(state, skin, overlap):  # type: ignore[no-untyped-def]
     change = state.work  # of each vertex, columns: height, speed upward
     crossed = False
     slide_fade = 3.0  # mm over which it then does
-    for p in range(len(lips.lower)):
-        i = lips.lower[p]
-        a = lips.upper[p, 0]
-        b = lips.upper[p, 1]
+    for p in range(len(lips.vertex)):
+        i = lips.vertex[p]
+        a = lips.beside[p, 0]
+        b = lips.beside[p, 1]
         w = lips.share[p]
-        gap = w * x[a, 1] + (1.0 - w) * x[b, 1] - x[i, 1]
+        below = lips.below[p]
+        gap = below * (w * x[a, 1] + (1.0 - w) * x[b, 1] - x[i, 1])
         deep = lips.least_gap[p] - overlap - gap
         if deep <= 0.0:
             continue
@@ -266,9 +270,9 @@ def keep_lips_apart(state, skin, overlap):  # type: ignore[no-untyped-def]
             change[:] = 0.0
             crossed = True
         inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
-        push = full * lips.averaging[p] * deep / inverse
-        approach = v[i, 1] - w * v[a, 1] - (1.0 - w) * v[b, 1]
-        stop = full * lips.averaging[p] * max(approach, 0.0) / inverse
+        push = below * full * lips.averaging[p] * deep / inverse
+        approach = below * (v[i, 1] - w * v[a, 1] - (1.0 - w) * v[b, 1])
+        stop = below * full * lips.averaging[p] * max(approach, 0.0) / inverse
         change[i, 0] -= push / mass[i]
         change[a, 0] += w * push / mass[a]
         change[b, 0] += (1.0 - w) * push / mass[b]

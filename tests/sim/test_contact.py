@@ -1,11 +1,12 @@
-"""What skin rests on: how near it may come to an eyeball, and that it comes no nearer."""
+"""What skin rests on: how near it may come to an eyeball, and which parts of the lips touch."""
 
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 from pytest import approx
 
-from risorius.sim.contact import watch_eyeballs
+from risorius.sim.contact import pair_lips, watch_eyeballs
 
 
 def test_skin_may_come_as_near_as_a_lid_is_thick():
@@ -18,3 +19,28 @@ def test_skin_may_come_as_near_as_a_lid_is_thick():
     assert eyes.least_distance == approx([10.0, 12.1, 12.3, 12.3])
     sunk = ball.centre + np.array([10.0, 12.1, 11.8, 12.3, 1.0])[:, None] * [0.0, 0.6, 0.8]
     assert eyes.deepest(sunk) == approx(0.5)
+
+
+@pytest.mark.parametrize(("above", "below"), [(17, 9), (9, 17), (9, 9)])
+def test_every_vertex_of_either_lip_is_in_a_pair(above, below):
+    """One lip may have twice as many vertices as the other, and each is held by as much."""
+    counts = (above, below)
+    across = np.concatenate([np.linspace(-20.0, 20.0, count) for count in counts])
+    is_upper = np.repeat([True, False], counts)
+    height = np.where(is_upper, 0.5, -0.5)
+    forward = np.where(is_upper, 1.5, 0.0)  # the upper lip hangs over
+    landmarks = np.zeros((68, 3))
+    landmarks[60:68, 0] = [-24.0, -12.0, 0.0, 12.0, 24.0, 12.0, 0.0, -12.0]
+    surface = SimpleNamespace(
+        positions=np.stack([across, height, forward], axis=1),
+        areas=np.repeat([40.0 / above, 40.0 / below], counts),
+        vertex_count=above + below,
+    )
+    lip_side = np.where(is_upper, 1.0, -1.0)
+    lips = pair_lips(surface, landmarks, lip_side, 2.0)
+    assert lips.members.tolist() == list(range(above + below))
+    assert (lip_side[lips.vertex] == -lips.below).all()
+    assert (lip_side[lips.beside] == lips.below[:, None]).all()
+    assert lips.apart(surface.positions)[:, 0] == approx(0.0)
+    assert np.sort(lips.vertex).tolist() == list(range(above + below))
+    assert lips.seal.sum() == approx(2.0 * 80.0)

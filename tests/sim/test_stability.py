@@ -140,10 +140,8 @@ def _energy(skin, state, grip):
     beyond = np.maximum(longer - edges.strain_limit * edges.rest_length, 0.0)
     stretched = edges.stiffness * (longer**2 + (edges.stiffening - 1.0) * beyond**2)
     stretched += edges.shear * ((away[j] - away[i]) ** 2).sum(axis=1)
-    (a, b) = lips.upper.T
-    w = lips.share[:, None]
-    moved = state.x - skin.rest
-    apart = moved[lips.lower] - w * moved[a] - (1.0 - w) * moved[b] - (0.0, grip.overlap, 0.0)
+    apart = lips.apart(state.x - skin.rest)
+    apart[:, 1] -= lips.below * grip.overlap
     sealed = grip.stiffness * lips.seal * (apart**2 @ np.array(SEAL_AXES))
     kinetic = skin.mass[:, None] * state.v**2
     return float(kinetic.sum() + stored.sum() + stretched.sum() + sealed.sum()) / 2.0

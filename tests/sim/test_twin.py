@@ -69,20 +69,22 @@ def test_seal_is_an_implicit_spring(stirred, model, state, generator):
     rest = skin.rest
     mass = skin.mass
     lips = skin.lips
-    for pair in (0, 7, 11):
+    for pair in (0, 7, 11, len(lips.vertex) - 1):
         alone = lips._replace(
-            averaging=np.where(np.arange(len(lips.lower)) == pair, 1.0, 0.0),
+            seal=np.where(np.arange(len(lips.vertex)) == pair, lips.seal, 0.0),
+            averaging=np.ones_like(lips.averaging),
         )
         mine = state._replace(
             x=rest + generator.normal(size=rest.shape), v=generator.normal(size=rest.shape)
         )
         before = mine.v.copy()
         hold_lips(mine, skin._replace(lips=alone), Tick(1, h, grip, REST))
-        i = lips.lower[pair]
-        (a, b) = lips.upper[pair]
+        i = lips.vertex[pair]
+        (a, b) = lips.beside[pair]
         w = lips.share[pair]
         ends = mine.x + h * mine.v - rest
-        apart = ends[i] - w * ends[a] - (1.0 - w) * ends[b] - (0.0, grip.overlap, 0.0)
+        apart = ends[i] - w * ends[a] - (1.0 - w) * ends[b]
+        apart[1] -= lips.below[pair] * grip.overlap
         force = grip.stiffness * lips.seal[pair] * apart * SEAL_AXES
         expected = np.zeros_like(rest)
         np.add.at(expected, [i, a, b], [-force, w * force, (1.0 - w) * force])
@@ -92,28 +94,29 @@ def test_seal_is_an_implicit_spring(stirred, model, state, generator):
 
 
 def _sealed_speeds(skin, state, grip, h):
-    """Velocities after the seal has acted on all pairs at once, each share averaged."""
+    """Velocities after the seal has acted on all pairs at once, each on its share of masses."""
     lips = skin.lips
     mass = skin.mass
     rest = skin.rest
     w = lips.share[:, None]
 
     def difference(of):
-        return of[lips.lower] - w * of[lips.upper[:, 0]] - (1.0 - w) * of[lips.upper[:, 1]]
+        return of[lips.vertex] - w * of[lips.beside[:, 0]] - (1.0 - w) * of[lips.beside[:, 1]]
 
     inverse = (1.0 / mass)[:, None]
-    light = inverse[lips.lower] + w**2 * inverse[lips.upper[:, 0]]
-    light = light + (1.0 - w) ** 2 * inverse[lips.upper[:, 1]]
+    light = inverse[lips.vertex] + w**2 * inverse[lips.beside[:, 0]]
+    light = light + (1.0 - w) ** 2 * inverse[lips.beside[:, 1]]
+    light = light / lips.averaging[:, None]
     give = h * light * grip.stiffness * lips.seal[:, None] * SEAL_AXES
     apart = difference(state.x - rest)
     speed = difference(state.v)
-    apart[:, 1] -= grip.overlap
+    apart[:, 1] -= lips.below * grip.overlap
     change = (speed - give * apart) / (1.0 + h * give) - speed
-    impulse = lips.averaging[:, None] * change / light
+    impulse = change / light
     speeds = state.v.copy()
-    np.add.at(speeds, lips.lower, impulse * inverse[lips.lower])
-    np.add.at(speeds, lips.upper[:, 0], -w * impulse * inverse[lips.upper[:, 0]])
-    np.add.at(speeds, lips.upper[:, 1], -(1.0 - w) * impulse * inverse[lips.upper[:, 1]])
+    np.add.at(speeds, lips.vertex, impulse * inverse[lips.vertex])
+    np.add.at(speeds, lips.beside[:, 0], -w * impulse * inverse[lips.beside[:, 0]])
+    np.add.at(speeds, lips.beside[:, 1], -(1.0 - w) * impulse * inverse[lips.beside[:, 1]])
     return speeds
 
 
