@@ -52,10 +52,29 @@ class GltfSurface:
     has_colour: npt.NDArray[np.bool_]
 
 
+@dataclass(frozen=True)
+class StoredPiece:
+    """One primitive of a mesh, as one node shows it: where its vertices are in the file.
+
+    node, mesh, primitive: numbers, of the primitive within its mesh. count: of its vertices, which
+    follow those of the pieces before. to_scene: how a change of stored places changes the places
+    in the scene, a matrix (3, 3) or one for each vertex, (V, 3, 3).
+    """
+
+    node: int
+    mesh: int
+    primitive: int
+    count: int
+    to_scene: Floats
+
+
 class _Piece(NamedTuple):
     """One primitive of a mesh, as one node shows it."""
 
     node: int
+    mesh: int
+    primitive: int
+    to_scene: Floats
     stored: Floats  # (V, 3) positions as in the file
     seen: Floats  # (V, 3) in the scene
     motion: Floats  # (V, 4) of shapes and bones, mixed: alike where vertices move alike
@@ -108,6 +127,15 @@ def read_gltf(content: bytes, folder: Path) -> GltfSurface:
     )
 
 
+def stored_pieces(content: bytes, folder: Path) -> list[StoredPiece]:
+    """Where the vertices of `read_gltf` are in their file, in its order; errors as there."""
+    pieces = _Reader(GltfFile(content, folder)).pieces()
+    return [
+        StoredPiece(each.node, each.mesh, each.primitive, len(each.seen), each.to_scene)
+        for each in pieces
+    ]
+
+
 class _Reader:
     """Reads pieces; the painter knows their pictures."""
 
@@ -126,10 +154,10 @@ class _Reader:
                 continue
             mesh = self._document.meshes[node.mesh]
             weights = (node.extras or {}).get("weights") or mesh.weights or []
-            for primitive in mesh.primitives:
+            for place, primitive in enumerate(mesh.primitives):
                 has_surface = primitive.mode is None or primitive.mode in (triangles, STRIP, FAN)
                 if has_surface and primitive.attributes.POSITION is not None:
-                    yield self._piece(number, primitive, weights)
+                    yield self._piece(number, place, weights)
 
     def _shown(self) -> list[int]:
         """The nodes of the scene, from its last root down: so vertices have always been counted."""
@@ -147,8 +175,9 @@ class _Reader:
                 waiting += document.nodes[number].children or []
         return [*found]
 
-    def _piece(self, number: int, primitive: Any, weights: list[float]) -> _Piece:
-        """One primitive. weights: of its shapes."""
+    def _piece(self, number: int, which: int, weights: list[float]) -> _Piece:
+        """A node's primitive, by its number in the mesh. weights: of its shapes."""
+        primitive = self._document.meshes[self._document.nodes[number].mesh].primitives[which]
         attributes = vars(primitive.attributes)
         accessor = self._document.accessors[attributes["POSITION"]]
         if DRACO in (primitive.extensions or {}) and accessor.bufferView is None:
@@ -169,27 +198,34 @@ class _Reader:
         node = self._document.nodes[number]
         world = self._worlds[number]
         seen = _moved(points, world)
+        to_scene = world[:3, :3]
         is_turned = np.linalg.det(world[:3, :3]) < 0.0
         if node.skin is not None and attributes.get("JOINTS_0") is not None:
             is_turned = False
-            seen, motion[:, 3] = self._bent(points, seen, attributes, node.skin, mixture)
+            seen, motion[:, 3], to_scene = self._bent(
+                points, seen, world, attributes, node.skin, mixture
+            )
         faces = self._faces(primitive, len(stored))
         picture, uv, factor = self.painter.painted(primitive, len(stored))
         colours = self.painter.colours(attributes, factor)
         turned = np.ascontiguousarray(faces[:, ::-1]) if is_turned else faces
-        return _Piece(number, stored, seen, motion, turned, picture, uv, colours)
+        return _Piece(
+            number, node.mesh, which, to_scene, stored, seen, motion, turned, picture, uv, colours
+        )
 
     def _bent(
         self,
         points: Floats,
         unbent: Floats,
+        world: Floats,
         attributes: Mapping[str, Any],
         skin: int,
         mixture: np.random.Generator,
-    ) -> tuple[Floats, Floats]:
-        """Where bones bring points (V, 3), and a mixture of these bones for each, shape (V,).
+    ) -> tuple[Floats, Floats, Floats]:
+        """Where bones bring points (V, 3), a mixture of these bones for each, shape (V,), and how
+        they turn and scale each, (V, 3, 3).
 
-        unbent: where the node alone has them, for points that no bone holds.
+        unbent: where the node alone has them, by the matrix `world`, for points no bone holds.
         """
         bones = self._document.skins[skin]
         motions = np.array([self._worlds[joint] for joint in bones.joints])
@@ -204,10 +240,14 @@ class _Reader:
         is_held = total > 0.0
         weights = weights / np.where(is_held, total, 1.0)[:, None]
         bent = np.zeros_like(points)
+        turns = np.zeros((len(points), 3, 3))
         for slot in range(weights.shape[1]):
-            bent += weights[:, slot, None] * _moved(points, motions[joints[:, slot].astype(int)])
+            matrices = motions[joints[:, slot].astype(int)]
+            bent += weights[:, slot, None] * _moved(points, matrices)
+            turns += weights[:, slot, None, None] * matrices[:, :3, :3]
         bent[~is_held] = unbent[~is_held]
-        return bent, (weights * names[joints.astype(int)]).sum(axis=1)
+        turns[~is_held] = world[:3, :3]
+        return bent, (weights * names[joints.astype(int)]).sum(axis=1), turns
 
     def _faces(self, primitive: Any, count: int) -> Integers:
         """The triangles of a primitive with so many vertices."""

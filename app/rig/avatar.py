@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from risorius.assets.fitting import FittedHead
+from risorius.assets.meshes import read_mesh
 from risorius.assets.painted import PaintedMesh, read_painted
 
 from ..errors import UserError
@@ -40,15 +41,25 @@ class RigRequest:
     correctives: int = 0
     progress: bool = True
 
+    def has_eye_nodes(self, *, is_gltf: bool) -> bool:
+        """Whether eyeballs are left to nodes; those of a glTF file, which keeps its own, are not
+        unless that is asked for.
+        """
+        return self.eyes == "nodes" if is_gltf else self.eyes != "targets"
+
 
 @dataclass(frozen=True)
 class FileHead:
-    """A head of a file: what is written again, and what moves it."""
+    """A head of a file: what is written again, and what moves it.
 
-    painted: PaintedMesh
+    painted: what the file is painted with; None for a glTF file, which is copied.
+    """
+
     head: FittedHead
     body: FileBody
     pieces: tuple[FilePiece, ...]
+    painted: PaintedMesh | None
+    path: Path
 
 
 @dataclass(frozen=True)
@@ -85,7 +96,7 @@ def avatar_of(
     """The avatar of a head, None for the built-in one; lines on it go to `say`."""
     scene = build_scene("face", head)
     assert isinstance(scene, FaceScene)
-    eyes_are_nodes = request.eyes != "targets"
+    eyes_are_nodes = request.has_eye_nodes(is_gltf=file is not None and file.painted is None)
     bodies: list[Body] = []
     if file is None:
         bodies.append(Skin(np.array(scene.rest_positions), scene.faces))
@@ -115,13 +126,14 @@ def _without_sums(shaped: Shaped, pairs: list[tuple[str, str]], names: tuple[str
 
 
 def read_file_head(path: Path, landmarks: Path, request: RigRequest, say: Say) -> FileHead:
-    """A head of a file that is no glTF, fitted, and its pieces.
+    """A head of a file, fitted, and its pieces.
 
     Raises AssetError for files that cannot be used, and UserError for wrong options.
     """
-    painted = read_painted(path)
+    is_gltf = path.suffix.lower() in GLTF
+    painted = None if is_gltf else read_painted(path)
+    mesh = read_mesh(path) if painted is None else painted.mesh
     head = own_head(path, landmarks)
-    mesh = painted.mesh
     if not is_exact(mesh, head):
         raise UserError(
             f"{path}: has too many triangles to be simulated as it is; reduce it to "
@@ -135,13 +147,13 @@ def read_file_head(path: Path, landmarks: Path, request: RigRequest, say: Say) -
     if tongues:
         parts = with_own_tongue(head, rest, np.concatenate(tongues), faces)
         head = replace(head, parts=parts)
-    body = FileBody(mesh, head, pieces, eyes_are_nodes=request.eyes != "targets")
+    body = FileBody(mesh, head, pieces, eyes_are_nodes=request.has_eye_nodes(is_gltf=is_gltf))
     say(f"skin: {len(head.vertices)} of {len(rest)} vertices, simulated")
     if len(body.in_bag):
         say(f"skin behind the lips: {len(body.in_bag)} vertices, stretches between both jaws")
     for line in described(pieces):
         say(line)
-    return FileHead(painted, head, body, tuple(pieces))
+    return FileHead(head, body, tuple(pieces), painted, path)
 
 
 def _missing(file: FileHead) -> set[str]:

@@ -49,6 +49,10 @@ class Glb:
         self._numbers = bytearray(numbers)
         self._zeros: dict[int, int] = {}
 
+    def data(self) -> bytes:
+        """The binary chunk so far."""
+        return bytes(self._numbers)
+
     def add(self, kind: str, item: dict[str, Any]) -> int:
         """Add a node, mesh, material, ... to the list called `kind`; return its number there."""
         items = self.parts.setdefault(kind, [])

@@ -7,10 +7,13 @@ from typing import Any
 import numpy as np
 import scipy
 
+from risorius.assets.gltf import stored_pieces
+
 from .avatar import Avatar, FileHead
 from .bodies import EYES
 from .file_mesh import FileMeshWriter, root_matrix
 from .glb import Glb
+from .gltf_copy import GltfShapes, read_document
 from .poses import rest_in
 from .scene_file import add_pieces, piece_of
 from .skeleton import Skeleton
@@ -21,6 +24,8 @@ LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")  # of each eye, 
 
 def avatar_glb(avatar: Avatar, title: str) -> bytes:
     """The whole file. title: of the head."""
+    if avatar.file is not None and avatar.file.painted is None:
+        return _copied(avatar, avatar.file, title)
     glb = Glb()
     if avatar.file is None:
         roots = _add_scene(glb, avatar)
@@ -31,6 +36,16 @@ def avatar_glb(avatar: Avatar, title: str) -> bytes:
         for mesh in glb.parts["meshes"]:
             if "targetNames" in mesh.get("extras", {}):
                 mesh["extras"].update(avatar.extras)
+    return glb.to_bytes(title, roots)
+
+
+def _copied(avatar: Avatar, file: FileHead, title: str) -> bytes:
+    """A glTF file as it was, with the shapes, and built-in parts where these are wanted."""
+    content = file.path.read_bytes()
+    glb = Glb(None, *read_document(content, file.path.parent))
+    writer = GltfShapes(glb, avatar.shapes[0], file.head.to_millimetres)
+    writer.append(stored_pieces(content, file.path.parent), avatar.names, avatar.extras)
+    roots = [_add_parts(glb, avatar, file)] if len(avatar.shapes) > 1 else []
     return glb.to_bytes(title, roots)
 
 
@@ -59,6 +74,7 @@ def _add_file(glb: Glb, avatar: Avatar, file: FileHead, title: str) -> int:
 
 def _add_file_mesh(glb: Glb, avatar: Avatar, file: FileHead) -> list[int]:
     """Add the mesh of a file, its eyeballs as nodes of their own; return the nodes."""
+    assert file.painted is not None
     writer = FileMeshWriter(glb, file.painted, file.head.to_millimetres, avatar.shapes[0])
     faces = file.body.faces
     is_left = np.ones(len(faces), np.bool_)

@@ -1,0 +1,207 @@
+"""A glTF file as it was, with named shapes appended to its meshes.
+
+Nodes, skins, materials, other meshes, animations, extras and extensions stay as they are. Data that
+lie in other files or in text are taken into the one binary chunk. Where a file weighs shapes of its
+own, ours follow with weight 0.
+
+Source: Khronos Group, "glTF 2.0 Specification", sections 3.7.2.2 (morph targets) and 4 (GLB).
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import struct
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote_to_bytes
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.assets.fitting.warp import Similarity
+from risorius.assets.gltf import StoredPiece
+from risorius.assets.gltf_file import COMPONENTS
+from risorius.assets.user_files import beside, read_file
+
+from .bodies import Shaped
+from .glb import Glb
+
+Singles = npt.NDArray[np.float32]
+TAKEN = ".risorius"  # behind names that the file has already
+
+
+def read_document(content: bytes, folder: Path) -> tuple[dict[str, Any], bytes]:
+    """The document of a glTF file, all of whose data lie in its only buffer, and these data.
+
+    folder: in which other files of it lie. Raises AssetError for those that are missing.
+    """
+    document: dict[str, Any]
+    if not content.startswith(b"glTF"):
+        document = json.loads(content.decode("utf-8-sig"))
+        binary = b""
+    else:
+        (length,) = struct.unpack_from("<I", content, 12)
+        document = json.loads(content[20 : 20 + length].decode("utf-8-sig"))
+        binary = content[28 + length :]
+        buffers = document.get("buffers", [])
+        images = document.get("images", [])
+        if len(buffers) == 1 and not any("uri" in each for each in (*buffers, *images)):
+            return document, binary[: buffers[0]["byteLength"]]
+    return document, _gathered(document, binary, folder)
+
+
+def _gathered(document: dict[str, Any], binary: bytes, folder: Path) -> bytes:
+    """All data of a document one behind the other; its views and pictures name their places."""
+    data = bytearray()
+    starts = []
+    for buffer in document.get("buffers", []):
+        data += b"\0" * (-len(data) % 4)
+        starts.append(len(data))
+        found = _content(buffer["uri"], folder) if "uri" in buffer else binary
+        data += found[: buffer["byteLength"]]
+    for view in document.get("bufferViews", []):
+        view["byteOffset"] = view.get("byteOffset", 0) + starts[view["buffer"]]
+        view["buffer"] = 0
+    for image in document.get("images", []):
+        if "uri" not in image:
+            continue
+        picture = _content(image.pop("uri"), folder)
+        data += b"\0" * (-len(data) % 4)
+        view = {"buffer": 0, "byteOffset": len(data), "byteLength": len(picture)}
+        document.setdefault("bufferViews", []).append(view)
+        image["bufferView"] = len(document["bufferViews"]) - 1
+        image["mimeType"] = "image/png" if picture.startswith(b"\x89PNG") else "image/jpeg"
+        data += picture
+    document["buffers"] = [{"byteLength": len(data)}]
+    return bytes(data)
+
+
+def _content(uri: str, folder: Path) -> bytes:
+    """What a URI names: data in itself, or a file beside this one."""
+    if uri.startswith("data:"):
+        head, _, data = uri.partition(",")
+        plain = unquote_to_bytes(data)
+        return base64.b64decode(plain) if head.endswith(";base64") else plain
+    return read_file(beside(folder, unquote_to_bytes(uri).decode()), kind="glTF data", most=100)
+
+
+@dataclass(frozen=True)
+class _Changes:
+    """What our shapes change of one primitive, in the numbers of its file, (K, n, 3) each."""
+
+    places: Singles
+    normals: Singles
+
+
+class GltfShapes:
+    """Appends shapes to the meshes of a file."""
+
+    def __init__(self, glb: Glb, shaped: Shaped, to_millimetres: Similarity) -> None:
+        self._glb = glb
+        self._document = glb.parts
+        self._shaped = shaped
+        self._to_file = to_millimetres.inverse
+
+    def append(
+        self, pieces: Sequence[StoredPiece], names: Sequence[str], extras: Mapping[str, Any]
+    ) -> None:
+        """Add the shapes to all meshes that they move. pieces: where their vertices are."""
+        changes: dict[int, dict[int, _Changes]] = {}
+        start = 0
+        for piece in pieces:
+            own = slice(start, start + piece.count)
+            start += piece.count
+            # A mesh that several nodes show has one set of shapes: those of the first node.
+            of_mesh = changes.setdefault(piece.mesh, {})
+            if piece.primitive not in of_mesh and self._shaped.targets[:, own].any():
+                of_mesh[piece.primitive] = self._changes(piece, own)
+        for mesh, of_mesh in changes.items():
+            if of_mesh:
+                self._append_to(mesh, of_mesh, names, extras)
+
+    def _changes(self, piece: StoredPiece, own: slice) -> _Changes:
+        """The shapes of a piece as its primitive has them."""
+        turn = self._to_file.rotation
+        matrices = np.broadcast_to(piece.to_scene, (piece.count, 3, 3))
+        back = np.linalg.pinv(matrices)
+        scale = np.cbrt(np.abs(np.linalg.det(matrices)))[:, None, None]
+        # A normal n of the scene is M^-T of a stored one.
+        unturn = matrices.swapaxes(1, 2) / np.maximum(scale, 1e-12)
+        moved = self._to_file.scale * (self._shaped.targets[:, own] @ turn.T)
+        bent = self._shaped.bends[:, own] @ turn.T
+        return _Changes(
+            np.einsum("nij,knj->kni", back, moved).astype(np.float32),
+            np.einsum("nij,knj->kni", unturn, bent).astype(np.float32),
+        )
+
+    def _append_to(
+        self,
+        number: int,
+        changes: Mapping[int, _Changes],
+        names: Sequence[str],
+        extras: Mapping[str, Any],
+    ) -> None:
+        """Add the shapes to all primitives of a mesh, which must have the same number of them."""
+        mesh = self._document["meshes"][number]
+        old = max(len(each.get("targets", [])) for each in mesh["primitives"])
+        for place, primitive in enumerate(mesh["primitives"]):
+            targets = primitive.setdefault("targets", [])
+            has_normals = "NORMAL" in primitive["attributes"]
+            if targets:
+                has_normals = has_normals and "NORMAL" in targets[0]
+            count = self._document["accessors"][primitive["attributes"]["POSITION"]]["count"]
+            still = _Changes(*[np.zeros((len(names), count, 3), np.float32)] * 2)
+            own = changes.get(place, still)
+            for moved, bent in zip(own.places, own.normals, strict=True):
+                target = {"POSITION": self._glb.sparse(moved)}
+                if has_normals:
+                    target["NORMAL"] = self._glb.sparse(bent)
+                targets.append(target)
+        written = mesh.setdefault("extras", {})
+        known = list(written.get("targetNames", []))
+        known += [f"target_{place}" for place in range(len(known), old)]
+        added = [name + TAKEN if name in known else name for name in names]
+        written["targetNames"] = [*known, *added]
+        written.update(extras)
+        mesh["weights"] = [*mesh.get("weights", [0.0] * old), *[0.0] * len(names)]
+        self._weigh_nodes(number, old, len(names))
+
+    def _weigh_nodes(self, mesh: int, old: int, added: int) -> None:
+        """Give nodes, and animations, that weigh a mesh's shapes a weight of 0 for each new one."""
+        nodes = [
+            place for place, node in enumerate(self._document["nodes"]) if node.get("mesh") == mesh
+        ]
+        for place in nodes:
+            node = self._document["nodes"][place]
+            if "weights" in node:
+                node["weights"] = [*node["weights"], *[0.0] * added]
+        for animation in self._document.get("animations", []):
+            channels = animation["channels"]
+            used = [channel["sampler"] for channel in channels]
+            for channel in channels:
+                target = channel["target"]
+                if target.get("path") != "weights" or target.get("node") not in nodes:
+                    continue
+                sampler = animation["samplers"][channel["sampler"]]
+                wide = self._widened(sampler["output"], old, added)
+                if used.count(channel["sampler"]) > 1:  # the others weigh other meshes
+                    animation["samplers"].append({**sampler, "output": wide})
+                    channel["sampler"] = len(animation["samplers"]) - 1
+                else:
+                    sampler["output"] = wide
+
+    def _widened(self, accessor: int, old: int, added: int) -> int:
+        """Weights of `old` shapes at each time, with zeros behind those of each."""
+        found = self._document["accessors"][accessor]
+        view = self._document["bufferViews"][found["bufferView"]]
+        kind = np.dtype(COMPONENTS[found["componentType"]])
+        start = view.get("byteOffset", 0) + found.get("byteOffset", 0)
+        values = np.frombuffer(self._glb.data(), kind, found["count"], start)
+        rows = values.reshape(-1, max(old, 1))
+        if kind.kind != "f":
+            rows = rows / np.iinfo(kind).max
+        wide = np.hstack([rows, np.zeros((len(rows), added))])
+        return self._glb.accessor(wide.astype(np.float32).ravel())
