@@ -13,10 +13,9 @@ from risorius.assets.fitting import FittedHead
 from risorius.assets.meshes import read_mesh
 from risorius.assets.painted import PaintedMesh, read_painted
 
-from ..errors import UserError
 from ..scenes import FaceScene, build_scene, own_head
 from .bodies import Body, Shaped, Skin, bodies_of_parts, moving, poses_of
-from .file_body import FileBody, is_exact, merged_vertices, with_own_tongue
+from .file_body import FileBody, merged_vertices, with_own_tongue
 from .linearity import corrected as corrected_shapes
 from .linearity import corrective_poses, table, worth_correcting
 from .pieces import FilePiece, corrected, described, find_pieces
@@ -134,11 +133,6 @@ def read_file_head(path: Path, landmarks: Path, request: RigRequest, say: Say) -
     painted = None if is_gltf else read_painted(path)
     mesh = read_mesh(path) if painted is None else painted.mesh
     head = own_head(path, landmarks)
-    if not is_exact(mesh, head):
-        raise UserError(
-            f"{path}: has too many triangles to be simulated as it is; reduce it to "
-            "50000 in a modelling program"
-        )
     rest = head.to_millimetres.points(mesh.vertices)
     same = merged_vertices(mesh, head)
     faces = same[mesh.faces].astype(np.int32)
@@ -148,7 +142,8 @@ def read_file_head(path: Path, landmarks: Path, request: RigRequest, say: Say) -
         parts = with_own_tongue(head, rest, np.concatenate(tongues), faces)
         head = replace(head, parts=parts)
     body = FileBody(mesh, head, pieces, eyes_are_nodes=request.has_eye_nodes(is_gltf=is_gltf))
-    say(f"skin: {len(head.vertices)} of {len(rest)} vertices, simulated")
+    how = "simulated" if body.is_exact else "simulated on a coarser mesh, which the file's follows"
+    say(f"skin: {len(head.vertices)} of {len(rest)} vertices, {how}")
     if len(body.in_bag):
         say(f"skin behind the lips: {len(body.in_bag)} vertices, stretches between both jaws")
     for line in described(pieces):

@@ -1,8 +1,9 @@
 """The mesh of a file as one body: every vertex follows the simulated skin, a bone, or stands still.
 
 The skin is simulated on the file's own vertices, where it has not too many, so these have exactly
-the places of the simulation. A bag behind the lips, which is not simulated, is stretched between
-their edge and both jaws: it is harmonic, as a soap film.
+the places of the simulation. The vertices of a finer skin follow a coarser one. A bag behind the
+lips, which is not simulated, is stretched between their edge and both jaws: it is harmonic, as a
+soap film.
 
 Source: for the bag, the Laplace equation with uniform weights on the mesh's edges.
 """
@@ -16,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from risorius import refine
 from risorius.assets import Part
 from risorius.assets.fitting import FittedHead
 from risorius.assets.fitting.mesh_validation import pieces_of, with_seams_joined
@@ -30,6 +32,7 @@ from .poses import CRANIUM, Pose
 from .surface import Floats, Indices
 
 Numbers = npt.NDArray[np.integer[Any]]
+FAR_OFF = 5.0  # [mm] from the simulated skin: vertices that are farther off lie behind the lips
 EXACT = 1e-6  # [mm] between a simulated vertex and that of the file
 LIP_HEIGHT = (
     10.0  # [mm] of the mouth in which what lies between the jaws goes from one to the other
@@ -78,7 +81,12 @@ class FileBody:
         piece = pieces_of(self.faces, len(self.rest))
         own = piece == piece[same[head.file_vertices[head.landmarks[0]]]]
         own &= np.isin(np.arange(len(own)), self.faces)
-        self.in_bag = np.flatnonzero(own & (self._place < 0))
+        self.is_exact = is_exact(mesh, head)
+        self._skin = self._place >= 0
+        self._embedding: refine.Embedding | None = None
+        if not self.is_exact:
+            self._skin = self._embedded(head, own)
+        self.in_bag = np.flatnonzero(own & ~self._skin)
         lips = head.vertices[head.landmarks[60:68]].mean(axis=0)
         self._lip_height = float(lips[1])
         self._bag = _Bag(self.in_bag, self.faces, self.rest) if len(self.in_bag) else None
@@ -87,8 +95,10 @@ class FileBody:
     def at(self, pose: Pose) -> Floats:
         """Where the vertices are in a pose, shape (V, 3)."""
         moved = self.rest.copy()
-        is_skin = self._place >= 0
-        moved[is_skin] = pose.skin[self._place[is_skin]]
+        if self._embedding is None:
+            moved[self._skin] = pose.skin[self._place[self._skin]]
+        else:
+            moved[self._skin] = self._embedding.evaluate(pose.skin).positions
         mandible = pose.matrices["mandible"]
         for role, numbers in self._pieces.items():
             if role in EYES and not self._eyes_are_nodes:
@@ -116,10 +126,28 @@ class FileBody:
         normals: Floats = vertex_normals(points, self.faces)[self._same]
         return normals
 
+    def _embedded(self, head: FittedHead, own: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+        """Bind vertices of the skin's piece, `own` (V,), to a coarser skin that is simulated.
+
+        Returns which are bound: not those that are far from it, since they lie behind the lips.
+        """
+        normals = vertex_normals(self.rest, self.faces)
+        numbers = np.flatnonzero(own)
+        distance = closest_points(self.rest[numbers], head.vertices, head.faces).distances
+        numbers = numbers[distance < FAR_OFF]
+        self._embedding = refine.Embedding(
+            head.faces, head.vertices, self.rest[numbers], normals=normals[numbers]
+        )
+        return np.isin(np.arange(len(own)), numbers)
+
     def _between_jaws(self, numbers: Numbers, mandible: Floats) -> Floats:
-        """Where vertices are that go with the jaw the more, the lower they lie in the mouth."""
+        """Where vertices are that go with the jaw the more, the lower they lie in the mouth, and
+        the farther from the throat.
+        """
         points = self.rest[numbers]
         share = np.clip((self._lip_height - points[:, 1]) / LIP_HEIGHT + 0.5, 0.0, 1.0)
+        depth = points[:, 2] - points[:, 2].min()
+        share *= np.clip(2.0 * depth / max(float(depth.max()), 1e-9), 0.0, 1.0)  # throat: skull
         moved: Floats = points + share[:, None] * (_by(mandible, points) - points)
         return moved
 

@@ -14,8 +14,10 @@ from risorius.app.recordings.names import ARKIT
 from risorius.app.rig.pieces import sphere_of
 from risorius.app.rig.poses import rest_in
 from risorius.app.scenes import FaceScene
+from risorius.assets.fitting import head as fitting_head
 from risorius.assets.meshes import read_mesh
 
+from ..heads import TURN, stranger
 from ..meshes import ball
 from .command_line import refusal, risorius
 from .glb_player import Player
@@ -34,7 +36,7 @@ def document(path):
 
 
 @pytest.fixture(scope="module")
-def built_in(tmp_path_factory):
+def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The built-in head's avatar."""
     path = tmp_path_factory.mktemp("rig") / "head.glb"
     result = risorius("rig", "-o", path)
@@ -44,7 +46,70 @@ def built_in(tmp_path_factory):
     return path
 
 
-def test_shapes_are_where_the_simulation_rests(built_in, face)(built_in) shapes = player.shapes("skin") assert tuple(shapes) == ARKIT assert np.abs(player.attribute("skin", "POSITION") - METRES * face.rest_positions).max() < 1e-6 for name in ("jawOpen", "mouthSmileLeft", "eyeBlinkRight", "cheekPuff")(face, {name).skin - face.rest_positions assert np.abs(moved).max() > 3.0 assert np.abs(shapes[name] / METRES - moved).max() < SEEN, name def test_mouth_close_shuts_an_open_jaw(built_in, face), as ARKit means it.""" shapes = Player(built_in).shapes("skin") shut = (shapes["jawOpen"] + shapes["mouthClose"]) / METRES + face.rest_positions upper, lower = face.landmarks[[62, 66]] opened = shapes["jawOpen"] / METRES + face.rest_positions assert opened[upper, 1] - opened[lower, 1] > 15.0 assert abs(shut[upper, 1] - shut[lower, 1]) < 3.0 def test_parts_have_the_shapes_that_move_them(built_in)(built_in) assert tuple(player.shapes("teeth_lower")) == ARKIT lowered = player.shapes("teeth_lower")["jawOpen"][:, 1] assert lowered.max() < -0.005 assert np.abs(player.shapes("teeth_lower")["mouthSmileLeft"]).max() == 0.0 assert np.abs(player.shapes("tongue")["tongueOut"]).max() > 0.01 assert not player.shapes("hair") and not player.shapes("eyeball_left") nodes = {node["name"](built_in)["nodes"]} turns = nodes["eye_left"]["extras"]["rotations"] assert set(turns) == {f"eyeLook{way}Left" for way in ("Up", "Down", "In", "Out")} assert turns["eyeLookDownLeft"][0] > 0.2 # forward over the x axis def test_most_of_a_shape_takes_no_room(built_in)(built_in) targets = [ found["accessors"][target["POSITION"]] for mesh in found["meshes"] for target in mesh["primitives"][0].get("targets", ()) ] stored = sum(each.get("sparse", {"count")["count"] for each in targets) dense = [each for each in targets if "bufferView" in each] assert stored + sum(each["count"] for each in dense) < 0.35 * sum( each["count"] for each in targets ) @dataclass(frozen=True) class Whole, its avatar and what was printed.""" mesh, slice] avatar(scope="module") def whole(scene, tmp_path_factory):
+def test_shapes_are_where_the_simulation_rests(built_in, face):
+    """ARKit's 52 in Apple's order; each moves the skin as the control at 1 does."""
+    player = Player(built_in)
+    shapes = player.shapes("skin")
+    assert tuple(shapes) == ARKIT
+    assert np.abs(player.attribute("skin", "POSITION") - METRES * face.rest_positions).max() < 1e-6
+    for name in ("jawOpen", "mouthSmileLeft", "eyeBlinkRight", "cheekPuff"):
+        moved = rest_in(face, {name: 1.0}).skin - face.rest_positions
+        assert np.abs(moved).max() > 3.0
+        assert np.abs(shapes[name] / METRES - moved).max() < SEEN, name
+
+
+def test_mouth_close_shuts_an_open_jaw(built_in, face):
+    """It is added to jawOpen, as ARKit means it."""
+    shapes = Player(built_in).shapes("skin")
+    shut = (shapes["jawOpen"] + shapes["mouthClose"]) / METRES + face.rest_positions
+    upper, lower = face.landmarks[[62, 66]]
+    opened = shapes["jawOpen"] / METRES + face.rest_positions
+    assert opened[upper, 1] - opened[lower, 1] > 15.0
+    assert abs(shut[upper, 1] - shut[lower, 1]) < 3.0
+
+
+def test_parts_have_the_shapes_that_move_them(built_in):
+    """Lower teeth and tongue go with the jaw by its shape; hair has none; eyes are nodes."""
+    player = Player(built_in)
+    assert tuple(player.shapes("teeth_lower")) == ARKIT
+    lowered = player.shapes("teeth_lower")["jawOpen"][:, 1]
+    assert lowered.max() < -0.005
+    assert np.abs(player.shapes("teeth_lower")["mouthSmileLeft"]).max() == 0.0
+    assert np.abs(player.shapes("tongue")["tongueOut"]).max() > 0.01
+    assert not player.shapes("hair") and not player.shapes("eyeball_left")
+    nodes = {node["name"]: node for node in document(built_in)["nodes"]}
+    turns = nodes["eye_left"]["extras"]["rotations"]
+    assert set(turns) == {f"eyeLook{way}Left" for way in ("Up", "Down", "In", "Out")}
+    assert turns["eyeLookDownLeft"][0] > 0.2  # forward over the x axis
+
+
+def test_most_of_a_shape_takes_no_room(built_in):
+    """Vertices that stand still are not stored."""
+    found = document(built_in)
+    targets = [
+        found["accessors"][target["POSITION"]]
+        for mesh in found["meshes"]
+        for target in mesh["primitives"][0].get("targets", ())
+    ]
+    stored = sum(each.get("sparse", {"count": 0})["count"] for each in targets)
+    dense = [each for each in targets if "bufferView" in each]
+    assert stored + sum(each["count"] for each in dense) < 0.35 * sum(
+        each["count"] for each in targets
+    )
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A head with parts, its avatar and what was printed."""
+
+    mesh: Path
+    places: dict[str, slice]
+    avatar: Path
+    lines: str
+
+
+@pytest.fixture(scope="module")
+def whole(scene: FaceScene, tmp_path_factory: pytest.TempPathFactory) -> Whole:
     """The avatar of an OBJ."""
     folder = tmp_path_factory.mktemp("whole")
     mesh, landmarks, places = write_whole_head(folder, scene)
@@ -53,7 +118,121 @@ def test_shapes_are_where_the_simulation_rests(built_in, face)(built_in) shapes 
     return Whole(mesh, places, folder / "whole.glb", result.output)
 
 
-def test_a_file_keeps_its_vertices_in_their_order(whole), and all triangles, with texture coordinates, material and picture.""" mesh = read_mesh(whole.mesh) player = Player(whole.avatar) points = player.attribute("head", "POSITION") assert np.array_equal(points[(mesh.vertices)], mesh.vertices.astype(np.float32)) assert tuple(player.shapes("head")) == ARKIT found = document(whole.avatar) count = sum( found["accessors"][primitive["indices"]]["count"] // 3 for each in found["meshes"] for primitive in each["primitives"] ) assert count == len(mesh.faces) assert [each["name"] for each in found["materials"]].count("skin") == 1 view = found["bufferViews"][found["images"][0]["bufferView"]] content = Player(whole.avatar).blob[view["byteOffset"] :][(whole.mesh.parent / "skin.png").read_bytes() def test_each_piece_of_a_file_moves_as_what_it_is(whole, face), lashes with the lids, the tongue out; hair and body stand still.""" shapes = { name, each in Player(whole.avatar).shapes("head").items() } own = {name, v in shapes.items()} for name, place in whole.places.items()} assert own["skin"]["jawOpen"][:, 1].min() < -20.0 assert own["teeth_lower"]["jawOpen"][:, 1].max() < -5.0 assert own["gums_lower"]["jawOpen"][:, 1].max() < -5.0 assert np.abs(own["teeth_upper"]["jawOpen"]).max() == 0.0 assert np.abs(own["tongue"]["tongueOut"]).max() > 10.0 assert own["lashes"]["eyeBlinkLeft"][:, 1].min() < -5.0 for name in ("hair", "shirt", "teeth_upper")(np.abs(each).max() for each in own[name].values()) < 0.1, name assert "eyeball, turns with the left eye" in whole.lines assert "tongue, bends" in whole.lines assert "body or clothes, still" in whole.lines skin = rest_in(face, {"jawOpen").skin - face.rest_positions off = np.abs(own["skin"]["jawOpen"] - skin) assert np.median(off) < 0.5 # its organs were fitted anew def test_eyeballs_of_a_file_become_nodes(whole, face)(whole.avatar)["nodes"]} for eye in face.head.eyes(nodes[f"eye_{eye.name}"]["translation"]) assert np.linalg.norm(centre - eye.centre) < 1.0 scale = np.array(nodes["whole"]["matrix"]).reshape(4, 4)[0, 0] assert scale == pytest.approx(0.01) def test_the_file_is_read_by_trimesh(whole), as large as it is.""" scene = trimesh.load_scene(whole.avatar, process=False) assert 0.3 < scene.extents[1] < 0.8 def test_an_option_corrects_what_a_piece_is(whole, tmp_path), where that is asked for.""" landmarks = whole.mesh.with_suffix(".json") path = tmp_path / "other.glb" given = ("--piece", "2=hair", "--eyes", "targets", "--shapes", "expressions,arkit") result = risorius("rig", whole.mesh, "--landmarks", landmarks, "-o", path, *given) assert result.exit_code == 0, result.output shapes = Player(path).shapes("head") assert "joy" in shapes and len(shapes) > 52 assert np.abs(shapes["tongueOut"][whole.places["tongue"]]).max() == 0.0 assert np.abs(shapes["eyeLookUpLeft"][whole.places["eyeball_left"]]).max() > 0.2 def test_correctives_make_sums_come_true(tmp_path, face), times the product of both weights; the file says so.""" path = tmp_path / "head.glb" result = risorius("rig", "-o", path, "--correctives", 2, "--quiet") assert result.exit_code == 0, result.output found = document(path) rules = found["meshes"][0]["extras"]["correctives"] assert len(rules) == 2 shapes = Player(path).shapes("skin") for rule in rules(pair) together = rest_in(face, dict.fromkeys(pair, 1.0)).skin - face.rest_positions summed = sum(shapes[name] for name in (*pair, rule["name"])) / METRES assert np.abs(summed - together).max() < 5 * SEEN plain = sum(shapes[name] for name in pair) / METRES assert np.abs(plain - together).max() > 3.0 @pytest.fixture(scope="module") def copied(scene, tmp_path_factory):
+def test_a_file_keeps_its_vertices_in_their_order(whole):
+    """All of them, and all triangles, with texture coordinates, material and picture."""
+    mesh = read_mesh(whole.mesh)
+    player = Player(whole.avatar)
+    points = player.attribute("head", "POSITION")
+    assert np.array_equal(points[: len(mesh.vertices)], mesh.vertices.astype(np.float32))
+    assert tuple(player.shapes("head")) == ARKIT
+    found = document(whole.avatar)
+    count = sum(
+        found["accessors"][primitive["indices"]]["count"] // 3
+        for each in found["meshes"]
+        for primitive in each["primitives"]
+    )
+    assert count == len(mesh.faces)
+    assert [each["name"] for each in found["materials"]].count("skin") == 1
+    view = found["bufferViews"][found["images"][0]["bufferView"]]
+    content = Player(whole.avatar).blob[view["byteOffset"] :][: view["byteLength"]]
+    assert content == (whole.mesh.parent / "skin.png").read_bytes()
+
+
+def test_each_piece_of_a_file_moves_as_what_it_is(whole, face):
+    """Teeth with the jaw, lashes with the lids, the tongue out; hair and body stand still."""
+    shapes = {
+        name: 100.0 * each / 10.0 for name, each in Player(whole.avatar).shapes("head").items()
+    }
+    own = {name: {k: v[place] for k, v in shapes.items()} for name, place in whole.places.items()}
+    assert own["skin"]["jawOpen"][:, 1].min() < -20.0
+    assert own["teeth_lower"]["jawOpen"][:, 1].max() < -5.0
+    assert own["gums_lower"]["jawOpen"][:, 1].max() < -5.0
+    assert np.abs(own["teeth_upper"]["jawOpen"]).max() == 0.0
+    assert np.abs(own["tongue"]["tongueOut"]).max() > 10.0
+    assert own["lashes"]["eyeBlinkLeft"][:, 1].min() < -5.0
+    for name in ("hair", "shirt", "teeth_upper"):
+        assert max(np.abs(each).max() for each in own[name].values()) < 0.1, name
+    assert "eyeball, turns with the left eye" in whole.lines
+    assert "tongue, bends" in whole.lines
+    assert "body or clothes, still" in whole.lines
+    skin = rest_in(face, {"jawOpen": 1.0}).skin - face.rest_positions
+    off = np.abs(own["skin"]["jawOpen"] - skin)
+    assert np.median(off) < 0.5  # its organs were fitted anew
+
+
+def test_eyeballs_of_a_file_become_nodes(whole, face):
+    """Each stands where its ball turns; the file's unit becomes metres at the root."""
+    nodes = {node["name"]: node for node in document(whole.avatar)["nodes"]}
+    for eye in face.head.eyes:
+        centre = 10.0 * np.array(nodes[f"eye_{eye.name}"]["translation"])
+        assert np.linalg.norm(centre - eye.centre) < 1.0
+    scale = np.array(nodes["whole"]["matrix"]).reshape(4, 4)[0, 0]
+    assert scale == pytest.approx(0.01)
+
+
+def test_the_file_is_read_by_trimesh(whole):
+    """Another reader finds the head, as large as it is."""
+    scene = trimesh.load_scene(whole.avatar, process=False)
+    assert 0.3 < scene.extents[1] < 0.8
+
+
+def test_an_option_corrects_what_a_piece_is(whole, tmp_path):
+    """Beside it eyes turn by the shapes, where that is asked for."""
+    landmarks = whole.mesh.with_suffix(".json")
+    path = tmp_path / "other.glb"
+    given = ("--piece", "2=hair", "--eyes", "targets", "--shapes", "expressions,arkit")
+    result = risorius("rig", whole.mesh, "--landmarks", landmarks, "-o", path, *given)
+    assert result.exit_code == 0, result.output
+    shapes = Player(path).shapes("head")
+    assert "joy" in shapes and len(shapes) > 52
+    assert np.abs(shapes["tongueOut"][whole.places["tongue"]]).max() == 0.0
+    assert np.abs(shapes["eyeLookUpLeft"][whole.places["eyeball_left"]]).max() > 0.2
+
+
+def test_correctives_make_sums_come_true(tmp_path, face):
+    """A shape of a pair, times the product of both weights; the file says so."""
+    path = tmp_path / "head.glb"
+    result = risorius("rig", "-o", path, "--correctives", 2, "--quiet")
+    assert result.exit_code == 0, result.output
+    found = document(path)
+    rules = found["meshes"][0]["extras"]["correctives"]
+    assert len(rules) == 2
+    shapes = Player(path).shapes("skin")
+    for rule in rules:
+        pair = rule["product"]
+        assert rule["name"] == "_".join(pair)
+        together = rest_in(face, dict.fromkeys(pair, 1.0)).skin - face.rest_positions
+        summed = sum(shapes[name] for name in (*pair, rule["name"])) / METRES
+        assert np.abs(summed - together).max() < 5 * SEEN
+        plain = sum(shapes[name] for name in pair) / METRES
+        assert np.abs(plain - together).max() > 3.0
+
+
+@pytest.mark.slow
+def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
+    """A mesh with more triangles than can be simulated has shapes on all of its own vertices."""
+    monkeypatch.setattr(fitting_head, "MOST_SIMULATED", 5000)
+    monkeypatch.setattr(fitting_head, "SIMPLIFIED", 4000)
+    fine = stranger(1)
+    assert len(fine.mesh.faces) > 5000
+    mesh, landmarks = fine.write(tmp_path)
+    path = tmp_path / "fine.glb"
+    result = risorius("rig", mesh, "--landmarks", landmarks, "-o", path)
+    assert result.exit_code == 0, result.output
+    assert "simulated on a coarser mesh" in result.output
+    player = Player(path)
+    points = player.attribute("head", "POSITION")
+    assert np.abs(points[: len(fine.mesh.vertices)] - fine.mesh.vertices).max() < 1e-6
+    shapes = player.shapes("head")
+    assert tuple(shapes) == ARKIT
+    upper, lower = fine.landmarks[[62, 66]]
+    down = shapes["jawOpen"] @ TURN.T
+    assert (down[lower, 1] < -0.02) and (abs(down[upper, 1]) < 0.006)
+    assert np.linalg.norm(shapes["eyeBlinkLeft"], axis=1).max() > 0.005
+
+
+@pytest.fixture(scope="module")
+def copied(scene, tmp_path_factory):
     """A GLB with bones, shapes and motion of its own, marked with extras; and its avatar."""
     folder = tmp_path_factory.mktemp("glb")
     own = folder / "own.glb"
@@ -78,10 +257,11 @@ def test_a_file_keeps_its_vertices_in_their_order(whole), and all triangles, wit
     return own, path
 
 
-def test_a_glb_comes_back_as_it_was(copied, Path]):
+def test_a_glb_comes_back_as_it_was(copied):
     """Nodes, skins, materials, extras, extensions and all data are there; shapes are appended."""
     own, path = copied
-    before, after = document(own), document(path)
+    before = document(own)
+    after = document(path)
     for key in ("nodes", "skins", "materials", "images", "extensions", "extensionsUsed", "scenes"):
         assert after[key] == before[key], key
     for key in ("accessors", "bufferViews"):
@@ -96,7 +276,7 @@ def test_a_glb_comes_back_as_it_was(copied, Path]):
         assert new["primitives"][0].get("targets", [])[:count] == primitive.get("targets", [])
 
 
-def test_shapes_of_a_glb_are_those_of_the_simulation(copied, Path], face):
+def test_shapes_of_a_glb_are_those_of_the_simulation(copied, face):
     """Under bones, and for vertices that the file doubles along seams."""
     player = Player(copied[1])
     shapes = player.shapes("skin")
@@ -108,10 +288,11 @@ def test_shapes_of_a_glb_are_those_of_the_simulation(copied, Path], face):
     assert player.shapes("teeth_lower")["jawOpen"][:, 1].max() < -0.005
 
 
-def test_motion_of_a_glb_goes_on(copied, Path]):
+def test_motion_of_a_glb_goes_on(copied):
     """Its weights are as they were; those of the new shapes are 0."""
     own, path = copied
-    before, after = Player(own), Player(path)
+    before = Player(own)
+    after = Player(path)
     for frame in (0, len(before.times) - 1):
         off = before.positions("skin", frame) - after.positions("skin", frame)
         assert np.abs(off).max() < 1e-6
