@@ -38,8 +38,13 @@ class Exporting:
     )
     refined: bool = option(
         is_flag=True,
-        help="Write the refined skin: other triangles in each frame, by --look, --refiner and "
+        help="Write the refined skin, the same triangles in all frames, by --look, --refiner and "
         "--option.",
+    )
+    changing: bool = option(
+        is_flag=True,
+        help="With --refined: other triangles in each frame, as few as it needs (USD, OBJ, "
+        "VTKHDF).",
     )
     overwrite: bool = option(is_flag=True, help="Replace frames in a folder, or files beside -o.")
     quiet: bool = option(is_flag=True, help="No progress bar.")
@@ -71,6 +76,7 @@ def export(
     check_apart(chosen.outputs(output), (script, *subject.files))
     request = Request(
         subject.refinement() if exporting.refined else None,
+        exporting.changing,
         exporting.overwrite,
         not exporting.quiet,
     )

@@ -13,13 +13,12 @@ from typing import Any
 import numpy as np
 
 from risorius import refine
-from risorius.geometry.normals import vertex_normals
 
 from ..errors import UserError
 from ..motion import play, scene_of
 from ..refining.plug_ins import plug_ins_of, reported
 from ..refining.presets import Refinement
-from ..refining.refiners import refiner_for
+from ..refining.refiners import Splits, refiner_for
 from ..rig.surface import Floats, Indices, Singles, Surface
 from ..scenes import FaceScene, Scene
 from ..script import Script
@@ -59,13 +58,19 @@ class Clip:
         """Of the frames [s], shape (N,)."""
         return np.arange(self.frame_count) / self.frames_per_second
 
-    def refined(self, refinement: Refinement) -> Iterator[refine.RefinedMesh]:
+    def refiner(self, refinement: Refinement, splits: Splits | None = None) -> refine.Refiner:
+        """A refiner of the skin; `splits`: in place of its criterion, shape (E,)."""
+        return refiner_for(self.scene, refinement, splits)
+
+    def refined(
+        self, refinement: Refinement, refiner: refine.Refiner | None = None
+    ) -> Iterator[refine.RefinedMesh]:
         """The skin of each frame, in order, as a refiner has it; read it before the next one.
 
-        Raises UserError for a refiner that has to know where somebody looks from, and PlugInError
-        where somebody else's code fails.
+        refiner: one of `refiner`; None: a new one. Raises UserError for a refiner that has to know
+        where somebody looks from, and PlugInError where somebody else's code fails.
         """
-        refiner = refiner_for(self.scene, refinement)
+        refiner = self.refiner(refinement) if refiner is None else refiner
         plug_ins = plug_ins_of(*refinement.on(self.scene.name))
         for frame in range(self.frame_count):
             try:
@@ -174,11 +179,11 @@ def _plain(surface: Surface, frame: int) -> FrameSurface:
     points = surface.at(frame)
     return FrameSurface(
         points,
-        vertex_normals(points, surface.faces),
+        surface.normals_of(points, frame),
         surface.faces,
         surface.uv,
         surface.face_uv,
-        np.arange(len(surface.faces), dtype=np.int32),
+        surface.source,
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Container, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -39,11 +39,13 @@ class Request:
     """Options of an export, beside the clip.
 
     refinement: the refined skin is to be written, and not the mesh that is simulated.
+    changes: each frame is refined by itself, into other triangles.
     overwrite: frames in a folder, and files beside the output, may be replaced.
     progress: a bar is shown.
     """
 
     refinement: Refinement | None = None
+    changes: bool = False
     overwrite: bool = False
     progress: bool = True
 
@@ -67,14 +69,16 @@ class Format:
 
     name: for `--as`. suffixes: of its files; () for a folder of one file a frame.
     writer: "module:function" in this room, imported when it is used. refines: whether it can carry
-    a refined skin. beside: how files end that lie beside the one that is named.
+    a refined skin. changes: whether its triangles may be others in each frame. beside: how files
+    end that lie beside the one that is named.
     """
 
     name: str
     title: str
     suffixes: tuple[str, ...]
     writer: str
-    refines: bool = False
+    refines: bool = True
+    changes: bool = False
     beside: tuple[str, ...] = ()
 
     def outputs(self, output: Path) -> tuple[Path, ...]:
@@ -91,12 +95,12 @@ class Format:
 MESH = (".obj", ".mtl", "_skin.png")  # a mesh file, its materials, and their picture
 FORMATS = (
     Format("gltf", "glTF", (".glb",), "gltf:write_gltf"),
-    Format("usd", "USD", (".usdz",), "usd:write_usd", True),
+    Format("usd", "USD", (".usdz",), "usd:write_usd", changes=True),
     Format("pc2", "PC2 point cache", (".pc2",), "obj:write_pc2", beside=MESH),
-    Format("obj", "OBJ sequence", (), "obj:write_obj", True),
-    Format("vtkhdf", "VTKHDF", (".vtkhdf", ".hdf"), "vtkhdf:write_vtkhdf", True),
+    Format("obj", "OBJ sequence", (), "obj:write_obj", changes=True),
+    Format("vtkhdf", "VTKHDF", (".vtkhdf", ".hdf"), "vtkhdf:write_vtkhdf", changes=True),
     Format("npz", "numpy arrays", (".npz",), "tables:write_npz"),
-    Format("arkit", "ARKit shapes over time", (".csv",), "tables:write_arkit"),
+    Format("arkit", "ARKit shapes over time", (".csv",), "tables:write_arkit", refines=False),
 )
 
 
@@ -133,6 +137,11 @@ def check_request(output: Path, chosen: Format, request: Request) -> None:
     if request.refinement is not None and not chosen.refines:
         names = ", ".join(each.name for each in FORMATS if each.refines)
         raise UserError(f"--refined does not go with {chosen.title}; it goes with {names}")
+    if request.changes and request.refinement is None:
+        raise UserError("--changing goes with --refined; add it, or leave out --changing")
+    if request.changes and not chosen.changes:
+        names = ", ".join(each.name for each in FORMATS if each.changes)
+        raise UserError(f"--changing does not go with {chosen.title}; it goes with {names}")
     chosen.load()
     if not chosen.suffixes:
         check_folder(output, overwrite=request.overwrite)
@@ -178,8 +187,14 @@ def export(
     """Play a script, or a span of it [s], and write it; a line on that, and a remark, if any."""
     from ..motion import scene_of
     from .clip import record
+    from .refined import with_refined_skin
 
     progress = request.progress
     clip = record(script, scene_of(script, head), frames_per_second, span=span, progress=progress)
-    remark = write(clip, output, chosen, request)
-    return f"{output}: {chosen.title}, {counted(clip.frame_count, 'frame')}", remark
+    line = f"{output}: {chosen.title}, {counted(clip.frame_count, 'frame')}"
+    if request.refinement is not None and not request.changes:
+        refined = with_refined_skin(clip, request.refinement)
+        line = f"{line}, {refined.words}"
+        clip = refined.clip
+        request = replace(request, refinement=None)
+    return line, write(clip, output, chosen, request)

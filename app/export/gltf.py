@@ -13,14 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from risorius.geometry.normals import vertex_normals
-
 from ..errors import as_text
 from ..rig.glb import Glb
 from ..rig.poses import CRANIUM, without_head_pose
 from ..rig.scene_meshes import Piece, add_mesh
 from ..rig.skeleton import Skeleton
-from ..rig.surface import Floats
+from ..rig.surface import Floats, RefinedSurface
 from ..scenes import FaceScene
 from .clip import Clip
 from .formats import Request
@@ -52,8 +50,10 @@ def moving_pieces(clip: Clip) -> tuple[list[Piece], float]:
         if part is None:
             _take_pose_out(clip, shapes)
         morphs = decompose(shapes - surface.rest)
-        normals = vertex_normals(surface.rest, surface.faces)
-        bent = np.array([vertex_normals(shape, surface.faces) for shape in shapes])
+        normals = surface.normals_of(surface.rest, None)
+        bent = np.array([surface.normals_of(shape, k) for k, shape in enumerate(shapes)])
+        if isinstance(surface, RefinedSurface):  # its normals are those of the turned head
+            _take_pose_out(clip, bent, are_places=False)
         bends = follow(morphs.weights, bent - normals)
         names = tuple(f"motion {index + 1}" for index in range(len(morphs.targets)))
         pieces.append(Piece(surface, bone, normals, names, morphs.targets, bends, morphs.weights))
@@ -61,12 +61,18 @@ def moving_pieces(clip: Clip) -> tuple[list[Piece], float]:
     return pieces, error
 
 
-def _take_pose_out(clip: Clip, shapes: Floats) -> None:
-    """Leave shapes of the skin, (N, V, 3), as the head's bone finds them."""
+def _take_pose_out(clip: Clip, shapes: Floats, *, are_places: bool = True) -> None:
+    """Leave shapes of the skin, (N, V, 3), as the head's bone finds them.
+
+    are_places: the bone moves and turns them; normals are turned only.
+    """
     if not isinstance(clip.scene, FaceScene):
         return
-    share = clip.scene.simulation.bones.head_weight
-    for shape, matrix in zip(shapes, clip.bones[CRANIUM], strict=True):
+    share = clip.skin.carried(clip.scene.simulation.bones.head_weight)
+    for shape, bone in zip(shapes, clip.bones[CRANIUM], strict=True):
+        matrix = bone.copy()
+        if not are_places:
+            matrix[:3, 3] = 0.0
         shape[:] = without_head_pose(shape, matrix, share)
 
 
@@ -81,7 +87,7 @@ def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
         share = None
         if piece.bone is None and isinstance(clip.scene, FaceScene):
             node["skin"] = skeleton.skin
-            share = clip.scene.simulation.bones.head_weight
+            share = clip.skin.carried(clip.scene.simulation.bones.head_weight)
         node["mesh"] = add_mesh(glb, clip.scene, piece, skeleton.pivot(piece.bone), share)
         number = glb.add("nodes", node)
         if piece.bone is None:

@@ -19,7 +19,7 @@ from ..playback import LEAD
 from ..recordings.conversion import lead_of
 from ..recordings.named_columns import OUTWARD
 from ..recordings.names import ARKIT
-from ..rig.surface import Floats
+from ..rig.surface import Floats, RefinedSurface
 from .clip import Clip
 from .formats import Request
 
@@ -54,6 +54,8 @@ def write_npz(clip: Clip, part: Path, _: Request) -> None:
         for name in ("faces", "uv", "face_uv", "colours", "matrices", "shapes"):
             if (array := getattr(surface, name)) is not None:
                 arrays["positions" if is_skin and name == "shapes" else f"{start}{name}"] = array
+    if isinstance(clip.skin, RefinedSurface):
+        arrays["source"] = clip.skin.source
     for kind in ("bones", "controls", "activations"):
         for name, values in getattr(clip, kind).items():
             arrays[f"{kind}/{name}"] = values

@@ -17,7 +17,6 @@ import numpy.typing as npt
 import PIL.Image
 
 from risorius.geometry.colour import to_linear
-from risorius.geometry.normals import vertex_normals
 
 from ..errors import as_text, needed
 from ..rig.surface import METRES, Surface
@@ -81,11 +80,11 @@ def _add_surface(mesh: Any, surface: Surface, request: Request) -> None:
     """A mesh whose triangles stay: its points move, or all of it does."""
     _set_faces(mesh, surface.faces, ALWAYS)
     if surface.shapes is None:
-        _set_points(mesh, surface.rest, vertex_normals(surface.rest, surface.faces), ALWAYS)
+        _set_points(mesh, surface.rest, surface.normals_of(surface.rest, None), ALWAYS)
     else:
         frames = request.counted(surface.shapes.astype(np.float64), len(surface.shapes))
         for frame, points in enumerate(frames):
-            _set_points(mesh, points, vertex_normals(points, surface.faces), frame)
+            _set_points(mesh, points, surface.normals_of(points, frame), frame)
     if surface.matrices is not None:
         moves = np.ptp(surface.matrices, axis=0).any()
         operation = mesh.AddTransformOp()

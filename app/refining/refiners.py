@@ -16,15 +16,20 @@ from ..scenes import FaceScene, Scene
 from .plug_ins import culprit_of, error_in, plug_ins_of
 from .presets import PRESETS, STATIC, Refinement, named
 
+Splits = npt.NDArray[np.uint8]
+
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
 AS_IT_SUITS = "automatic"  # the word for an option that is left open
 SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
-def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
-    """Bind the refiner that is asked for to the scene's mesh.
+def refiner_for(
+    scene: Scene, refinement: Refinement, splits: Splits | None = None
+) -> refine.Refiner:
+    """Bind the refiner of a refinement to the scene's mesh.
 
-    Raises UserError if it refuses an option, and PlugInError if somebody else's code fails.
+    `splits`: of each edge in all frames, shape (E,), in place of a criterion. Raises
+    UserError if it refuses an option, and PlugInError if somebody else's code fails.
     """
     name, options = refinement.on(scene.name)
     plug_ins = plug_ins_of(name, options)
@@ -36,6 +41,9 @@ def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
             options["detail"] = finer_mesh(scene)
             if options["detail"] is None:
                 raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
+        if splits is not None:
+            options.pop("criterion", None)
+            options["splits"] = splits
         return refine.create(
             name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **options
         )

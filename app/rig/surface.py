@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
+
+from risorius import refine
+from risorius.geometry.normals import vertex_normals
 
 Floats = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]
@@ -45,3 +48,48 @@ class Surface:
         matrix = self.matrices[frame]
         moved: Floats = points @ matrix[:3, :3].T + matrix[:3, 3]
         return moved
+
+    def normals_of(self, points: Floats, frame: int | None) -> Floats:
+        """Unit normals of the vertices, shape (V, 3), where they are at `points` in a frame.
+
+        frame: None at rest.
+        """
+        return vertex_normals(points, self.faces)
+
+    def carried(self, values: Floats) -> Floats:
+        """Values of the vertices of the scene's mesh, shape (n,), at these vertices, (V,)."""
+        return values
+
+    @property
+    def source(self) -> Indices:
+        """The triangle of the scene's mesh that each triangle is part of, shape (F,)."""
+        return np.arange(len(self.faces), dtype=np.int32)
+
+
+@dataclass(frozen=True)
+class RefinedSurface(Surface):
+    """A surface that was refined, with the normals of its refiner.
+
+    rest_normals: where nothing moves, shape (V, 3). normals: in each frame, shape (N, V, 3).
+    sources: the triangle of the scene's mesh that each triangle is part of, shape (F,).
+    origins: where each vertex lies on the scene's mesh.
+    """
+
+    rest_normals: Singles = field(kw_only=True)
+    normals: Singles = field(kw_only=True)
+    sources: Indices = field(kw_only=True)
+    origins: refine.Origins = field(kw_only=True)
+
+    def normals_of(self, points: Floats, frame: int | None) -> Floats:
+        """The refiner's normals, shape (V, 3)."""
+        normals = self.rest_normals if frame is None else self.normals[frame]
+        return normals.astype(np.float64)
+
+    def carried(self, values: Floats) -> Floats:
+        """Values of the vertices of the scene's mesh, shape (n,), at these vertices, (V,)."""
+        return np.asarray((values[self.origins.vertices] * self.origins.weights).sum(axis=1))
+
+    @property
+    def source(self) -> Indices:
+        """The triangle of the scene's mesh that each triangle is part of, shape (F,)."""
+        return self.sources

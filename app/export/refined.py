@@ -1,0 +1,117 @@
+"""The refined skin of a clip as one mesh: the same vertices and triangles in every frame.
+
+An edge is split as often as the frame that needs it most (`refine.splits_of_clip`), so the mesh is
+adaptive, and nowhere coarser than a frame that is refined by itself.
+"""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import refine
+
+from ..errors import UserError
+from ..refining.plug_ins import plug_ins_of, reported
+from ..refining.presets import Refinement
+from ..rig.surface import RefinedSurface
+from .clip import Clip
+
+Places = npt.NDArray[np.void]
+
+
+@dataclass(frozen=True)
+class RefinedClip:
+    """A clip whose skin is refined, and how it differs from skins refined frame by frame.
+
+    clip: its skin has one topology.
+    fewest, most: triangles of frames that are refined by themselves.
+    farthest, mean: distance of vertices from the same places in those frames [mm].
+    """
+
+    clip: Clip
+    fewest: int
+    most: int
+    farthest: float
+    mean: float
+
+    @property
+    def words(self) -> str:
+        """A line for the user."""
+        skin = self.clip.skin
+        if self.fewest == self.most == len(skin.faces):
+            return f"refined skin of {len(skin.faces)} triangles"
+        return (
+            f"refined skin of {len(skin.faces)} triangles in all frames; one that changes has "
+            f"{self.fewest} to {self.most} and is {self.mean:.3f} mm away on average, "
+            f"{self.farthest:.2f} at most"
+        )
+
+
+def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
+    """Refine the skin of a clip into one mesh that moves.
+
+    Raises UserError for a refiner whose triangles change and that takes no splits, and as
+    `Clip.refined` does.
+    """
+    counts = []
+    splits = np.zeros(0, np.uint8)
+    topologies = set()
+    refiner = clip.refiner(refinement)
+    for mesh in clip.refined(refinement, refiner):
+        counts.append(len(mesh.triangles))
+        topologies.add(hash(mesh.triangles.tobytes()))
+        splits = refiner.splits if len(counts) == 1 else np.maximum(splits, refiner.splits)
+    changing = refiner
+    if len(topologies) > 1:
+        name = refinement.on(clip.scene.name)[0]
+        if all(each.name != "splits" for each in refine.parameters(name)):
+            raise UserError(
+                f"--refined: the triangles of refiner {name} change, and it has no option splits; "
+                "take another --refiner, or add --changing for USD, OBJ and VTKHDF"
+            )
+        refiner = clip.refiner(refinement, splits)
+    plug_ins = plug_ins_of(*refinement.on(clip.scene.name))
+    with reported(plug_ins):
+        rest = deepcopy(refiner.refine(clip.scene.rest_positions))
+        origins = refiner.origins()
+    shapes = np.empty((clip.frame_count, *rest.positions.shape), np.float32)
+    normals = np.empty_like(shapes)
+    distances = [np.zeros(1)]
+    places = _places(origins)
+    for frame, mesh in enumerate(clip.refined(refinement, refiner)):
+        shapes[frame] = mesh.positions
+        normals[frame] = mesh.normals
+        if refiner is not changing:
+            with reported(plug_ins):
+                own = changing.refine(clip.skin.at(frame))
+                own_places = _places(changing.origins())
+            _, ours, theirs = np.intersect1d(places, own_places, return_indices=True)
+            distances.append(np.linalg.norm(shapes[frame, ours] - own.positions[theirs], axis=1))
+    triangles = rest.triangles.astype(np.int32)
+    skin = RefinedSurface(
+        clip.skin.name,
+        rest.positions.astype(np.float64),
+        triangles,
+        shapes,
+        uv=rest.uv,
+        face_uv=None if rest.uv is None else triangles,
+        rest_normals=rest.normals,
+        normals=normals,
+        sources=rest.source,
+        origins=origins,
+    )
+    whole = replace(clip, surfaces=(skin, *clip.surfaces[1:]))
+    apart = np.concatenate(distances)
+    return RefinedClip(whole, min(counts), max(counts), float(apart.max()), float(apart.mean()))
+
+
+def _places(origins: refine.Origins) -> Places:
+    """The place of each vertex on the mesh, as bytes that are equal where places are, (N,)."""
+    rows = np.ascontiguousarray(
+        np.concatenate([origins.vertices.astype(np.float64), origins.weights], axis=1)
+    )
+    return rows.view([("", np.void, rows.dtype.itemsize * rows.shape[1])])[:, 0]

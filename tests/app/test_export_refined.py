@@ -1,0 +1,142 @@
+"""Files with the refined skin: one topology in all frames, read back by other readers."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pxr import Usd, UsdGeom
+
+from risorius import refine
+from risorius.app.errors import UserError
+from risorius.app.export.clip import Clip, record
+from risorius.app.export.formats import Request, check_request, format_for, write
+from risorius.app.export.refined import RefinedClip, with_refined_skin
+from risorius.app.refining.presets import Refinement
+from risorius.app.rig.surface import RefinedSurface
+from risorius.app.scenes import FaceScene
+from risorius.app.script.script_file import parse_script
+
+from .glb_player import Player
+
+SCRIPT = """
+duration = 0.4
+[[pose]]
+time = 0.0
+[[pose]]
+time = 0.4
+joy = 1.0
+jaw_open = 0.6
+head_yaw = 0.8
+"""
+
+
+@pytest.fixture(scope="module")
+def clip() -> Clip:
+    """A face that smiles, opens its mouth and turns."""
+    return record(parse_script(SCRIPT, source="test"), FaceScene(), 12.0, progress=False)
+
+
+@pytest.fixture(scope="module")
+def refined(clip: Clip) -> RefinedClip:
+    """The same with the skin of the paper's rule."""
+    return with_refined_skin(clip, Refinement("paper"))
+
+
+def test_one_topology_that_no_frame_is_finer_than(clip, refined):
+    """The skin has the triangles that any frame needs, and is near the frames that change."""
+    counts = [len(mesh.triangles) for mesh in clip.refined(Refinement("paper"))]
+    assert (refined.fewest, refined.most) == (min(counts), max(counts))
+    assert len(clip.skin.faces) < max(counts) <= len(refined.clip.skin.faces)
+    assert 0.0 < refined.mean < 0.2
+    # The paper's rule moves vertices of long edges by millimetres where one of them is split.
+    assert refined.mean < refined.farthest < 10.0
+    assert str(len(refined.clip.skin.faces)) in refined.words
+
+
+def test_frames_are_those_of_a_refiner_with_the_same_splits(clip, refined):
+    """Vertices and normals are the refiner's own in every frame; parts stay as they were."""
+    scene = clip.scene
+    changing = refine.create("kahler", scene.faces, scene.rest_positions, scene.uv, scene.face_uv)
+    frames = [clip.skin.at(frame) for frame in range(clip.frame_count)]
+    splits = refine.splits_of_clip(changing, frames)
+    fixed = refine.create(
+        "kahler", scene.faces, scene.rest_positions, scene.uv, scene.face_uv, splits=splits
+    )
+    skin = refined.clip.skin
+    for number, frame in enumerate(frames):
+        mesh = fixed.refine(frame)
+        np.testing.assert_array_equal(skin.faces, mesh.triangles)
+        np.testing.assert_array_equal(skin.source, mesh.source)
+        np.testing.assert_array_equal(skin.at(number), mesh.positions)
+        np.testing.assert_array_equal(skin.normals_of(skin.at(number), number), mesh.normals)
+    assert refined.clip.surfaces[1:] == clip.surfaces[1:]
+
+
+def test_gltf_plays_the_refined_skin(refined, tmp_path):
+    """Morph targets and the bone of the head put the refined vertices within a tenth of a mm."""
+    path = tmp_path / "face.glb"
+    assert write(refined.clip, path, format_for(path, None), Request(progress=False)) is None
+    player = Player(path)
+    skin = refined.clip.skin
+    indices = player.values(player.primitive("skin").indices).reshape(-1, 3)
+    for frame in range(refined.clip.frame_count):
+        corners = player.positions("skin", frame)[indices]
+        off = np.linalg.norm(corners - skin.at(frame)[skin.faces] / 1000.0, axis=2)
+        assert off.max() < 1.2e-4
+    last = refined.clip.frame_count - 1
+    assert isinstance(skin, RefinedSurface)
+    head = np.asarray(refined.clip.bones["cranium"][last])[:3, :3]
+    normals = player.shape("skin", last, "NORMAL")
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    turned = normals[indices] @ head.T  # of vertices that go with the head in full
+    share = skin.carried(refined.clip.scene.simulation.bones.head_weight)
+    goes_along = share[skin.faces] > 0.999
+    angles = (turned * skin.normals[last][skin.faces]).sum(axis=2)[goes_along]
+    assert np.degrees(np.arccos(np.clip(np.percentile(angles, 2), -1.0, 1.0))) < 3.0
+
+
+def test_usd_stores_the_triangles_once(refined, tmp_path):
+    """Triangles are the same at all times, points move."""
+    path = tmp_path / "face.usdz"
+    write(refined.clip, path, format_for(path, None), Request(progress=False))
+    stage = Usd.Stage.Open(str(path))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/face/skin"))
+    assert mesh.GetFaceVertexIndicesAttr().GetNumTimeSamples() == 0
+    assert mesh.GetPointsAttr().GetNumTimeSamples() == refined.clip.frame_count
+    points = np.array(mesh.GetPointsAttr().Get(refined.clip.frame_count - 1))
+    np.testing.assert_array_equal(points, refined.clip.skin.at(refined.clip.frame_count - 1))
+
+
+def test_arrays_and_point_caches_have_the_refined_vertices(refined, tmp_path):
+    """`positions` of npz has all refined vertices; a point cache has them first."""
+    path = tmp_path / "face.npz"
+    write(refined.clip, path, format_for(path, None), Request(progress=False))
+    with np.load(path) as arrays:
+        np.testing.assert_array_equal(arrays["positions"], refined.clip.skin.shapes)
+        np.testing.assert_array_equal(arrays["source"], refined.clip.skin.source)
+    cache = tmp_path / "face.pc2"
+    write(refined.clip, cache, format_for(cache, None), Request(progress=False))
+    count = sum(len(each.rest) for each in refined.clip.surfaces)
+    assert cache.stat().st_size == 32 + 12 * count * refined.clip.frame_count
+
+
+def test_a_refiner_that_never_changes_needs_no_splits(clip):
+    """Uniform Loop has the same triangles in all frames by itself."""
+    uniform = with_refined_skin(clip, Refinement(refiner="loop"))
+    assert len(uniform.clip.skin.faces) == 4 * len(clip.skin.faces)
+    assert uniform.words == f"refined skin of {4 * len(clip.skin.faces)} triangles"
+
+
+@pytest.mark.parametrize(
+    ("name", "request_", "error"),
+    [
+        ("face.glb", Request(changes=True), "--changing goes with --refined"),
+        ("face.glb", Request(Refinement(), changes=True), "not go with glTF.*usd, obj, vtkhdf"),
+        ("face.csv", Request(Refinement()), "--refined does not go with ARKit"),
+    ],
+)
+def test_mistakes_are_reported(name, request_, error, tmp_path: Path):
+    """A format without room for other triangles, or without a mesh, is refused in one line."""
+    path = tmp_path / name
+    with pytest.raises(UserError, match=error):
+        check_request(path, format_for(path, None), request_)
