@@ -14,8 +14,6 @@ from typing import Any
 
 import click
 
-_RAW_BYTE = re.compile("[\udc80-\udcff]")  # of a name that is no UTF-8, as Python reads it
-
 
 def in_one_line(message: object) -> str:
     """A message, with every code escaped that a terminal does not show as a character.
@@ -36,7 +34,8 @@ def as_text(name: object) -> str:
     Names of files are bytes: one that is no UTF-8, from an old archive say, is read as characters
     that no encoding has. Such bytes become \\xe4.
     """
-    text = _RAW_BYTE.sub(lambda found: f"\\x{ord(found[0]) - 0xDC00:02x}", str(name))
+    raw_byte = re.compile("[\udc80-\udcff]")  # of a name that is no UTF-8, as Python reads it
+    text = raw_byte.sub(lambda found: f"\\x{ord(found[0]) - 0xDC00:02x}", str(name))
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 

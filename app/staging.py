@@ -19,7 +19,6 @@ if sys.platform != "win32":
     import fcntl
 
 OLD = 86_400.0  # [s] since the last change in a folder that is swept away
-_NAME = re.compile(r"\.risorius-[0-9a-f]{12}")
 _swept: set[Path] = set()  # where this process has looked for what others left
 
 
@@ -53,7 +52,8 @@ class StagingFolder:
 
 def is_staging_folder(path: Path) -> bool:
     """Whether a path is such a folder, and no link to one."""
-    return bool(_NAME.fullmatch(path.name)) and path.is_dir() and not path.is_symlink()
+    name_pattern = re.compile(r"\.risorius-[0-9a-f]{12}")
+    return bool(name_pattern.fullmatch(path.name)) and path.is_dir() and not path.is_symlink()
 
 
 def sweep(parent: Path) -> None:

@@ -29,7 +29,6 @@ from .motion import tally
 from .stopping import cleaned_up_if_stopped, handle_signals
 
 Send = Callable[[object], None]  # sends a message to the process that started the work
-LIBRARIES = [f"{name}_NUM_THREADS" for name in ("LP", "OMP", "OPENBLAS", "MKL", "NUMBA")]
 """Each takes as many threads as there are cores, in each process: OpenGL, BLAS and refinement."""
 ATTEMPTS = 3  # at work whose process dies
 GRACE = 5.0  # [s] for a process to clean up, until it is killed
@@ -64,12 +63,15 @@ class Worker:
         """
         code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve()"
         with contextlib.ExitStack() as stack:
+            libraries = [
+                f"{name}_NUM_THREADS" for name in ("LP", "OMP", "OPENBLAS", "MKL", "NUMBA")
+            ]
             self.process = subprocess.Popen(
                 [sys.executable, "-c", code],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=None if log is None else stack.enter_context(log.open("ab")),
-                env={**os.environ, **dict.fromkeys(LIBRARIES, str(threads))},
+                env={**os.environ, **dict.fromkeys(libraries, str(threads))},
                 start_new_session=True,
             )
         assert self.process.stdin is not None and self.process.stdout is not None

@@ -27,9 +27,6 @@ from .topology import strip_triangles, unique_points
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
-STRIP = 5
-FAN = 6
-
 
 @dataclass(frozen=True)
 class GltfSurface:
@@ -139,6 +136,9 @@ def stored_pieces(content: bytes, folder: Path) -> list[StoredPiece]:
 class _Reader:
     """Reads pieces; the painter knows their pictures."""
 
+    STRIP = 5
+    FAN = 6
+
     def __init__(self, file: GltfFile) -> None:
         self.painter = GltfPainter(file)
         self._file = file
@@ -155,7 +155,11 @@ class _Reader:
             mesh = self._document.meshes[node.mesh]
             weights = (node.extras or {}).get("weights") or mesh.weights or []
             for place, primitive in enumerate(mesh.primitives):
-                has_surface = primitive.mode is None or primitive.mode in (triangles, STRIP, FAN)
+                has_surface = primitive.mode is None or primitive.mode in (
+                    triangles,
+                    self.STRIP,
+                    self.FAN,
+                )
                 if has_surface and primitive.attributes.POSITION is not None:
                     yield self._piece(number, place, weights)
 
@@ -256,9 +260,9 @@ class _Reader:
             numbers = self._file.values(primitive.indices)[:, 0].astype(np.int64)
         if len(numbers) and numbers.max() >= count:
             raise IndexError(f"a triangle names vertex {numbers.max()} of {count}")
-        if primitive.mode == STRIP:
+        if primitive.mode == self.STRIP:
             return strip_triangles(numbers)
-        if primitive.mode == FAN:
+        if primitive.mode == self.FAN:
             first = np.full(max(len(numbers) - 2, 0), numbers[0] if len(numbers) else 0)
             return np.stack([first, numbers[1:-1], numbers[2:]], axis=1)
         return numbers[: len(numbers) // 3 * 3].reshape(-1, 3)

@@ -23,11 +23,12 @@ from .pictures import decoded, tinted
 Floats = npt.NDArray[np.float64]
 
 WHITE = (1.0, 1.0, 1.0)
-UNREAD = ("KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds")  # formats of pictures
 
 
 class GltfPainter:
     """Finds what paints a primitive. `pictures` are all so far, by image and tint, unread."""
+
+    UNREAD = ("KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds")  # formats of pictures
 
     def __init__(self, file: GltfFile) -> None:
         self.pictures: dict[tuple[int, tuple[float, ...]], Callable[[], Image]] = {}
@@ -65,13 +66,13 @@ class GltfPainter:
         extensions = texture.extensions or {}
         if "EXT_texture_webp" in extensions:
             return int(extensions["EXT_texture_webp"]["source"])
-        found = [place for place, name in enumerate(UNREAD) if name in extensions]
-        return -1 - found[0] if found else -1 - len(UNREAD)
+        found = [place for place, name in enumerate(self.UNREAD) if name in extensions]
+        return -1 - found[0] if found else -1 - len(self.UNREAD)
 
     def _picture(self, number: int, factor: tuple[float, ...]) -> Image:
         """Read an image, when it is drawn; AssetError where it cannot be."""
         if number < 0:
-            name = [*UNREAD, "no source"][-1 - number]
+            name = [*self.UNREAD, "no source"][-1 - number]
             raise AssetError(f"its picture is of a kind that is not read ({name}); save it as PNG")
         try:
             content, title = self._file.picture(number)

@@ -30,7 +30,6 @@ from .wavefront import read_obj
 
 FORMATS = ("obj", "ply", "stl", "off", "glb", "gltf")  # ends of names
 FARTHEST = 1e9  # of a coordinate, in any unit: far beyond all, and its cube is still a number
-_BLANK_LINES = re.compile(rb"\n\s*\n")
 
 
 @dataclass(frozen=True)
@@ -168,7 +167,8 @@ def _read_by_trimesh(content: bytes, suffix: str) -> tuple[Any, Any]:
     import trimesh  # which to load a head takes no time for
 
     logging.getLogger("trimesh").disabled = True
-    text = _BLANK_LINES.sub(b"\n", plain_text(content)) if b"\0" not in content else content
+    blank_lines = re.compile(rb"\n\s*\n")
+    text = blank_lines.sub(b"\n", plain_text(content)) if b"\0" not in content else content
     scene: Any = trimesh.load_scene(
         io.BytesIO(text), file_type=suffix, process=False, maintain_order=True
     )

@@ -19,18 +19,6 @@ import numpy.typing as npt
 from .topology import strip_triangles
 from .user_files import MOST_VERTICES, plain_text
 
-KINDS = {
-    **dict.fromkeys(("char", "int8"), "i1"),
-    **dict.fromkeys(("uchar", "uint8"), "u1"),
-    **dict.fromkeys(("short", "int16"), "i2"),
-    **dict.fromkeys(("ushort", "uint16"), "u2"),
-    **dict.fromkeys(("int", "int32"), "i4"),
-    **dict.fromkeys(("uint", "uint32"), "u4"),
-    **dict.fromkeys(("float", "float32"), "f4"),
-    **dict.fromkeys(("double", "float64"), "f8"),
-}
-_END = re.compile(rb"\bend_header[ \t]*(\r\n|\n|\r)")
-
 
 @dataclass(frozen=True)
 class PlySurface:
@@ -67,7 +55,8 @@ class _Element:
 
 def read_ply(content: bytes) -> PlySurface:
     """The surface in a file. Raises AssetError or any other error for a broken file."""
-    end = _END.search(content)
+    end_of_header = re.compile(rb"\bend_header[ \t]*(\r\n|\n|\r)")
+    end = end_of_header.search(content)
     if end is None:
         raise ValueError("its header has no end")
     elements, form = _header(plain_text(content[: end.start()]))
@@ -92,6 +81,16 @@ def _header(text: bytes) -> tuple[list[_Element], str]:
         raise ValueError("it does not begin with ply")
     elements: list[_Element] = []
     form = "ascii"
+    kinds_of_numbers = {
+        **dict.fromkeys(("char", "int8"), "i1"),
+        **dict.fromkeys(("uchar", "uint8"), "u1"),
+        **dict.fromkeys(("short", "int16"), "i2"),
+        **dict.fromkeys(("ushort", "uint16"), "u2"),
+        **dict.fromkeys(("int", "int32"), "i4"),
+        **dict.fromkeys(("uint", "uint32"), "u4"),
+        **dict.fromkeys(("float", "float32"), "f4"),
+        **dict.fromkeys(("double", "float64"), "f8"),
+    }
     for line in lines:
         match line.split():
             case ["format", name, *_]:
@@ -99,9 +98,11 @@ def _header(text: bytes) -> tuple[list[_Element], str]:
             case ["element", name, count]:
                 elements.append(_Element(name, int(count)))
             case ["property", "list", length, kind, name]:
-                elements[-1].properties.append(_Property(name, KINDS[kind], KINDS[length]))
+                elements[-1].properties.append(
+                    _Property(name, kinds_of_numbers[kind], kinds_of_numbers[length])
+                )
             case ["property", kind, name]:
-                elements[-1].properties.append(_Property(name, KINDS[kind], None))
+                elements[-1].properties.append(_Property(name, kinds_of_numbers[kind], None))
     return elements, form
 
 

@@ -24,14 +24,6 @@ from .errors import AssetError
 from .user_files import plain_text
 
 PLACING = ("-o", "-s", "-t")  # options of maps in a material library with up to three numbers
-OPTIONS = {  # and how many words follow each, those included
-    **dict.fromkeys(PLACING, 3),
-    "-mm": 2,
-    **dict.fromkeys(("-blendu", "-blendv", "-cc", "-clamp", "-texres", "-bm", "-boost"), 1),
-    **dict.fromkeys(("-imfchan", "-type", "-colorspace"), 1),
-}
-_REMARKS = re.compile(rb"(?m)^[ \t]*#[^\n]*")
-_CONTINUED = re.compile(rb"\\[ \t]*\n")
 
 
 @dataclass(frozen=True)
@@ -211,10 +203,16 @@ def _picture_of(rest: str) -> MaterialPicture:
     """The picture of a map: options, and then a name, which may hold blanks and be quoted."""
     values: dict[str, list[str]] = {}
     option, after = _parted(rest)
-    while option in OPTIONS and after:
+    option_words = {  # words that follow each option, those included
+        **dict.fromkeys(PLACING, 3),
+        "-mm": 2,
+        **dict.fromkeys(("-blendu", "-blendv", "-cc", "-clamp", "-texres", "-bm", "-boost"), 1),
+        **dict.fromkeys(("-imfchan", "-type", "-colorspace"), 1),
+    }
+    while option in option_words and after:
         rest = after
         values[option] = []
-        for _ in range(OPTIONS[option]):
+        for _ in range(option_words[option]):
             value, after = _parted(rest)
             if not after or (option in PLACING and not _is_number(value)):
                 break  # of three numbers two may be missing, and the last word is the name
@@ -255,5 +253,7 @@ def _joined(content: bytes) -> bytes:
 
     A remark ends with its line: a path in it may end in a backslash.
     """
-    text = _REMARKS.sub(b"", plain_text(content))
-    return _CONTINUED.sub(b" ", text)
+    remarks = re.compile(rb"(?m)^[ \t]*#[^\n]*")
+    text = remarks.sub(b"", plain_text(content))
+    continued = re.compile(rb"\\[ \t]*\n")
+    return continued.sub(b" ", text)

@@ -42,7 +42,6 @@ VIEWS = tuple(  # the whole front, as far as cameras go round it
     for yaw, pitch in itertools.product(YAWS, PITCHES)
     if (yaw / 60.0) ** 2 + (pitch / 40.0) ** 2 < 1.3
 )
-EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}  # landmarks
 
 
 class Pose(NamedTuple):
@@ -188,7 +187,8 @@ def lid_gaps(
     turns = [_turned_by(*view) for view in VIEWS]
     gaps = {}
     eye_radius = 100.0  # mm around the eye's middle in which skin may cover it
-    for side, numbers in EYE_CORNERS.items():
+    eye_corners = {"right": (36, 39), "left": (42, 45)}  # landmarks
+    for side, numbers in eye_corners.items():
         ends = landmarks[list(numbers)]
         ball = eyeballs[side]
         near = around(positions[triangles], ends.mean(axis=0), eye_radius)

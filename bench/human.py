@@ -36,7 +36,6 @@ Labels = npt.NDArray[np.str_]
 
 # [mm] RMS that may be left of the finer mesh.
 MOST_DISTANCES = {"all": 0.50, "nose": 0.60, "mouth": 0.60}
-LANDMARKS = slice(17, 68)  # without the outline of the face, which slides
 REGIONS = ("forehead", "eyes", "nose", "cheek", "mouth", "chin", "jaw")
 
 
@@ -173,6 +172,7 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: Surface) -> Rest:
     landmark_weight = 0.3  # of 1/mm^2
     farthest_distance = 12.0  # [mm] that points may be apart
     independent_points = 600  # points that count as independent: neighbours err alike
+    face_landmarks = slice(17, 68)  # without the outline of the face, which slides
     for number in range(rounds):
         points = turn.apply(space.person(weights)) + shift
         modes = space.modes @ turn.as_matrix().T
@@ -188,11 +188,11 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: Surface) -> Rest:
         normal = share * system.T @ system
         right = share * system.T @ left
         if number < landmark_rounds:
-            marks = space.landmarks[LANDMARKS]
+            marks = space.landmarks[face_landmarks]
             for axis in np.eye(3):
                 to = np.broadcast_to(axis, (len(marks), 3))
                 rows = np.hstack([(modes[:, marks] @ axis).T, np.cross(points[marks], to), to])
-                off = (surface.landmarks[LANDMARKS] - points[marks]) @ axis
+                off = (surface.landmarks[face_landmarks] - points[marks]) @ axis
                 normal += landmark_weight * rows.T @ rows
                 right += landmark_weight * rows.T @ off
         normal[:count, :count] += np.eye(count)  # a weight is as likely as among people

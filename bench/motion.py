@@ -30,8 +30,6 @@ from risorius.app.recordings.names import shape_of
 from .report import Target, at_least, at_most, table
 from .subjects import Points, Scans, settled_positions
 
-ALSO_CALLED = {"cheekraiser": "cheekSquint"}  # ICT-FaceKit has AU6 twice
-
 
 class Row(NamedTuple):
     """Scores of one shape."""
@@ -67,7 +65,8 @@ def measure(directory: Path) -> tuple[list[Row], list[str]]:
 
 def _shapes(name: str, simulation: sim.Simulation) -> list[str]:
     """The shapes of ARKit that a field's name means, both of a pair; none where it is unknown."""
-    name = ALSO_CALLED.get(name.lower(), name)
+    other_names = {"cheekraiser": "cheekSquint"}  # ICT-FaceKit has AU6 twice
+    name = other_names.get(name.lower(), name)
     for ways in ([name], [f"{name}Left", f"{name}Right"]):
         shapes = [shape_of(each) or "" for each in ways]
         if set(shapes) <= set(simulation.controls.tables.shares):

@@ -41,7 +41,6 @@ Mesh = Any
 SIZE = 480  # width and height of a picture [pixels]
 FINER = 2
 VIEWS = ("front", "three-quarter", "profile")
-ON_BLACK = replace(CLAY, bumps=0.0, background=render.BLACK)
 STATIC = "static"
 BEST = "cubic displacement 2x"
 _PRESET = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
@@ -176,7 +175,8 @@ def _shoot(
 
     The latter has shape (views, FINER * SIZE, FINER * SIZE).
     """
-    drawings = [Drawing(camera, ON_BLACK) for camera in cameras]
+    on_black = replace(CLAY, bumps=0.0, background=render.BLACK)
+    drawings = [Drawing(camera, on_black) for camera in cameras]
     x, normals, faces = mesh[:3]
     fine = np.stack([canvas.draw_surface(x, normals, faces, each) for each in drawings]).mean(3)
     covered = fine > 0.0  # lit clay is nowhere black, an empty frame is

@@ -42,22 +42,9 @@ from .subjects import SETTLE, settled_positions
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
-SHARES = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
-"""Per cent of the edges that are split -> quantiles of the drops that are the two thresholds."""
-TRIANGLE_COUNTS = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
 SIZES = ("face", "20k", "200k", "1M")
 """The meshes of a run by default; 2k is for a quick look."""
 WINDOWS_LOOK: Mapping[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
-METHODS: Mapping[str, Mapping[str, Any]] = {
-    "kahler": {},
-    "kahler, blend": {"blend": True},
-    "kahler, coherent": {"coherent": True},
-    "cubic": {"scheme": "cubic"},
-    "cubic, no blend": {"scheme": "cubic", "blend": False},
-    "detail": {"scheme": "detail"},
-    "window's look": WINDOWS_LOOK,
-}
-"""Our methods on the face: the paper's, and each scheme and each option beside it."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +103,8 @@ def measure(
 def load_of(size: str) -> Load:
     """The mesh of a size and the frames that it goes through."""
     if size != "face":
-        return waving_mesh(size, TRIANGLE_COUNTS[size])
+        triangle_counts = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
+        return waving_mesh(size, triangle_counts[size])
     head = assets.load("head")
     simulation = sim.create(head)
     full_expressions = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
@@ -159,7 +147,17 @@ def _waved(rest: Points, phase: float) -> Points:
 def _face_cases(load: Load) -> list[_Case]:
     fine = assets.load("head").finer(1)
     cases = [_own("none", load, "none")]
-    for method, options in METHODS.items():
+    # The paper's method, and each scheme and each option beside it.
+    methods: Mapping[str, Mapping[str, Any]] = {
+        "kahler": {},
+        "kahler, blend": {"blend": True},
+        "kahler, coherent": {"coherent": True},
+        "cubic": {"scheme": "cubic"},
+        "cubic, no blend": {"scheme": "cubic", "blend": False},
+        "detail": {"scheme": "detail"},
+        "window's look": WINDOWS_LOOK,
+    }
+    for method, options in methods.items():
         more = {"detail": (fine.vertices, fine.faces)} if "detail" in method else {}
         cases.append(_own(method, load, "kahler", **options, **more))
     cases += [_fixed("kahler", load, {}), _fixed("window's look", load, WINDOWS_LOOK)]
@@ -181,7 +179,9 @@ def _waving_cases(load: Load) -> list[_Case]:
         _own("smooth", load, "kahler", **WINDOWS_LOOK),
         _fixed("smooth", load, WINDOWS_LOOK),
     ]
-    for share, quantiles in SHARES.items():
+    # Per cent of the edges that are split -> quantiles of the drops for the two thresholds.
+    shares = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
+    for share, quantiles in shares.items():
         once, twice = (max(0.0, float(np.quantile(drops, q))) for q in quantiles)
         title = f"kahler {share} %"
         limits = {"threshold_once": once, "threshold_twice": twice}

@@ -40,15 +40,6 @@ Tracker = Callable[[Image], Scores]
 
 VIEWS = ("front", "-8,0", "8,0")  # as people sit before a camera
 SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
-# Shapes whose sides cannot be posed together, and the shapes that are posed beside them: no eye
-# looks to a side alone, and lips that close do so over an open jaw.
-POSED_BESIDE: dict[str, tuple[str, ...]] = {
-    "mouthLeft, Right": (),
-    "jawLeft, Right": (),
-    "eyeLookIn": ("eyeLookOutRight",),
-    "eyeLookOut": ("eyeLookInRight",),
-    "mouthClose": ("jawOpen",),
-}
 
 
 @contextlib.contextmanager
@@ -168,10 +159,19 @@ def measure(tracker: Tracker) -> dict[str, Shape]:
     shapes = {}
     with Capture(FaceScene(), CaptureOptions(size=SIZE)) as studio:
         neutral = pose_scores(tracker, studio, ())
+        # Shapes whose sides cannot be posed together, and the shapes that are posed beside them: no
+        # eye looks to a side alone, and lips that close do so over an open jaw.
+        posed_beside = {
+            "mouthLeft, Right": (),
+            "jawLeft, Right": (),
+            "eyeLookIn": ("eyeLookOutRight",),
+            "eyeLookOut": ("eyeLookInRight",),
+            "mouthClose": ("jawOpen",),
+        }
         for base, names in bases():
             own = names
-            beside = POSED_BESIDE.get(base, ())
-            if base in POSED_BESIDE:
+            beside = posed_beside.get(base, ())
+            if base in posed_beside:
                 own = names[:1]
             scores = pose_scores(tracker, studio, (*own, *beside))
             shapes[base] = compared(scores, neutral, own, beside)

@@ -32,7 +32,6 @@ Faces = npt.NDArray[np.int32]
 MILLIMETRES = 10.0  # per unit of a folder of scans (cm)
 DENSE = "face.npz"
 MODES = "identity_modes.npz"
-SIDES = {"_L": "Left", "_R": "Right"}
 SETTLE = 90  # frames of 1/60 s until a pose is still
 COARSE_TRIANGLES = 2029  # of a decimated scan: about those of the built-in head
 
@@ -58,14 +57,15 @@ class Scans:
         if not is_mesh or max(triangles.max(), landmarks.max()) >= len(vertices):
             raise UserError(f"{directory / DENSE}: holds no mesh with 68 of its vertices")
         fields: dict[str, Points] = {}
+        side_names = {"_L": "Left", "_R": "Right"}
         for name, array in arrays.items():
             if array.shape != vertices.shape:
                 raise UserError(f"{directory / DENSE}: {name} must move all vertices")
             stem = name[:-2]
             end = name[-2:]
-            if end in SIDES:
-                is_whole = all(f"{stem}{each}" in arrays for each in SIDES)
-                name = stem if is_whole else stem + SIDES[end]
+            if end in side_names:
+                is_whole = all(f"{stem}{each}" in arrays for each in side_names)
+                name = stem if is_whole else stem + side_names[end]
             moved = MILLIMETRES * array.astype(np.float64)
             fields[name] = fields.get(name, np.zeros_like(moved)) + moved
         mesh = Mesh(MILLIMETRES * vertices.astype(np.float64), triangles.astype(np.int32))

@@ -26,13 +26,6 @@ from .report import Target, at_least, processor, table
 
 WARM_UP = 1.0  # [s]
 IDLE_SECONDS = 8.0
-CASES = {
-    "smile": Display(),
-    "smile, unrefined": Display(is_refined=False),
-    "smile, wipe": Display(compare="wipe"),
-    "smile, side by side": Display(compare="side by side"),
-    "smile, muscles": Display(overlays=["muscles"]),
-}
 
 Frames = list[list[float]]
 """Of each: seconds, seconds of processor time, milliseconds of the stages."""
@@ -43,13 +36,20 @@ def measure(seconds: float, size: tuple[int, int]) -> tuple[str, list[Target]]:
 
     Returns the text to print, and the targets of the window where software draws.
     """
-    seen: dict[str, Frames] = {name: [] for name in CASES}
+    cases = {
+        "smile": Display(),
+        "smile, unrefined": Display(is_refined=False),
+        "smile, wipe": Display(compare="wipe"),
+        "smile, side by side": Display(compare="side by side"),
+        "smile, muscles": Display(overlays=["muscles"]),
+    }
+    seen: dict[str, Frames] = {name: [] for name in cases}
     rounds = 3
     with Viewer(_smile(), size, Display()) as viewer:
         viewer.session.is_looping = True
         for turn in range(rounds):
-            for name in CASES if turn % 2 == 0 else reversed(CASES):
-                seen[name] += _play(viewer, CASES[name], seconds / rounds)
+            for name in cases if turn % 2 == 0 else reversed(cases):
+                seen[name] += _play(viewer, cases[name], seconds / rounds)
         idle, alive = (_idle_share(viewer, is_alive=each) for each in (False, True))
         is_software = viewer.surface.is_software
         driver = viewer.surface.gl.info["GL_RENDERER"]
@@ -70,7 +70,7 @@ def measure(seconds: float, size: tuple[int, int]) -> tuple[str, list[Target]]:
         f"Nothing moves: {100.0 * idle:.1f} % of a core; the face lives: {100.0 * alive:.0f} %.",
     ]
     unpromised_case = "smile, muscles"
-    promised = [name for name in CASES if name != unpromised_case] if is_software else []
+    promised = [name for name in cases if name != unpromised_case] if is_software else []
     promised_rate = 20.0  # frames a second at 1280x720 with software OpenGL on 2 cores
     rates = [at_least(n, _rate(np.array(seen[n])), promised_rate, " frames/s") for n in promised]
     return "\n".join(lines), rates

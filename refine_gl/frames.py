@@ -30,7 +30,6 @@ MOST_GROUPS = 65535
 """Of a dispatch, that OpenGL promises."""
 VECTOR_BYTES = 16  # bytes
 NUMBER_BYTES = 4  # bytes
-_STREAM = {4: "vertex_buffer", 5: "index_buffer", 6: "source_buffer", 7: "command_buffer"}
 
 
 class Frames:
@@ -69,7 +68,13 @@ class Frames:
         """
         self._frame += 1
         self._bind()
-        for binding, name in _STREAM.items():
+        stream_buffers = {
+            4: "vertex_buffer",
+            5: "index_buffer",
+            6: "source_buffer",
+            7: "command_buffer",
+        }
+        for binding, name in stream_buffers.items():
             getattr(stream, name).bind_to_storage_buffer(binding)
         self._hand_over(positions, metric)
         for name in self._programs:

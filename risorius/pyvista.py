@@ -16,12 +16,13 @@ from tqdm import tqdm
 from .refine import View, WeldedRefiner, splits_of_clip
 from .refine.mesh.arrays import Wide
 
-NORMALS = "Normals"  # what PyVista's own filters call them
 SOURCE = "vtkOriginalCellIds"  # what PyVista's own filters call the cell that a cell was made of
 
 
 class PolyDataRefiner:
     """Refines one `pyvista.PolyData` in motion; `mesh.risorius.refiner()` makes it."""
+
+    NORMALS = "Normals"  # what PyVista's own filters call them
 
     def __init__(self, mesh: pyvista.PolyData, **options: Any) -> None:
         """Bind to a mesh at rest; see `RisoriusAccessor.refiner`."""
@@ -30,7 +31,7 @@ class PolyDataRefiner:
         triangles, self._cells = triangles_of(mesh)
         if len(triangles) == 0:
             raise pyvista.MissingDataError("mesh has no faces, so there is nothing to refine")
-        seams = any(name != NORMALS for name in mesh.point_data)
+        seams = any(name != self.NORMALS for name in mesh.point_data)
         self._refiner = WeldedRefiner(mesh.points, triangles, seams=seams, **options)
 
     def refine(
@@ -64,7 +65,7 @@ class PolyDataRefiner:
         shown: Any = mesh.positions.copy(), mesh.triangles.astype(np.int64)  # buffers are reused
         refined: pyvista.PolyData = pyvista.PolyData.from_regular_faces(*shown)
         for name, values in given.point_data.items():
-            if name != NORMALS:
+            if name != self.NORMALS:
                 refined.point_data[name] = self._refiner.carry(values)
         cells = self._cells[mesh.source]
         for name, values in given.cell_data.items():
@@ -72,8 +73,8 @@ class PolyDataRefiner:
         for name, values in given.field_data.items():
             refined.field_data[name] = values
         refined.cell_data[SOURCE] = cells
-        refined.point_data[NORMALS] = mesh.normals.copy()
-        refined.point_data.active_normals_name = NORMALS
+        refined.point_data[self.NORMALS] = mesh.normals.copy()
+        refined.point_data.active_normals_name = self.NORMALS
         texture = given.point_data.active_texture_coordinates_name
         if texture is not None:
             refined.point_data.active_texture_coordinates_name = texture

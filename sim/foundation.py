@@ -33,9 +33,6 @@ from .skull import (
 )
 from .surface import Surface, build_surface
 
-LEAST_MANDIBLE = 1e-4  # share of the jaw's motion that is none
-LARGEST_COORDINATE = 1e9  # [head units] of a coordinate; squares and cubes of lengths stay finite
-
 Faces = npt.NDArray[np.int32]
 
 
@@ -166,9 +163,11 @@ def mesh_of(what: str, given: Any) -> tuple[Array, npt.NDArray[np.int32]]:
             )
     wanted = "(V, 3) with V > 0"
     vertices = checked.numbers(f"{what}.vertices", given.vertices, (None, 3), wanted)
-    if (np.abs(vertices) > LARGEST_COORDINATE).any():
+    # [head units] of a coordinate; squares and cubes of lengths stay finite
+    largest_coordinate = 1e9
+    if (np.abs(vertices) > largest_coordinate).any():
         raise ValueError(
-            f"{what}.vertices: some are beyond {LARGEST_COORDINATE:g}; take another unit of length"
+            f"{what}.vertices: some are beyond {largest_coordinate:g}; take another unit of length"
         )
     if len(vertices) == 0:
         raise ValueError(f"{what}.vertices: shape was {vertices.shape}, must be {wanted}")
@@ -204,7 +203,8 @@ def _skull(
         condyles = np.array([[-1.0, 0, 0], [1.0, 0, 0]])
     # Lips clamped to one bone open like a letter box; skin between the bones rounds the mouth.
     weight = np.clip(surface.smoothed(weight, rig.jaw.softness), 0.0, 1.0)
-    weight[weight < LEAST_MANDIBLE] = 0.0
+    least_mandible = 1e-4  # share of the jaw's motion that is none
+    weight[weight < least_mandible] = 0.0
     return Skull(condyles, weight, balls, rig.jaw, rig.eyes, rig.head)
 
 

@@ -40,13 +40,14 @@ from .face import Simulation
 from .landmarks import Array
 
 STEP = 1.0 / 60.0  # [s] of a clone
-MOST_CONTROLS = 3  # that are used; and so many strongest decide how far targets can be
-ROUND_TOLERANCE = 0.01  # a change that counts as none, between rounds
 Names = tuple[str, ...]
 
 
 class Pull:
     """A finger on the skin, and the controls that move the skin as it does."""
+
+    MOST_CONTROLS = 3  # that are used; and so many strongest decide how far targets can be
+    ROUND_TOLERANCE = 0.01  # a change that counts as none, between rounds
 
     targets: Array  # where the finger draws each of its vertices [head units], shape (n, 3)
 
@@ -115,7 +116,7 @@ class Pull:
     def changes(self) -> dict[Names, float]:
         """The new values of controls that are not where they were, greatest change first."""
         moved = np.abs(self._value - self._start) * self.mends
-        changed = np.flatnonzero(moved > ROUND_TOLERANCE)
+        changed = np.flatnonzero(moved > self.ROUND_TOLERANCE)
         order = sorted(changed, key=lambda n: -round(float(moved[n]), 3))
         return {self.candidates[n]: float(self._value[n]) for n in order}
 
@@ -153,7 +154,7 @@ class Pull:
             self._value = before + self._system().least(needed)
             values = zip(self._value.tolist(), self.candidates, strict=True)
             _rest(self._base, {name: each for each, names in values for name in names})
-            if np.abs(self._value - before).max(initial=0.0) < ROUND_TOLERANCE:
+            if np.abs(self._value - before).max(initial=0.0) < self.ROUND_TOLERANCE:
                 break
             self._aims = self._aims + self._left(goal, self._base.positions)
             self._measure(np.flatnonzero(self._value != self._start))
@@ -166,7 +167,7 @@ class Pull:
         seen = (self._share[:, None] * drawn) @ self._seen
         along = ((self._first[:, self._vertices] @ self._seen) * seen).sum(axis=(1, 2))
         room = np.where(along > 0.0, self._high, self._low) - self._start
-        reach = float(np.sort(along * room)[-MOST_CONTROLS:].sum())
+        reach = float(np.sort(along * room)[-self.MOST_CONTROLS :].sum())
         drawn *= min(reach / max(self._square(drawn), 1e-12), 1.0)
         self._aims = self._from[self._vertices] + drawn
         self._drawn = max(self._off(self._from), 1e-12)
@@ -212,7 +213,7 @@ class Pull:
 
     def _more(self, needed: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
         """These controls and the one that mends most beside them, by slopes here."""
-        if needed.sum() >= MOST_CONTROLS:
+        if needed.sum() >= self.MOST_CONTROLS:
             return needed
         system = self._system()
         # Share of the squared distances: a control that mends less beside others is not used.
@@ -225,7 +226,7 @@ class Pull:
         alike = needed | (costs <= costs.min() + alike_share * worth)
         if alike.sum() > best.sum() and system.cost(alike) < costs.min() - worth:
             best = alike
-        is_worth_it = best.sum() <= MOST_CONTROLS and costs.min() < system.cost(needed) - worth
+        is_worth_it = best.sum() <= self.MOST_CONTROLS and costs.min() < system.cost(needed) - worth
         return best if is_worth_it else needed
 
     def _system(self) -> _Lasso:

@@ -29,12 +29,13 @@ from .landmarks import Array, smoothstep
 from .skull import RigidMotion
 
 SAMPLES = 65  # points of the spine
-PATH_SETBACK = 10.0  # mm behind the lower incisors' edges, where the path over them begins
 
 
 @dataclass(frozen=True)
 class Tongue:
     """A tongue at rest, in the standard space, seen from the mandible."""
+
+    PATH_SETBACK = 10.0  # mm behind the lower incisors' edges, where the path over them begins
 
     rest: Array  # (T, 3)
     along: Array  # (T,) place along the spine: 0 the tip .. 1 the root
@@ -74,7 +75,9 @@ class Tongue:
         falloff = np.maximum(1.0 - place / front_share, 0.0)[:, None] ** 2
         spine += up * (1.0 - risen) * falloff * tip_up
         # Flat where it passes between the teeth.
-        between = (spine[:, 0] - self.lower_edge[2] + 2.0 * PATH_SETBACK) / (1.5 * PATH_SETBACK)
+        between = (spine[:, 0] - self.lower_edge[2] + 2.0 * self.PATH_SETBACK) / (
+            1.5 * self.PATH_SETBACK
+        )
         flat = risen * smoothstep(between)
         height = 1.0 + flat * (np.minimum(0.5 * thickness / self.half, 1.0) - 1.0)
         least_width_share = 0.7  # of its width and height
@@ -84,7 +87,7 @@ class Tongue:
         # The thin tip hangs lower than the middle of the thick rest.
         sunk = sunk_share * risen * np.maximum(0.5 * thickness - self.half, 0.0)
         # The lower lip is lowest in its middle: the tongue lies in it.
-        over_lip = smoothstep((spine[:, 0] - self.lower_edge[2]) / PATH_SETBACK)
+        over_lip = smoothstep((spine[:, 0] - self.lower_edge[2]) / self.PATH_SETBACK)
         rise = max(float(lips[3:, 1].mean()) - lips[1, 1], 0.0)
         hollow = risen * over_lip * rise / max(abs(lips[3, 0] - lips[4, 0]) / 2.0, 1.0) ** 2
 
@@ -114,7 +117,7 @@ class Tongue:
         path = np.array([
             self.spine[-1] + (root_forward, 0.0),
             self.spine[SAMPLES // 2] + body_rise,
-            self.lower_edge[[2, 1]] + (-PATH_SETBACK, above),
+            self.lower_edge[[2, 1]] + (-self.PATH_SETBACK, above),
             (middle[2] - 1.0, over_lip),
             (front + above + overhang, low[1] - tip_drop),
         ])  # fmt: skip

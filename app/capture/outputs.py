@@ -53,7 +53,6 @@ VP9 = "-vcodec libvpx-vp9 -crf 18 -b:v 0 -deadline good -cpu-used 5 -row-mt 1 -p
 # Each frame has colours of its own: nothing is kept until the end of a long film.
 GIF = "-filter_complex split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1"
 WEBP = "-vcodec libwebp_anim -quality 88 -compression_level 4 -pix_fmt yuv420p"
-DYING = 1.0  # [s] for the end of a process that is killed, or has given up
 
 
 class FilmFormat(NamedTuple):
@@ -105,6 +104,8 @@ class Soundtrack:
 
 class Encoder:
     """An ffmpeg that takes frames and writes the file `part`; `target` names it in error texts."""
+
+    DYING = 1.0  # [s] for the end of a process that is killed, or has given up
 
     def __init__(
         self,
@@ -162,13 +163,13 @@ class Encoder:
             with contextlib.suppress(OSError):  # none of them is left
                 os.killpg(self._process.pid, signal.SIGKILL)  # its session is its group
         with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(DYING)
+            self._process.wait(self.DYING)
         self._messages.close()
         self._frames.close()
 
     def _failure(self) -> UserError:
         with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(DYING)
+            self._process.wait(self.DYING)
         self._messages.seek(0)
         said = self._messages.read().decode(errors="replace").strip().splitlines()
         # Without the part of ffmpeg that speaks: "[out#0/mp4 @ 0x55e9629d] ".
@@ -178,9 +179,6 @@ class Encoder:
             else f"it ended with code {self._process.returncode}"
         )
         return UserError(f"{self._target}: cannot be written: ffmpeg: {why}")
-
-
-FRAME_NAME = re.compile(rf"frame_\d{{5,}}(\.png|{'|'.join(map(re.escape, ENDS))})")
 
 
 FrameSink = Callable[..., None]  # takes pictures one by one, each with its labels and passes
@@ -237,8 +235,9 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
             if beside is not None:
                 beside.save(picture)
 
+    frame_name = re.compile(rf"frame_\d{{5,}}(\.png|{'|'.join(map(re.escape, ENDS))})")
     with (
-        folder_atomically(target, FRAME_NAME, overwrite=overwrite) as temporary,
+        folder_atomically(target, frame_name, overwrite=overwrite) as temporary,
         ThreadPoolExecutor(workers) as threads,
     ):
 

@@ -20,8 +20,6 @@ from ..stopping import cleaned_up_if_stopped
 from ..workers import DiedError, Send, Worker, share_of_cores
 from .drawing import Capture, CaptureOptions, Frame
 
-MOST = 8  # more of them than one encoder can follow
-
 
 @dataclass(frozen=True)
 class Share:
@@ -39,7 +37,8 @@ def worthwhile(options: CaptureOptions, frame_count: int) -> int:
     width, height = options.size
     samples = width * height * max(options.samples, 1) * frame_count
     least_samples = 1e8  # 27 frames of 1280 x 720: fewer are not worth a start of three seconds
-    count = min(share_of_cores(), MOST, int(samples / least_samples))
+    most_processes = 8  # more of them than one encoder can follow
+    count = min(share_of_cores(), most_processes, int(samples / least_samples))
     if count < 2:
         return 1
     with render.open_offscreen((1, 1), samples=0) as surface:

@@ -22,10 +22,8 @@ from ..errors import UserError
 from ..files import cannot_be_written, check_links, save_text
 from ..staging import is_staging_folder, locked
 
-BEGUN = "dataset.json"  # how the set was begun
 UNFINISHED = ".unfinished"
 LENGTHS = "files"  # the label that holds the length of each other file of a sample [bytes]
-_SAMPLE = re.compile(r"(\d{6})\.json")
 
 
 def name_of(index: int) -> str:
@@ -35,6 +33,8 @@ def name_of(index: int) -> str:
 
 class SetFolder:
     """A folder that holds one data set."""
+
+    BEGUN = "dataset.json"  # how the set was begun
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -70,7 +70,7 @@ class SetFolder:
                     shutil.rmtree(left)
                 self.log.unlink(missing_ok=True)
             if not self.there():
-                save_text(self.path / BEGUN, json.dumps(options, indent=1) + "\n")
+                save_text(self.path / self.BEGUN, json.dumps(options, indent=1) + "\n")
             yield
         with cannot_be_written(self.path):
             shutil.rmtree(unfinished)
@@ -80,7 +80,7 @@ class SetFolder:
 
         A set that ended before its first sample may be begun anew, in another way.
         """
-        begun = self.path / BEGUN
+        begun = self.path / self.BEGUN
         if not begun.exists():
             items = (item for item in self.path.iterdir() if not is_staging_folder(item))
             if any(item.name != UNFINISHED for item in items):
@@ -108,7 +108,8 @@ class SetFolder:
     def there(self) -> set[int]:
         """The numbers of the samples of which there is a .json."""
         with os.scandir(self.path) as items:
-            found = (_SAMPLE.fullmatch(item.name) for item in items)
+            sample_name = re.compile(r"(\d{6})\.json")
+            found = (sample_name.fullmatch(item.name) for item in items)
             return {int(match[1]) for match in found if match}
 
     def has(self, index: int) -> bool:

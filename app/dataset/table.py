@@ -23,7 +23,6 @@ from ..files import NoSuchFileError, read_text
 
 LETTERS = ("A", "B", "C", "D", "E")
 BLINK = "AU45"
-OF_EYES_AND_HEAD = {f"AU{number}" for number in range(51, 65)}  # these have their own sections
 Shares = Mapping[str, float]
 Range = tuple[float, float]
 
@@ -33,7 +32,9 @@ def _layer(title: str) -> Mapping[str, Any]:
 
 
 def _units() -> list[str]:
-    return [unit for unit in _layer("Action units") if unit not in {BLINK, *OF_EYES_AND_HEAD}]
+    # These have their own sections
+    units_of_eyes_and_head = {f"AU{number}" for number in range(51, 65)}
+    return [unit for unit in _layer("Action units") if unit not in {BLINK, *units_of_eyes_and_head}]
 
 
 def _drawn(shares: dict[str, float]) -> Shares:

@@ -23,26 +23,6 @@ from ..rig.surface import Floats, RefinedSurface
 from .clip import Clip
 from .formats import Request
 
-OTHER_ORDER = {  # its columns are in ARKit's order but for these
-    "jawLeft": "jawRight",
-    "jawRight": "jawLeft",
-    "mouthLeft": "mouthRight",
-    "mouthRight": "mouthLeft",
-}
-# Full controls in radians, and ARKit counts to the subject's right and down, where ours grow to the
-# left and up. The head rolls to the right shoulder there, and eyes look ahead along OUTWARD axes.
-ANGLES = {
-    "HeadYaw": ("head_yaw", -np.radians(45.0)),
-    "HeadPitch": ("head_pitch", -np.radians(30.0)),
-    "HeadRoll": ("head_roll", -np.radians(30.0)),
-    "LeftEyeYaw": ("gaze_horizontal_left", -np.radians(30.0)),
-    "LeftEyePitch": ("gaze_vertical_left", -np.radians(30.0)),
-    "LeftEyeRoll": ("", 0.0),
-    "RightEyeYaw": ("gaze_horizontal_right", -np.radians(30.0)),
-    "RightEyePitch": ("gaze_vertical_right", -np.radians(30.0)),
-    "RightEyeRoll": ("", 0.0),
-}
-
 
 def write_npz(clip: Clip, part: Path, _: Request) -> None:
     """Write the arrays of a clip; docs/export.md lists their names."""
@@ -67,11 +47,31 @@ def write_arkit(clip: Clip, part: Path, _: Request) -> None:
     """Write the 52 shapes and the angles of head and eyes, in Live Link Face's columns."""
     shapes = _as_seen(clip, solved(clip.scene, ARKIT_SHAPES, clip.activations, clip.controls))
     lowest = _as_seen(clip, clip.activations)
-    names = [OTHER_ORDER.get(name, name) for name in ARKIT]
+    other_order = {  # its columns are in ARKit's order but for these
+        "jawLeft": "jawRight",
+        "jawRight": "jawLeft",
+        "mouthLeft": "mouthRight",
+        "mouthRight": "mouthLeft",
+    }
+    names = [other_order.get(name, name) for name in ARKIT]
     still = np.zeros(clip.frame_count)
     # As the app spells them: JawOpen.
     columns = {name[0].upper() + name[1:]: shapes.get(name, still) for name in names}
-    for name, (control, radians) in ANGLES.items():
+    # Full controls in radians, and ARKit counts to the subject's right and down, where ours grow to
+    # the left and up. The head rolls to the right shoulder there, and eyes look ahead along OUTWARD
+    # axes.
+    angle_columns = {
+        "HeadYaw": ("head_yaw", -np.radians(45.0)),
+        "HeadPitch": ("head_pitch", -np.radians(30.0)),
+        "HeadRoll": ("head_roll", -np.radians(30.0)),
+        "LeftEyeYaw": ("gaze_horizontal_left", -np.radians(30.0)),
+        "LeftEyePitch": ("gaze_vertical_left", -np.radians(30.0)),
+        "LeftEyeRoll": ("", 0.0),
+        "RightEyeYaw": ("gaze_horizontal_right", -np.radians(30.0)),
+        "RightEyePitch": ("gaze_vertical_right", -np.radians(30.0)),
+        "RightEyeRoll": ("", 0.0),
+    }
+    for name, (control, radians) in angle_columns.items():
         outward = math.radians(OUTWARD.get(control.replace("gaze_horizontal", "eye_yaw"), 0.0))
         columns[name] = radians * lowest.get(control, still) - outward
     with part.open("w", newline="", encoding="utf-8") as file:

@@ -20,8 +20,6 @@ from .formats import Request
 
 h5py = needed("h5py", "VTKHDF", "export")
 
-OURS = np.array([0, 0, 1, 0])  # of vertices, lines, polygons, strips; polygons alone have cells
-
 
 def write_vtkhdf(clip: Clip, part: Path, request: Request) -> None:
     """Write all surfaces as one PolyData, the skin's triangles first.
@@ -66,10 +64,12 @@ class _Steps:
         shifted = [surface.faces + start for surface, start in zip(frame, starts, strict=True)]
         triangles = np.concatenate(shifted)
         surfaces = np.repeat(np.arange(len(frame)), [len(surface.faces) for surface in frame])
+        # Of vertices, lines, polygons, strips; polygons alone have cells
+        our_cells = np.array([0, 0, 1, 0])
         self._begins = {
             "PartOffsets": len(self._meshes["NumberOfPoints"]),
-            "CellOffsets": OURS * self._length("CellData/surface"),
-            "ConnectivityIdOffsets": OURS * self._length("Polygons/Connectivity"),
+            "CellOffsets": our_cells * self._length("CellData/surface"),
+            "ConnectivityIdOffsets": our_cells * self._length("Polygons/Connectivity"),
             "CellDataOffsets/surface": self._length("CellData/surface"),
             "CellDataOffsets/source": self._length("CellData/surface"),
         }

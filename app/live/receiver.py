@@ -17,8 +17,6 @@ from ..errors import UserError
 from .frame import MOST_BYTES, LiveFrame
 from .protocols import ANYWHERE, LOOPBACK, Listening, resolved
 
-LOOK_AROUND = 0.1  # [s] after which the thread sees that it is to end
-
 
 class Receiver:
     """A socket and its thread; `close` ends both.
@@ -26,6 +24,8 @@ class Receiver:
     listening: where. received, unusable: packets so far, and those that are none of the protocol.
     has_frame: whether a frame waits that somebody was woken for.
     """
+
+    LOOK_AROUND = 0.1  # [s] after which the thread sees that it is to end
 
     def __init__(
         self,
@@ -46,7 +46,7 @@ class Receiver:
         self.received = self.unusable = 0
         self.has_frame = False
         self._socket = _bound_socket(listening)
-        self._socket.settimeout(LOOK_AROUND)
+        self._socket.settimeout(self.LOOK_AROUND)
         self._is_closing = False
         self._thread = threading.Thread(target=self._receive, name="live face", daemon=True)
         self._thread.start()
@@ -74,7 +74,7 @@ class Receiver:
             except TimeoutError:
                 continue
             except OSError:  # a network that is down may come back
-                time.sleep(LOOK_AROUND)
+                time.sleep(self.LOOK_AROUND)
                 continue
             self._read(packet, self._clock())
 

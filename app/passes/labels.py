@@ -33,7 +33,6 @@ from .passes import NAMES, OF_FACES, Passes
 
 Floats = npt.NDArray[np.float64]
 SIDES = ("right", "left")  # the subject's, in the order of landmarks
-FORWARD = np.array([0.0, 0.0, 1.0])  # of a head and of an eye at rest
 DIGITS = 8  # behind the point: points projected anew are off by less than 1e-4 pixels
 
 
@@ -185,7 +184,8 @@ class CameraLabels:
 
 def gaze(scene: FaceScene, side: str) -> Floats:
     """Where the eye of that side looks: a unit vector in the scene, shape (3,)."""
-    way: Floats = scene.bone_transforms()[f"eye_{side}"][:3, :3] @ FORWARD
+    forward = np.array([0.0, 0.0, 1.0])  # of a head and of an eye at rest
+    way: Floats = scene.bone_transforms()[f"eye_{side}"][:3, :3] @ forward
     return way
 
 

@@ -23,9 +23,6 @@ from .mapping import controls_of
 from .report import Report, report_of
 from .take import Array, Take
 
-# How late eyes and head follow [s], where muscles and skin do by LEAD; all measured at 60 Hz.
-_LATE = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.063}
-
 
 def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, Report]:
     """The script that plays a take on a face with these controls, and what there is to say.
@@ -71,7 +68,9 @@ def _script(take: Take, curves: Mapping[str, Array], lead: float) -> Script:
 
 def lead_of(control: str, lead: float) -> float:
     """How much earlier a control is asked for [s], if muscles are by `lead`."""
-    late = next((each for start, each in _LATE.items() if control.startswith(start)), LEAD)
+    # How late eyes and head follow [s], where muscles and skin do by LEAD; all measured at 60 Hz.
+    lateness = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.063}
+    late = next((each for start, each in lateness.items() if control.startswith(start)), LEAD)
     return lead * late / LEAD
 
 

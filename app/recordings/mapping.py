@@ -17,15 +17,6 @@ from .take import Array
 
 Value = TypeVar("Value", float, Array)
 
-CONTROLS_OF_ANGLES = {  # and how much of them is a degree: as far as necks go without shoulders
-    "head_yaw": ("head_yaw", 0.022222),
-    "head_pitch": ("head_pitch", 0.033333),
-    "head_roll": ("head_roll", 0.033333),
-    "eye_yaw_left": ("gaze_horizontal_left", 0.033333),
-    "eye_yaw_right": ("gaze_horizontal_right", 0.033333),
-    "eye_pitch_left": ("gaze_vertical_left", 0.033333),
-    "eye_pitch_right": ("gaze_vertical_right", 0.033333),
-}
 _ACTION_UNIT = re.compile(r"(AU[0-9]{1,2})(_left|_right)?")
 _SHAPE_OF_UNIT = {  # action unit -> beginning of the names of shapes that measure it, too
     "AU1": "browInnerUp", "AU2": "browOuterUp", "AU4": "browDown", "AU5": "eyeWide",
@@ -50,8 +41,17 @@ def controls_of(channels: Mapping[str, Value]) -> dict[str, Value]:
     Nothing is cut off: controls have limits, measurements have none.
     """
     controls: dict[str, Value] = {}
+    controls_of_angles = {  # and how much of them is a degree: as far as necks go without shoulders
+        "head_yaw": ("head_yaw", 0.022222),
+        "head_pitch": ("head_pitch", 0.033333),
+        "head_roll": ("head_roll", 0.033333),
+        "eye_yaw_left": ("gaze_horizontal_left", 0.033333),
+        "eye_yaw_right": ("gaze_horizontal_right", 0.033333),
+        "eye_pitch_left": ("gaze_vertical_left", 0.033333),
+        "eye_pitch_right": ("gaze_vertical_right", 0.033333),
+    }
     for channel in chosen(channels):
-        control, share = CONTROLS_OF_ANGLES.get(channel, (channel, 1.0))
+        control, share = controls_of_angles.get(channel, (channel, 1.0))
         controls[control] = channels[channel] * share
     return controls
 

@@ -27,8 +27,6 @@ from .values import is_calibrated, is_flag, rows_without_face, shares, without_r
 # All without capitals and underscores, see `_plain`.
 FACES = ("faceblendshapes", "blendshapes", "categories")
 FRAMES = ("frames", "results", "data", "recording", "samples", "records", "weights")
-ROWS = ("weightmat", *FRAMES, "rows", "values")
-WEIGHTS = ("weights", "values", "coefficients", "scores", *FACES)  # of one frame
 RATES = ("fps", "exportfps", "framerate")
 DEEPEST = 4  # tables in one another, in which a face is looked for
 
@@ -93,7 +91,8 @@ def _named_rows(document: Any) -> list[Any]:
     names = next(filter(_are_names, lists), None)
     if names is None:
         return _frames_over_time(_columns(document))
-    lists = [table.get(key) for key in ROWS for table in tables]
+    row_keys = ("weightmat", *FRAMES, "rows", "values")
+    lists = [table.get(key) for key in row_keys for table in tables]
     rows = next((each for each in lists if isinstance(each, list) and each is not names), [])
     beside = {
         key: values
@@ -156,8 +155,9 @@ def _named_row(names: Sequence[str], row: Any) -> dict[str, Any]:
         beside = {name: cell for name, cell in cells.items() if not shape_of(name)}
         return beside | {"blendshapes": shapes}
     frame = dict(row)
+    weight_keys = ("weights", "values", "coefficients", "scores", *FACES)  # of one frame
     for key in row:
-        if _plain_name(key) in WEIGHTS and isinstance(row[key], list):
+        if _plain_name(key) in weight_keys and isinstance(row[key], list):
             del frame[key]
             frame["blendshapes"] = dict(zip(names, row[key], strict=False))
             break

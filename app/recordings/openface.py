@@ -21,11 +21,6 @@ from .values import intensities, rows_without_face, without_rows
 
 INTENSITY = re.compile(r"au(\d\d)_r$")
 PRESENCE = re.compile(r"au(\d\d)_c$")
-POSE = {
-    "pose_rx": ("head_pitch", -1.0),
-    "pose_ry": ("head_yaw", -1.0),
-    "pose_rz": ("head_roll", 1.0),
-}
 GAZE = ("gaze_angle_x", "gaze_angle_y")
 VECTORS = ("gaze_0_x", "gaze_0_y", "gaze_0_z", "gaze_1_x", "gaze_1_y", "gaze_1_z")
 
@@ -48,7 +43,12 @@ def read(table: Table, request: Request) -> Take:
     found = {f"AU{int(m[1])}": n for name, n in places.items() if (m := INTENSITY.match(name))}
     presences = {f"AU{int(m[1])}": n for name, n in places.items() if (m := PRESENCE.match(name))}
     only_present = {name: n for name, n in presences.items() if name not in found}
-    others = [n for n in (*POSE, *GAZE, *VECTORS) if n in places]
+    pose_columns = {
+        "pose_rx": ("head_pitch", -1.0),
+        "pose_ry": ("head_yaw", -1.0),
+        "pose_rz": ("head_roll", 1.0),
+    }
+    others = [n for n in (*pose_columns, *GAZE, *VECTORS) if n in places]
     wanted = found | only_present | {name: places[name] for name in others}
     numbers = table.numbers_of(wanted)
 
@@ -64,7 +64,7 @@ def read(table: Table, request: Request) -> Take:
     channels |= {name: numbers[name] for name in only_present}
     if only_present:
         notes.append(f"{', '.join(sorted(only_present))}: only present or absent, 0 or 1.")
-    for column, (name, sign) in POSE.items():
+    for column, (name, sign) in pose_columns.items():
         if column in numbers:
             channels[name] = sign * np.degrees(numbers[column])
     channels |= _eyes(numbers, channels, notes)

@@ -23,14 +23,14 @@ from .timing import times_of
 from .values import intensities, rows_without_face, shares, without_rows
 
 UNIT = re.compile(r"au(\d\d)$")
-BOX = {"facerectx", "facerecty", "facerectwidth", "facerectheight", "facescore"}
 POSE = ("pitch", "yaw", "roll")
 
 
 def recognises(names: tuple[str, ...]) -> bool:
     """Whether these are columns of py-feat."""
     folded = {name.casefold() for name in names}
-    return bool(folded & BOX) and any(UNIT.match(name) for name in folded)
+    box_columns = {"facerectx", "facerecty", "facerectwidth", "facerectheight", "facescore"}
+    return bool(folded & box_columns) and any(UNIT.match(name) for name in folded)
 
 
 def read(table: Table, request: Request) -> Take:

@@ -25,7 +25,6 @@ from .gaps import whole_take
 from .names import viseme_of
 from .take import Array, Request, Take
 
-CONTACTS = {"viseme_PP": 1.0, "viseme_FF": 0.9}  # peak that a sound needs
 SILENCE = "viseme_sil"
 MOUTHS = {  # of Rhubarb -> viseme and value
     "A": ("viseme_PP", 1.0),  # shut: p, b, m
@@ -115,7 +114,8 @@ def _made_clear(channels: dict[str, Array], notes: list[str]) -> dict[str, Array
     if max(float(values.max()) for values in channels.values()) > clear_peak:
         return channels
     found = dict(channels)
-    for name, wanted in CONTACTS.items():
+    least_peaks = {"viseme_PP": 1.0, "viseme_FF": 0.9}  # that a sound needs
+    for name, wanted in least_peaks.items():
         if name in found and (height := _height(found[name])):
             found[name] = np.minimum(found[name] * (wanted / height), wanted)
     if SILENCE in found and (height := _height(found[SILENCE])):

@@ -20,7 +20,6 @@ from .take import Array
 Rows = npt.NDArray[np.bool_]
 
 COUNT = "blendshapecount"  # of the values in a row
-WORDS = {"true": 1.0, "yes": 1.0, "false": 0.0, "no": 0.0}
 NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
                  "mouthShrugUpper")  # fmt: skip
 ZERO = 1e-6
@@ -177,8 +176,9 @@ def _rows_of_zeros(shapes: Mapping[str, Array]) -> Rows:
 def _flag_in(cell: str) -> float:
     """The number that a flag is, NaN for none."""
     word = cell.strip().casefold()
-    if word in WORDS:
-        return WORDS[word]
+    words = {"true": 1.0, "yes": 1.0, "false": 0.0, "no": 0.0}
+    if word in words:
+        return words[word]
     try:
         return float(word)
     except ValueError:

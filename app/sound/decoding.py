@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from ..script import Script
 
 RATE = 48_000  # [samples/s] of sounds; devices and films have it, too
-LONGEST = 3600.0  # [s]; all of it is held in memory, 690 MB for so long in stereo
 PATIENCE = 300.0  # [s] for ffmpeg to read a file
 
 
@@ -42,18 +41,17 @@ class Sound:
         return len(self.samples) / self.rate
 
 
-BLOCK = 512  # samples of which the lowest and the highest are known
-
-
 class Peaks:
     """How far a sound swings, of all channels together; made once, asked often at any zoom."""
+
+    BLOCK = 512  # samples of which the lowest and the highest are known
 
     def __init__(self, sound: Sound) -> None:
         self._rate = sound.rate
         swings = sound.samples.min(axis=1), sound.samples.max(axis=1)
-        starts = np.arange(0, len(sound.samples), BLOCK)
+        starts = np.arange(0, len(sound.samples), self.BLOCK)
         blocks = np.minimum.reduceat(swings[0], starts), np.maximum.reduceat(swings[1], starts)
-        self._levels = {BLOCK: blocks, 1: swings}
+        self._levels = {self.BLOCK: blocks, 1: swings}
         self._loudest = max(-int(blocks[0].min()), int(blocks[1].max()), 1)
 
     def between(
@@ -66,7 +64,7 @@ class Peaks:
         """
         edges = np.linspace(start, end, count + 1) * self._rate
         # Stretches of four blocks and more have right edges; of shorter ones samples are read.
-        length = BLOCK if edges[-1] - edges[0] >= count * 4 * BLOCK else 1
+        length = self.BLOCK if edges[-1] - edges[0] >= count * 4 * self.BLOCK else 1
         low, high = self._levels[length]
         places = np.floor(edges / length).astype(np.int64)
         begins = places[:-1][places[:-1] < len(low)]
@@ -109,7 +107,8 @@ def load_sound(file: Path) -> Sound:
     """Read a sound file, or the sound of a film; UserError says why there is none in it."""
     read_bytes(file, what="sound file", longest=2**40, first=0)
     name = ffmpeg()
-    source = sound_input(Path(os.path.abspath(file)), LONGEST + 1.0)
+    longest = 3600.0  # [s]; all of it is held in memory, 690 MB for so long in stereo
+    source = sound_input(Path(os.path.abspath(file)), longest + 1.0)
     form = ["-map", "0:a:0", *sound_form(), "-f", "wav", "-c", "pcm_s16le"]
     try:
         heard = subprocess.run(
@@ -129,8 +128,8 @@ def load_sound(file: Path) -> Sound:
             "or a film that is heard"
         )
     sound = Sound(file, samples)
-    if sound.duration > LONGEST:
-        raise UserError(f"{file}: is longer than a sound may be, {LONGEST / 60:g} minutes")
+    if sound.duration > longest:
+        raise UserError(f"{file}: is longer than a sound may be, {longest / 60:g} minutes")
     return sound
 
 

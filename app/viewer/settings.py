@@ -36,7 +36,6 @@ from ..scenes import FaceScene, Scene
 from .interface.gui import THEMES
 
 SIDES_SHOWN = 200, 16384  # [screen units] of the window, least and most
-ZOOMS = 0.6, 3.0  # least and most of the size of words
 COMPARISONS = ("off", "wipe", "side by side")
 SKINS = {  # whether it is textured, and its colour
     "textured": (True, render.SKIN),
@@ -178,6 +177,8 @@ class ExportChoices(Record):
 class Settings(Record):
     """Everything that is remembered."""
 
+    ZOOMS = 0.6, 3.0  # least and most of the size of words
+
     size: Size = None  # of the window [screen units]
     theme: Annotated[str, OneOf(THEMES)] = "light"
     zoom: Annotated[float, Within(*ZOOMS)] = 1.0  # of all words and sliders
@@ -198,7 +199,7 @@ class Settings(Record):
 
     def enlarge(self, factor: float) -> None:
         """Make words and sliders larger or smaller."""
-        least, most = ZOOMS
+        least, most = self.ZOOMS
         self.zoom = min(max(self.zoom * factor, least), most)
 
 

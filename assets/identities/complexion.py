@@ -37,7 +37,6 @@ from .space import Identity, Sex
 
 LIGHTEST = 70.0  # ITA [deg]
 DARKEST = -55.0
-MOST = 3.4
 ONLY_BROWN = 28.0  # ITA below which eyes are brown, as nearly all are there
 IRIS_SHARES = {"brown": 0.4, "hazel": 0.15, "green": 0.12, "blue": 0.2, "grey": 0.13}
 GREY_HAIR = (0.54, 0.52, 0.49)
@@ -358,7 +357,8 @@ def _tints() -> _Tints:
     skin = arrays["skin"][:3]
     weights = arrays["skin"][3:]
     least_melanin = 0.05
-    melanins = np.linspace(MOST, least_melanin, 200)
+    most_melanin = 3.4
+    melanins = np.linspace(most_melanin, least_melanin, 200)
     changes = [_changes(float(melanin), 1.0) for melanin in melanins]
     tones = [skin * np.exp(-weights[0] * more - weights[1] * red) for more, red, _ in changes]
     lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3))

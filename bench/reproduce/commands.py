@@ -21,11 +21,13 @@ from .experiments import EXPERIMENTS, Result
 PATH = click.Path(path_type=Path)
 
 
-NAMES = [experiment.name for experiment in EXPERIMENTS]
-
-
 @click.command()
-@click.argument("names", nargs=-1, required=True, type=click.Choice(["all", *NAMES]))
+@click.argument(
+    "names",
+    nargs=-1,
+    required=True,
+    type=click.Choice(["all", *(experiment.name for experiment in EXPERIMENTS)]),
+)
 @click.option(
     "-o", "--output", "folder", type=PATH, default=Path("out/reproduce"), show_default=True
 )

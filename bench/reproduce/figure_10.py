@@ -33,8 +33,6 @@ SMOOTH = replace(GOURAUD, albedo=render.SKIN)
 SKIN, MOUTH, BACKGROUND = range(3)  # channels of a picture of kinds
 BLUE = render.Background((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 GREEN = np.array([0.0, 1.0, 0.0], np.float32)
-KINDS = replace(FLAT, albedo=(1.0, 0.0, 0.0), gloss=0.0, background=BLUE)
-OPENING = np.array([(233, 222, 214), (52, 40, 42), (255, 255, 255)], np.uint8)  # by kind
 
 
 @dataclass(frozen=True)
@@ -64,12 +62,6 @@ class Viewpoint:
     aside: tuple[float, float]  # the camera is moved right and up, in heights of the frame
 
 
-VIEWPOINTS = (
-    Viewpoint("yawn", "-24,-4,5.2", (-0.1, 0.0)),
-    Viewpoint("joy", "-30,0,5.2", (-0.1, 0.05)),
-)
-
-
 @dataclass(frozen=True)
 class Cell:
     """The picture of one expression by one variant."""
@@ -94,7 +86,9 @@ class Cell:
 
     def opening(self, truth: Cell) -> Image:
         """The picture of the opening."""
-        picture = OPENING[self.kinds]
+        # By kind
+        opening_colours = np.array([(233, 222, 214), (52, 40, 42), (255, 255, 255)], np.uint8)
+        picture = opening_colours[self.kinds]
         wrong_colour = (225, 30, 30)
         picture[self.wrong(truth)] = wrong_colour
         return _smaller(picture)
@@ -157,7 +151,12 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     refiners.append(("dense mesh", dense, len(fine.vertices)))
     with Canvas((FINER * size[0], FINER * size[1])) as canvas:
         parts_at_lids = "lashes", "wet_edges"  # not near lips
-        for viewpoint in VIEWPOINTS:
+        kinds_style = replace(FLAT, albedo=(1.0, 0.0, 0.0), gloss=0.0, background=BLUE)
+        viewpoints = (
+            Viewpoint("yawn", "-24,-4,5.2", (-0.1, 0.0)),
+            Viewpoint("joy", "-30,0,5.2", (-0.1, 0.05)),
+        )
+        for viewpoint in viewpoints:
             now = settled_positions(simulation, {viewpoint.expression: 1.0}, SETTLE)
             lips = now[head.landmarks[48:68]]
             camera = camera_for(scene, viewpoint.view)
@@ -175,7 +174,7 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
                 skin = now[:count]  # the first vertices of the dense mesh are the coarse one's
                 smooth, kinds = (
                     canvas.draw_image(refiner, skin, Drawing(camera, style, each, bones))
-                    for style, each in ((SMOOTH, parts), (KINDS, green))
+                    for style, each in ((SMOOTH, parts), (kinds_style, green))
                 )
                 of_kind = kinds.argmax(axis=2).astype(np.uint8)
                 triangles = canvas.mesh_of(refiner).triangle_count

@@ -27,8 +27,6 @@ from .experiments import Outcome
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
-WIRE = replace(FLAT, wireframe=True, wire_opacity=0.55)
-
 
 def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
     """How much nearer to folds subtriangles lie, and how much thinner they are.
@@ -50,7 +48,8 @@ def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
     }
     camera = camera_for(scene, "-30,-5,4.6")
     camera.pan(0.12, 0.05)
-    wire = Drawing(camera, WIRE, parts_without_hair(scene), scene.bone_transforms())
+    wire_style = replace(FLAT, wireframe=True, wire_opacity=0.55)
+    wire = Drawing(camera, wire_style, parts_without_hair(scene), scene.bone_transforms())
     red = (0.85, 0.1, 0.1)
     along = render.Lines(lines_along(scene), red, width=2.0, hidden_opacity=0.0)
     with Canvas(size) as canvas:

@@ -24,15 +24,6 @@ from .experiments import Outcome
 from .figure_10 import Variant
 
 BACKGROUND = 250.0  # grey level; pictures stand on white, and no part of the plane is as light
-SHADINGS = (("flat", FLAT), ("Gouraud", GOURAUD))
-
-
-VARIANTS = (
-    Variant("static", "none"),
-    Variant("refined", "kahler"),
-    Variant("refined, its own normals", "kahler", {"normals": "refined"}),
-    Variant("refined, cubic curves", "kahler", {"scheme": "cubic"}),
-)
 
 
 def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
@@ -42,12 +33,19 @@ def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
     """
     means = {}
     rows = []
+    shadings = (("flat", FLAT), ("Gouraud", GOURAUD))
+    variants = (
+        Variant("static", "none"),
+        Variant("refined", "kahler"),
+        Variant("refined, its own normals", "kahler", {"normals": "refined"}),
+        Variant("refined, cubic curves", "kahler", {"scheme": "cubic"}),
+    )
     with Canvas(size) as canvas:
         plane = Waving(canvas)
         phases = (0.0, 0.33, 0.66)  # moments of the wave
         true = [plane.true_image(phase) for phase in phases]
-        for shading, style in SHADINGS:
-            for variant in VARIANTS:
+        for shading, style in shadings:
+            for variant in variants:
                 cells = []
                 levels = []
                 for phase, truth in zip(phases, true, strict=True):
@@ -62,8 +60,8 @@ def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
                     rows.append((f"{variant.title}, {shading} shading", cells))
         rows.append(("the sine itself", [("", truth) for truth in true]))
     values = {}
-    for shading, _ in SHADINGS:
-        before, after, own = (means[shading, each.title] for each in VARIANTS[:3])
+    for shading, _ in shadings:
+        before, after, own = (means[shading, each.title] for each in variants[:3])
         values[f"{shading}: shading error, refined over static"] = after / before
         values[f"{shading}: with normals of the refined surface, over static"] = own / before
     return Outcome(values, image_table(rows))

@@ -22,7 +22,6 @@ LAYERS = {  # by file: the layer, and how many columns leave few cells of the la
     "visemes": ("Visemes", 5),
     "arkit": ("ARKit shapes", 4),
 }
-SHOWN_OVER = {"mouthClose": {"mouthClose": 0.5, "jawOpen": 0.5}}  # a share shows nothing alone
 
 
 def without_sides(names: Sequence[str]) -> list[str]:
@@ -42,7 +41,8 @@ def portrait(scene: Scene, name: str, size: tuple[int, int]) -> Image:
     is_turned = name.removesuffix("_left") in turning_units
     raised = 11.0  # [mm] that these look higher than at the landmarks: foreheads wrinkle
     target = None if is_turned else scene.focus + np.array([0.0, raised, 0.0])
-    pose = SHOWN_OVER.get(name, {name: 1.0})
+    shown_over = {"mouthClose": {"mouthClose": 0.5, "jawOpen": 0.5}}  # a share shows nothing alone
+    pose = shown_over.get(name, {name: 1.0})
     views = ("0,0,1.7", "-34,3,1.7")  # front and three-quarter
     far_views = ("0,0,1.1", "-34,3,1.1")  # of a head that turns
     images = [

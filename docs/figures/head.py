@@ -22,11 +22,6 @@ from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
 
 CELL = (260, 320)  # [pixels] of one portrait: a contact sheet stays below 600 kB
-STYLES = {
-    "painted": render.Style(),
-    "clay": render.Style(textured=False, albedo=render.CLAY),
-    "flat": render.Style(textured=False, albedo=render.CLAY, shading=render.Shading.FLAT),
-}
 
 
 def system() -> Image:
@@ -52,7 +47,12 @@ def head_views(size: tuple[int, int] = CELL) -> Image:
     scene = FaceScene()
     cells = []
     views = ("front", "three-quarter", "profile", "below")
-    for title, style in STYLES.items():
+    styles = {
+        "painted": render.Style(),
+        "clay": render.Style(textured=False, albedo=render.CLAY),
+        "flat": render.Style(textured=False, albedo=render.CLAY, shading=render.Shading.FLAT),
+    }
+    for title, style in styles.items():
         for view in views:
             look = Refinement(refiner=STATIC if title == "flat" else None)
             options = CaptureOptions(size, refinement=look, style=style, camera=view)

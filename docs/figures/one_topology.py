@@ -18,14 +18,9 @@ from risorius.bench.subjects import SETTLE, settled_positions
 
 Points = npt.NDArray[np.float64]
 
-EXPRESSIONS = ("joy", "surprise")
-SPLIT = (163, 204, 232)  # of triangles that are part of one that is split
-WHOLE = (242, 240, 236)
 LIGHT = np.array([-0.35, 0.45, 0.82])
 PANEL = (420, 480)
 CAPTION = 24  # pixels below the panels
-PIXELS = 2.45  # of a millimetre
-MIDDLE = (0.0, -22.0)  # of the face [mm], in the middle of a panel
 
 
 def shaded(colour: Colour, light: float) -> Colour:
@@ -39,16 +34,20 @@ def draw_frame(
 ) -> Points:
     """Draw the triangles that look at the reader; return where all vertices are, (N, 2)."""
     centre = np.array([left + PANEL[0] / 2.0, CAPTION + PANEL[1] / 2.0])
-    places = centre + PIXELS * (mesh.positions[:, :2].astype(np.float64) - MIDDLE)
+    pixels = 2.45  # of a millimetre
+    middle = (0.0, -22.0)  # of the face [mm], in the middle of a panel
+    places = centre + pixels * (mesh.positions[:, :2].astype(np.float64) - middle)
     corners = mesh.positions[mesh.triangles].astype(np.float64)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     is_inside = (np.abs(places[mesh.triangles, 0] - centre[0]) < PANEL[0] / 2.0).all(axis=1)
+    split = (163, 204, 232)  # of triangles that are part of one that is split
+    whole = (242, 240, 236)
     for k in np.argsort(corners[:, :, 2].mean(axis=1)):
         if normals[k, 2] <= 0.0 or not is_inside[k]:
             continue
         outline = places[mesh.triangles[k]]
-        fill = SPLIT if is_split[mesh.source[k]] else WHOLE
+        fill = split if is_split[mesh.source[k]] else whole
         diagram.polygon(list(outline), shaded(fill, max(float(normals[k] @ LIGHT), 0.0)))
         diagram.line([*outline, outline[0]], FAINT, 0.5)
     strip = [(left, 0), (left + PANEL[0], 0), (left + PANEL[0], CAPTION), (left, CAPTION)]
@@ -60,12 +59,13 @@ def one_topology() -> Image:
     """A face in two expressions, with the splits that both need together."""
     head = assets.load("head")
     simulation = sim.create(head)
-    frames = [settled_positions(simulation, head.expressions[each], SETTLE) for each in EXPRESSIONS]
+    expressions = ("joy", "surprise")
+    frames = [settled_positions(simulation, head.expressions[each], SETTLE) for each in expressions]
     splits = refine.splits_of_clip(refine.create("kahler", head.faces, head.vertices), frames)
     refiner = refine.create("kahler", head.faces, head.vertices, splits=splits)
     is_split = splits[refiner.triangle_edges].any(axis=1)
     diagram = Diagram(2 * PANEL[0], PANEL[1] + CAPTION)
-    for panel, (expression, frame) in enumerate(zip(EXPRESSIONS, frames, strict=True)):
+    for panel, (expression, frame) in enumerate(zip(expressions, frames, strict=True)):
         mesh = refiner.refine(frame)
         left = panel * PANEL[0]
         places = draw_frame(diagram, mesh, is_split, left)

@@ -21,17 +21,6 @@ from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
 
-POSE = {"AU12": 0.75, "AU6": 0.4, "AU1": 0.5, "jaw_open": 0.3, "head_yaw": -0.15}
-EDGE = np.array((255, 255, 255), np.uint8)
-COLOURS = {
-    Segment.SKIN: (221, 176, 152), Segment.NOSE: (240, 145, 45), Segment.RIGHT_EYE: (40, 85, 225),
-    Segment.LEFT_EYE: (40, 195, 225), Segment.RIGHT_BROW: (10, 100, 40),
-    Segment.LEFT_BROW: (95, 175, 45), Segment.RIGHT_EAR: (205, 60, 205),
-    Segment.LEFT_EAR: (140, 60, 165), Segment.MOUTH_INTERIOR: (110, 10, 20),
-    Segment.TOP_LIP: (225, 55, 60), Segment.BOTTOM_LIP: (250, 135, 140),
-    Segment.NECK: (105, 105, 195), Segment.HAIR: (120, 85, 50), Segment.CLOTHING: (60, 75, 90),
-}  # fmt: skip
-
 
 def passes(size: tuple[int, int] = (440, 500)) -> Image:
     """One smile, and all that is known of each of its pixels."""
@@ -41,7 +30,8 @@ def passes(size: tuple[int, int] = (440, 500)) -> Image:
         studio.camera.orbit(*turn)
         margin = 0.04  # share of the picture, free on each side
         studio.camera.fit(scene.extent, margin)
-        scene.pose(POSE)
+        pose = {"AU12": 0.75, "AU6": 0.4, "AU1": 0.5, "jaw_open": 0.3, "head_yaw": -0.15}
+        scene.pose(pose)
         settling_time = 1.0  # [s]
         scene.step(settling_time)
         picture = studio.draw_image()
@@ -49,9 +39,25 @@ def passes(size: tuple[int, int] = (440, 500)) -> Image:
         known = labelled(drawn, studio.camera, studio.options.style, NAMES)
     images = known.images
     on = images["depth"] > 0.0
+    colours_of_segments = {
+        Segment.SKIN: (221, 176, 152),
+        Segment.NOSE: (240, 145, 45),
+        Segment.RIGHT_EYE: (40, 85, 225),
+        Segment.LEFT_EYE: (40, 195, 225),
+        Segment.RIGHT_BROW: (10, 100, 40),
+        Segment.LEFT_BROW: (95, 175, 45),
+        Segment.RIGHT_EAR: (205, 60, 205),
+        Segment.LEFT_EAR: (140, 60, 165),
+        Segment.MOUTH_INTERIOR: (110, 10, 20),
+        Segment.TOP_LIP: (225, 55, 60),
+        Segment.BOTTOM_LIP: (250, 135, 140),
+        Segment.NECK: (105, 105, 195),
+        Segment.HAIR: (120, 85, 50),
+        Segment.CLOTHING: (60, 75, 90),
+    }
     cells = {
         "colour": picture,
-        "segmentation": _looked_up(images["segmentation"], COLOURS),
+        "segmentation": _looked_up(images["segmentation"], colours_of_segments),
         "landmarks: hidden ones red": dotted(picture, known.labels, 2.5),
         "depth: near is light": _grey(images["depth"], on),
         "normal: right red, up green, to the eye blue": _directions(images["normal"], on),
@@ -129,7 +135,8 @@ def _labelled(shot: Shot) -> Image:
     is_edge = np.zeros(classes.shape, bool)
     is_edge[1:] |= classes[1:] != classes[:-1]
     is_edge[:, 1:] |= classes[:, 1:] != classes[:, :-1]
-    return dotted(np.where(is_edge[..., None], EDGE, shot.image), shot.known.labels, 1.5)
+    edge_colour = np.array((255, 255, 255), np.uint8)
+    return dotted(np.where(is_edge[..., None], edge_colour, shot.image), shot.known.labels, 1.5)
 
 
 if __name__ == "__main__":

@@ -23,7 +23,6 @@ from risorius.refine.kahler.table import POINTS, splits_of, subdivide
 
 Places = npt.NDArray[np.float64]
 
-SCALE = 3
 PAPER = (255, 255, 255)
 INK = (32, 34, 40)
 FILL = (236, 240, 245)
@@ -39,9 +38,11 @@ class Diagram:
     Points are pixels of the finished picture, y upward.
     """
 
+    SCALE = 3
+
     def __init__(self, width: int, height: int) -> None:
         self.size = (width, height)
-        self._image = PIL.Image.new("RGB", (width * SCALE, height * SCALE), PAPER)
+        self._image = PIL.Image.new("RGB", (width * self.SCALE, height * self.SCALE), PAPER)
         self._draw = ImageDraw.Draw(self._image)
 
     def image(self) -> Image:
@@ -51,7 +52,7 @@ class Diagram:
     def line(self, points: Sequence[Place], colour: Colour = INK, width: float = 1.2) -> None:
         """A polyline; its width in pixels."""
         places = [self._place(point) for point in points]
-        self._draw.line(places, fill=colour, width=round(width * SCALE), joint="curve")
+        self._draw.line(places, fill=colour, width=round(width * self.SCALE), joint="curve")
 
     def polygon(self, points: Sequence[Place], fill: Colour) -> None:
         """A filled area."""
@@ -60,16 +61,16 @@ class Diagram:
     def disc(self, point: Place, colour: Colour, radius: float = 3.0) -> None:
         """A round mark."""
         x, y = self._place(point)
-        reach = radius * SCALE
+        reach = radius * self.SCALE
         self._draw.ellipse((x - reach, y - reach, x + reach, y + reach), fill=colour)
 
     def text(self, point: Place, text: str, colour: Colour = INK, size: float = 12.0) -> None:
         """Text around a point."""
-        self._draw.text(self._place(point), text, colour, font(size * SCALE), "mm")
+        self._draw.text(self._place(point), text, colour, font(size * self.SCALE), "mm")
 
     def _place(self, point: Place) -> tuple[float, float]:
         x, y = np.asarray(point, dtype=np.float64)
-        return float(x * SCALE), float((self.size[1] - y) * SCALE)
+        return float(x * self.SCALE), float((self.size[1] - y) * self.SCALE)
 
 
 def equilateral(centre: Place, side: float) -> npt.NDArray[np.float64]:

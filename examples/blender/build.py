@@ -14,8 +14,6 @@ import tomllib
 import zipfile
 from pathlib import Path
 
-ADD_ON = Path(__file__).parent / "risorius_refine"
-CHECKOUT = Path(__file__).parents[2]
 PASSED_OVER = shutil.ignore_patterns(".*", "__pycache__", "build", "dist", "out", "*.egg-info")
 WHEELS_FOR = {  # by Blender's name of a platform: tags of wheels that run there
     "linux-x64": ("manylinux_2_28_x86_64", "manylinux_2_27_x86_64", "manylinux2014_x86_64"),
@@ -31,7 +29,8 @@ def collect_wheels(platform: str, folder: Path) -> list[Path]:
     earlier one would get into the wheel.
     """
     copy = folder / "checkout"
-    shutil.copytree(CHECKOUT, copy, ignore=PASSED_OVER)
+    checkout = Path(__file__).parents[2]
+    shutil.copytree(checkout, copy, ignore=PASSED_OVER)
     pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
     wheels = ["--no-deps", "--wheel-dir", str(folder), str(copy)]
     subprocess.run([*pip, "wheel", *wheels], check=True)
@@ -45,7 +44,8 @@ def collect_wheels(platform: str, folder: Path) -> list[Path]:
 
 def main(platform: str, target: Path) -> Path:
     """Write the .zip; its manifest names the wheels, and the platform that they are for."""
-    manifest = (ADD_ON / "blender_manifest.toml").read_text(encoding="utf-8")
+    add_on = Path(__file__).parent / "risorius_refine"
+    manifest = (add_on / "blender_manifest.toml").read_text(encoding="utf-8")
     about = tomllib.loads(manifest)
     file = target / f"{about['id']}-{about['version']}-{platform}.zip"
     with tempfile.TemporaryDirectory() as folder:
@@ -54,7 +54,7 @@ def main(platform: str, target: Path) -> Path:
         lines = f'platforms = ["{platform}"]\nwheels = [\n{names}]\n\n'
         part = file.with_suffix(".part")
         with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
-            archive.write(ADD_ON / "__init__.py", "__init__.py")
+            archive.write(add_on / "__init__.py", "__init__.py")
             permissions = manifest.index("[permissions]")  # keys come before tables
             whole = manifest[:permissions] + lines + manifest[permissions:]
             archive.writestr("blender_manifest.toml", whole)

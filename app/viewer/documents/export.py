@@ -153,18 +153,15 @@ class Exporter:
             job.task.stop(waits=True)
 
 
-TITLE = "Export"
-DIALOG_WIDTH = 31.0  # [em] of the dialog
-BUTTON_WIDTH = 6.5  # [em] of a button
-PICTURE_SIZES = {
-    **{(640, 480): "VGA", (1280, 720): "HD", (1920, 1080): "Full HD", (3840, 2160): "4K"},
-    **{(1080, 1080): "Square", (1080, 1920): "Upright"},
-}
 Value = TypeVar("Value")
 
 
 class ExportDialog:
     """Draws the dialog and the progress of an export, and carries out the user's actions."""
+
+    TITLE = "Export"
+    DIALOG_WIDTH = 31.0  # [em] of the dialog
+    BUTTON_WIDTH = 6.5  # [em] of a button
 
     def __init__(self, gui: Gui, exporter: Exporter, files: FileDialogs, view: View) -> None:
         self._gui = gui
@@ -172,7 +169,7 @@ class ExportDialog:
         self._files = files
         self._view = view
         label_width = 7.5  # [em] of words at the left
-        self._rows = LabelledRows(gui, label_width / DIALOG_WIDTH, {})
+        self._rows = LabelledRows(gui, label_width / self.DIALOG_WIDTH, {})
         self._was_focused = False  # in the frame before: no list was open over it
 
     def draw(self) -> Message:
@@ -181,7 +178,7 @@ class ExportDialog:
         self._draw_progress()
         if not exporter.is_asking or self._files.is_waiting:
             return None
-        with dialog(TITLE, DIALOG_WIDTH) as is_open:
+        with dialog(self.TITLE, self.DIALOG_WIDTH) as is_open:
             if is_open:
                 try:
                     self._draw_motion(exporter.choices)
@@ -204,7 +201,15 @@ class ExportDialog:
         kind = self._exporter.kind
         if kind.is_drawn:
             here = self._view.viewport[2:]
-            sizes = {choices.size: "As last", here: "As in the window", **PICTURE_SIZES}
+            picture_sizes = {
+                (640, 480): "VGA",
+                (1280, 720): "HD",
+                (1920, 1080): "Full HD",
+                (3840, 2160): "4K",
+                (1080, 1080): "Square",
+                (1080, 1920): "Upright",
+            }
+            sizes = {choices.size: "As last", here: "As in the window", **picture_sizes}
             words = {size: f"{name}: {size[0]} x {size[1]}" for size, name in sizes.items()}
             choices.size = self._pick("Size", choices.size, words)
         choices.rate = min(choices.rate, kind.fastest)
@@ -224,12 +229,14 @@ class ExportDialog:
         duration = self._exporter.session.script.duration
         imgui.separator()
         imgui.align_text_to_frame_padding()
-        left = imgui.get_content_region_avail().x - em(2.0 * BUTTON_WIDTH)
+        left = imgui.get_content_region_avail().x - em(2.0 * self.BUTTON_WIDTH)
         muted(self._gui, f"{duration:.2f} s, {round(duration * choices.rate) + 1} frames")
         imgui.same_line(left)
-        is_begun = button(self._gui, "Export ...", name="export: begin", width=em(BUTTON_WIDTH))
+        is_begun = button(
+            self._gui, "Export ...", name="export: begin", width=em(self.BUTTON_WIDTH)
+        )
         imgui.same_line()
-        is_over = button(self._gui, "Cancel", name="export: Cancel", width=em(BUTTON_WIDTH))
+        is_over = button(self._gui, "Cancel", name="export: Cancel", width=em(self.BUTTON_WIDTH))
         was_focused, self._was_focused = self._was_focused, imgui.is_window_focused()
         # Enter is for the widget that Tab has come to, unless that is a line of text.
         io = imgui.get_io()
@@ -240,7 +247,9 @@ class ExportDialog:
         elif is_begun or (was_focused and is_enter):
             exporter.is_asking = False
             suffix = exporter.kind.suffix
-            ask = partial(self._files.ask, TITLE, exporter.start, saving=True, suffixes=(suffix,))
+            ask = partial(
+                self._files.ask, self.TITLE, exporter.start, saving=True, suffixes=(suffix,)
+            )
             ask(proposed=f"{Path(exporter.session.work.name).stem}{suffix}")
 
     def _draw_progress(self) -> None:
@@ -256,7 +265,7 @@ class ExportDialog:
         imgui.progress_bar(share, (em(12.0), 0.0), f"{share:.0%}" if share else "One moment ...")
         imgui.same_line()
         imgui.begin_disabled(job.task.is_stopped)
-        if button(self._gui, "Cancel", name="export: stop", width=em(BUTTON_WIDTH)):
+        if button(self._gui, "Cancel", name="export: stop", width=em(self.BUTTON_WIDTH)):
             job.task.stop(waits=False)
         imgui.end_disabled()
         imgui.end()

@@ -34,7 +34,6 @@ FONT_SIZE = 15.0  # [window units at scale 1]
 LEFT = 0
 RIGHT = 1
 MIDDLE = 2
-MOUSE_BUTTON_KEY = -1  # in place of a key: one of the mouse was pressed
 MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
 # Of a window that is a note over the picture: as large as its words, and it takes no keys.
 NOTE_FLAGS = (
@@ -89,6 +88,8 @@ THEMES = {
 
 class Gui:
     """The Dear ImGui context of one window; `places` says where each item is, for who drives it."""
+
+    MOUSE_BUTTON_KEY = -1  # in place of a key: one of the mouse was pressed
 
     def __init__(self, window: Any) -> None:
         self._window = window
@@ -178,7 +179,7 @@ class Gui:
     def _note_button(self, _: Any, button: int, action: int, modifiers: int) -> None:
         """Cut before a press: the mouse has to be there before. It may be as old as the last."""
         if action == glfw.PRESS:
-            self._presses.append((self._context.input_events_queue.size(), MOUSE_BUTTON_KEY))
+            self._presses.append((self._context.input_events_queue.size(), self.MOUSE_BUTTON_KEY))
             io = imgui.get_io()
             longest = self.double_click_time + self._blind
             io.mouse_double_click_time = longest
@@ -201,7 +202,7 @@ class Gui:
             while queue.size():
                 yield
             # A press may open a line to type in; keys that follow wait until it has the focus.
-            is_settling = pressed is not None and following not in (None, MOUSE_BUTTON_KEY)
+            is_settling = pressed is not None and following not in (None, self.MOUSE_BUTTON_KEY)
             for _ in range(focus_turns * is_settling):
                 if not io.want_text_input:
                     yield

@@ -31,7 +31,6 @@ from ..documents.file_dialogs import FileDialogs
 from ..messages import Message, Task
 from ..session.document import History
 
-LANDMARKS_SUFFIX = ".json"
 INNER_LIPS = range(60, 68)
 
 FloatArray = npt.NDArray[np.float64]
@@ -107,6 +106,8 @@ class Marks:
 
 class Marking:
     """Marks on one mesh. `current` is the landmark that is asked for, or was chosen."""
+
+    LANDMARKS_SUFFIX = ".json"
 
     def __init__(self, path: Path, files: FileDialogs) -> None:
         """Read a mesh; UserError where no marks can make a head of it."""
@@ -231,16 +232,18 @@ class Marking:
 
     def ask_open(self) -> None:
         """Ask for a landmark file, and go on with it."""
-        self._files.ask("Open landmarks", self.open, saving=False, suffixes=(LANDMARKS_SUFFIX,))
+        self._files.ask(
+            "Open landmarks", self.open, saving=False, suffixes=(self.LANDMARKS_SUFFIX,)
+        )
 
     def save(self, then: Task = lambda: None) -> Message:
         """Write the marks to their file, all or as many as there are, or ask for one first."""
         if self.file is not None:
             return self._write(then, self.file)
-        proposed = str(self.path.with_suffix(LANDMARKS_SUFFIX).absolute())
+        proposed = str(self.path.with_suffix(self.LANDMARKS_SUFFIX).absolute())
         write = partial(self._write, then)
         ask = partial(self._files.ask, "Save landmarks", write, saving=True)
-        ask(proposed=proposed, suffixes=(LANDMARKS_SUFFIX,))
+        ask(proposed=proposed, suffixes=(self.LANDMARKS_SUFFIX,))
         return None
 
     def _write(self, then: Task, path: Path) -> Message:

@@ -225,10 +225,6 @@ def places_in(
     return [(left + x, top + y) for x, y in seen.tolist()]
 
 
-# Of the picture, about the line of sight.
-QUARTER_TURN = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-
-
 class MarkingMouse(CameraMouse):
     """A click places the current mark, a drag moves one, or turns the camera."""
 
@@ -360,7 +356,9 @@ class MarkingMode:
         """Make the side that is seen the front; if it is so already, turn it by a right angle."""
         seen = np.array(self.view.camera.axes())
         turn = max(axes_turned(), key=lambda turn: float((turn * seen).sum()))
-        self.marking.turn(QUARTER_TURN if np.array_equal(turn, np.eye(3)) else turn)
+        # Of the picture, about the line of sight.
+        quarter_turn = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+        self.marking.turn(quarter_turn if np.array_equal(turn, np.eye(3)) else turn)
 
     def _commands(self) -> tuple[Command, ...]:
         """The commands of this mode alone."""

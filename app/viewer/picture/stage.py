@@ -251,15 +251,16 @@ LEVELS = (
     render.Detail(samples=0, scale=0.75),
     render.Detail(samples=0, scale=0.6),
 )
-FIRST_SOFTWARE_LEVEL = 1  # lest the first second stutters
 PATIENCE_FRAMES = 4  # frames in a row that decide
 
 
 class LevelOfDetail:
     """Picks a level of detail by the time that frames took."""
 
+    FIRST_SOFTWARE_LEVEL = 1  # lest the first second stutters
+
     def __init__(self, *, is_software: bool) -> None:
-        self.level = FIRST_SOFTWARE_LEVEL if is_software else 0
+        self.level = self.FIRST_SOFTWARE_LEVEL if is_software else 0
         self._slow = 0
         self._fast = 0
 
@@ -271,7 +272,7 @@ class LevelOfDetail:
     @property
     def unhurried(self) -> render.Detail:
         """The detail for a scene that moves a little now and then: as software begins, or finer."""
-        return LEVELS[min(self.level, FIRST_SOFTWARE_LEVEL)]
+        return LEVELS[min(self.level, self.FIRST_SOFTWARE_LEVEL)]
 
     def begin_motion(self) -> None:
         """Note that a motion begins: the one moment at which more detail goes unnoticed."""

@@ -28,10 +28,6 @@ from .key_marks import Waveform
 from .keys import KeySelection, Track, all_tracks
 from .time_axis import TimeAxis
 
-ROW_HEIGHT = 1.35  # [em] of a row's height
-RULER_HEIGHT = 1.45  # [em] of the ruler's height
-CLICK_DISTANCE = 4.0  # [window units] a press that moves less is a click, not a drag
-
 
 @dataclass
 class Drag:
@@ -46,6 +42,10 @@ class Drag:
 
 class DopeSheet:
     """Draws ruler and rows, and carries out the mouse's actions in them."""
+
+    ROW_HEIGHT = 1.35  # [em] of a row's height
+    RULER_HEIGHT = 1.45  # [em] of the ruler's height
+    CLICK_DISTANCE = 4.0  # [window units] a press that moves less is a click, not a drag
 
     def __init__(
         self,
@@ -85,11 +85,11 @@ class DopeSheet:
         """The height of ruler and rows [window units], no more than there is room for."""
         self._refresh()
         most_rows = 6  # that are seen at once; the rest is scrolled to
-        rows = em(ROW_HEIGHT) * sum(track.height for track in self.rows[:most_rows])
+        rows = em(self.ROW_HEIGHT) * sum(track.height for track in self.rows[:most_rows])
         graph_height = 14.0  # [em] of its height, as long as nobody changes that
         wanted = em(graph_height) if self.settings.shows_curves else rows
-        above = em(RULER_HEIGHT) + self._waveform.height
-        return above + max(min(wanted, room - above), em(ROW_HEIGHT))
+        above = em(self.RULER_HEIGHT) + self._waveform.height
+        return above + max(min(wanted, room - above), em(self.ROW_HEIGHT))
 
     def _refresh(self) -> None:
         """Bring rows and selection up to date with script and settings."""
@@ -122,13 +122,13 @@ class DopeSheet:
             if session.is_playing:
                 axis.follow(session.time)
         imgui.set_cursor_screen_pos((place.x + self._gutter, place.y))
-        scrubbed = em(RULER_HEIGHT) + self._waveform.height
+        scrubbed = em(self.RULER_HEIGHT) + self._waveform.height
         imgui.invisible_button("##time", (room.x - self._gutter, scrubbed))
         self._gui.remember("time")
         if imgui.is_item_hovered():
             self._press_in_ruler(io)
             self._turn_wheel(io)
-        edges = place.y, place.y + em(RULER_HEIGHT)
+        edges = place.y, place.y + em(self.RULER_HEIGHT)
         key_marks.draw_ruler(self._gui.theme, axis, session.time, duration, edges)
         self._waveform.draw(session.time, duration, (place.x, edges[1]))
         imgui.set_cursor_screen_pos((place.x, edges[1] + self._waveform.height))
@@ -147,12 +147,12 @@ class DopeSheet:
     def _draw_rows(self, io: Any) -> None:
         """Draw the rows, or the names of curves alone."""
         flags = imgui.WindowFlags_.no_scroll_with_mouse | imgui.WindowFlags_.no_background
-        least = max(self._bottom - imgui.get_cursor_screen_pos().y, em(ROW_HEIGHT))
+        least = max(self._bottom - imgui.get_cursor_screen_pos().y, em(self.ROW_HEIGHT))
         has_keys = not self.settings.shows_curves
         imgui.begin_child("keys", (0.0 if has_keys else self._gutter, least), 0, flags)
         place = imgui.get_cursor_screen_pos()
         room = imgui.get_content_region_avail()
-        heights = [em(ROW_HEIGHT) * (track.height if has_keys else 1.0) for track in self.rows]
+        heights = [em(self.ROW_HEIGHT) * (track.height if has_keys else 1.0) for track in self.rows]
         self._tops = list(itertools.accumulate(heights, initial=place.y))
         imgui.invisible_button("##keys", (room.x, self._tops[-1] - place.y))
         self._gui.remember("keys")
@@ -163,8 +163,8 @@ class DopeSheet:
         for track, (top, bottom) in zip(self.rows, itertools.pairwise(self._tops), strict=True):
             if imgui.is_rect_visible((place.x, top), (place.x + room.x, bottom)):
                 if has_keys:
-                    self._are_dense[track.name] = painter.draw(track, top, em(ROW_HEIGHT))
-                self._draw_name(track, (place.x, bottom - em(ROW_HEIGHT)), room.x)
+                    self._are_dense[track.name] = painter.draw(track, top, em(self.ROW_HEIGHT))
+                self._draw_name(track, (place.x, bottom - em(self.ROW_HEIGHT)), room.x)
         if has_keys:
             self._draw_over(io, (place.y, self._tops[-1]))
         if is_hovered and self._drag is None:
@@ -175,7 +175,7 @@ class DopeSheet:
         arrow = em(0.9) if track.is_sum else 0.0
         indent = em(0.5) * len(track.parents)
         x = corner[0] + indent
-        y = corner[1] + 0.5 * (em(ROW_HEIGHT) - em())
+        y = corner[1] + 0.5 * (em(self.ROW_HEIGHT) - em())
         self._gui.places[f"row {track.name}"] = x, y, x + em(4.0), y + em()
         room = min(room, self._gutter) - indent - arrow - em(0.3)
         label = shortened(track.label, room, keeps_end=not track.is_sum)  # which names the side
@@ -193,7 +193,7 @@ class DopeSheet:
         imgui.same_line(0.0, 0.0)
         top = imgui.get_cursor_screen_pos().y
         width = imgui.get_content_region_avail().x
-        edges = top, top + max(self._bottom - top, em(ROW_HEIGHT))
+        edges = top, top + max(self._bottom - top, em(self.ROW_HEIGHT))
         imgui.invisible_button("##graph", (max(width, 1.0), edges[1] - top))
         if imgui.is_item_hovered() and self._drag is None:
             self._hover(io, left)
@@ -220,7 +220,7 @@ class DopeSheet:
                     self.settings.folds[track.name] = not self._is_open(track.name)
                 elif imgui.is_mouse_clicked(LEFT):
                     selection.places = track.places
-            imgui.set_scroll_y(imgui.get_scroll_y() - em(ROW_HEIGHT) * io.mouse_wheel)
+            imgui.set_scroll_y(imgui.get_scroll_y() - em(self.ROW_HEIGHT) * io.mouse_wheel)
             return
         key_reach = 0.5  # [em] beside a key that still mean it
         if self.settings.shows_curves:
@@ -296,7 +296,7 @@ class DopeSheet:
         axis = self.axis
         session = self._session
         distance = abs(x - drag.began[0]) + abs(y - drag.began[1])
-        drag.has_moved = drag.has_moved or distance > CLICK_DISTANCE
+        drag.has_moved = drag.has_moved or distance > self.CLICK_DISTANCE
         act: dict[str, Task] = {
             "keys": lambda: self._move_keys(io, drag),
             "box": lambda: self._select_box(io, drag),
@@ -325,7 +325,7 @@ class DopeSheet:
         right = io.mouse_pos.x - drag.began[0]
         down = io.mouse_pos.y - drag.began[1]
         if not io.key_ctrl:  # either way begins with a step
-            right, down = (0.0 if abs(way) < CLICK_DISTANCE else way for way in (right, down))
+            right, down = (0.0 if abs(way) < self.CLICK_DISTANCE else way for way in (right, down))
         time = self._grabbed.first
         target = time + self.axis.seconds(right)
         target = min(max(target, 0.0), self.axis.end)  # further right it would not be seen

@@ -22,8 +22,6 @@ from .keys import KeySelection, Track
 from .time_axis import TimeAxis
 
 VALUE_STEPS = tuple(digit * 10.0**power for power in range(-4, 6) for digit in (1.0, 2.0, 5.0))
-MOUSE_REACH = 0.55  # [em] from a key or a curve that still mean it
-KEY_RADIUS = 0.27  # [em] from a key's middle to its corners
 
 
 class Hit(NamedTuple):
@@ -47,6 +45,9 @@ class Handle(NamedTuple):
 
 class Graph:
     """Draws curves between a time axis and one of values, and finds keys and curves by place."""
+
+    MOUSE_REACH = 0.55  # [em] from a key or a curve that still mean it
+    KEY_RADIUS = 0.27  # [em] from a key's middle to its corners
 
     def __init__(self, gui: Gui, selection: KeySelection, axis: TimeAxis) -> None:
         self._gui = gui
@@ -82,7 +83,7 @@ class Graph:
     def at(self, x: float, y: float) -> Hit | None:
         """The key there, or else the curve; of keys too dense to be seen singly, selected ones."""
         axis = self._axis
-        reach = em(MOUSE_REACH)
+        reach = em(self.MOUSE_REACH)
         hits = list[tuple[float, Hit]]()
         for curve in self.curves[::-1]:
             channel = curve.channel
@@ -118,7 +119,7 @@ class Graph:
                 )
                 (x, right) = axis.x(times).tolist()
                 (y, there) = self.y(values).tolist()
-                reach = em(MOUSE_REACH)
+                reach = em(self.MOUSE_REACH)
                 if easing.is_held or right - x < 3.0 * reach or abs(there - y) < reach:
                     continue  # held, or no room
                 key = Places.of(KeyPlace(curve.track, float(times[1])))
@@ -134,7 +135,7 @@ class Graph:
         """The handle there, if there is one."""
         away = [(float(np.hypot(h.place[0] - x, h.place[1] - y)), h) for h in self.handles()]
         distance, handle = min(away, key=lambda each: each[0], default=(0.0, None))
-        return handle if distance < em(MOUSE_REACH) else None
+        return handle if distance < em(self.MOUSE_REACH) else None
 
     def bent(self, handle: Handle, y: float) -> str:
         """The easing that the way has if its handle is dragged to a height."""
@@ -158,7 +159,7 @@ class Graph:
         axis = self._axis
         times = curve.channel.times
         count = np.diff(np.searchsorted(times, (axis.start, axis.end)))[0]
-        return bool(1.5 * em(KEY_RADIUS) * count > axis.x(axis.end) - axis.x(axis.start))
+        return bool(1.5 * em(self.KEY_RADIUS) * count > axis.x(axis.end) - axis.x(axis.start))
 
     # How it looks
 
@@ -227,7 +228,7 @@ class Graph:
         lines = imgui.get_window_draw_list()
         for handle in self.handles():
             lines.add_line(handle.root, handle.place, accent)
-            lines.add_circle_filled(handle.place, em(0.8 * KEY_RADIUS), accent)
+            lines.add_circle_filled(handle.place, em(0.8 * self.KEY_RADIUS), accent)
 
     def _draw_keys(self, curve: Track, ink: int) -> None:
         """Draw the visible keys; before selected ones the way that the script takes to them."""
@@ -254,5 +255,5 @@ class Graph:
         xs = axis.x(times).tolist()
         ys = self.y(channel.values[visible]).tolist()
         for x, y, is_chosen in zip(xs, ys, are_chosen.tolist(), strict=True):
-            reach, fill = (1.4 * KEY_RADIUS, accent) if is_chosen else (KEY_RADIUS, ink)
+            reach, fill = (1.4 * self.KEY_RADIUS, accent) if is_chosen else (self.KEY_RADIUS, ink)
             lines.add_ngon_filled((x, y), em(reach), fill, 4)

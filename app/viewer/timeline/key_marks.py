@@ -18,7 +18,6 @@ from .keys import Track
 from .time_axis import TimeAxis
 
 FLAG_SIZE = 0.7  # [em] of the handle at the script's end
-KEY_RADIUS = 0.36  # [em] from a key's middle to its corners
 
 Point = tuple[float, float]
 
@@ -86,6 +85,8 @@ def draw_label(
 class TrackPainter:
     """Draws tracks along an axis, with the selected keys of a script that lasts so long."""
 
+    KEY_RADIUS = 0.36  # [em] from a key's middle to its corners
+
     def __init__(self, theme: Theme, axis: TimeAxis, selected: Places, duration: float) -> None:
         """duration: of the script [s]."""
         self._theme = theme
@@ -129,7 +130,7 @@ class TrackPainter:
 
     def _draw_keys(self, track: Track, middle: float) -> bool:
         """Draw the visible keys, selected ones on top; dense ones hide no curve."""
-        size = em(KEY_RADIUS if track.is_whole else 0.8 * KEY_RADIUS)
+        size = em(self.KEY_RADIUS if track.is_whole else 0.8 * self.KEY_RADIUS)
         ink = imgui.get_color_u32(imgui.Col_.text) if track.is_whole else ink_of(self._theme.muted)
         names = track.places.times
         marks, chosen = (
@@ -153,7 +154,7 @@ class TrackPainter:
         least_name_width = 2.4  # [em] of a pose's name: less would be no name
         for (time, name), end in zip(track.names, ends, strict=False):
             if axis.start <= time <= axis.end:
-                x = axis.x(time) - em(KEY_RADIUS)
+                x = axis.x(time) - em(self.KEY_RADIUS)
                 room = min(end, self._high) - x
                 if room >= min(em(least_name_width), imgui.calc_text_size(name).x):
                     self._lines.add_text((x, top), ink, shortened(name, room))

@@ -7,7 +7,6 @@ from typing import TypeVar
 from ...script import Floats
 from ...script.keyframes import FRAME
 
-LEAST_SPAN = 8.0 * FRAME  # [s] as far as one may zoom in
 TICK_STEPS = (FRAME, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0, 3600.0, 86_400.0)
 
 Number = TypeVar("Number", float, Floats)
@@ -15,6 +14,8 @@ Number = TypeVar("Number", float, Floats)
 
 class TimeAxis:
     """From `start` on, `span` seconds; the whole script as long as nobody zooms in."""
+
+    LEAST_SPAN = 8.0 * FRAME  # [s] as far as one may zoom in
 
     def __init__(self) -> None:
         self.start = 0.0
@@ -35,7 +36,7 @@ class TimeAxis:
     def fit(self, end: float) -> None:
         """Keep the visible part inside a script that ends at `end` [s]."""
         margin_factor = 1.06  # of the script: room behind its end, to drag keys there
-        whole = max(end * margin_factor, LEAST_SPAN)
+        whole = max(end * margin_factor, self.LEAST_SPAN)
         self.is_whole = self.is_whole or self.span >= whole
         if self.is_whole:
             self.start = 0.0
@@ -62,7 +63,7 @@ class TimeAxis:
     def zoom(self, factor: float, x: float) -> None:
         """Show `factor` times as much time; the time at `x` stays there."""
         fixed = self.time(x)
-        self.span = max(self.span * factor, LEAST_SPAN)
+        self.span = max(self.span * factor, self.LEAST_SPAN)
         self.is_whole = False
         self.start = fixed - self.seconds(x - self._left)
 

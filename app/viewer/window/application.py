@@ -42,8 +42,6 @@ from ..timeline.timeline import Timeline
 from . import menus
 from .splash_screen import SplashScreen
 
-LOG = logging.getLogger("risorius.viewer")  # reports when there is no window any more
-
 
 class Application(ApplicationContext):
     """An open window and all its parts, each with the others that it needs; nothing moves yet."""
@@ -143,7 +141,8 @@ class Application(ApplicationContext):
         try:
             self.remember()
         except UserError as error:  # a disk that is full must not keep the window open
-            LOG.warning("risorius: %s; the next window does not look as this one", error)
+            log = logging.getLogger("risorius.viewer")  # reports when there is no window any more
+            log.warning("risorius: %s; the next window does not look as this one", error)
         self.live.stop()
         self.exporter.close()
         self.leave_marking()

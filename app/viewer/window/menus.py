@@ -28,14 +28,6 @@ from ..timeline.keys import KeySelection
 from ..timeline.time_axis import TimeAxis
 
 Menu = tuple[Command, ...]
-VIEW_KEYS = {  # Alt: where there is no number pad
-    "Front": "Keypad1, Alt+1",
-    "Three-quarter": "Keypad2, Alt+2",
-    "Three-quarter right": "Ctrl+Keypad2, Ctrl+Alt+2",
-    "Profile": "Keypad3, Alt+3",
-    "Profile right": "Ctrl+Keypad3, Ctrl+Alt+3",
-    "Top": "Keypad7, Alt+7",
-}
 
 
 def file_menu(
@@ -165,6 +157,14 @@ def view_menu(settings: Settings, view: View) -> Menu:
         return f"Look: {display.look}"
 
     muscles = partial(command, is_on=lambda: "muscles" in settings.display.overlays)
+    view_keys = {  # Alt: where there is no number pad
+        "Front": "Keypad1, Alt+1",
+        "Three-quarter": "Keypad2, Alt+2",
+        "Three-quarter right": "Ctrl+Keypad2, Ctrl+Alt+2",
+        "Profile": "Keypad3, Alt+3",
+        "Profile right": "Ctrl+Keypad3, Ctrl+Alt+3",
+        "Top": "Keypad7, Alt+7",
+    }
     return (
         display_switch("Refine", "R", "is_refined"),
         command("Paper's look", "P", toggle_look, lambda: settings.display.look == PAPERS_PRESET),
@@ -177,7 +177,7 @@ def view_menu(settings: Settings, view: View) -> Menu:
         setting("Idle life", "A", "is_alive", begins_section=True),
         setting("Curves", "G", "shows_curves"),
         command("Frame the face", "F", view.fit_scene, begins_section=True),
-        *(command(name, key, partial(view.look_from, name)) for name, key in VIEW_KEYS.items()),
+        *(command(name, key, partial(view.look_from, name)) for name, key in view_keys.items()),
         setting("Dark theme", "F2", "theme", "dark", "light", begins_section=True),
         command("Larger text", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
         command("Smaller text", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),

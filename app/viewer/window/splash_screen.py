@@ -20,7 +20,6 @@ from ..settings import Settings, load_settings
 
 LOADING_TEXT = "Loading the face ..."
 COMPILING_TEXT = "Compiling, once for each kind of work: up to half a minute ..."
-LOG = logging.getLogger("risorius.jit")  # reports each function that is compiled
 Result = TypeVar("Result")
 
 
@@ -29,6 +28,8 @@ class SplashScreen(logging.Handler):
 
     settings, complaint: those remembered, and a line that names the unusable ones.
     """
+
+    LOG = logging.getLogger("risorius.jit")  # reports each function that is compiled
 
     def __init__(self, size: tuple[int, int] | None, path: Path | None) -> None:
         """size: None for the remembered one, or else one for the screen. path: of the settings."""
@@ -44,7 +45,7 @@ class SplashScreen(logging.Handler):
         self.surface = render.open_window(known or most, "Risorius", is_scaled=known is None)
         if known is None:
             self.settings.zoom = zoom_for(self.surface)
-        LOG.addHandler(self)
+        self.LOG.addHandler(self)
         self._show()
 
     def emit(self, record: logging.LogRecord) -> None:
@@ -55,7 +56,7 @@ class SplashScreen(logging.Handler):
         return self
 
     def __exit__(self, *_: object) -> None:
-        LOG.removeHandler(self)
+        self.LOG.removeHandler(self)
         self.surface.close()
 
     def during(self, work: Callable[[], Result]) -> Result:

@@ -25,11 +25,11 @@ from ..picture.stage import Painter
 from ..session.live_commands import PACKET_WAIT
 from .application import Application
 
-FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
-
 
 class Viewer(Application):
     """The window with everything in it, as it runs; a context manager."""
+
+    FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
 
     _last: float  # when the last frame began [s]
     _awake: int  # frames that are drawn in any case
@@ -41,7 +41,7 @@ class Viewer(Application):
 
     def __enter__(self) -> Viewer:
         self._last = time.perf_counter()
-        self._awake = FRAMES_AFTER_EVENT
+        self._awake = self.FRAMES_AFTER_EVENT
         on_drop(self.surface.handle, self.drop)
         for _ in range(2):  # panels and tabs find their places before the first picture
             self._draw_gui(is_visible=False)
@@ -79,7 +79,7 @@ class Viewer(Application):
     def frame(self) -> None:
         """Input, time, picture, panels."""
         if self.gui.look():
-            self._awake = FRAMES_AFTER_EVENT
+            self._awake = self.FRAMES_AFTER_EVENT
             self.life.note_input()
         for _ in self.gui.turns():
             self._draw_gui(is_visible=False)
@@ -115,7 +115,7 @@ class Viewer(Application):
         is_skin_dragged = self.mouse.is_dragging_skin
         self.messages.attempt(partial(self.live.advance, elapsed))
         if self.live.has_changed:
-            self._awake = FRAMES_AFTER_EVENT
+            self._awake = self.FRAMES_AFTER_EVENT
         is_held = is_skin_dragged or imgui.is_any_item_active()
         life = partial(self.life.after, is_held=is_held) if self.life.is_on else None
         advance = partial(self.physics.advance, seconds, is_skin_dragged=is_skin_dragged)
@@ -187,7 +187,7 @@ class Viewer(Application):
         self.gui.look(patience)
         self._last = time.perf_counter()
         if self._last - begin < patience and not self.live.has_frame:
-            self._awake = FRAMES_AFTER_EVENT
+            self._awake = self.FRAMES_AFTER_EVENT
 
     def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:
         """Draw the panels around the scene, unless their last picture does.
@@ -246,7 +246,7 @@ class Viewer(Application):
 
     def drop(self, paths: Sequence[str]) -> None:
         """Open files that were dropped onto the window."""
-        self._awake = FRAMES_AFTER_EVENT
+        self._awake = self.FRAMES_AFTER_EVENT
         open_files = partial(self.file_drop.open, paths)
         if self.marking_mode is None:
             self.messages.carry_out(open_files)
