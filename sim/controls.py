@@ -175,16 +175,27 @@ class Controls:
                 "clamp it first"
             )
         self._values[:] = wanted
+        self._wanted[:] = self._sums(wanted)
+
+    def sums_of(self, values: npt.ArrayLike) -> Array:
+        """The sums of the lowest controls, shape (C,), for values of all controls, shape (N,).
+
+        Nothing is set.
+        """
+        return self._sums(numbers("values", values, self._values.shape))
+
+    def _sums(self, values: Array) -> Array:
         count = len(self.lowest)
-        self._wanted[:] = self._values[:count]
-        if len(self._shares):
-            counted = self._values.copy()
-            for index, whole in self._share_of:
-                counted[index] = share_of_whole(self._values[index], self._values[whole])
-            self._wanted += counted[count:] @ self._shares
-            least = (counted[count:][self._floored, None] * self._floors).max(axis=0, initial=0.0)
-            np.maximum(self._wanted, least, out=self._wanted, where=least > 0.0)
-            np.clip(self._wanted, self._low, self._high, out=self._wanted)
+        sums: Array = values[:count].copy()
+        if not len(self._shares):
+            return sums
+        counted = values.copy()
+        for index, whole in self._share_of:
+            counted[index] = share_of_whole(values[index], values[whole])
+        sums += counted[count:] @ self._shares
+        least = (counted[count:][self._floored, None] * self._floors).max(axis=0, initial=0.0)
+        np.maximum(sums, least, out=sums, where=least > 0.0)
+        return np.clip(sums, self._low, self._high, out=sums)
 
     def advance(self, dt: float) -> None:
         """Let activations follow their values for `dt` [s]: exact critically damped motion."""

@@ -195,11 +195,10 @@ class FaceScene(Scene):
         """The lowest controls that a control at its most moves, and how far."""
         controls = self.simulation.controls
         if name not in self._moved_by:
-            # Asked of the simulation, between two steps, so that nothing of layers is known here.
-            controls.pose({name: self.limits[name][1]})
-            sums = controls.sums
-            controls.take(self.values.numbers)
-            self._moved_by[name] = {each: abs(share) for each, share in sums.items() if share}
+            at_most = self.limits.pose({name: self.limits[name][1]})
+            sums = controls.sums_of(at_most.numbers).tolist()
+            shares = zip(controls.lowest, sums, strict=True)
+            self._moved_by[name] = {each: abs(share) for each, share in shares if share}
         return self._moved_by[name]
 
 

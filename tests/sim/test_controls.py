@@ -56,3 +56,17 @@ def test_activation_follows_without_overshoot():
         assert coarse.activation[0] == approx(fine.activation[0], abs=1e-12)
     assert np.all(np.diff([0.0, *path]) > 0.0)
     assert 0.9 < path[-1] <= 1.0
+
+
+def test_sums_of_values_are_those_of_a_face_that_takes_them(controls):
+    """They are computed without setting anything, shares of layers and floors included."""
+    controls.pose({"AU12": 0.4, "jawOpen": 0.3, "mouthClose": 0.2, "AU46_left": 1.0})
+    before = controls.values
+    wanted = controls.wanted.copy()
+    values = np.array([*before.values()])
+    found = controls.sums_of(0.5 * values)
+    assert controls.values == before
+    assert np.array_equal(controls.wanted, wanted)
+    controls.take(0.5 * values)
+    assert np.array_equal(controls.wanted, found)
+    assert (found > 0.0).sum() > 5
