@@ -32,7 +32,7 @@ BUILT_IN = "built-in"  # what heads are called: that which comes along, and a us
 OWN = "own"
 CHIN = 8  # landmark, and [mm] below it that a portrait shows
 NECK = 32.0
-LOG = logging.getLogger("risorius.heads")  # what was done to a head that somebody brings
+LOG = logging.getLogger("risorius.heads")  # changes of a user's head
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
 
 
@@ -67,7 +67,7 @@ class Scene:
         return ()
 
     def pose(self, channels: Mapping[str, float]) -> None:
-        """Set controls, each cut off at its limits; what is not named becomes 0.
+        """Set controls, each cut off at its limits; all others become 0.
 
         Raises UserError on a name that is no control.
         """
@@ -90,7 +90,7 @@ class Scene:
         return {}
 
     def moved_by(self, name: str) -> Mapping[str, float]:
-        """The lowest controls that a control moves: itself, or what a layer's control adds to.
+        """The lowest controls that a control moves: itself, or the sums of a layer's control.
 
         And how far each of them goes where the control is at its most, without a sign.
         """
@@ -107,7 +107,7 @@ class FaceScene(Scene):
         head: assets.Head | FittedHead | None = None,
         simulation: sim.Simulation | None = None,
     ) -> None:
-        """Simulate `head`, the built-in one unless told; simulation: of it, if there is one."""
+        """Simulate `head`, by default the built-in one; simulation: of it, if there is one."""
         head = assets.load("head") if head is None else head
         self.head = head
         self.simulation = simulation = simulation or sim.create(head)
@@ -145,7 +145,7 @@ class FaceScene(Scene):
         self._are_bent = False  # parts, as the face is now
         hair = [part.vertices for part in self._parts if part.striation is not None]
         self.extent = read_only(np.vstack([self.rest_positions, *hair]))
-        lowest = float(landmarks[CHIN, 1]) - NECK  # what is below may lie beyond the frame
+        lowest = float(landmarks[CHIN, 1]) - NECK  # skin below may lie beyond the frame
         self.framed = read_only(self.extent[self.extent[:, 1] > lowest])
         self._moved_by: dict[str, dict[str, float]] = {}
         self.values = self.limits.pose(controls.values)
@@ -252,7 +252,7 @@ class PlaneScene(Scene):
 
 @dataclass(frozen=True)
 class ControlTable:
-    """The controls of a scene: under which heading, their limits, and what they do."""
+    """The controls of a scene: their headings, limits and effects."""
 
     groups: Mapping[str, tuple[str, ...]]
     limits: Limits

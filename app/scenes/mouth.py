@@ -1,5 +1,5 @@
-"""What is in the mouth: darker toward the back, where less light from all around gets in; a tongue
-that bends, out of the dark; and walls that stretch between both jaws.
+"""The inside of the mouth: darker toward the back, where less light from all around gets in; a
+tongue that bends, out of the dark; and walls that stretch between both jaws.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Gloom(NamedTuple):
     begins: float  # [mm] behind the front teeth
     ends: float
     lost: float  # share from there on
-    powers: tuple[float, float, float] = (1.0, 1.0, 1.0)  # of red, green, blue in what is left
+    powers: tuple[float, float, float] = (1.0, 1.0, 1.0)  # of red, green, blue in the rest
 
 
 # Chosen by eye. What light reaches a molar has met red flesh before. It is little that gets lost:

@@ -60,7 +60,7 @@ class SurfaceAttachment:
         self.normals = part.normals
 
     def follow(self, skin: Floats, bone: Floats) -> None:
-        """Stand on the skin as it is now, (V, 3), told from the part's bone, a matrix (4, 4)."""
+        """Stand on the skin as it is now, (V, 3), seen from the part's bone, a matrix (4, 4)."""
         there = (skin[self._near] - bone[:3, 3]) @ np.linalg.inv(bone[:3, :3]).T
         places, frames = self._frames(there)
         turned = np.einsum("nij,nj->ni", frames[self._row], self._local)
@@ -78,7 +78,7 @@ class SurfaceAttachment:
 
 
 def _along_x(corners: Floats) -> Floats:
-    """What the corners of triangles (R, 3, 3) add to the x axis as it lies in them, (R, 3)."""
+    """The weights of triangles' corners (R, 3, 3) in the x axis of their frames, (R, 3)."""
     first = corners[:, 1] - corners[:, 0]
     second = corners[:, 2] - corners[:, 0]
     edges = np.stack([first, second], axis=2)
