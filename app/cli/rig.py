@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from ..errors import UserError, counted, in_one_line
 from .options import PATH, HeadName, option, packed
+
+if TYPE_CHECKING:
+    from ..rig.avatar import Avatar
 
 
 @dataclass(frozen=True)
@@ -16,6 +20,13 @@ class Rigging:
     """Options of rig alone."""
 
     landmarks: Path | None = option(type=PATH, help="The 68 iBug landmarks of HEAD, as JSON.")
+    name: str = option(
+        "--as",
+        type=click.Choice(["glb", "obj"]),
+        default="glb",
+        show_default=True,
+        help="The format: obj is a folder of one file a shape.",
+    )
     shapes: str = option(
         default="arkit",
         show_default=True,
@@ -57,9 +68,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     """
     from risorius.assets.identities import person_called
 
-    from ..files import check_apart, check_file, written_atomically
     from ..rig.avatar import RigRequest, avatar_of, read_file_head
-    from ..rig.writing import avatar_glb
 
     file_path = head if isinstance(head, Path) else None
     if (file_path is None) != (rigging.landmarks is None):
@@ -67,10 +76,8 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
             "a file as HEAD and --landmarks LANDMARKS.json go together; "
             "`risorius view --head HEAD.obj` helps to mark the landmarks"
         )
-    if output.suffix.lower() != ".glb":
-        raise UserError(f"{output}: avatars are written as .glb; choose a name that ends so")
-    check_apart((output,), (file_path, rigging.landmarks))
-    check_file(output)
+    is_folder = rigging.name == "obj"
+    _check_output(output, (file_path, rigging.landmarks), is_folder=is_folder)
     request = RigRequest(
         tuple(rigging.shapes.split(",")),
         rigging.eyes,
@@ -93,10 +100,38 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
         person = None if head is None or isinstance(head, Path) else person_called(head)
         avatar = avatar_of(person, request, say)
         title = "head" if person is None else f"person {head}"
+    size = _written(output, avatar, title, is_folder=is_folder)
+    meshes = "1 mesh" if len(avatar.shapes) == 1 else f"{len(avatar.shapes)} meshes"
+    shapes = counted(len(avatar.names), "shape")
+    click.echo(f"{in_one_line(output)}: {shapes}, {meshes}, {size / 1e6:.1f} MB")
+
+
+def _check_output(output: Path, inputs: tuple[Path | None, ...], *, is_folder: bool) -> None:
+    """UserError, before any work is done, where the output cannot be written."""
+    from ..files import check_apart, check_file, check_folder
+
+    if not is_folder and output.suffix.lower() != ".glb":
+        raise UserError(
+            f"{output}: avatars are written as .glb, or as a folder with --as obj; "
+            "choose a name that ends so"
+        )
+    check_apart((output,), inputs)
+    if is_folder:
+        check_folder(output, overwrite=False)
+    else:
+        check_file(output)
+
+
+def _written(output: Path, avatar: Avatar, title: str, *, is_folder: bool) -> int:
+    """Write the avatar, whole or not at all; return the size of its files [bytes]."""
+    from ..files import folder_atomically, written_atomically
+    from ..rig.obj_folder import OWN, write_obj_folder
+    from ..rig.writing import avatar_glb
+
+    if is_folder:
+        with folder_atomically(output, OWN, overwrite=False) as folder:
+            write_obj_folder(avatar, folder)
+        return sum(path.stat().st_size for path in output.iterdir())
     with written_atomically(output) as part:
         part.write_bytes(avatar_glb(avatar, title))
-    size = output.stat().st_size / 1e6
-    click.echo(
-        f"{in_one_line(output)}: {counted(len(avatar.names), 'shape')}, "
-        f"{counted(len(avatar.shapes), 'mesh')}, {size:.1f} MB".replace("meshs", "meshes")
-    )
+    return output.stat().st_size

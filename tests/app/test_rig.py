@@ -298,6 +298,24 @@ def test_motion_of_a_glb_goes_on(copied):
         assert np.abs(off).max() < 1e-6
 
 
+def test_a_folder_of_objs_keeps_the_lines_of_the_file(whole, tmp_path):
+    """One a shape, the same vertices in the same order; only lines of moved vertices change."""
+    landmarks = whole.mesh.with_suffix(".json")
+    folder = tmp_path / "shapes"
+    result = risorius("rig", whole.mesh, "--landmarks", landmarks, "--as", "obj", "-o", folder)
+    assert result.exit_code == 0, result.output
+    assert {path.stem for path in folder.iterdir()} == {"neutral", *ARKIT}
+    lines = whole.mesh.read_text().splitlines()
+    assert (folder / "neutral.obj").read_text().splitlines() == lines
+    opened = (folder / "jawOpen.obj").read_text().splitlines()
+    assert len(opened) == len(lines)
+    for before, after in zip(lines, opened, strict=True):
+        assert before == after or (before.startswith("v ") and after.startswith("v "))
+    moved = read_mesh(folder / "jawOpen.obj").vertices - read_mesh(whole.mesh).vertices
+    shape = Player(whole.avatar).shapes("head")["jawOpen"]
+    assert np.abs(moved - shape[: len(moved)]).max() < 1e-5
+
+
 def test_wrong_options_are_refused(whole, tmp_path):
     """In one line that says what is allowed."""
     landmarks = whole.mesh.with_suffix(".json")
