@@ -1,9 +1,8 @@
-"""Messages in one line: errors that users can mend, with exit code 2, and notes of long waits."""
+"""Messages in one line: errors that users can mend, with exit code 2."""
 
 from __future__ import annotations
 
 import contextlib
-import logging
 import os
 import re
 import sys
@@ -107,26 +106,3 @@ def report_user_errors() -> Iterator[None]:
         click.echo(traceback_of(error), err=True, nl=False)
         click.echo(f"risorius: {line}", err=True)
         sys.exit(2)
-
-
-class _CompilingNote(logging.Handler):
-    """Says once that kernels are compiled, and once that they cannot be kept (risorius/jit.py)."""
-
-    _said: frozenset[int] = frozenset()
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Write a line, unless one of its level was written."""
-        if record.levelno not in self._said:
-            self._said |= {record.levelno}
-            line = "Compiling, once for each kind of work: up to half a minute."
-            if record.levelno >= logging.WARNING:
-                line = f"risorius: {record.getMessage()}"
-            click.echo(line, err=True)
-
-
-def announce_compiling() -> None:
-    """From here on print a note when kernels are compiled, which takes long once."""
-    log = logging.getLogger("risorius.jit")
-    log.handlers = [_CompilingNote()]
-    log.propagate = False
-    log.setLevel(logging.INFO)

@@ -13,7 +13,8 @@ from functools import partial
 
 from risorius import render
 
-from ..errors import UserError, announce_compiling
+from ..compiling_note import announce_compiling
+from ..errors import UserError
 from ..motion import counted_frames, scene_of
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped

@@ -11,7 +11,8 @@ import click
 
 from risorius import __version__
 
-from ..errors import announce_compiling, in_one_line, report_user_errors
+from ..compiling_note import announce_compiling
+from ..errors import in_one_line, report_user_errors
 from . import commands
 
 
