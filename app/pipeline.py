@@ -20,7 +20,7 @@ from .anatomy import SKIN_ALONE, Anatomy, AnatomyView, Dissection
 from .refining.drawn_mesh import DrawnMesh, bind
 from .refining.presets import Refinement
 from .refining.wrinkling import Compression
-from .scenes import Scene
+from .scenes import Drawable
 
 Timer = Callable[[str], AbstractContextManager[Any]]
 
@@ -39,15 +39,15 @@ class Viewport(NamedTuple):
 
 
 class Pipeline:
-    """A scene and the renderer that draws it."""
+    """What can be seen, and the renderer that draws it."""
 
-    def __init__(self, scene: Scene, renderer: render.Renderer) -> None:
+    def __init__(self, scene: Drawable, renderer: render.Renderer) -> None:
         self.scene = scene
         self.renderer = renderer
         self.anatomy = Anatomy(scene)
         self.maps = render.NO_MAPS
         self._compression: Compression | None = None
-        if (wrinkles := scene.wrinkles) is not None:
+        if (wrinkles := scene.skin.wrinkles) is not None:
             self._compression = Compression(scene)
             bumps = render.BumpMap(renderer.surface, wrinkles.map, wrinkles.steepest)
             self.maps = render.SkinMaps(bumps=bumps)
@@ -59,10 +59,10 @@ class Pipeline:
 
     def set_tone(self, tone: float | None) -> None:
         """Hand the scene's albedo to the renderer, in a tone [deg] where it has any."""
-        scene = self.scene
-        if scene.albedo is not None:
-            albedo = scene.albedo if tone is None or scene.in_tone is None else scene.in_tone(tone)
-            beside = scene.ambient_occlusion, scene.fine_shape
+        skin = self.scene.skin
+        if skin.albedo is not None:
+            albedo = skin.albedo if tone is None or skin.in_tone is None else skin.in_tone(tone)
+            beside = skin.ambient_occlusion, skin.fine_shape
             texture = render.Texture(self.renderer.surface, albedo, *beside)
             self.maps = replace(self.maps, texture=texture)
 
@@ -90,7 +90,7 @@ class Pipeline:
         maps = self.maps if drawn.has_uv else render.NO_MAPS
         has_values = style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None
         values = drawn.splits() if has_values else None
-        skin = render.Skin(drawn.stream, maps, self.scene.fade, values)
+        skin = render.Skin(drawn.stream, maps, self.scene.skin.fade, values)
         style = replace(style, opacity=style.opacity * seen.opacity)
         view = render.CameraView(camera, area, clip)
         return render.Frame(view, style, skin, seen.parts, seen.cut, overlays)

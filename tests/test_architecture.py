@@ -38,6 +38,25 @@ def test_fresh_import(package, banned):
     assert not modules & (banned | neighbours)
 
 
+def test_scenes_answer_for_themselves():
+    """Outside of its room nothing asks for the kind of a scene, or makes up a scene of its own."""
+    asked = []
+    made = []
+    for folder in ("app", "bench", "docs", "examples"):
+        for path in tracked(folder, "*.py"):
+            if "app/scenes" in path.as_posix():
+                continue
+            for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+                if isinstance(node, ast.Call) and ast.unparse(node.func) == "isinstance":
+                    asked += [path.name] * ("Scene" in ast.unparse(node.args[1]))
+                if isinstance(node, ast.ClassDef):
+                    bases = {ast.unparse(base) for base in node.bases}
+                    kinds = {"Drawable", "FaceScene", "PlaneScene", "Scene"}
+                    made += [path.name] * bool(bases & kinds)
+    assert not asked
+    assert not made
+
+
 @pytest.mark.parametrize(
     ("folder", "allowed"),
     [

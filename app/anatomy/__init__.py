@@ -15,7 +15,7 @@ from risorius import render
 from risorius.assets.fitting.skull import build_skull, neck_sections
 from risorius.assets.identities import HAIR
 
-from ..scenes import FaceScene, Scene
+from ..scenes import Drawable, Face
 from ..scenes.mouth import BentPart
 from .muscle_bands import Muscles
 
@@ -51,7 +51,7 @@ class Dissection(NamedTuple):
 class Anatomy:
     """Muscles and skull of a face; of other scenes there is the skin alone."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Drawable) -> None:
         self._scene = scene
         self._skull: dict[str, Any] = {}
         self._necks: list[Any] = []
@@ -66,64 +66,65 @@ class Anatomy:
         parts throw theirs.
         """
         scene = self._scene
+        face = scene.face
         bones = scene.bone_transforms()
         place = render.PlacedPart.of
-        if not isinstance(scene, FaceScene) or not view.structures or view.opacity >= 1.0:
+        if face is None or not view.structures or view.opacity >= 1.0:
             parts = [part for part in scene.parts if has_hair or not part.name.startswith(HAIR)]
             return Dissection(
                 tuple(place(each, bones, throws_shadow=each.name in OUTER_HAIR) for each in parts)
             )
         structures = [
             place(part, bones, lies_beneath=True, throws_shadow=True)
-            for part in self._structures(scene, view)
+            for part in self._structures(face, view)
         ]
         stay = [part for part in scene.parts if not part.name.startswith((*SOFT, HAIR))]
         others = [
             place(part, bones, throws_shadow=not part.strand_radius)
-            for part in stay + self._soft(scene, view)
+            for part in stay + self._soft(face, view)
         ]
-        hair = self._whole(scene, view, (HAIR,)) if has_hair else []
+        hair = self._whole(face, view, (HAIR,)) if has_hair else []
         parts_of_hair = [place(part, bones) for part in hair]
-        return Dissection((*structures, *others, *parts_of_hair), view.opacity, _cut(scene, view))
+        return Dissection((*structures, *others, *parts_of_hair), view.opacity, _cut(face, view))
 
-    def _structures(self, scene: FaceScene, view: AnatomyView) -> list[Any]:
+    def _structures(self, face: Face, view: AnatomyView) -> list[Any]:
         """Throat, bones and muscles, which no skin leaves bare."""
         names = ["throat"]
         if "skull" in view.structures:
             names += ["cranium", "mandible", "spine"]
         if "muscles" in view.structures:
             names.append("nose")
-        self._skull = self._skull or build_skull(scene.head, scene.simulation.bones.pivots())
-        self._necks = self._necks or neck_sections(scene.head)
-        muscles = [self._muscles_now(scene)] if "muscles" in view.structures else []
+        self._skull = self._skull or build_skull(face.head, face.simulation.bones.pivots())
+        self._necks = self._necks or neck_sections(face.head)
+        muscles = [self._muscles_now(face)] if "muscles" in view.structures else []
         return [*self._necks, *(self._skull[name] for name in names), *muscles]
 
-    def _muscles_now(self, scene: FaceScene) -> Muscles:
+    def _muscles_now(self, face: Face) -> Muscles:
         """The muscles, shaped anew unless nothing has moved: a camera that turns is no reason."""
-        bones = scene.bone_transforms()
-        sums = scene.simulation.controls.sums
-        now = np.concatenate([scene.positions, *bones.values()], axis=None)
+        bones = face.bone_transforms()
+        sums = face.simulation.controls.sums
+        now = np.concatenate([face.simulation.positions, *bones.values()], axis=None)
         now = np.append(now, list(sums.values()))
         if self._muscles is None:
-            self._muscles = Muscles.of(scene)
+            self._muscles = Muscles.of(face)
         elif not np.array_equal(now, self._followed):
-            self._muscles.follow(scene)
+            self._muscles.follow(face)
         self._followed = now
         return self._muscles
 
-    def _soft(self, scene: FaceScene, view: AnatomyView) -> list[Any]:
+    def _soft(self, face: Face, view: AnatomyView) -> list[Any]:
         """The parts that line the mouth; with bones alone, only those on the side of whole skin."""
         if "muscles" not in view.structures:
-            return self._whole(scene, view, SOFT)
-        return [part for part in scene.parts if part.name.startswith(SOFT)]
+            return self._whole(face, view, SOFT)
+        return [part for part in self._scene.parts if part.name.startswith(SOFT)]
 
-    def _whole(self, scene: FaceScene, view: AnatomyView, names: tuple[str, ...]) -> list[Any]:
+    def _whole(self, face: Face, view: AnatomyView, names: tuple[str, ...]) -> list[Any]:
         """Parts, by how their names begin, on the side that is not opened; none if both are."""
         side = SIDES[view.side]
-        parts = [part for part in scene.parts if side and part.name.startswith(names)]
+        parts = [part for part in self._scene.parts if side and part.name.startswith(names)]
         for part in parts:
             if (side, part.name) not in self._halves:
-                aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(scene)[0]
+                aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(face)[0]
                 self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < 0.0])
             half = self._halves[side, part.name]
             if isinstance(part, BentPart):
@@ -133,17 +134,17 @@ class Anatomy:
         return [self._halves[side, part.name] for part in parts]
 
 
-def _middle(scene: FaceScene) -> Any:
+def _middle(face: Face) -> Any:
     """Where the midline is at rest, shape (3,)."""
-    return scene.rest_positions[scene.landmarks[27]]
+    return face.simulation.rest_positions[face.head.landmarks[27]]
 
 
-def _cut(scene: FaceScene, view: AnatomyView) -> render.Plane | None:
+def _cut(face: Face, view: AnatomyView) -> render.Plane | None:
     """The plane in front of which the skin is whole; None: there is none."""
     side = SIDES[view.side]
     if not side:
         return None
-    bone = scene.bone_transforms()["cranium"]
-    at = bone[:3, :3] @ _middle(scene) + bone[:3, 3]
+    bone = face.bone_transforms()["cranium"]
+    at = bone[:3, :3] @ _middle(face) + bone[:3, 3]
     normal = bone[:3, :3] @ (-side, 0.0, 0.0)
     return (*normal, -float(normal @ at))

@@ -16,6 +16,9 @@ import numpy.typing as npt
 import scipy
 
 from risorius.geometry.normals import vertex_normals
+from risorius.sim import Simulation
+
+from ..scenes import Face
 
 Floats = npt.NDArray[np.float64]
 ROWS = 22  # places along a band
@@ -56,24 +59,22 @@ class Muscles:
     strand_radius: float = 0.0
 
     @classmethod
-    def of(cls, scene: Any) -> Muscles:
+    def of(cls, face: Face) -> Muscles:
         """The muscles of a face, as they are now."""
         none = np.zeros((0, 3), np.float32)
         made = cls(none, none, none, none.astype(np.int32), none[:, :2])
-        made._build(scene)
-        made.follow(scene)
+        made._build(face)
+        made.follow(face)
         return made
 
-    def _build(self, scene: Any) -> None:
+    def _build(self, face: Face) -> None:
         """Set up everything constant: the bands, their lengths at rest, their faces."""
-        simulation = scene.simulation.clone()
+        simulation = face.simulation.clone()
         simulation.reset()
         self.names: list[tuple[str, int]] = []  # of linear muscles, and the number of a fibre
         widths = list[float]()
         for name, lines in simulation.anatomy.fibres().items():
-            row = scene.head.rig["muscle"].get(
-                name.removesuffix("_left").removesuffix("_right"), {}
-            )
+            row = face.head.rig["muscle"].get(name.removesuffix("_left").removesuffix("_right"), {})
             if name.startswith("platysma"):  # it lies on structures that are not drawn
                 continue
             for number, (fibre, _) in enumerate(zip(row.get("fibre", ()), lines, strict=False)):
@@ -81,7 +82,7 @@ class Muscles:
                 # Half of the rig's width is flesh. Bands are 4 to 17 mm wide.
                 width = 0.5 * row.get("width", 10.0) * fibre.get("width_factor", 1.0)
                 widths.append(np.clip(width, 4.0, 17.0))
-        marks = scene.rest_positions[scene.landmarks]
+        marks = face.simulation.rest_positions[face.head.landmarks]
         rings = list[Floats]()
         self._controls: list[list[str]] = [[name] for name, _ in self.names]  # that move each band
         for start, end, numbers, bands in RINGS:
@@ -96,15 +97,15 @@ class Muscles:
                 self._controls.append(own)
         self._width = np.array(widths)[:, None]
         self._middle = np.array([marks[27, 0], *simulation.bones.pivots()["mandible"][1:]])
-        self._bone_depth = np.asarray(scene.head.bone_depth)
-        self._bind(np.array(rings), scene)
-        self._length = _lengths(self._lines(simulation, scene.rest_positions))
+        self._bone_depth = np.asarray(face.head.bone_depth)
+        self._bind(np.array(rings), face.simulation)
+        self._length = _lengths(self._lines(simulation, face.simulation.rest_positions))
         self._lay_out()
 
-    def _bind(self, rings: Floats, scene: Any) -> None:
+    def _bind(self, rings: Floats, simulation: Simulation) -> None:
         """Let the skin carry the sphincters (b, ROWS, 3)."""
-        rest = scene.rest_positions
-        skin = _Skin(rest, scene.faces, self._bone_depth, self._middle)
+        rest = simulation.rest_positions
+        skin = _Skin(rest, simulation.faces, self._bone_depth, self._middle)
         for _ in range(4):
             outside, normal, _ = skin.at(rings)
             rings -= outside[..., None] * normal
@@ -120,13 +121,14 @@ class Muscles:
         carried = np.einsum("brk,brkc->brc", self._share, x[self._carriers])
         return np.concatenate([fibres, carried + self._shift])
 
-    def follow(self, scene: Any) -> None:
+    def follow(self, face: Face) -> None:
         """Take the shape and the colours of now."""
-        sums = scene.simulation.controls.sums
-        bone = scene.bone_transforms()["cranium"]
+        simulation = face.simulation
+        sums = simulation.controls.sums
+        bone = face.bone_transforms()["cranium"]
         middle = bone[:3, :3] @ self._middle + bone[:3, 3]
-        skin = _Skin(scene.positions, scene.faces, self._bone_depth, middle)
-        lines = self._lines(scene.simulation, scene.positions)
+        skin = _Skin(simulation.positions, simulation.faces, self._bone_depth, middle)
+        lines = self._lines(simulation, simulation.positions)
         swollen = np.clip(self._length / _lengths(lines), 0.75, 2.2)
         for _ in range(2):
             outside, normal, depth = skin.at(lines)

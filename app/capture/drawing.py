@@ -33,7 +33,7 @@ def whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
     """A camera like that of `camera_for`, or further away, so that it sees the whole scene."""
     camera = camera_for(scene, view)
     wanted = camera.distance
-    camera.fit(scene.extent, MARGIN)
+    camera.fit(scene.framing.extent, MARGIN)
     camera.distance = max(camera.distance, wanted)
     return camera
 
@@ -51,8 +51,8 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
     yaw, pitch, zoom = _turn(view)
     camera = _framing(scene, "front")
     camera.orbit(yaw, pitch)
-    camera.target = scene.focus.copy()
-    _, high, near = np.stack(camera.axes()) @ (scene.framed - camera.target).T
+    camera.target = scene.framing.focus.copy()
+    _, high, near = np.stack(camera.axes()) @ (scene.framing.framed - camera.target).T
     half = (1.0 - MARGIN) * math.tan(math.radians(0.5 * camera.field_of_view))
     camera.distance = max(camera.distance, float((near + np.abs(high) / half).max()))
     camera.zoom(zoom)
@@ -83,9 +83,9 @@ def _turn(view: str) -> tuple[float, float, float]:
 
 
 def _framing(scene: Scene, view: str) -> render.OrbitCamera:
-    """A camera that frames `scene.framed`; the rest of the scene may go beyond the frame."""
-    camera = render.OrbitCamera.framing(scene.extent, view=view)
-    camera.fit(scene.framed)
+    """A camera that frames `Framing.framed`; the rest of the scene may go beyond the frame."""
+    camera = render.OrbitCamera.framing(scene.framing.extent, view=view)
+    camera.fit(scene.framing.framed)
     return camera
 
 
@@ -208,7 +208,9 @@ class Capture:
         known = None
         triangles = max(drawn.triangle_count for drawn, *_ in self.viewports)
         if self._passes is not None:
-            known = labelled(self._passes, self.camera, self.options.style, self.options.passes)
+            style = self.options.style
+            wanted = self.options.passes
+            known = labelled(self.scene, self._passes, self.camera, style, wanted)
         return Frame(image, known, triangles)
 
     def play(

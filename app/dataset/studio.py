@@ -56,6 +56,7 @@ class Shot:
 class _Model:
     """A person before the frame."""
 
+    scene: FaceScene
     pipeline: Pipeline
     passes: Passes
     labels: dict[str, Any]
@@ -77,8 +78,7 @@ class Studio:
         request = self._request
         sample = draw(request.table, request.seed, index)
         model = self._person(sample.person)
-        scene = model.pipeline.scene
-        assert isinstance(scene, FaceScene)
+        scene = model.scene
         camera = _posed(scene, sample, request.size)
         image, surroundings = self._taken(model, camera, sample)
         style = render.Style()  # neither light nor background counts in passes
@@ -142,9 +142,10 @@ class Studio:
         }
         features = features_of(person.identity, tone, random)
         head = coloured(person, angle=tone, irises=irises, features=features)
-        pipeline = Pipeline(FaceScene(head), self._renderer)
+        scene = FaceScene(head)
+        pipeline = Pipeline(scene, self._renderer)
         drawn = pipeline.bind(Refinement(refiner=self._request.refiner))
-        return _Model(pipeline, Passes(pipeline, drawn), labels)
+        return _Model(scene, pipeline, Passes(pipeline, drawn), labels)
 
 
 def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.OrbitCamera:
@@ -154,7 +155,7 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
     scene.step(SETTLING)
     camera = _camera_of(scene, sample.view, size)
     if sample.gaze is None:
-        eyes = looking_at(scene, camera.eye)["eyes"]
+        eyes = looking_at(scene.face, camera.eye)["eyes"]
     else:
         aside, up = (round(degrees / EYE_RANGE, 4) for degrees in sample.gaze)
         eyes = {"gaze_horizontal": aside, "gaze_vertical": up}

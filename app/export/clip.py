@@ -20,7 +20,7 @@ from ..refining.plug_ins import plug_ins_of, reported
 from ..refining.presets import Refinement
 from ..refining.refiners import Splits, refiner_for
 from ..rig.surface import Floats, Indices, Singles, Surface
-from ..scenes import FaceScene, Scene
+from ..scenes import Scene
 from ..script import Script
 
 
@@ -99,7 +99,7 @@ def record(
     positions = np.empty((most, *scene.positions.shape), np.float32)
     bones: list[Mapping[str, Floats]] = []
     shapes: list[list[Singles]] = [[] for _ in scene.parts]
-    moved = scene.simulation.controls if isinstance(scene, FaceScene) else None
+    moved = None if scene.face is None else scene.face.simulation.controls
     controls = list[Floats]()
     activations = list[Floats]()
     for now in play(scene, script, frames_per_second, until=end, progress=progress):
@@ -117,8 +117,8 @@ def record(
         scene.rest_positions,
         scene.faces,
         positions[: len(bones)],
-        uv=scene.uv,
-        face_uv=scene.face_uv,
+        uv=scene.skin.uv,
+        face_uv=scene.skin.face_uv,
     )
     return Clip(
         scene,

@@ -19,7 +19,6 @@ from ..rig.poses import CRANIUM, without_head_pose
 from ..rig.scene_meshes import Piece, add_mesh
 from ..rig.skeleton import Skeleton
 from ..rig.surface import Floats, RefinedSurface
-from ..scenes import FaceScene
 from .clip import Clip
 from .formats import Request
 from .morphs import TOLERANCE, decompose, follow
@@ -66,9 +65,10 @@ def _take_pose_out(clip: Clip, shapes: Floats, *, are_places: bool = True) -> No
 
     are_places: the bone moves and turns them; normals are turned only.
     """
-    if not isinstance(clip.scene, FaceScene):
+    face = clip.scene.face
+    if face is None:
         return
-    share = clip.skin.carried(clip.scene.simulation.bones.head_weight)
+    share = clip.skin.carried(face.simulation.bones.head_weight)
     for shape, bone in zip(shapes, clip.bones[CRANIUM], strict=True):
         matrix = bone.copy()
         if not are_places:
@@ -85,9 +85,9 @@ def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
     for piece in pieces:
         node: dict[str, Any] = {"name": piece.surface.name}
         share = None
-        if piece.bone is None and isinstance(clip.scene, FaceScene):
+        if piece.bone is None and clip.scene.face is not None:
             node["skin"] = skeleton.skin
-            share = clip.skin.carried(clip.scene.simulation.bones.head_weight)
+            share = clip.skin.carried(clip.scene.face.simulation.bones.head_weight)
         node["mesh"] = add_mesh(glb, clip.scene, piece, skeleton.pivot(piece.bone), share)
         number = glb.add("nodes", node)
         if piece.bone is None:

@@ -50,11 +50,11 @@ def write_pc2(clip: Clip, part: Path, request: Request) -> None:
 
 def _write_material(clip: Clip, path: Path) -> str:
     """Write an MTL and its picture, if the skin has one; the name of the MTL, or nothing."""
-    if clip.scene.albedo is None:
+    if clip.scene.skin.albedo is None:
         return ""
     picture = path.with_name(f"{path.stem}_skin.png")
     _write(path, f"newmtl skin\nKd 1 1 1\nmap_Kd {picture.name}\nnewmtl parts\nKd 1 1 1\n")
-    PIL.Image.fromarray(clip.scene.albedo).save(picture)
+    PIL.Image.fromarray(clip.scene.skin.albedo).save(picture)
     return path.name
 
 

@@ -39,8 +39,8 @@ def write_usd(clip: Clip, part: Path, request: Request) -> None:
         layer = Path(folder) / (f"{part.stem}.usdc" if is_text else "motion.usdc")
         picture = Path(folder) / PICTURE
         package = Path(folder) / "package.usdz"
-        if clip.scene.albedo is not None:
-            PIL.Image.fromarray(clip.scene.albedo).save(picture)
+        if clip.scene.skin.albedo is not None:
+            PIL.Image.fromarray(clip.scene.skin.albedo).save(picture)
         try:
             stage = Usd.Stage.CreateNew(str(layer))
             _fill(stage, clip, request)
@@ -72,7 +72,7 @@ def _fill(stage: Any, clip: Clip, request: Request) -> None:
             _add_refined(mesh, clip, request)
         else:
             _add_surface(mesh, surface, request)
-        has_picture = surface.uv is not None and clip.scene.albedo is not None
+        has_picture = surface.uv is not None and clip.scene.skin.albedo is not None
         _add_material(stage, mesh, surface, has_picture=has_picture)
 
 

@@ -16,10 +16,11 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from risorius.sim.controls import Controls
 from risorius.sim.layers import LEAST_WHOLE, SIDES, Layers, share_of_whole
 
 from ..errors import UserError
-from ..scenes import FaceScene, Scene
+from ..scenes import Scene
 
 Floats = npt.NDArray[np.float64]
 
@@ -43,9 +44,9 @@ def solved(
     UserError for a scene without muscles, or without the layer.
     """
     names = sided(scene, layer)
-    assert isinstance(scene, FaceScene)
-    tables = scene.simulation.controls.tables
-    frames = np.stack([activations[name] for name in scene.simulation.controls.lowest], axis=1)
+    moved = _muscles_of(scene, layer)
+    tables = moved.tables
+    frames = np.stack([activations[name] for name in moved.lowest], axis=1)
     shares = np.stack([tables.shares[name] for name in names])
     highest = np.array([scene.limits[name][1] for name in names])
     known = _known(names, tables, controls or {}, len(frames), highest)
@@ -58,12 +59,17 @@ def solved(
 
 def sided(scene: Scene, layer: str) -> tuple[str, ...]:
     """The controls of a layer, without those that have sides; UserError where there is no such."""
-    if not isinstance(scene, FaceScene):
-        raise UserError(f"{layer}: the scene '{scene.name}' has no muscles; take the scene face")
-    names = scene.simulation.controls.layers.get(layer, ())
+    names = _muscles_of(scene, layer).layers.get(layer, ())
     if not names:
         raise UserError(f"{layer}: this head has no such controls; take the built-in head")
     return tuple(name for name in names if name + SIDES[0] not in names)
+
+
+def _muscles_of(scene: Scene, layer: str) -> Controls:
+    """The controls of a scene's muscles; UserError, which names the layer, where it has none."""
+    if scene.face is None:
+        raise UserError(f"{layer}: the scene '{scene.name}' has no muscles; take the scene face")
+    return scene.face.simulation.controls
 
 
 def _known(

@@ -26,7 +26,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from ..scenes import FaceScene, Scene
+from ..scenes import Face, Scene
 
 Values = dict[str, float]
 Place = tuple[float, float]  # to the left and up [degrees]
@@ -160,10 +160,11 @@ class Idle:
         moved: lowest controls that are left alone. viewer: place of the viewer [mm], shape (3,).
         is_still: the face looks at the viewer, and does nothing else.
         """
-        if not isinstance(self.scene, FaceScene):
+        face = self.scene.face
+        if face is None:
             return {}
         parts = {} if is_still else self._life.parts(time)
-        for part, values in looking_at(self.scene, viewer).items():
+        for part, values in looking_at(face, viewer).items():
             own = parts.get(part, {})
             sums = {name: own.get(name, 0.0) + value for name, value in values.items()}
             parts[part] = {**own, **sums}
@@ -176,12 +177,12 @@ class Idle:
         }
 
 
-def looking_at(scene: FaceScene, viewer: npt.NDArray[np.float64]) -> dict[str, Values]:
+def looking_at(face: Face, viewer: npt.NDArray[np.float64]) -> dict[str, Values]:
     """The gaze and the pose of the head with which a face looks at a point [mm], shape (3,).
 
     The eyes make up for how the head is turned now. By parts, as `Life.parts`.
     """
-    centres = {eye.name: np.asarray(eye.centre) for eye in scene.head.eyes}
+    centres = {eye.name: np.asarray(eye.centre) for eye in face.head.eyes}
     if not centres:
         return {}
     aside = _angles(viewer - np.mean(list(centres.values()), axis=0))
@@ -192,7 +193,7 @@ def looking_at(scene: FaceScene, viewer: npt.NDArray[np.float64]) -> dict[str, V
     eye_angle = 10.0  # [degrees] off straight ahead that are left to the eyes
     head_share = 0.5  # of the angle beyond
     turn, rise = (share * head_share * _beyond(angle, eye_angle) for angle in aside)
-    to_rest = np.linalg.inv(scene.bone_transforms()["cranium"])
+    to_rest = np.linalg.inv(face.bone_transforms()["cranium"])
     seen = (to_rest @ [*viewer, 1.0])[:3]  # the viewer, as the turned head has him
     eyes = {}
     for side, centre in centres.items():

@@ -28,7 +28,7 @@ from risorius import render
 from ..errors import UserError, needed
 from ..files import named_in_text, written_atomically
 from ..pictures import Image
-from ..scenes import FaceScene, Scene
+from ..scenes import Face, Scene
 from .passes import NAMES, OF_FACES, Passes
 
 Floats = npt.NDArray[np.float64]
@@ -58,9 +58,10 @@ def labels_of(
         },
         "controls": {name: value for name, value in scene.values.items() if value},
     }
-    if not isinstance(scene, FaceScene):
+    face = scene.face
+    if face is None:
         return labels
-    cranium = scene.bone_transforms()["cranium"]
+    cranium = face.bone_transforms()["cranium"]
     rotation = placed.rotation @ cranium[:3, :3]
     to_head = cranium[:3, :3].T
     # Against a head that faces the camera: its y and z are opposite to the camera's.
@@ -70,8 +71,8 @@ def labels_of(
         "pitch": math.asin(min(max(turned[1, 2], -1.0), 1.0)),
         "roll": math.atan2(-turned[1, 0], turned[1, 1]),
     }
-    ways = {side: gaze(scene, side) for side in SIDES}
-    sums = scene.simulation.controls.sums
+    ways = {side: gaze(face, side) for side in SIDES}
+    sums = face.simulation.controls.sums
     labels["activations"] = {name: round(value, DIGITS) for name, value in sums.items() if value}
     labels["head"] = {
         "R": _plain(rotation),
@@ -83,7 +84,7 @@ def labels_of(
         for side, way in ways.items()
     }
     if depth is not None:
-        found = landmarks_in(scene, placed, depth)
+        found = landmarks_in(face, placed, depth)
         labels["landmarks"] = {
             "points": _plain(found.points),
             "pixels": _plain(found.pixels),
@@ -110,23 +111,21 @@ class Landmarks:
     visible: npt.NDArray[np.bool_]
 
 
-def points_of(scene: FaceScene) -> Floats:
+def points_of(face: Face) -> Floats:
     """Where the landmarks and the pupils of a face are now [mm], shape (70, 3)."""
-    bones = scene.bone_transforms()
+    bones = face.bone_transforms()
     pupils = []
     for side in SIDES:
         bone = f"eye_{side}"
-        ball = next(part for part in scene.parts if part.bone == bone)
+        ball = next(part for part in face.head.parts if part.bone == bone)
         front = ball.vertices[ball.vertices[:, 2].argmax()]
         pupils.append(bones[bone][:3, :3] @ front + bones[bone][:3, 3])
-    return np.vstack([scene.positions[scene.landmarks], pupils])
+    return np.vstack([face.marked, pupils])
 
 
-def landmarks_in(
-    scene: FaceScene, camera: CameraLabels, depth: npt.NDArray[np.float32]
-) -> Landmarks:
+def landmarks_in(face: Face, camera: CameraLabels, depth: npt.NDArray[np.float32]) -> Landmarks:
     """The landmarks of a face in the picture of which `depth`, (H, W), is the depth map."""
-    points = points_of(scene)
+    points = points_of(face)
     pixels = camera.project(points)
     depths = camera.to_camera(points)[:, 2]
     height, width = depth.shape
@@ -139,7 +138,7 @@ def landmarks_in(
     most_behind = 2.0
     pupil_tolerance = 0.6
     tolerance = np.where(
-        np.arange(landmark_count) < len(scene.landmarks), most_behind, pupil_tolerance
+        np.arange(landmark_count) < landmark_count - len(SIDES), most_behind, pupil_tolerance
     )
     tolerance = np.maximum(tolerance, depths / camera.intrinsics[0, 0])
     # Background has the depth 0.
@@ -182,10 +181,10 @@ class CameraLabels:
         return pixels
 
 
-def gaze(scene: FaceScene, side: str) -> Floats:
+def gaze(face: Face, side: str) -> Floats:
     """Where the eye of that side looks: a unit vector in the scene, shape (3,)."""
     forward = np.array([0.0, 0.0, 1.0])  # of a head and of an eye at rest
-    way: Floats = scene.bone_transforms()[f"eye_{side}"][:3, :3] @ forward
+    way: Floats = face.bone_transforms()[f"eye_{side}"][:3, :3] @ forward
     return way
 
 
@@ -252,13 +251,17 @@ def check_wanted(wanted: Sequence[str], scene: str) -> None:
 
 
 def labelled(
-    passes: Passes, camera: render.OrbitCamera, style: render.Style, wanted: Sequence[str]
+    scene: Scene,
+    passes: Passes,
+    camera: render.OrbitCamera,
+    style: render.Style,
+    wanted: Sequence[str],
 ) -> Labelled:
-    """Labels and passes of the picture that the pipeline of `passes` drew last, by `camera`."""
+    """Labels and passes of the picture of a scene that the pipeline of `passes` drew last."""
     has_landmarks = "landmarks" in wanted
     images = passes.draw(camera, style, {*wanted, "depth"} if has_landmarks else wanted)
     depth = images["depth"] if has_landmarks else None
-    labels = labels_of(passes.scene, camera, passes.size, depth)
+    labels = labels_of(scene, camera, passes.size, depth)
     return Labelled({name: images[name] for name in images if name in wanted}, labels)
 
 

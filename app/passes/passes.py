@@ -24,7 +24,6 @@ from risorius.assets.identities import HAIR
 
 from ..pipeline import Pipeline, Viewport
 from ..refining.drawn_mesh import DrawnMesh
-from ..scenes import FaceScene
 
 IMAGES = ("depth", "normal", "triangle", "splits", "segmentation")
 OF_FACES = ("segmentation", "landmarks")  # other scenes lack these
@@ -82,12 +81,13 @@ class Passes:
 
     def _segmentation(self, geometry: render.Geometry, skin_count: int) -> Bytes:
         """Classes of parts by their triangles, of skin by the map over its texture."""
-        if not isinstance(self.scene, FaceScene):
+        face = self.scene.face
+        if face is None:
             raise ValueError(f"the scene {self.scene.name} has no segmentation; a face has one")
         table = np.concatenate([np.zeros(skin_count, np.uint8), self._part_classes, [0]])
         classes: Bytes = table.astype(np.uint8)[geometry.triangle]
         is_skin = (geometry.triangle >= 0) & (geometry.triangle < skin_count)
-        map_ = self.scene.head.segments
+        map_ = face.head.segments
         size = len(map_)
         columns, rows = (geometry.uv[is_skin] * [size, -size] + [0.0, size]).T.astype(np.int64)
         classes[is_skin] = map_[np.clip(rows, 0, size - 1), np.clip(columns, 0, size - 1)]

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from risorius import refine, render
 
-from ..scenes import Scene
+from ..scenes import Drawable
 from .plug_ins import PlugIn, plug_ins_of, reported
 from .presets import ON_CARD, Refinement
 from .refiners import refiner_for
@@ -83,7 +83,7 @@ class DrawnMesh:
         return f"{self.label}\n{self.triangle_count} triangles"
 
 
-def bind(scene: Scene, renderer: render.Renderer, refinement: Refinement) -> DrawnMesh:
+def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> DrawnMesh:
     """Bind the refiner that is asked for to the scene's mesh; borrow render buffers for it.
 
     Where a look is asked for as it is, a graphics card makes the same of a large mesh.
@@ -100,7 +100,7 @@ def bind(scene: Scene, renderer: render.Renderer, refinement: Refinement) -> Dra
 
 
 def _stream_for(
-    scene: Scene, renderer: render.Renderer, refiner: refine.Refiner
+    scene: Drawable, renderer: render.Renderer, refiner: refine.Refiner
 ) -> render.Stream | render.GpuStream:
     """Buffers for the most that a refiner makes of the scene's mesh, on its side of the bus."""
     room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns

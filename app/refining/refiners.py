@@ -12,7 +12,7 @@ import numpy.typing as npt
 from risorius import assets, refine
 
 from ..errors import UserError
-from ..scenes import FaceScene, Scene
+from ..scenes import Drawable
 from .plug_ins import culprit_of, error_in, plug_ins_of
 from .presets import PRESETS, STATIC, Refinement, named
 
@@ -24,7 +24,7 @@ SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
 def refiner_for(
-    scene: Scene, refinement: Refinement, splits: Splits | None = None
+    scene: Drawable, refinement: Refinement, splits: Splits | None = None
 ) -> refine.Refiner:
     """Bind the refiner of a refinement to the scene's mesh.
 
@@ -45,7 +45,7 @@ def refiner_for(
             options.pop("criterion", None)
             options["splits"] = splits
         return refine.create(
-            name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **options
+            name, scene.faces, scene.rest_positions, scene.skin.uv, scene.skin.face_uv, **options
         )
     except UserError:
         raise
@@ -130,16 +130,17 @@ def _check(name: str, options: Mapping[str, Any]) -> None:
             raise UserError(f"refiner {name}: option {option} was {value}, must be {wanted}")
 
 
-def can_detail(scene: Scene) -> bool:
+def can_detail(scene: Drawable) -> bool:
     """Whether the scene's head comes with a finer mesh."""
-    return isinstance(scene, FaceScene) and isinstance(scene.head, assets.Head)
+    return scene.face is not None and isinstance(scene.face.head, assets.Head)
 
 
-def finer_mesh(scene: Scene) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]] | None:
+def finer_mesh(scene: Drawable) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]] | None:
     """Vertices and triangles of the scene's head with four times its triangles, if it has them."""
-    if not (isinstance(scene, FaceScene) and isinstance(scene.head, assets.Head)):
+    face = scene.face
+    if face is None or not isinstance(face.head, assets.Head):
         return None
-    finer = scene.head.finer(1)
+    finer = face.head.finer(1)
     return finer.vertices, finer.faces
 
 

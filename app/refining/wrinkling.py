@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from risorius import refine
 
-from ..scenes import Scene
+from ..scenes import Drawable
 
 Amounts = npt.NDArray[np.float32]
 Points = npt.NDArray[np.float64]
@@ -22,8 +22,8 @@ Points = npt.NDArray[np.float64]
 class Compression:
     """How far the skin of a scene that has wrinkles is compressed across them."""
 
-    def __init__(self, scene: Scene) -> None:
-        wrinkles = scene.wrinkles
+    def __init__(self, scene: Drawable) -> None:
+        wrinkles = scene.skin.wrinkles
         assert wrinkles is not None
         self._readiness = np.linalg.norm(wrinkles.across, axis=2)
         self._resting = wrinkles.resting[:, None] * np.minimum(self._readiness, 1.0)

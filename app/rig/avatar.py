@@ -13,7 +13,7 @@ from risorius.assets.fitting import FittedHead
 from risorius.assets.meshes import read_mesh
 from risorius.assets.painted import PaintedMesh, read_painted
 
-from ..scenes import FaceScene, build_scene, own_head
+from ..scenes import FaceScene, build_face, own_head
 from .bodies import Body, Shaped, Skin, bodies_of_parts, moving, poses_of
 from .file_body import FileBody, merged_vertices, with_own_tongue
 from .linearity import corrected as corrected_shapes
@@ -93,8 +93,7 @@ def avatar_of(
     head: FittedHead | None, request: RigRequest, say: Say, *, file: FileHead | None = None
 ) -> Avatar:
     """The avatar of a head, None for the built-in one; lines on it go to `say`."""
-    scene = build_scene("face", head)
-    assert isinstance(scene, FaceScene)
+    scene = build_face(head)
     eyes_are_nodes = request.has_eye_nodes(is_gltf=file is not None and file.painted is None)
     bodies: list[Body] = []
     if file is None:

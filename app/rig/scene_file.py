@@ -20,7 +20,7 @@ def surface_of(scene: FaceScene, shaped: Shaped) -> Surface:
     if isinstance(body, PartBody):
         part = body.part
         return Surface(body.name, body.rest, body.faces, colours=part.colours, shine=part.shine)
-    return Surface(body.name, body.rest, body.faces, uv=scene.uv, face_uv=scene.face_uv)
+    return Surface(body.name, body.rest, body.faces, uv=scene.skin.uv, face_uv=scene.skin.face_uv)
 
 
 def add_pieces(glb: Glb, scene: FaceScene, pieces: list[Piece], skeleton: Skeleton) -> list[int]:

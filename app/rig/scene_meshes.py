@@ -102,15 +102,15 @@ def _add_material(glb: Glb, scene: Scene, surface: Surface) -> int:
         rough["roughnessFactor"] = dull_roughness + surface.shine * (wet_roughness - dull_roughness)
         return glb.add("materials", material)
     material["doubleSided"] = True
-    if scene.albedo is None or surface.uv is None:
+    if scene.skin.albedo is None or surface.uv is None:
         rough["baseColorFactor"] = [*to_linear(render.CLAY), 1.0]
         return glb.add("materials", material)
-    rough["baseColorTexture"] = glb.texture(scene.albedo)
-    ambient_occlusion = scene.ambient_occlusion
+    rough["baseColorTexture"] = glb.texture(scene.skin.albedo)
+    ambient_occlusion = scene.skin.ambient_occlusion
     if ambient_occlusion is not None:
         material["occlusionTexture"] = glb.texture(ambient_occlusion)
-    if scene.fine_shape is not None:
-        material["normalTexture"] = glb.texture(_normal_map(surface, scene.fine_shape), "png")
+    if scene.skin.fine_shape is not None:
+        material["normalTexture"] = glb.texture(_normal_map(surface, scene.skin.fine_shape), "png")
     return glb.add("materials", material)
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from ..scenes import FaceScene, Scene
+from ..scenes import Scene
 from .glb import Glb
 from .poses import CRANIUM
 from .surface import METRES, Floats
@@ -51,10 +51,10 @@ class Skeleton:
         self._nodes: dict[str, dict[str, Any]] = {}
         self._pivots: dict[str, Floats] = {}
         self.skin: int | None = None
-        if not isinstance(scene, FaceScene):
+        if scene.face is None:
             self.roots = [self._add(bone, None) for bone in sorted(used)]
             return
-        pivots = scene.simulation.bones.pivots()
+        pivots = scene.face.simulation.bones.pivots()
         self._pivots = {NECK: pivots[CRANIUM], **pivots}
         self.roots = [self._add(NECK, None)]
         head = self._add(CRANIUM, NECK)

@@ -32,7 +32,7 @@ from ..errors import UserError, in_one_line
 from ..export.formats import FORMATS as MOTION
 from ..files import NoSuchFileError, read_text, save_text
 from ..refining.presets import CHANGED, FIRST_PRESET, PRESETS, STATIC, Refinement
-from ..scenes import FaceScene, Scene
+from ..scenes import Drawable
 from .interface.gui import THEMES
 
 SIDES_SHOWN = 200, 16384  # [screen units] of the window, least and most
@@ -127,20 +127,20 @@ class Display(Record):
         self.refiner = None
         self.options = {}
 
-    def refiner_on(self, scene: Scene) -> str:
+    def refiner_on(self, scene: Drawable) -> str:
         """The name of the refiner that is chosen for this scene."""
         return Refinement(self.look, self.refiner).on(scene.name)[0]
 
-    def choose_refiner(self, scene: Scene, name: str) -> None:
+    def choose_refiner(self, scene: Drawable, name: str) -> None:
         """Refine by another refiner, or by that of the look again."""
         self.refiner = None if name == PRESETS[self.look][scene.name].refiner else name
 
-    def preset_as_changed(self, scene: Scene) -> str:
+    def preset_as_changed(self, scene: Drawable) -> str:
         """The look's name, with a mark if the refinement of this scene differs from it."""
         asked = self.refinement_on(scene)
         return self.look if asked == Refinement(self.look) else f"{self.look}{CHANGED}"
 
-    def refinement_on(self, scene: Scene) -> Refinement:
+    def refinement_on(self, scene: Drawable) -> Refinement:
         """How this scene is refined."""
         options = self.options.get(self.refiner_on(scene), {})
         return Refinement(self.look, self.refiner, dict(options))
@@ -155,9 +155,9 @@ class Display(Record):
         others = [each for each in self.overlays if each != name]
         self.overlays = others if name in self.overlays else [*others, name]
 
-    def remove_missing_overlays(self, scene: Scene) -> None:
+    def remove_missing_overlays(self, scene: Drawable) -> None:
         """Show none that this scene has no data for."""
-        self.overlays = self.overlays if isinstance(scene, FaceScene) else []
+        self.overlays = [] if scene.face is None else self.overlays
 
 
 @dataclass

@@ -40,7 +40,7 @@ def portrait(scene: Scene, name: str, size: tuple[int, int]) -> Image:
     turning_units = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
     is_turned = name.removesuffix("_left") in turning_units
     raised = 11.0  # [mm] that these look higher than at the landmarks: foreheads wrinkle
-    target = None if is_turned else scene.focus + np.array([0.0, raised, 0.0])
+    target = None if is_turned else scene.framing.focus + np.array([0.0, raised, 0.0])
     shown_over = {"mouthClose": {"mouthClose": 0.5, "jawOpen": 0.5}}  # a share shows nothing alone
     pose = shown_over.get(name, {name: 1.0})
     views = ("0,0,1.7", "-34,3,1.7")  # front and three-quarter

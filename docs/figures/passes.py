@@ -29,14 +29,14 @@ def passes(size: tuple[int, int] = (440, 500)) -> Image:
         turn = (-24.0, 4.0)  # [degrees] of the camera
         studio.camera.orbit(*turn)
         margin = 0.04  # share of the picture, free on each side
-        studio.camera.fit(scene.extent, margin)
+        studio.camera.fit(scene.framing.extent, margin)
         pose = {"AU12": 0.75, "AU6": 0.4, "AU1": 0.5, "jaw_open": 0.3, "head_yaw": -0.15}
         scene.pose(pose)
         settling_time = 1.0  # [s]
         scene.step(settling_time)
         picture = studio.draw_image()
         drawn = Passes(studio.pipeline, studio.viewports[-1].drawn)
-        known = labelled(drawn, studio.camera, studio.options.style, NAMES)
+        known = labelled(scene, drawn, studio.camera, studio.options.style, NAMES)
     images = known.images
     on = images["depth"] > 0.0
     colours_of_segments = {

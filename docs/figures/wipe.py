@@ -62,7 +62,7 @@ time = 4.3
     mesh = replace(skin, refinement=Refinement(refiner=STATIC), style=wire)
     with Capture(scene, skin) as right, Capture(scene, mesh) as left:
         for capture in (right, left):
-            capture.camera.target = scene.focus + np.array([0.0, -4.0, 0.0])
+            capture.camera.target = scene.framing.focus + np.array([0.0, -4.0, 0.0])
         line_colour = (255, 255, 255)
         for time in right.play(script, progress=False):
             turn = math.cos(2.0 * math.pi * time / script.duration)

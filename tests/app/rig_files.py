@@ -30,9 +30,9 @@ def write_whole_head(folder: Path, scene: FaceScene) -> tuple[Path, Path, dict[s
         lines.append(f"g {name}\nusemtl {'skin' if is_skin else 'parts'}")
         lines += [f"v {x:.7f} {y:.7f} {z:.7f}" for x, y, z in points * CENTIMETRES]
         if is_skin:
-            assert scene.uv is not None and scene.face_uv is not None
-            lines += [f"vt {u:.6f} {v:.6f}" for u, v in scene.uv]
-            for corners, uv in zip(faces + 1 + count, scene.face_uv + 1, strict=True):
+            assert scene.skin.uv is not None and scene.skin.face_uv is not None
+            lines += [f"vt {u:.6f} {v:.6f}" for u, v in scene.skin.uv]
+            for corners, uv in zip(faces + 1 + count, scene.skin.face_uv + 1, strict=True):
                 pairs = zip(corners, uv, strict=True)
                 lines.append("f " + " ".join(f"{vertex}/{place}" for vertex, place in pairs))
         else:

@@ -14,8 +14,8 @@ def test_numbers_stand_around_the_middle_of_the_face(scene):
     """Yaw and pitch in degrees about the landmarks, not about the skull; zoom 2 is half as far."""
     camera = camera_for(scene, "-15,2,2.3")
     assert (camera.yaw, camera.pitch) == approx((-15.0, 2.0))
-    assert camera.target == approx(scene.focus)
-    assert scene.focus[2] > camera_for(scene, "front").target[2] + 20.0
+    assert camera.target == approx(scene.framing.focus)
+    assert scene.framing.focus[2] > camera_for(scene, "front").target[2] + 20.0
     near, far = (camera_for(scene, f"0,0,{zoom}").distance for zoom in (2, 1))
     assert near == approx(0.5 * far)
     assert camera_for(scene, "0,0").distance == far

@@ -172,7 +172,7 @@ def test_the_texture_is_the_right_way_up(clip, glb):
     """Each vertex finds the colour that it has in the scene: v runs down in glTF."""
     player = Player(glb)
     skin = clip.skin
-    albedo = clip.scene.albedo
+    albedo = clip.scene.skin.albedo
     assert skin.face_uv is not None
     material = player.file.materials[player.primitive("skin").material]
     assert material.doubleSided
@@ -198,7 +198,7 @@ def test_fine_shape_is_a_normal_map(clip, glb):
     trimesh finds both maps, too.
     """
     skin = clip.skin
-    fine = clip.scene.fine_shape
+    fine = clip.scene.skin.fine_shape
     scene = trimesh.load_scene(glb, process=False)
     material = next(
         mesh.visual.material for name, mesh in scene.geometry.items() if name.startswith("skin")

@@ -115,7 +115,7 @@ def test_usd_has_the_texture_and_colours(clip, tmp_path):
     texture = UsdShade.Shader(stage.GetPrimAtPath(f"{material.GetPath()}/texture"))
     assert texture.GetInput("file").Get().resolvedPath == f"{path}[skin.png]"
     with zipfile.ZipFile(path) as package, package.open("skin.png") as picture:
-        assert np.array_equal(np.asarray(PIL.Image.open(picture)), clip.scene.albedo)
+        assert np.array_equal(np.asarray(PIL.Image.open(picture)), clip.scene.skin.albedo)
     colours = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/face/eyeball_left")).GetPrimvar(
         "displayColor"
     )

@@ -56,11 +56,18 @@ def test_one_topology_that_no_frame_is_finer_than(clip, refined):
 def test_frames_are_those_of_a_refiner_with_the_same_splits(clip, refined):
     """Vertices and normals are the refiner's own in every frame; parts stay as they were."""
     scene = clip.scene
-    changing = refine.create("kahler", scene.faces, scene.rest_positions, scene.uv, scene.face_uv)
+    changing = refine.create(
+        "kahler", scene.faces, scene.rest_positions, scene.skin.uv, scene.skin.face_uv
+    )
     frames = [clip.skin.at(frame) for frame in range(clip.frame_count)]
     splits = refine.splits_of_clip(changing, frames)
     fixed = refine.create(
-        "kahler", scene.faces, scene.rest_positions, scene.uv, scene.face_uv, splits=splits
+        "kahler",
+        scene.faces,
+        scene.rest_positions,
+        scene.skin.uv,
+        scene.skin.face_uv,
+        splits=splits,
     )
     skin = refined.clip.skin
     for number, frame in enumerate(frames):

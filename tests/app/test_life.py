@@ -114,10 +114,10 @@ def _off(scene, viewer):
 def test_who_stands_aside_is_not_followed(scene):
     """In profile, and from behind, the face looks straight ahead; nothing jumps on the way."""
     for view in ("profile", "180,0", "0,80"):
-        parts = looking_at(scene, camera_for(scene, view).eye)
+        parts = looking_at(scene.face, camera_for(scene, view).eye)
         assert all(value == 0.0 for part in parts.values() for value in part.values())
     walk = [
-        looking_at(scene, camera_for(scene, f"{yaw},0").eye)["eyes"]["gaze_horizontal_left"]
+        looking_at(scene.face, camera_for(scene, f"{yaw},0").eye)["eyes"]["gaze_horizontal_left"]
         for yaw in range(-120, 121)
     ]
     assert np.abs(np.diff(walk)).max() < 0.2

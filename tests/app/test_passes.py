@@ -33,7 +33,6 @@ def passes_of(studio, wanted):
 def posed(studio, controls):
     """The face of a studio, resting in a pose."""
     face = studio.scene
-    assert isinstance(face, FaceScene)
     face.reset()
     face.pose(controls)
     face.step(0.5)
@@ -57,7 +56,7 @@ def plain(scene: FaceScene) -> Iterator[Capture]:
 
 def seen_from(studio, yaw=0.0, pitch=0.0):
     """Draw the face from somewhere, as it is now."""
-    studio.camera = render.OrbitCamera.framing(studio.scene.extent)
+    studio.camera = render.OrbitCamera.framing(studio.scene.framing.extent)
     studio.camera.orbit(yaw, pitch)
     studio.draw_image()
     return CameraLabels.of(studio.camera, SIZE)
@@ -176,7 +175,7 @@ def test_landmarks_lie_on_the_depth_map(studio, expression, view):
     scene = posed(studio, EXPRESSIONS[expression])
     camera = seen_from(studio, *view)
     depth = passes_of(studio, ["depth"])["depth"]
-    found = landmarks_in(scene, camera, depth)
+    found = landmarks_in(scene.face, camera, depth)
     assert found.visible.sum() >= 30
     columns, rows = np.floor(found.pixels[found.visible]).astype(int).T
     off = np.abs(depth[rows, columns] - camera.to_camera(found.points[found.visible])[:, 2])
@@ -190,8 +189,8 @@ def test_pupils_are_hidden_by_lids_and_everything_by_the_frame(studio):
         scene = posed(studio, controls)
         camera = seen_from(studio)
         depth = passes_of(studio, ["depth"])["depth"]
-        found = landmarks_in(scene, camera, depth)
+        found = landmarks_in(scene.face, camera, depth)
         assert (found.visible[68:] == is_seen).all()
         assert found.visible[17:36].all()
-    cut = landmarks_in(scene, camera, depth[:, :200])
+    cut = landmarks_in(scene.face, camera, depth[:, :200])
     assert not cut.visible[cut.pixels[:, 0] > 200.0].any()

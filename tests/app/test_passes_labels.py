@@ -88,13 +88,13 @@ def test_angles_are_those_that_the_head_was_turned_by(face):
 def test_eyes_look_where_they_were_set(face):
     """Each in the scene: straight ahead at rest, to the subject's left is x, up is y."""
     face.reset()
-    assert np.allclose(gaze(face, "right"), [0.0, 0.0, 1.0])
+    assert np.allclose(gaze(face.face, "right"), [0.0, 0.0, 1.0])
     face.pose({"gaze_horizontal_left": 1.0, "gaze_vertical_right": 1.0})
     face.step(2.0)
-    assert gaze(face, "left")[0] > 0.3
-    assert abs(gaze(face, "left")[1]) < 0.015
-    assert gaze(face, "right")[1] > 0.3
-    assert abs(gaze(face, "right")[0]) < 0.01
+    assert gaze(face.face, "left")[0] > 0.3
+    assert abs(gaze(face.face, "left")[1]) < 0.015
+    assert gaze(face.face, "right")[1] > 0.3
+    assert abs(gaze(face.face, "right")[0]) < 0.01
 
 
 def test_labels_hold_what_was_set_and_what_it_moves(face):

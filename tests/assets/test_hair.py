@@ -133,8 +133,8 @@ def test_sparse_hair_is_called_what_is_behind_it():
 def test_hair_is_seen_framed_and_labelled():
     """It is in the picture as a whole, has its class, and is away over muscles and on clay."""
     scene = FaceScene(person_called("ada"))
-    assert scene.fade is None  # the shirt covers the end of the neck
-    assert scene.framed[:, 1].max() >= hair_of(person_called("ada")).vertices[:, 1].max()
+    assert scene.skin.fade is None  # the shirt covers the end of the neck
+    assert scene.framing.framed[:, 1].max() >= hair_of(person_called("ada")).vertices[:, 1].max()
     image, classes = label_of(haired("short"))
     is_hair = classes == Segment.HAIR
     assert is_hair.mean() > 0.043

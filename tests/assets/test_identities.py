@@ -183,8 +183,8 @@ def test_expressions_work_on_persons(person, head, request):
 def test_person_is_a_scene(person, head):
     """A scene takes it as any head, with light of its own at once: that of the built-in head."""
     scene = FaceScene(person)
-    assert scene.ambient_occlusion is person.ambient_occlusion
-    assert scene.albedo.shape == head.albedo.shape
+    assert scene.skin.ambient_occlusion is person.ambient_occlusion
+    assert scene.skin.albedo.shape == head.albedo.shape
     scene.pose({"joy": 1.0})
     scene.step(0.1)
     assert np.isfinite(scene.positions).all()

@@ -21,7 +21,6 @@ from ...export.formats import Request, check_request, export, format_for
 from ...files import check_file
 from ...pictures import save_png
 from ...refining.presets import STATIC, Refinement
-from ...scenes import FaceScene
 from ...workers import Task
 from ..interface.gui import NOTE_FLAGS, Gui, em, wake_up
 from ..interface.widgets import LabelledRows, button, dialog, muted, shortened
@@ -106,9 +105,8 @@ class Exporter:
         """
         choices = self.choices
         script = self.session.script
-        scene = self.session.scene
-        head = scene.head if isinstance(scene, FaceScene) else None
-        head = head if isinstance(head, FittedHead) else None
+        face = self.session.scene.face
+        head = face.head if face is not None and isinstance(face.head, FittedHead) else None
         work: Callable[[], object]
         if self.kind.is_drawn:
             check_file(target / "frame.png" if choices.kind == FRAMES_KIND else target)

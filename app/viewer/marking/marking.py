@@ -27,6 +27,7 @@ from risorius.sim.landmarks import LANDMARK_COUNT
 
 from ...errors import UserError
 from ...files import save_text
+from ...scenes import Drawable
 from ..documents.file_dialogs import FileDialogs
 from ..messages import Message, Task
 from ..session.document import History
@@ -120,7 +121,7 @@ class Marking:
         self.file: Path | None = None  # in which the marks are kept
         self.marks = self._saved = Marks({})
         self.current = FIRST[0]
-        self.faces = mesh.faces
+        self.seen_mesh = Drawable("face", mesh.faces, mesh.vertices)  # as it is placed now
         radius = 140.0  # [mm] of the mesh, as long as nobody knows how large a head is in it
         self._place(centred(mesh.vertices, radius))
         self._upright: Similarity | None = None
@@ -130,13 +131,19 @@ class Marking:
 
     def _place(self, placing: Similarity) -> None:
         self.placing = placing
-        self.positions = placing.points(self.mesh.vertices)
-        self._normals = vertex_normals(self.positions, self.faces)
-        off = self.positions - self.positions.mean(axis=0)
+        seen = self.seen_mesh
+        seen.positions = placing.points(self.mesh.vertices)
+        self._normals = vertex_normals(seen.positions, seen.faces)
+        off = seen.positions - seen.positions.mean(axis=0)
         if float((self._normals * off).sum()) < 0.0:  # it faces inward throughout
-            self.faces = np.ascontiguousarray(self.faces[:, ::-1])
+            seen.faces = np.ascontiguousarray(seen.faces[:, ::-1])
             self._normals = -self._normals
         self._nearest = scipy.spatial.cKDTree(self.positions)
+
+    @property
+    def positions(self) -> FloatArray:
+        """The vertices as they are seen, shape (V, 3)."""
+        return self.seen_mesh.positions
 
     def turn(self, rotation: FloatArray) -> None:
         """Turn the mesh by a matrix (3, 3), as long as the marks do not show which way is up."""

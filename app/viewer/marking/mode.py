@@ -16,10 +16,8 @@ from risorius import assets, render
 from risorius.assets.fitting.guess import FIRST, axes_turned
 from risorius.sim.landmarks import MIRRORED
 
-from ...control_names.limits import Limits
 from ...passes.labels import CameraLabels
 from ...refining.presets import STATIC
-from ...scenes import Scene
 from ..context import ApplicationContext
 from ..interface.commands import Command, MenuBar, command_button
 from ..interface.gui import LEFT, Gui, colour, em, fixed_panel, ink_of
@@ -28,7 +26,7 @@ from ..messages import Message, Messages, Task
 from ..picture.mouse import CameraMouse
 from ..picture.stage import Painter, Stage, View
 from ..settings import Display, Settings
-from .marking import GROUP_OF, GROUPS, FloatArray, Marking
+from .marking import GROUP_OF, GROUPS, Marking
 
 DARK = (0.08, 0.08, 0.10)
 WHITE = (1.0, 1.0, 1.0)
@@ -43,22 +41,6 @@ SIDE_NAMES = {
 }
 
 Spot = tuple[float, float]  # [window units]
-
-
-class MeshScene(Scene):
-    """The mesh where it is placed now."""
-
-    name = "face"
-    limits = Limits({})
-
-    def __init__(self, marking: Marking) -> None:
-        self.rest_positions = marking.positions
-        self.faces = marking.faces
-        self._marking = marking
-
-    @property
-    def positions(self) -> FloatArray:  # type: ignore[override]  # others keep theirs
-        return self._marking.positions
 
 
 class MarkingView(View):
@@ -306,7 +288,7 @@ class MarkingMode:
         surface = app.surface
         messages = app.messages
         self.view = MarkingView(marking, app.settings, surface)
-        stage = Stage(surface, MeshScene(marking), self.view.display, app.times)
+        stage = Stage(surface, marking.seen_mesh, self.view.display, app.times)
         self.painter = Painter(stage, self.view, messages)
         self.mouse = MarkingMouse(self.view, stage, marking, messages)
         own = self._commands()

@@ -17,7 +17,7 @@ from ...anatomy import OPACITY, SIDES, STRUCTURES
 from ...control_names import readable
 from ...refining.presets import PRESETS, STATIC, THRESHOLDS, words_of_presets
 from ...refining.refiners import DETAIL, can_detail, open_choices, options_of
-from ...scenes import BUILT_IN, OWN, FaceScene
+from ...scenes import BUILT_IN, OWN
 from ..context import ApplicationContext
 from ..documents.file_drop import FileDrop
 from ..interface.widgets import LabelledRows, button, heading, muted
@@ -95,7 +95,7 @@ class MechanismPanel:
             ("Light and person", "", self._draw_light_and_person),
             ("Milliseconds", times_label, self._draw_times),
         ):
-            if title == "Anatomy" and not isinstance(self._stage.scene, FaceScene):
+            if title == "Anatomy" and self._stage.scene.face is None:
                 continue
             if heading(self._gui, self._settings.folds, title, label):
                 draw()
@@ -168,7 +168,7 @@ class MechanismPanel:
         display = self._display
         self._pick("Shading", [shading.value for shading in render.Shading])
         self._pick("Skin", tuple(SKINS))
-        if self._stage.scene.wrinkles is not None:
+        if self._stage.scene.skin.wrinkles is not None:
             now = display.wrinkles
             display.wrinkles = self._rows.slide("Wrinkles", "wrinkles", now, (0.0, 1.0), 1.0)
         self._switch("Wireframe")
@@ -180,7 +180,7 @@ class MechanismPanel:
         scene = self._stage.scene
         self._pick("Light", tuple(render.LIGHTS))
         self._pick("Background", tuple(BACKGROUNDS))
-        if scene.in_tone is not None:
+        if scene.skin.in_tone is not None:
             self._pick("Skin tone", tuple(TONES))
         if scene.called:
             listed = (*NAMED, *range(20))  # and some of those without names

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from imgui_bundle import imgui
 
-from ...scenes import FaceScene
 from ..interface.gui import LEFT, MIDDLE, RIGHT, em
 from ..messages import Messages
 from .skin import Array, Ray, SkinDrag, skin_under
@@ -151,7 +150,7 @@ class Mouse(CameraMouse):
         if self._is_at_divider(io.mouse_pos.x):
             return "divider"
         point = self._skin_under(io)
-        if point is None or not isinstance(self._stage.scene, FaceScene):
+        if point is None or self._stage.scene.face is None:
             return "orbit"
         self.skin_drag = self._grab(point, self._ray(io).direction, poses=not io.key_ctrl)
         return "skin"

@@ -96,7 +96,7 @@ class SkinDrag:
         self._due = 0.0
         poses = poses and not session.live_override.is_on  # which poses the face itself
         rest = self._simulation.rest_positions[self._vertices]
-        is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > finger_radius
+        is_aside = abs(rest[:, 0].mean() - session.scene.framing.focus[0]) > finger_radius
         self._candidates = (
             _candidates(session, linked=settings.is_linked, is_aside=is_aside) if poses else []
         )

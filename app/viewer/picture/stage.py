@@ -23,7 +23,7 @@ from ...pictures import Image
 from ...pipeline import Pipeline, Viewport
 from ...refining.plug_ins import PlugInError
 from ...refining.presets import STATIC, Refinement
-from ...scenes import FaceScene, Scene
+from ...scenes import Drawable
 from ..interface.gui import THEMES, em
 from ..messages import Messages
 from ..session.physics import CALM_SECONDS, FrameTimes
@@ -121,13 +121,13 @@ class Stage:
     """Draws a scene into a window's surface."""
 
     def __init__(
-        self, surface: render.WindowSurface, scene: Scene, display: Display, times: FrameTimes
+        self, surface: render.WindowSurface, scene: Drawable, display: Display, times: FrameTimes
     ) -> None:
         self.surface = surface
         self._times = times
         self.set_scene(scene, display)
 
-    def set_scene(self, scene: Scene, display: Display) -> None:
+    def set_scene(self, scene: Drawable, display: Display) -> None:
         """Draw this scene from here on."""
         self.scene = scene
         self.pipeline = Pipeline(scene, render.Renderer(self.surface))
@@ -205,12 +205,13 @@ class Stage:
         return captioned(frame, shown, [x - left for x, *_ in seen])
 
 
-def pointed_lines(scene: Scene, shares: Mapping[str, float]) -> list[render.Lines]:
+def pointed_lines(scene: Drawable, shares: Mapping[str, float]) -> list[render.Lines]:
     """The fibres of the muscles of a control under the mouse: the clearer the more each does.
 
     shares: name -> how far it goes. One without sides stands for both.
     """
-    fibres = scene.simulation.anatomy.fibres() if shares and isinstance(scene, FaceScene) else {}
+    face = scene.face if shares else None
+    fibres = {} if face is None else face.simulation.anatomy.fibres()
     seen: dict[str, float] = {}
     for name, share in shares.items():
         for side in (name, f"{name}_left", f"{name}_right"):

@@ -15,7 +15,7 @@ from risorius.assets.loading import read_words
 from risorius.sim.layers import BOTH_SIDES
 
 from ...control_names.limits import ControlValues, Limits
-from ...scenes import FaceScene, Scene
+from ...scenes import Scene
 from ...script import Script
 from ...script.script_file import preface_of, save_script
 
@@ -31,7 +31,7 @@ class SceneControls:
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
         self.limits = scene.limits
-        own = scene.simulation.controls.lowest if isinstance(scene, FaceScene) else self.limits
+        own = self.limits if scene.face is None else scene.face.simulation.controls.lowest
         self.muscles = frozenset(own)
         order = [*read_words()["order"], *scene.groups]
         self.groups = {

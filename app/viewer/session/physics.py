@@ -21,7 +21,6 @@ from risorius import sim
 from ...control_names.limits import ControlValues
 from ...errors import UserError
 from ...motion.life import Idle, Values
-from ...scenes import FaceScene
 from .session import Session
 
 STEP = 1.0 / 60.0  # [s] as in films and tests; the simulation divides it further by itself
@@ -215,7 +214,7 @@ class IdleLife:
         so does a live face, until it is lost.
         """
         session = self._session
-        if not self._is_wanted() or not isinstance(session.scene, FaceScene):
+        if not self._is_wanted() or session.scene.face is None:
             return False
         is_in_script = session.is_following and session.time < session.script.duration
         is_moved = session.is_playing or session.is_recording or is_in_script

@@ -250,4 +250,4 @@ def _refine_once(scene: Scene, display: Display) -> None:
     refinement = display.refinement_on(scene)
     refiner = refiner_for(scene, refinement)
     with reported(plug_ins_of(*refinement.on(scene.name))):
-        refiner.refine(scene.positions, view=refine.View(scene.focus + 400.0))
+        refiner.refine(scene.positions, view=refine.View(scene.framing.focus + 400.0))

@@ -1,0 +1,112 @@
+"""What can be seen: a triangle mesh whose vertices move, images over it, and parts beside it.
+
+Drawing needs no more. What moves the mesh, and by which controls, is a scene's (scene.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import assets, sim
+from risorius.assets.fitting import FittedHead
+
+Points = npt.NDArray[np.float64]
+Pixels = npt.NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SkinImages:
+    """The images over a mesh, by its texture coordinates, and where it ends.
+
+    uv: texture coordinates, (U, 2). face_uv: which of them each corner has, (F, 3).
+    albedo: sRGB, (H, W, 3). in_tone: albedos by their individual typology angle [deg].
+    ambient_occlusion: over the albedo, (H, W); None: light gets everywhere.
+    fine_shape: of the skin, which its triangles do not hold. wrinkles: where skin wrinkles.
+    fade: a x + b y + c z + d, from 0 to 1, is the share of the mesh that shows at (x, y, z).
+    """
+
+    uv: npt.NDArray[np.float32] | None = None
+    face_uv: npt.NDArray[np.int32] | None = None
+    albedo: Pixels | None = None
+    in_tone: Callable[[float], Pixels] | None = None
+    ambient_occlusion: Pixels | None = None
+    fine_shape: assets.FineShape | None = None
+    wrinkles: assets.Wrinkles | None = None
+    fade: tuple[float, float, float, float] | None = None
+
+
+BARE = SkinImages()
+
+
+@dataclass(frozen=True, eq=False)
+class Framing:
+    """Points that say where a camera stands [mm].
+
+    extent: it sees all of the scene if it sees these, (n, 3). framed: they fill its frame, (n, 3).
+    focus: a camera close by looks there, (3,).
+    """
+
+    extent: Points
+    framed: Points
+    focus: Points
+
+
+@dataclass(frozen=True, eq=False)
+class Face:
+    """The head under a skin that muscles move, and its simulation."""
+
+    head: assets.Head | FittedHead
+    simulation: sim.Simulation
+
+    @property
+    def marked(self) -> Points:
+        """Where the 68 landmarks are now [mm], shape (68, 3)."""
+        return np.asarray(self.simulation.positions[self.head.landmarks])
+
+    def bone_transforms(self) -> Mapping[str, Points]:
+        """Where its bones are now: a (4, 4) matrix for each."""
+        return self.simulation.bones.transforms()
+
+
+class Drawable:
+    """A mesh as drawing sees it.
+
+    name: of the scene, by which looks choose their options.
+    faces: (F, 3). rest_positions: (V, 3) [mm]. positions: the vertices now; read only for others.
+    called: whose head it is, if it is one. face: what muscles move, if they do.
+    """
+
+    called = ""
+
+    def __init__(
+        self,
+        name: str,
+        faces: npt.NDArray[np.int32],
+        rest_positions: Points,
+        *,
+        skin: SkinImages = BARE,
+        face: Face | None = None,
+    ) -> None:
+        self.name = name
+        self.faces = faces
+        self.rest_positions = rest_positions
+        self.positions = rest_positions
+        self.skin = skin
+        self.face = face
+
+    @property
+    def parts(self) -> tuple[Any, ...]:
+        """What moves with bones or the skin, as it is now: eyes, teeth, lashes, ..."""
+        return ()
+
+    def bone_transforms(self) -> Mapping[str, Points]:
+        """Where the rigid parts are now: a (4, 4) matrix for each bone."""
+        return {}
+
+    def step(self, seconds: float) -> None:
+        """Let time pass; nothing moves by itself."""

@@ -1,0 +1,159 @@
+"""The face: a head, its simulation and the controls that move it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import assets, sim
+from risorius.assets.fitting import FittedHead
+from risorius.assets.identities import Person, built_in_hair, recoloured
+from risorius.geometry.read_only import read_only
+
+from ..control_names import parted
+from ..control_names.limits import ControlValues, Limits
+from .drawable import Face, Framing, SkinImages
+from .mouth import MouthWalls, Tongue, shaded_mouth
+from .scene import Scene
+from .surface_attachment import SurfaceAttachment
+
+BUILT_IN = "built-in"  # how the head that comes along is called
+OWN = "own"  # how a user's head is called
+LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
+
+
+class FaceScene(Scene):
+    """A head, moved by muscles, jaw and gaze through the spring simulation."""
+
+    name = "face"
+    face: Face
+
+    def __init__(
+        self,
+        head: assets.Head | FittedHead | None = None,
+        simulation: sim.Simulation | None = None,
+    ) -> None:
+        """Simulate `head`, the built-in one by default; simulation: of it, if there is one."""
+        self.head = assets.load("head") if head is None else head
+        self.simulation = simulation or sim.create(self.head)
+        faces = self.simulation.faces
+        rest = self.simulation.rest_positions
+        face = Face(self.head, self.simulation)
+        super().__init__(self.name, faces, rest, skin=_images_of(self.head), face=face)
+        self.positions = self.simulation.positions
+        self.landmarks = self.head.landmarks
+        self.called = _name_of(self.head)
+        self._parts = _parts_of(self.head, rest, faces)
+        self._are_bent = False  # parts, as the face is now
+        self.framing = self._framing()
+        controls = self.simulation.controls
+        self.groups = controls.groups
+        self.limits = Limits(controls.limits)
+        self.actions = controls.actions
+        whole = controls.layers.get("Expressions", ())
+        self.expressions = tuple(name for name in whole if parted(name)[0] not in {*whole} - {name})
+        self._moved_by: dict[str, dict[str, float]] = {}
+        self.values = self.limits.pose(controls.values)
+
+    def _framing(self) -> Framing:
+        """The head with its hair; a portrait of it ends below the chin."""
+        marks = self.head.vertices[self.landmarks]
+        hair = [part.vertices for part in self._parts if part.striation is not None]
+        extent = read_only(np.vstack([self.rest_positions, *hair]))
+        lowest = float(marks[8, 1]) - 32.0  # [mm] the chin's landmark, and what is seen below it
+        focus = read_only(0.5 * (marks.min(axis=0) + marks.max(axis=0)))
+        return Framing(extent, read_only(extent[extent[:, 1] > lowest]), focus)
+
+    def clone(self) -> FaceScene:
+        """The same head once more, at rest, which moves by itself; that takes no time."""
+        simulation = self.simulation.clone()
+        simulation.reset()
+        return FaceScene(self.head, simulation)
+
+    def take(self, values: ControlValues) -> None:
+        super().take(values)
+        self.simulation.controls.take(values.numbers)
+
+    def step(self, seconds: float) -> None:
+        count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
+        for _ in range(count):
+            self.simulation.step(seconds / count)
+        self._are_bent = False
+
+    def reset(self) -> None:
+        super().reset()
+        self.simulation.reset()
+        self._are_bent = False
+
+    @property
+    def parts(self) -> tuple[Any, ...]:
+        """Bent when they are asked for: a picture may show several steps at once."""
+        if not self._are_bent:
+            self._are_bent = True
+            tongue = self.simulation.anatomy.tongue()
+            bones = self.bone_transforms()
+            for part in self._parts:
+                if isinstance(part, SurfaceAttachment):
+                    part.follow(self.positions, bones[part.bone])
+                elif isinstance(part, Tongue) and tongue is not None:
+                    part.bend(tongue)
+                elif isinstance(part, MouthWalls):
+                    to_cranium = np.linalg.inv(bones["cranium"])
+                    part.stretch(self.simulation.bones.jaw, to_cranium @ bones["mandible"])
+        return self._parts
+
+    def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
+        return self.simulation.bones.transforms()
+
+    def moved_by(self, name: str) -> Mapping[str, float]:
+        """The lowest controls that a control at its most moves, and how far."""
+        controls = self.simulation.controls
+        if name not in self._moved_by:
+            at_most = self.limits.pose({name: self.limits[name][1]})
+            sums = controls.sums_of(at_most.numbers).tolist()
+            shares = zip(controls.lowest, sums, strict=True)
+            self._moved_by[name] = {each: abs(share) for each, share in shares if share}
+        return self._moved_by[name]
+
+
+def _images_of(head: assets.Head | FittedHead) -> SkinImages:
+    """What is on the skin of a head."""
+    person = head if isinstance(head, Person) else None
+    fade = None
+    if isinstance(head, FittedHead) and person is None:  # others have a shirt
+        fade = head.fade()
+    in_tone = None if person is None else person.in_tone
+    return SkinImages(
+        uv=head.uv,
+        face_uv=head.face_uv,
+        albedo=head.albedo,
+        in_tone=recoloured if isinstance(head, assets.Head) else in_tone,
+        ambient_occlusion=head.ambient_occlusion,
+        fine_shape=head.fine_shape,
+        wrinkles=head.wrinkles,
+        fade=fade,
+    )
+
+
+def _parts_of(
+    head: assets.Head | FittedHead,
+    rest_positions: npt.NDArray[np.float64],
+    faces: npt.NDArray[np.int32],
+) -> tuple[Any, ...]:
+    """The parts of a head, some of which can bend, and the hair of the built-in one."""
+    parts = tuple(
+        part if part.roots is None else SurfaceAttachment(part, rest_positions, faces)
+        for part in shaded_mouth(head.parts)
+    )
+    return (*parts, *built_in_hair(head)) if isinstance(head, assets.Head) else parts
+
+
+def _name_of(head: assets.Head | FittedHead) -> str:
+    """How the user calls a head."""
+    if isinstance(head, assets.Head):
+        return BUILT_IN
+    return (isinstance(head, Person) and head.called) or OWN

@@ -1,0 +1,62 @@
+"""The plane of the paper's experiments (Fig. 9 and Table 1)."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import assets
+from risorius.geometry.read_only import read_only
+
+from ..control_names.limits import Limits
+from .drawable import Framing
+from .scene import Scene
+
+
+class PlaneScene(Scene):
+    """The paper's plane: 154 triangles under a strong travelling sine (Fig. 9 and Table 1).
+
+    The wave runs along the diagonals of the cells, so that every edge bends: across one along the
+    plane a third of the edges would stay straight and never be split. `amplitude` 1 lifts the
+    crests by HEIGHT; `phase` moves the wave along by that many wavelengths.
+    """
+
+    name = "plane"
+    WAVES = 1.5  # wavelengths in a length of the plane (chosen by eye, with HEIGHT)
+    HEIGHT = 0.2  # crest above the middle, in lengths of the plane
+
+    groups = MappingProxyType({"Wave": ("amplitude", "phase")})
+    limits = Limits({"amplitude": (0.0, 1.0), "phase": (0.0, 100.0)})
+
+    def __init__(self) -> None:
+        plane = assets.load("plane")
+        vertices = plane.vertices
+        super().__init__(self.name, plane.faces, vertices)
+        self.framing = Framing(vertices, vertices, read_only(vertices.mean(axis=0)))
+        self.values = self.limits.pose({})
+        self._length = float(np.ptp(vertices, axis=0).max())
+        self._positions = vertices.copy()
+        self.positions = read_only(self._positions)
+
+    def step(self, seconds: float) -> None:
+        self._positions[:] = self.waved(self.rest_positions)[0]
+
+    def waved(
+        self, points: npt.NDArray[np.float64]
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Where points of the flat plane z = 0 lie now, and the wave's normals there, (n, 3)."""
+        height = self.values["amplitude"] * self.HEIGHT * self._length
+        frequency = 2.0 * np.pi * self.WAVES / self._length
+        along = points.sum(axis=1) / np.sqrt(2.0)
+        angle = frequency * along - 2.0 * np.pi * self.values["phase"]
+        moved = points.copy()
+        normals = np.ones_like(points)
+        moved[:, 2] += height * np.sin(angle)
+        normals[:, :2] = -np.sqrt(0.5) * height * frequency * np.cos(angle)[:, None]
+        return moved, normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+    def reset(self) -> None:
+        super().reset()
+        self._positions[:] = self.rest_positions
