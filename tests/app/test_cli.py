@@ -81,15 +81,15 @@ def test_looks_and_refiners_side_by_side(smile, tmp_path):
     options = ("--compare", "none,paper,loop", "--option", "scheme=cubic")
     both, most = drawn(4 * 160, *options)
     pictures = [picture for picture, _ in alone]
-    seen = both[:80]  # above the captions
-    seen[:, [160, 320, 480]] = np.hstack(pictures)[:80, [160, 320, 480]]  # but for lines between
-    assert np.abs(seen - np.hstack(pictures)[:80]).max() <= 2  # the background is dithered
+    seen = both[:76]  # above the captions
+    seen[:, [160, 320, 480]] = np.hstack(pictures)[:76, [160, 320, 480]]  # but for lines between
+    assert np.abs(seen - np.hstack(pictures)[:76]).max() <= 2  # the background is dithered
     for first, second in combinations(pictures, 2):
         assert np.abs(first - second).max() > 20
     counts = [count for _, count in alone]
     assert most == max(counts)
     assert len(set(counts)) == 4
-    assert np.abs(drawn(320, "--compare")[0][:80, :160] - pictures[0][:80]).max() <= 2
+    assert np.abs(drawn(320, "--compare")[0][:76, :160] - pictures[0][:76]).max() <= 2
 
 
 def test_a_script_begins_in_its_first_pose(tmp_path):
