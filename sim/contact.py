@@ -26,7 +26,7 @@ from .substep import SLIDE_DISTANCE
 from .surface import Surface
 
 PAIR_GAP = 2.2  # mm: lips further apart at rest are no pair; their red must not fold on the line
-PRESSED_OVERLAP = 1.5  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
+PRESSED_OVERLAP = 1.8  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
 EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the eyeball
 
 

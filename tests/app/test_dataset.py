@@ -259,7 +259,7 @@ def apertures_of(face, pose):
     face.reset()
     face.pose(pose)
     face.step(1.0)
-    camera = render.OrbitCamera.framing(face.framed)
+    camera = render.OrbitCamera.framing(face.framing.framed)
     labels = labels_of_face(face, camera, (64, 48), np.ones((48, 64)))
     return labels["apertures"]
 
