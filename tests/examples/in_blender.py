@@ -125,6 +125,21 @@ def main():
         bpy.context.scene.frame_set(frame)
         seen["triangles_there"].append(len(copy.data.polygons))
 
+    bpy.context.scene.frame_set(11)
+    seen["kept"] = list(bpy.ops.object.risorius_keep())
+    seen["kept_at"] = bpy.context.scene.frame_current
+    seen["kept_triangles"] = []
+    seen["kept_corners"] = []
+    for frame in range(10, 15):
+        bpy.context.scene.frame_set(frame)
+        corners = column(copy.data.loops, "vertex_index", 1, np.int32).ravel()
+        seen["kept_triangles"].append(len(copy.data.polygons))
+        seen["kept_corners"].append(int(corners @ np.arange(len(corners))))
+    evaluated = source.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    direct = addon._bound[copy.session_uid].refiner.refine(addon.points_of(evaluated))
+    seen["kept_off"] = float(np.abs(addon.points_of(copy.data) - direct.positions).max())
+    seen["let_go"] = list(bpy.ops.object.risorius_change())
+
     file = FOLDER / "saved.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(file))
     bpy.ops.wm.open_mainfile(filepath=str(file))

@@ -76,6 +76,16 @@ def test_settings(seen):
 
 
 @pytest.mark.blender
+def test_one_topology_for_the_frame_range(seen):
+    """The frames of the range get the same triangles, no fewer than any has; and let them go."""
+    assert seen["kept"] == seen["let_go"] == ["FINISHED"]
+    assert seen["kept_at"] == 11
+    assert len(set(seen["kept_triangles"])) == len(set(seen["kept_corners"])) == 1
+    assert seen["kept_triangles"][0] >= max(seen["triangles_there"])
+    assert seen["kept_off"] == 0.0
+
+
+@pytest.mark.blender
 def test_renders_files_and_undo(seen):
     """A film has the triangles of each of its frames, and so has the file opened again."""
     assert seen["rendered"] == seen["triangles_there"]

@@ -17,6 +17,7 @@ LOOKS = {
     "SMOOTH": {"scheme": "cubic", "criterion": "displacement+rest"},
     "PAPER": {"scheme": "loop", "criterion": "normal", "normals": "linear"},
 }
+SPLITS = "risorius_splits"  # of the mesh at rest: how often each edge is split in all frames
 _bound: dict[int, "Bound"] = {}  # of each refined copy, by its number in this session
 
 
@@ -47,6 +48,11 @@ class Bound:
         self.materials = numbers(rest.polygons, "material_index", 1, np.int32).ravel()[polygons]
         self.counts = len(rest.vertices), len(rest.polygons)
         self.corners = None  # of the triangles that are in the copy
+        splits = rest.get(SPLITS)
+        look = dict(LOOKS[settings.look])
+        if splits is not None:
+            del look["criterion"]
+            look["splits"] = np.array(splits[:], dtype=np.uint8)
         self.uv_shown = rest.uv_layers.active and rest.uv_layers.active.name
         self.refiner = refine.create(
             "kahler",
@@ -56,22 +62,25 @@ class Bound:
                 layer.name: (numbers(layer.uv, "vector", 2, np.float32), loops)
                 for layer in rest.uv_layers
             },
-            **LOOKS[settings.look],
+            **look,
             blend=settings.blend,
         )
+        self.stays = splits is not None
 
     def refine(self, source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
         """Refine the evaluated `source` into `mesh`; raises ValueError if it is another mesh."""
         if (len(source.vertices), len(source.polygons)) != self.counts:
             raise ValueError("The source has other vertices or faces than at rest")
         frame = self.refiner.refine(points_of(source))
-        corners = frame.triangles.astype(np.int32).ravel()
-        if self.corners is None or not np.array_equal(corners, self.corners):
-            self.make(mesh, frame, corners)
+        is_made = self.stays and self.corners is not None
+        if not is_made:
+            corners = frame.triangles.astype(np.int32).ravel()
+            if self.corners is None or not np.array_equal(corners, self.corners):
+                self.make(mesh, frame, corners)
+            for name, values in frame.attributes.items():
+                write(mesh, name, "FLOAT2", "CORNER", values[frame.triangles.ravel()])
         write(mesh, "position", "FLOAT_VECTOR", "POINT", frame.positions)
         write(mesh, "custom_normal", "FLOAT_VECTOR", "POINT", frame.normals)
-        for name, values in frame.attributes.items():
-            write(mesh, name, "FLOAT2", "CORNER", values[frame.triangles.ravel()])
         mesh.update()
 
     def make(self, mesh: bpy.types.Mesh, frame: Any, corners: np.ndarray) -> None:
@@ -208,6 +217,68 @@ class OBJECT_OT_risorius_refine(bpy.types.Operator):  # noqa: N801 (Blender asks
         return {"FINISHED"}
 
 
+def refined_copy(context: bpy.types.Context) -> bpy.types.Object | None:
+    """The active object, if it is a refined copy with a mesh at rest."""
+    active = context.active_object
+    settings = active and active.risorius
+    return active if settings and settings.source and settings.rest else None
+
+
+class OBJECT_OT_risorius_keep(bpy.types.Operator):  # noqa: N801
+    """Keep the same triangles in all frames of the scene's range, as many as its motion needs"""
+
+    bl_idname = "object.risorius_keep"
+    bl_label = "Keep One Topology"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Say whether the active object is a refined copy."""
+        return refined_copy(context) is not None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Refine all frames, and keep the most splits that any of them has at each edge."""
+        copy = refined_copy(context)
+        scene = context.scene
+        shown = scene.frame_current
+        copy.risorius.rest.pop(SPLITS, None)
+        changed(copy.risorius, context)
+        most = None
+        for frame in range(scene.frame_start, scene.frame_end + 1):
+            scene.frame_set(frame)
+            if copy.risorius.problem:
+                self.report({"ERROR"}, f"Frame {frame}: {copy.risorius.problem}")
+                scene.frame_set(shown)
+                return {"CANCELLED"}
+            splits = _bound[copy.session_uid].refiner.splits
+            most = splits.copy() if most is None else np.maximum(most, splits)
+        copy.risorius.rest[SPLITS] = most.astype(int).tolist()
+        _bound.pop(copy.session_uid, None)
+        scene.frame_set(shown)
+        return {"FINISHED"}
+
+
+class OBJECT_OT_risorius_change(bpy.types.Operator):  # noqa: N801
+    """Let each frame have its own triangles again"""
+
+    bl_idname = "object.risorius_change"
+    bl_label = "Change Topology"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Say whether the active object is a refined copy with one topology."""
+        copy = refined_copy(context)
+        return copy is not None and SPLITS in copy.risorius.rest
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Forget the splits."""
+        copy = refined_copy(context)
+        del copy.risorius.rest[SPLITS]
+        changed(copy.risorius, context)
+        return {"FINISHED"}
+
+
 class VIEW3D_PT_risorius(bpy.types.Panel):  # noqa: N801
     """The settings of the active object, if it is a refined copy."""
 
@@ -227,6 +298,9 @@ class VIEW3D_PT_risorius(bpy.types.Panel):  # noqa: N801
             return
         for name in ("source", "rest", "look", "blend"):
             layout.prop(settings, name)
+        is_kept = settings.rest is not None and SPLITS in settings.rest
+        operator = OBJECT_OT_risorius_change if is_kept else OBJECT_OT_risorius_keep
+        layout.operator(operator.bl_idname)
         if settings.problem:
             layout.label(text=settings.problem, icon="ERROR")
         else:
@@ -238,7 +312,13 @@ def show_in_menu(menu: bpy.types.Menu, _: bpy.types.Context) -> None:
     menu.layout.operator(OBJECT_OT_risorius_refine.bl_idname)
 
 
-CLASSES = (RisoriusSettings, OBJECT_OT_risorius_refine, VIEW3D_PT_risorius)
+CLASSES = (
+    RisoriusSettings,
+    OBJECT_OT_risorius_refine,
+    OBJECT_OT_risorius_keep,
+    OBJECT_OT_risorius_change,
+    VIEW3D_PT_risorius,
+)
 HANDLERS = (
     ("frame_change_post", refine_frame),
     *((name, forget) for name in ("load_post", "undo_post", "redo_post")),
