@@ -10,10 +10,10 @@ from __future__ import annotations
 import figures
 import numpy as np
 import numpy.typing as npt
-from refinement import FAINT, INK, NEW, PAPER, SECOND, Colour, Diagram
+from refinement import INK, NEW, PAPER, SECOND, Colour, Diagram
 
 from risorius import assets, refine, sim
-from risorius.app.files import Image
+from risorius.app.pictures import Image
 from risorius.bench.subjects import SETTLE, settled_positions
 
 Points = npt.NDArray[np.float64]
@@ -49,7 +49,7 @@ def draw_frame(
         outline = places[mesh.triangles[k]]
         fill = split if is_split[mesh.source[k]] else whole
         diagram.polygon(list(outline), shaded(fill, max(float(normals[k] @ LIGHT), 0.0)))
-        diagram.line([*outline, outline[0]], FAINT, 0.5)
+        diagram.line([*outline, outline[0]], (150, 154, 162), 0.5)
     strip = [(left, 0), (left + PANEL[0], 0), (left + PANEL[0], CAPTION), (left, CAPTION)]
     diagram.polygon(strip, PAPER)
     return places
@@ -63,7 +63,7 @@ def one_topology() -> Image:
     frames = [settled_positions(simulation, head.expressions[each], SETTLE) for each in expressions]
     splits = refine.splits_of_clip(refine.create("kahler", head.faces, head.vertices), frames)
     refiner = refine.create("kahler", head.faces, head.vertices, splits=splits)
-    is_split = splits[refiner.triangle_edges].any(axis=1)
+    is_split: npt.NDArray[np.bool_] = np.any(splits[refiner.triangle_edges], axis=1)
     diagram = Diagram(2 * PANEL[0], PANEL[1] + CAPTION)
     for panel, (expression, frame) in enumerate(zip(expressions, frames, strict=True)):
         mesh = refiner.refine(frame)

@@ -121,7 +121,7 @@ REFUSED = {
     "dataset --count 2 -o set --background broken": "face.png: cannot be read as a picture",
     "dataset --count 2 -o set --sample nowhere.toml": "no such table",
     # Exports.
-    "export good.toml -o x.pc2 --refined": "it goes with usd, obj, vtkhdf",
+    "export good.toml -o x.pc2 --refined --changing": "it goes with usd, obj, vtkhdf",
     "export good.toml -o x.obj": "and folders with --as obj",
     "export good.toml -o x": "x: has no suffix. Allowed are .glb",
     "export good.toml -o x.usdc --as npz": "numpy arrays is written as .npz",

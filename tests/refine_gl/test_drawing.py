@@ -55,7 +55,8 @@ def image(pipeline, drawn, style):
     """The picture of it."""
     surface = pipeline.renderer.surface
     camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="three-quarter")
-    pipeline.draw(camera, style, [Viewport(drawn, (0, 0, *surface.size))])
+    size = surface.frame_size if isinstance(surface, render.WindowSurface) else surface.size
+    pipeline.draw(camera, style, [Viewport(drawn, (0, 0, *size))])
     return surface.read()
 
 

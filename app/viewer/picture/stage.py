@@ -78,7 +78,7 @@ class View:
     def pixels(self, area: tuple[float, float, float, float]) -> render.Rectangle:
         """A part of the window, as one of the framebuffer."""
         display = imgui.get_io().display_size
-        width, height = self._surface.size
+        width, height = self._surface.frame_size  # of the picture that is drawn next
         across = width / max(display.x, 1.0)
         along = height / max(display.y, 1.0)
         left, top, wide, high = area
