@@ -56,6 +56,15 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str) -> None:
     click.echo(refine.report(rows))
 
 
+@bench.command("embedding")
+def bench_embedding() -> None:
+    """Measure how near a fine mesh comes to its true place when a coarse one carries it."""
+    from . import embedding
+
+    rows = embedding.measure()
+    conclude(embedding.report(rows), embedding.targets(rows))
+
+
 @bench.command("quality")
 @click.option("--reference", type=FOLDER, help="A folder of `risorius bench reference`.")
 @click.option(

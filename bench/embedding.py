@@ -1,0 +1,199 @@
+"""How near a fine mesh comes to its true place when a coarse one carries it.
+
+Surfaces with a formula are bent by maps with a formula, so the true place of every fine vertex is
+known. The fine mesh lies on the surface, the coarse one has its vertices on it. Beside
+`refine.Embedding` stand the two ways that coarse simulations usually draw fine meshes by: a place
+on the flat triangle that was nearest at rest, without the offset from it, and with the offset in
+the triangle's own axes. All three see the same coarse triangles.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import trimesh
+
+from risorius import refine
+from risorius.assets.sheets import make_grid
+from risorius.assets.topology import grid_faces
+from risorius.geometry.closest import SurfacePoints, closest_points
+
+from .report import Target, at_least, processor, table
+
+Points = npt.NDArray[np.float64]
+Faces = npt.NDArray[np.int32]
+Surface = tuple[Points, Faces]
+Map = Callable[[Points], Points]
+
+ROUNDS = 20  # of timing a frame
+
+
+class Row(NamedTuple):
+    """The error of three ways to carry a fine mesh, root mean square [lengths of the surface]."""
+
+    surface: str
+    map: str
+    triangles: int
+    points: int
+    ours: float
+    with_offset: float
+    without_offset: float
+    milliseconds: float
+    """Time of a frame of ours, median [ms]."""
+
+
+def sheet(cells: int) -> Surface:
+    """A square of side 2 in the plane z = 0."""
+    return make_grid(cells, cells, 2.0 / cells)
+
+
+def sphere(levels: int) -> Surface:
+    """A sphere of radius 1, of nearly equal triangles."""
+    ball = trimesh.creation.icosphere(levels)
+    return np.array(ball.vertices), np.array(ball.faces, dtype=np.int32)
+
+
+def tube(around: int, along: int) -> Surface:
+    """An open cylinder along x, of radius 0.5 and length 4, that looks outward."""
+    angles = 2.0 * np.pi * np.arange(around) / around
+    x, angle = np.meshgrid(np.linspace(-2.0, 2.0, along + 1), angles, indexing="ij")
+    rings = np.stack([x, 0.5 * np.cos(angle), 0.5 * np.sin(angle)], axis=2)
+    number = np.arange(x.size).reshape(x.shape)
+    return rings.reshape(-1, 3), grid_faces(number[:, ::-1], closed=True)
+
+
+def rolled(points: Points) -> Points:
+    """Roll x up around an axis that lies 1.5 below: what is flat becomes a cylinder."""
+    radius = 1.5 + points[:, 2]
+    angle = points[:, 0] / 1.5
+    return np.stack([radius * np.sin(angle), points[:, 1], radius * np.cos(angle) - 1.5], axis=1)
+
+
+def waved(points: Points) -> Points:
+    """Bend what is flat, along the x axis and a little across it."""
+    moved = points.copy()
+    moved[:, 2] += 0.15 * np.sin(3.0 * points[:, 0] + points[:, 1])
+    return moved
+
+
+def twisted(points: Points) -> Points:
+    """Turn everything about the x axis, the farther the more."""
+    angle = 0.8 * points[:, 0]
+    y = np.cos(angle) * points[:, 1] - np.sin(angle) * points[:, 2]
+    z = np.sin(angle) * points[:, 1] + np.cos(angle) * points[:, 2]
+    return np.stack([points[:, 0], y, z], axis=1)
+
+
+def stretched(points: Points) -> Points:
+    """Make an ellipsoid of a sphere."""
+    return points * [1.3, 0.8, 1.0]
+
+
+def swollen(points: Points) -> Points:
+    """Half as thick again."""
+    return points * [1.0, 1.5, 1.5]
+
+
+CASES: tuple[tuple[str, Surface, Surface, tuple[Map, ...]], ...] = (
+    ("plane", sheet(16), sheet(160), (rolled, waved, twisted)),
+    ("sphere", sphere(2), sphere(5), (stretched, rolled, twisted)),
+    ("cylinder", tube(16, 20), tube(128, 160), (rolled, twisted, swollen)),
+)
+
+
+class FlatBinding:
+    """A place on the flat triangle nearest at rest, and the offset in the triangle's own axes."""
+
+    def __init__(self, faces: Faces, rest: Points, points: Points) -> None:
+        """Bind `points` at rest."""
+        self._places: SurfacePoints = closest_points(points, rest, faces)
+        away = points - self._places.interpolate(rest)
+        self._offsets = np.einsum("nij,ni->nj", self._axes(rest), away)
+
+    def evaluate(self, positions: Points, *, offset: bool) -> Points:
+        """Where the points come, with or without their offset."""
+        places = self._places.interpolate(positions)
+        if not offset:
+            return places
+        return np.asarray(places + np.einsum("nij,nj->ni", self._axes(positions), self._offsets))
+
+    def _axes(self, positions: Points) -> Points:
+        a, b, c = positions[self._places.corners].swapaxes(0, 1)
+        first = _unit(b - a)
+        normal = _unit(np.cross(b - a, c - a))
+        return np.stack([first, np.cross(normal, first), normal], axis=2)
+
+
+def measure() -> list[Row]:
+    """Carry the fine mesh of every surface by every map."""
+    rows = []
+    for name, (rest, faces), (fine, _), maps in CASES:
+        ours = refine.Embedding(faces, rest, fine)
+        flat = FlatBinding(faces, rest, fine)
+        for bend in maps:
+            positions = bend(rest)
+            truth = bend(fine)
+            size = float(np.ptp(truth, axis=0).max())
+            found = ours.evaluate(positions).positions
+            flatly = flat.evaluate(positions, offset=True)
+            without = flat.evaluate(positions, offset=False)
+            rows.append(
+                Row(
+                    surface=name,
+                    map=bend.__name__,
+                    triangles=len(faces),
+                    points=len(fine),
+                    ours=_root_mean_square(found - truth) / size,
+                    with_offset=_root_mean_square(flatly - truth) / size,
+                    without_offset=_root_mean_square(without - truth) / size,
+                    milliseconds=_milliseconds(ours, positions),
+                )
+            )
+    return rows
+
+
+def report(rows: list[Row]) -> str:
+    """A table of errors."""
+    columns = (
+        "surface:<9|map:<10|coarse:7d|fine:7d|ours:8.0f|flat + offset:14.0f|flat:8.0f|"
+        "flat + offset by ours:22.1f|ms:6.2f"
+    )
+    cells = [
+        (
+            *row[:4],
+            *(1e6 * error for error in row[4:7]),
+            row.with_offset / row.ours,
+            row.milliseconds,
+        )
+        for row in rows
+    ]
+    title = "Distance of fine vertices from their true places, root mean square,"
+    unit = "in millionths of the size of the surface"
+    return "\n".join([title, unit, "", *table(columns, cells), "", f"on {processor()}"])
+
+
+def targets(rows: list[Row]) -> list[Target]:
+    """Three times nearer than flat binding with an offset, wherever the surface bends."""
+    least = min(row.with_offset / row.ours for row in rows)
+    return [at_least("flat binding with offset by ours", least, 3.0)]
+
+
+def _milliseconds(embedding: refine.Embedding, positions: Points) -> float:
+    times = []
+    for _ in range(ROUNDS):
+        start = time.perf_counter()
+        embedding.evaluate(positions)
+        times.append(time.perf_counter() - start)
+    return 1e3 * float(np.median(times))
+
+
+def _root_mean_square(vectors: Points) -> float:
+    return float(np.sqrt((vectors**2).sum(axis=1).mean()))
+
+
+def _unit(vectors: Points) -> Points:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
