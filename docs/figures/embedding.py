@@ -1,0 +1,57 @@
+"""Draw the figure of docs/drive_a_fine_mesh.md: `python docs/figures/embedding.py [FOLDER]`.
+
+embedding         a fine sheet with ripples, carried by a coarse one: flatly, on the smooth surface
+"""
+
+from __future__ import annotations
+
+import figures
+import numpy as np
+
+from risorius import refine, render
+from risorius.app.pictures import Image
+from risorius.bench.canvas import Canvas, Drawing
+from risorius.bench.embedding import Faces, FlatBinding, Points, sheet
+
+
+def folded(points: Points) -> Points:
+    """Two folds of a cloth, whose thickness is along z."""
+    along = 3.2 * points[:, 0] + points[:, 1]
+    middle = np.column_stack([points[:, :2], 0.3 * np.sin(along)])
+    slope = 0.3 * np.cos(along)
+    normals = np.column_stack([-3.2 * slope, -slope, np.ones(len(points))])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.asarray(middle + points[:, 2:] * normals)
+
+
+def embedding() -> Image:
+    """The coarse sheet, the fine one carried in two ways, and the truth."""
+    rest, faces = sheet(8)
+    flat, fine_faces = sheet(160)
+    fine = flat + np.array([0.0, 0.0, 0.012]) * np.sin(45.0 * flat[:, [0]] + 20.0 * flat[:, [1]])
+    moved = folded(rest)
+    flatly = FlatBinding(faces, rest, fine).evaluate(moved, offset=True)
+    smoothly = refine.Embedding(faces, rest, fine).evaluate(moved).positions
+    cells = [
+        ("coarse: 128 triangles", drawn(moved, faces)),
+        ("flat binding with an offset", drawn(flatly, fine_faces)),
+        ("refine.Embedding", drawn(smoothly, fine_faces)),
+        ("where it should be", drawn(folded(fine), fine_faces)),
+    ]
+    return figures.sheet(cells, columns=2)
+
+
+def drawn(positions: Points, faces: Faces) -> Image:
+    """A sheet, seen from obliquely above."""
+    upright = 60.0 * positions[:, [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
+    camera = render.OrbitCamera.framing(upright)
+    camera.orbit(-25.0, 35.0)
+    camera.fit(upright)
+    clay = render.Style(textured=False, albedo=render.CLAY, background=render.DARK)
+    refiner = refine.create("none", faces, upright)
+    with Canvas((560, 400)) as canvas:
+        return canvas.draw_image(refiner, upright, Drawing(camera, clay))
+
+
+if __name__ == "__main__":
+    figures.run(__doc__, {"embedding": embedding})
