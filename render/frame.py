@@ -111,6 +111,7 @@ class SkinMaps:
 
 
 NO_MAPS = SkinMaps()
+"""Of skin that is drawn in one colour, without a texture."""
 
 
 @dataclass(frozen=True, eq=False)
