@@ -3,6 +3,8 @@
 import pytest
 from imgui_bundle import imgui
 
+import risorius
+
 from .driving import NEEDS_A_SCREEN, click, middle, press_keys, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
@@ -33,6 +35,16 @@ def test_each_command_has_its_own_name_and_keys(viewer):
     doing = [each for each in viewer.commands if each.submenu is None]
     for each in ([command.label for command in doing], [key for c in doing for key in c.keys]):
         assert len(each) == len({*each})
+
+
+def test_the_citation_is_copied(viewer):
+    """*Help > Copy citation* puts the paper and the program into the clipboard, as BibTeX."""
+    click(viewer, "menu Help")
+    click(viewer, "menu Help: Copy citation")
+    citation = imgui.get_clipboard_text()
+    assert "10.1007/s00371-002-0185-8" in citation
+    assert 'K{\\"a}hler' in citation
+    assert f"version = {{{risorius.__version__}}}" in citation
 
 
 def test_recent_files_are_opened_again(viewer, tmp_path):

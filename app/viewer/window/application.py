@@ -112,7 +112,7 @@ class Application(ApplicationContext):
             *menus.view_menu(settings, self.view),
             *menus.expression_menu(session),
             *menus.live_menu(self.live),
-            *menus.HELP,
+            *menus.help_menu(),
         )
         self.gui.keys = {each.label: each.displayed_keys for each in self.commands}
         self.life = IdleLife(session, lambda: settings.is_alive, lambda: self.view.camera.eye)

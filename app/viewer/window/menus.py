@@ -9,6 +9,10 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
+from imgui_bundle import imgui
+
+from risorius import __version__
+
 from ...control_names import readable
 from ...errors import as_text
 from ...performances import examples
@@ -28,6 +32,21 @@ from ..timeline.keys import KeySelection
 from ..timeline.time_axis import TimeAxis
 
 Menu = tuple[Command, ...]
+CITATION = """\
+@article{kaehler2003refining,
+  author = {K{\\"a}hler, Kolja and Haber, J{\\"o}rg and Seidel, Hans-Peter},
+  title = {Dynamically refining animated triangle meshes for rendering},
+  journal = {The Visual Computer},
+  volume = {19},
+  year = {2003},
+  doi = {10.1007/s00371-002-0185-8}
+}
+@software{risorius,
+  author = {{The Risorius authors}},
+  title = {Risorius: physics-based facial animation with dynamically refined triangle meshes},
+  version = {VERSION}
+}
+"""
 
 
 def file_menu(
@@ -205,18 +224,40 @@ def live_menu(live: LiveCommands) -> Menu:
     )
 
 
-HELP = tuple(  # actions of the mouse, to be read
-    Command("Help", f"{gesture.capitalize()}: {action}", "", lambda: None)
-    for gesture, action in (
-        ("left on the skin", "pose; Ctrl: pull; click: muscle"),
-        ("left beside, or right", "orbit"),
-        ("middle, or Shift", "pan"),
-        ("wheel", "zoom to where the mouse is"),
-        ("double click a slider", "type a number"),
-        ("right click a bar", "key it, delete its key, clear its track, reset it"),
-        ("drag a key", "move all selected keys; Ctrl: anywhere"),
-        ("drag over nothing", "select keys in a box"),
-        ("right click a key", "a menu of changes to it"),
-        ("drop files", "open them"),
+def help_menu() -> Menu:
+    """The program and how to cite it; actions of the mouse, to be read."""
+    command = partial(Command, "Help")
+    gestures = tuple(
+        command(f"{gesture.capitalize()}: {action}", "", lambda: None)
+        for gesture, action in (
+            ("left on the skin", "pose; Ctrl: pull; click: muscle"),
+            ("left beside, or right", "orbit"),
+            ("middle, or Shift", "pan"),
+            ("wheel", "zoom to where the mouse is"),
+            ("double click a slider", "type a number"),
+            ("right click a bar", "key it, delete its key, clear its track, reset it"),
+            ("drag a key", "move all selected keys; Ctrl: anywhere"),
+            ("drag over nothing", "select keys in a box"),
+            ("right click a key", "a menu of changes to it"),
+            ("drop files", "open them"),
+        )
     )
-)
+    return (
+        *gestures,
+        command("About Risorius", "", about, begins_section=True),
+        command("Copy citation", "", copy_citation),
+    )
+
+
+def about() -> Message:
+    """The program in a line."""
+    return (
+        f"Risorius {__version__}, MIT licence. Muscles and springs move the face; its mesh is "
+        "refined after Kähler, Haber, Seidel 2003. The manual: docs/index.md of the checkout."
+    )
+
+
+def copy_citation() -> Message:
+    """Put the paper and the program into the clipboard, as BibTeX."""
+    imgui.set_clipboard_text(CITATION.replace("VERSION", __version__))
+    return "The paper and the program are in the clipboard, as BibTeX"
