@@ -136,7 +136,7 @@ def test_pieces_beside_the_skin_may_be_anything(tmp_path):
     other = stranger()
     mesh = with_card(other.mesh)
     path, _ = other.write(tmp_path, vertices=mesh.vertices, faces=mesh.faces)
-    assert len(Marking(path, FileDialogs()).faces) == len(mesh.faces)
+    assert len(Marking(path, FileDialogs()).seen_mesh.faces) == len(mesh.faces)
 
 
 class TestInTheWindow:
