@@ -60,7 +60,8 @@ def test_every_look_is_drawn_by_every_refiner(surface, scenes, name, look, refin
 def test_the_papers_look_is_the_papers_rule(scenes):
     """On the face the very triangles of `kahler` as it is made without options; smooth has more."""
     face = scenes["face"]
-    plain = refine.create("kahler", face.faces, face.rest_positions, face.skin.uv, face.skin.face_uv)
+    skin = face.skin
+    plain = refine.create("kahler", face.faces, face.rest_positions, skin.uv, skin.face_uv)
     wanted = plain.refine(face.positions)
     seen = refiner_for(face, Refinement("paper")).refine(face.positions)
     for array in ("triangles", "positions", "normals", "source", "uv"):
