@@ -49,9 +49,9 @@ class RigRequest:
 
 @dataclass(frozen=True)
 class FileHead:
-    """A head of a file: what is written again, and what moves it.
+    """A head of a file: its own bytes, which are written again, and the face that moves it.
 
-    painted: what the file is painted with; None for a glTF file, which is copied.
+    painted: colours and pictures of the file; None for a glTF file, which is copied.
     """
 
     head: FittedHead

@@ -1,4 +1,4 @@
-"""The pieces of a head's file: what hangs together, and what each is taken for.
+"""The pieces of a head's file: connected triangles, and the role of each.
 
 A piece is an eyeball, teeth, the tongue, lashes, hair, a body. The skin, which the landmarks lie
 on, is none of them. A piece is known by its place: eyeballs are round and lie behind the lids;
@@ -21,7 +21,7 @@ from risorius.assets.fitting.mesh_validation import pieces_of
 from ..errors import UserError
 from .surface import Floats, Indices
 
-ROLES = {  # what a piece may be taken for, and how it moves
+ROLES = {  # of a piece, and how it moves
     "eye_left": "eyeball, turns with the left eye",
     "eye_right": "eyeball, turns with the right eye",
     "upper_teeth": "upper teeth or gums, still with the cranium",
@@ -42,7 +42,7 @@ FEWEST = 4  # vertices of an eyeball or a jaw: fewer are strands and cards
 
 @dataclass(frozen=True)
 class FilePiece:
-    """Vertices of a file that hang together, and what they are taken for.
+    """Vertices of a file that hang together, and their role.
 
     number: by which an option names it. vertices: their numbers, shape (n,). role: of ROLES.
     middle: of its box [mm], shape (3,).
@@ -94,7 +94,7 @@ def _role_of(points: Floats, middle: Floats, head: FittedHead, near: scipy.spati
     face = landmarks[FACE]
     is_on_face = (middle > face.min(axis=0) - BESIDE) & (middle < face.max(axis=0) + BESIDE)
     distance = near.query(points)[0]
-    # A lash ends 20 mm off the lid; what is farther off hangs before the face, as glasses do.
+    # A lash ends 20 mm off the lid; a piece farther off hangs before the face, as glasses do.
     if is_on_face.all() and distance.min() < 4.0 and distance.max() < 20.0:
         return "on_skin"
     # A collar reaches up to the chin; long hair hangs down from above it.
