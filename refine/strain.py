@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from ..jit import njit
 from .mesh.arrays import Doubles, Floats, Unsigned, Wide
-from .mesh.validation import checked_mesh, take_positions, used_vertices
+from .mesh.validation import checked_mesh, take_positions_like_rest, used_vertices
 from .mesh.vectors import difference, dot
 
 LEAST_FLATNESS = 1e-6
@@ -70,13 +70,7 @@ class Shortening:
         is overwritten by the next call.
         Raises ValueError for another shape and for positions that are not finite.
         """
-        given = np.asarray(positions)
-        if given.shape != self._positions.shape or given.dtype.kind != "f":
-            raise ValueError(
-                f"positions must be floats of shape {self._positions.shape} like the rest "
-                f"positions, got {given.dtype} of shape {given.shape}"
-            )
-        take_positions(given, self._is_used, self._positions, self._points)
+        take_positions_like_rest(positions, self._is_used, self._positions, self._points)
         _shorten(self._positions, self._faces, self._rest, self._weights, self._lost)
         return self._lost
 

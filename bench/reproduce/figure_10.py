@@ -30,7 +30,7 @@ from .experiments import Outcome
 
 FINER = 2  # pixels are drawn so many times as fine
 SMOOTH = replace(GOURAUD, albedo=render.SKIN)
-SKIN, MOUTH, BACKGROUND = range(3)  # channels of a picture of kinds
+MOUTH = 1  # channel of a picture of kinds: skin, mouth, background
 BLUE = render.Background((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 GREEN = np.array([0.0, 1.0, 0.0], np.float32)
 
@@ -69,7 +69,7 @@ class Cell:
     title: str
     triangles: int
     smooth: Image
-    kinds: npt.NDArray[np.uint8]  # SKIN, MOUTH, BACKGROUND, FINER times as fine, (H, W)
+    kinds: npt.NDArray[np.uint8]  # skin, mouth, background, FINER times as fine, (H, W)
 
     def off(self, truth: Cell) -> Points:
         """How far each pixel of the smooth picture is from the truth [levels of 255], (H, W)."""

@@ -22,7 +22,7 @@ from ..mesh.validation import (
     LARGEST_COORDINATE,
     as_array,
     checked_mesh,
-    take_positions,
+    take_positions_like_rest,
     used_vertices,
 )
 from ..mesh.vectors import cross, plus, row_of, times, write_row
@@ -113,13 +113,7 @@ class Embedding:
 
         Raises ValueError for another shape and for positions that are not finite.
         """
-        given = np.asarray(positions)
-        if given.shape != self._positions.shape or given.dtype.kind != "f":
-            raise ValueError(
-                f"positions must be floats of shape {self._positions.shape} like the rest "
-                f"positions, got {given.dtype} of shape {given.shape}"
-            )
-        take_positions(given, self._is_used, self._positions, self._points)
+        take_positions_like_rest(positions, self._is_used, self._positions, self._points)
         self._surface.move(self._positions)
         moved = np.empty_like(self.offsets)
         self._place(self.offsets, moved)

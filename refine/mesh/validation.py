@@ -139,6 +139,19 @@ def take_positions(
     points[is_bad] = positions[is_bad]
 
 
+def take_positions_like_rest(
+    positions: npt.ArrayLike, is_used: Flags, own: Doubles, points: Floats
+) -> None:
+    """The same, after the shape and kind of what a user gave were compared with `own`, (V, 3)."""
+    given = np.asarray(positions)
+    if given.shape != own.shape or given.dtype.kind != "f":
+        raise ValueError(
+            f"positions must be floats of shape {own.shape} like the rest positions, "
+            f"got {given.dtype} of shape {given.shape}"
+        )
+    take_positions(given, is_used, own, points)
+
+
 @njit
 def copy_finite(given: Doubles, positions: Doubles, points: Floats) -> int:
     """Copy positions, shape (V, 3), in double and single precision; count numbers too large.
