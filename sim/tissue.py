@@ -31,7 +31,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..jit import njit
-from .landmarks import Array, polyline_distance
+from .landmarks import Array
 from .rig import Tissue
 from .surface import Surface
 
@@ -45,23 +45,11 @@ class TissueSprings(NamedTuple):
     damping_ratio: float  # of critical
 
     @classmethod
-    def under(cls, surface: Surface, tissue: Tissue, septum: Array) -> TissueSprings:
-        """Uniform tissue under a whole surface, but for the nose.
-
-        septum: from the base of the nose to its tip, points (K, 3) [mm]; none without landmarks.
-        There skin lies on cartilage that stands on the bone, and lifts little with the lip.
-        """
+    def under(cls, surface: Surface, tissue: Tissue) -> TissueSprings:
+        """Uniform tissue under a whole surface."""
         scale = tissue.stiffness_scale * surface.areas
-        firm = np.zeros(surface.vertex_count)
-        if len(septum):
-            away = polyline_distance(surface.positions, septum)
-            reach = 9.0  # mm over which skin hangs on it
-            firm = tissue.septum * np.exp(-((away / reach) ** 2))
         return cls(
-            (tissue.tangential + firm) * scale,
-            (tissue.normal + firm) * scale,
-            tissue.damping,
-            tissue.damping_ratio,
+            tissue.tangential * scale, tissue.normal * scale, tissue.damping, tissue.damping_ratio
         )
 
 
