@@ -85,7 +85,7 @@ def _smile() -> Script:
 def _play(viewer: Viewer, display: Display, seconds: float) -> Frames:
     """Let the window play for a while; returns the times of its frames."""
     viewer.settings.display = replace(display)
-    viewer.painter.level_of_detail = LevelOfDetail(is_software=viewer.surface.is_software)
+    viewer.face.painter.level_of_detail = LevelOfDetail(is_software=viewer.surface.is_software)
     if not viewer.session.is_playing:
         viewer.session.toggle_playing()
     _run(viewer, WARM_UP)
@@ -101,7 +101,7 @@ def _run(viewer: Viewer, seconds: float) -> Frames:
         viewer.frame()
         now = time.perf_counter()
         spent = time.process_time()
-        stages = [viewer.times.milliseconds[stage][-1] for stage in PHASES]
+        stages = [viewer.context.times.milliseconds[stage][-1] for stage in PHASES]
         frames.append([now - last, spent - used, *stages])
         last = now
         used = spent
@@ -112,12 +112,12 @@ def _idle_share(viewer: Viewer, *, is_alive: bool) -> float:
     """How much of one core the window takes while nothing happens, or the face lives by itself."""
     viewer.session.neutral()
     viewer.settings.is_alive = is_alive
-    while not (viewer.is_left_alone if is_alive else viewer.is_idle):
+    while not (viewer.schedule.is_left_alone if is_alive else viewer.schedule.is_idle):
         viewer.frame()
     begin = time.perf_counter()
     used = time.process_time()
     while time.perf_counter() - begin < IDLE_SECONDS:
-        viewer.pause()
+        viewer.schedule.pause()
         viewer.frame()
     return (time.process_time() - used) / (time.perf_counter() - begin)
 

@@ -245,7 +245,7 @@ def open_window(
         viewer = Viewer(script, size, display, head=head, settings_path=path, splash=splash)
         with viewer:
             if listening is not None:
-                line = viewer.live.start(listening)
+                line = viewer.context.live.start(listening)
                 if line and not viewer.messages.text:  # an error stays on screen
                     viewer.messages.say(line)
             if mesh is not None:

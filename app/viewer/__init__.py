@@ -1,6 +1,6 @@
 """The window: a face that answers to sliders, keys, the mouse and a script.
 
-window/     all parts joined (application.py: start reading here), loop, menus, splash screen
+window/     both modes and the loop (window.py: start reading here), menus, splash screen
 context.py  the objects that the parts share
 marking/    landmarks of a mesh, marked in place of the face
 panels/     the panels around the picture

@@ -34,7 +34,7 @@ class ApplicationContext:
             self.gui = Gui(surface.handle)
             stack.callback(self.gui.close)
             self.stage = Stage(surface, session.scene, settings.display, self.times)
-            self.opened = stack.pop_all()  # to be closed with the window
+            self.close = stack.pop_all().close  # called with the window's end
         self.view = View(session, settings, surface)
         self.wanted_tab = ""  # of the panel, to be brought to the front, by its title
         self.question = Question(session)

@@ -27,7 +27,7 @@ def wait_until_settled(viewer: Viewer) -> None:
     """Let the face come to rest, and the picture be drawn in full."""
     most_frames = 400
     for frame in range(most_frames):
-        if frame > 8 and viewer.is_idle:
+        if frame > 8 and viewer.schedule.is_idle:
             return
         if viewer.messages.is_fading:
             viewer.messages.seconds_left = 0.0
@@ -42,7 +42,7 @@ def face(viewer: Viewer) -> None:
 def controls(viewer: Viewer) -> None:
     """Search, sides apart, and one muscle at work among all of them."""
     viewer.settings.is_linked = False
-    viewer.face_panel.search = "upper lip"
+    viewer.face.face_panel.search = "upper lip"
     viewer.session.set("levator_labii_superioris_left", 0.9)
     viewer.settings.display.overlays = ["muscles"]
 
@@ -50,24 +50,24 @@ def controls(viewer: Viewer) -> None:
 def wipe(viewer: Viewer) -> None:
     """Static and refined, half a face each, divided by a line; the dark theme."""
     viewer.session.toggle_alone("disgust")
-    viewer.wanted_tab = "Mechanism"
+    viewer.context.wanted_tab = "Mechanism"
     viewer.settings.theme = "dark"
     # Of the panel show refinement and colours of the mesh.
     viewer.settings.folds |= dict.fromkeys(("Anatomy", "Light and person", "Milliseconds"), False)
     viewer.settings.display = Display(compare="wipe", wireframe=True, splits=True, skin="clay")
-    viewer.view.camera = camera_for(viewer.session.scene, "front")
-    viewer.view.camera.zoom(1.08)
+    viewer.face.view.camera = camera_for(viewer.session.scene, "front")
+    viewer.face.view.camera.zoom(1.08)
 
 
 def timeline(viewer: Viewer) -> None:
     """Keys of poses and tracks, some of them selected; the dark theme."""
     viewer.settings.theme = "dark"
     viewer.settings.folds["Tracks"] = True
-    axis = viewer.time_axis
+    axis = viewer.face.time_axis
     viewer.session.seek(2.3)
     viewer.frame()
     axis.zoom(0.6, axis.x(0.0))
-    viewer.selection.places = places_of(viewer.session.script).between(1.5, 3.0)
+    viewer.face.selection.places = places_of(viewer.session.script).between(1.5, 3.0)
 
 
 def curves(viewer: Viewer) -> None:
@@ -75,8 +75,8 @@ def curves(viewer: Viewer) -> None:
     viewer.settings.shows_curves = True
     viewer.session.seek(3.7)
     viewer.frame()
-    viewer.time_axis.zoom(0.5, viewer.time_axis.x(0.0))
-    viewer.selection.places = places_of(viewer.session.script).between(3.5, 4.0)
+    viewer.face.time_axis.zoom(0.5, viewer.face.time_axis.x(0.0))
+    viewer.face.selection.places = places_of(viewer.session.script).between(3.5, 4.0)
 
 
 def landmarks(viewer: Viewer) -> None:

@@ -64,12 +64,12 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     viewer.settings.display = Display()
     viewer.settings.is_linked = True
     viewer.settings.panel_width = Settings().panel_width
-    viewer.face_panel.search = ""
+    viewer.face.face_panel.search = ""
     viewer.settings.folds.clear()
     replace_state(viewer.files, FileDialogs())
     viewer.messages.text = ""
-    viewer.wanted_tab = "Face"
-    viewer.view.fit_scene()
+    viewer.context.wanted_tab = "Face"
+    viewer.face.view.fit_scene()
     settle(viewer)
 
 
@@ -79,9 +79,9 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     path = tmp_path / "own.toml"
     path.write_text(HELLO.read_text(encoding="utf-8"))
     viewer.session.work.open(load_script(path))
-    viewer.selection.places = NOWHERE
+    viewer.face.selection.places = NOWHERE
     viewer.settings.shows_curves = False
-    viewer.time_axis.show_whole()
+    viewer.face.time_axis.show_whole()
     settle(viewer)
     return path
 

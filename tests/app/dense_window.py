@@ -22,9 +22,9 @@ SIZE = (1200, 800)
 def main() -> None:
     """Look at the window on a dense screen."""
     with _dense_screen(), Viewer(script_for(None, "face"), SIZE) as viewer:
-        first = viewer.view.viewport[0]
+        first = viewer.face.view.viewport[0]
         settle(viewer)
-        is_settled = viewer.view.viewport[0] == first
+        is_settled = viewer.face.view.viewport[0] == first
         print(json.dumps({**_findings(viewer), "is_settled": is_settled}))
 
 

@@ -166,8 +166,8 @@ def nose(viewer: Viewer) -> tuple[int, int]:
 
 def seen_at(viewer: Viewer, point: np.ndarray) -> tuple[int, int]:
     """A point of the scene, on the screen."""
-    left, top, width, height = viewer.view.area
-    camera = viewer.view.camera
+    left, top, width, height = viewer.face.view.area
+    camera = viewer.face.view.camera
     matrix = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / height))
     clip = np.append(point, 1.0) @ matrix
     x, y = clip[:2] / clip[3]
@@ -194,9 +194,9 @@ def put(viewer: Viewer, *paths: Path) -> None:
 
 def where_key(viewer: Viewer, place: KeyPlace) -> tuple[float, float]:
     """Where a key is, in the first row that has it [window units]."""
-    row = next(row for row in viewer.timeline.dope_sheet.rows if place in row.places)
+    row = next(row for row in viewer.face.timeline.dope_sheet.rows if place in row.places)
     _, top, _, bottom = viewer.gui.places[f"row {row.name}"]
-    return viewer.time_axis.x(place.time), 0.5 * (top + bottom)
+    return viewer.face.time_axis.x(place.time), 0.5 * (top + bottom)
 
 
 def key_at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:

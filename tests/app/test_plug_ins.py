@@ -303,11 +303,13 @@ def test_a_window_that_is_opened_with_a_broken_one_says_so(tmp_path):
         viewer.session.set("jaw_open", 0.9)
         assert until(viewer, lambda: viewer.messages.is_error)
         assert "(broken_for_a_test:Moody) raised RuntimeError" in viewer.messages.text
-        assert viewer.stage.refined is viewer.stage.static
+        assert viewer.context.stage.refined is viewer.context.stage.static
         for refiner in ("gone", "picky"):
             viewer.messages.text = ""
             display.refiner = refiner
             assert until(viewer, lambda: "efiner" in viewer.messages.text)
         display.choose_preset("smooth")
-        assert until(viewer, lambda: viewer.stage.refined is not viewer.stage.static)
+        assert until(
+            viewer, lambda: viewer.context.stage.refined is not viewer.context.stage.static
+        )
         viewer.session.work.begin_script()

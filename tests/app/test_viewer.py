@@ -85,9 +85,9 @@ def test_keys_show_expressions_and_refinement(viewer):
     press_keys(viewer, "1")
     assert viewer.session.is_alone(next(iter(viewer.session.scene.expressions)))
     assert until(viewer, lambda: moved(viewer) > 3.0)
-    assert until(viewer, lambda: viewer.stage.refined.triangle_count > 2100)
+    assert until(viewer, lambda: viewer.context.stage.refined.triangle_count > 2100)
     press_keys(viewer, "r")
-    shot = viewer.stage.viewports(viewer.settings.display, viewer.view.viewport)[0]
+    shot = viewer.context.stage.viewports(viewer.settings.display, viewer.face.view.viewport)[0]
     assert shot.drawn.triangle_count == len(viewer.session.scene.faces)
     press_keys(viewer, "r")
     press_keys(viewer, "1")
@@ -98,36 +98,36 @@ def test_keys_change_the_picture(viewer):
     """W, C, T, D and F2, the theme, each change the picture, and back."""
     viewer.session.toggle_alone("disgust")
     settle(viewer)
-    assert until(viewer, lambda: viewer.is_idle)
+    assert until(viewer, lambda: viewer.schedule.is_idle)
     before = viewer.surface.read()
     settings = deepcopy(viewer.settings)
-    left = round(viewer.view.area[0])
+    left = round(viewer.face.view.area[0])
     for key in ("w", "c", "t", "d", "F2"):
         press_keys(viewer, key)
         changed = viewer.surface.read()[:500, left:].astype(int) - before[:500, left:]
         assert np.abs(changed).max() > 20, key
         press_keys(viewer, key)
         assert viewer.settings == settings, key
-    assert until(viewer, lambda: viewer.is_idle)
+    assert until(viewer, lambda: viewer.schedule.is_idle)
     back = viewer.surface.read()[:500, left:].astype(int) - before[:500, left:]
     assert np.abs(back).mean() < 0.5
 
 
 def test_the_mouse_orbits_and_the_wheel_zooms(viewer):
     """The right button turns the camera anywhere, the left beside the face; F frames again."""
-    view = viewer.view.camera.view_matrix().copy()
+    view = viewer.face.view.camera.view_matrix().copy()
     for button, place in ((3, nose(viewer)), (1, on_screen(viewer, SIZE[0] - 20, 100))):
         drag_and_release(viewer, place, (-80, 20), button=button)
-        turned = viewer.view.camera.view_matrix().copy()
+        turned = viewer.face.view.camera.view_matrix().copy()
         assert np.abs(turned - view).max() > 0.1
         press_keys(viewer, "f")
-        assert np.allclose(viewer.view.camera.view_matrix(), view)
+        assert np.allclose(viewer.face.view.camera.view_matrix(), view)
 
 
 @pytest.mark.parametrize("number", [30, 54, 19, -1])
 def test_the_wheel_zooms_to_the_mouse(viewer, number):
     """The point under it, on skin or beside it, stays there, zoomed in and out again."""
-    camera = viewer.view.camera
+    camera = viewer.face.view.camera
     scene = viewer.session.scene
     camera.orbit(20.0, -10.0)
     point = camera.target + 150.0 * camera.axes()[0] + 90.0 * camera.axes()[1]
@@ -156,12 +156,12 @@ def test_a_hovered_expression_lights_its_muscles(viewer):
     """Joy lights both sides alike; a kiss lights the lips and no forehead."""
     xdotool(viewer, "mousemove", *middle(viewer, "show joy"))
     pulled = [f"{MAJOR}_{side}" for side in ("left", "right")]
-    assert until(viewer, lambda: pulled[0] in viewer.view.pointed)
-    assert viewer.view.pointed[pulled[0]] == viewer.view.pointed[pulled[1]] > 0.8
+    assert until(viewer, lambda: pulled[0] in viewer.face.view.pointed)
+    assert viewer.face.view.pointed[pulled[0]] == viewer.face.view.pointed[pulled[1]] > 0.8
     xdotool(viewer, "mousemove", *middle(viewer, "show kiss"))
-    assert until(viewer, lambda: "orbicularis_oris_sphincter" in viewer.view.pointed)
+    assert until(viewer, lambda: "orbicularis_oris_sphincter" in viewer.face.view.pointed)
     scene = viewer.session.scene
-    shares = viewer.view.pointed
+    shares = viewer.face.view.pointed
     drawn = pointed_lines(scene, shares)
     brows = scene.rest_positions[scene.head.landmarks[27], 1]
     points = np.concatenate([line for lines in drawn for line in lines.polylines])
@@ -169,7 +169,7 @@ def test_a_hovered_expression_lights_its_muscles(viewer):
     assert points[:, 1].max() < brows
     assert max(lines.opacity for lines in drawn) > 0.8 > min(lines.opacity for lines in drawn)
     xdotool(viewer, "mousemove", *on_screen(viewer, 880, 300))
-    assert until(viewer, lambda: not viewer.view.pointed)
+    assert until(viewer, lambda: not viewer.face.view.pointed)
 
 
 def test_a_look_is_chosen(viewer):
@@ -177,8 +177,8 @@ def test_a_look_is_chosen(viewer):
     viewer.session.toggle_alone("disgust")
     click(viewer, "tab Mechanism")
     display = viewer.settings.display
-    stage = viewer.stage
-    assert until(viewer, lambda: viewer.is_idle)
+    stage = viewer.context.stage
+    assert until(viewer, lambda: viewer.schedule.is_idle)
     smooth = stage.refined.triangle_count
     click(viewer, "Look")
     click(viewer, "Look: paper")
@@ -209,10 +209,10 @@ def test_unsaved_work_is_asked_for(viewer):
     """Closing with a pose made by hand asks; going back keeps it, going on closes."""
     viewer.session.set("jaw_open", 0.5)
     press_keys(viewer, "ctrl+q")
-    assert viewer.question.is_open
+    assert viewer.context.question.is_open
     assert not viewer.surface.should_close
     click(viewer, "question: Back")
-    assert not viewer.question.is_open
+    assert not viewer.context.question.is_open
     assert viewer.session.values["jaw_open"] == 0.5
     press_keys(viewer, "ctrl+q")
     click(viewer, "question: Close without saving")
@@ -222,10 +222,12 @@ def test_unsaved_work_is_asked_for(viewer):
 
 def test_an_idle_window_rests(viewer):
     """With nothing to do neither physics nor the scene is computed again."""
-    assert until(viewer, lambda: viewer.is_idle)
-    times = {name: list(column) for name, column in viewer.times.milliseconds.items()}
+    assert until(viewer, lambda: viewer.schedule.is_idle)
+    times = {name: list(column) for name, column in viewer.context.times.milliseconds.items()}
     settle(viewer)
-    assert times == {name: list(column) for name, column in viewer.times.milliseconds.items()}
+    assert times == {
+        name: list(column) for name, column in viewer.context.times.milliseconds.items()
+    }
 
 
 @pytest.mark.slow
@@ -290,7 +292,7 @@ def test_pulled_skin_stays_where_muscles_hold_it(viewer):
     assert not any(value for name, value in solved.items() if name.endswith("_right"))
     assert viewer.messages.text.startswith("Smile muscle, left ")
     assert viewer.messages.text.endswith("mm short of the mouse")
-    assert until(viewer, lambda: viewer.physics.is_at_rest)
+    assert until(viewer, lambda: viewer.face.physics.is_at_rest)
     assert moved(viewer) > 4.0
     assert np.abs(session.scene.positions - seen[-1]).max() < 0.1
     assert session.values == solved
@@ -301,7 +303,7 @@ def test_pulled_skin_stays_where_muscles_hold_it(viewer):
 
 def test_a_click_shows_the_muscle_in_the_panel(viewer):
     """Its group opens, and its slider is scrolled to."""
-    viewer.wanted_tab = "Live"
+    viewer.context.wanted_tab = "Live"
     x, y = landmark(viewer, 54)
     xdotool(viewer, "mousemove", x + 15, y - 15, "click", 1)
     assert until(viewer, lambda: viewer.settings.folds.get("Upper lip and cheek", False))

@@ -71,7 +71,7 @@ def pictures(folder):
 def test_a_film_is_that_of_capture(viewer, tmp_path):
     """`capture` writes the same frames with the same options; the face stays."""
     scene = viewer.session.scene
-    viewer.view.camera = camera_for(scene, "three-quarter")
+    viewer.face.view.camera = camera_for(scene, "three-quarter")
     viewer.settings.display.light = "side"
     viewer.settings.display.look = "paper"
     before = scene.positions.copy()

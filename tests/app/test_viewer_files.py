@@ -165,7 +165,7 @@ def test_saving_goes_to_the_known_file(viewer, tmp_path):
     write(viewer, "other")
     press_keys(viewer, "Return")
     assert title_of(viewer) == "Risorius: other.toml"
-    viewer.messages.attempt(viewer.selection.delete)
+    viewer.messages.attempt(viewer.face.selection.delete)
     press_keys(viewer, "ctrl+s")
     assert len(load_script(tmp_path / "other.toml").poses) == 2
     assert len(load_script(script).poses) == 3
@@ -223,7 +223,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer, tmp_path):
         assert session.values["jaw_open"] == 0.5
         assert session.work.has_unsaved_pose
         assert until(viewer, lambda: moved(viewer) > 5.0)
-        assert viewer.stage.refined.triangle_count >= len(session.scene.faces)
+        assert viewer.context.stage.refined.triangle_count >= len(session.scene.faces)
         press_keys(viewer, "ctrl+z")
         assert session.values["jaw_open"] == 0.0
         script = tmp_path / "smile.toml"
@@ -233,11 +233,11 @@ def test_a_head_and_a_script_are_dropped_together(viewer, tmp_path):
         session.seek(2.0)
         assert until(viewer, lambda: moved(viewer) > 2.0)
         drag(viewer, nose(viewer), (30, 30))
-        assert until(viewer, lambda: viewer.mouse.is_dragging_skin)
+        assert until(viewer, lambda: viewer.face.mouse.is_dragging_skin)
         xdotool(viewer, "mouseup", 1)
     finally:
         viewer.show_scene(before)
-    assert until(viewer, lambda: viewer.is_idle)
+    assert until(viewer, lambda: viewer.schedule.is_idle)
 
 
 def test_a_head_is_opened_by_the_menu(viewer, tmp_path):
@@ -273,7 +273,7 @@ def test_a_recording_is_dropped_played_and_saved_as_a_script(viewer, tmp_path):
     before = take.read_bytes()
     session.set("jaw_open", 0.4)
     put(viewer, take)
-    assert viewer.question.is_open
+    assert viewer.context.question.is_open
     assert session.work.has_unsaved_pose
     click(viewer, "question: Open without saving")
     assert "take.csv: Table of named columns, 31 frames in 1.00 s" in viewer.messages.text
@@ -308,42 +308,42 @@ def sound(viewer: Viewer, tmp_path: Path) -> Iterator[Path]:
     (tmp_path / "s.toml").write_text(LONG_SCRIPT)
     viewer.session.work.open(load_script(tmp_path / "s.toml"))
     yield write_wav(tmp_path / "noise.wav", samples)
-    viewer.soundtrack.close()
+    viewer.face.soundtrack.close()
 
 
 def test_a_sound_is_dropped_and_played(viewer, sound, has_device):
     """It gets a row of its own, plays and pauses with the script; without a device in peace."""
     session = viewer.session
-    before = viewer.timeline.height()
+    before = viewer.face.timeline.height()
     put(viewer, sound)
     assert "noise.wav" in viewer.messages.text
     assert not viewer.messages.is_error
     assert session.script.sound == sound
     assert session.work.script_is_unsaved
     settle(viewer)
-    assert viewer.timeline.height() > before
-    assert viewer.soundtrack.sound is not None
+    assert viewer.face.timeline.height() > before
+    assert viewer.face.soundtrack.sound is not None
     press_keys(viewer, "space")
     assert session.is_playing
     assert until(viewer, lambda: session.time > 0.2)
-    assert until(viewer, lambda: viewer.soundtrack.is_heard == has_device)
+    assert until(viewer, lambda: viewer.face.soundtrack.is_heard == has_device)
     press_keys(viewer, "space")
     assert not session.is_playing
-    assert not viewer.soundtrack.is_heard
+    assert not viewer.face.soundtrack.is_heard
     assert not viewer.messages.is_error
     viewer.messages.text = ""
-    assert until(viewer, lambda: viewer.is_idle)
+    assert until(viewer, lambda: viewer.schedule.is_idle)
 
 
 def test_the_waveform_is_seen_and_scrubs(viewer, sound, has_device):
     """Silence is a line, noise is not; a press in it goes to that time, as in the ruler."""
     put(viewer, sound)
-    viewer.time_axis.show_whole()
+    viewer.face.time_axis.show_whole()
     viewer.messages.text = ""
     xdotool(viewer, "mousemove", 2, 2)
-    assert until(viewer, lambda: viewer.is_idle)
+    assert until(viewer, lambda: viewer.schedule.is_idle)
     left, top, _, bottom = viewer.gui.places["time"]
-    axis = viewer.time_axis
+    axis = viewer.face.time_axis
     image = viewer.surface.read().astype(int)
     density = image.shape[1] / viewer.surface.size[0]
     upper = round((top + 0.45 * (bottom - top)) * density), round((bottom - 4) * density)
@@ -371,13 +371,13 @@ def test_the_sound_is_kept_with_the_script(viewer, sound, has_device):
     assert 'sound = "noise.wav"' in (sound.parent / "s.toml").read_text()
     press_keys(viewer, "ctrl+z")
     assert session.script.sound is None
-    assert viewer.soundtrack.sound is None
+    assert viewer.face.soundtrack.sound is None
     press_keys(viewer, "ctrl+shift+z")
-    assert viewer.soundtrack.sound is not None
-    viewer.scripts.remove_sound()
+    assert viewer.face.soundtrack.sound is not None
+    viewer.context.scripts.remove_sound()
     settle(viewer)
-    assert viewer.soundtrack.sound is None
-    assert not viewer.scripts.has_sound
+    assert viewer.face.soundtrack.sound is None
+    assert not viewer.context.scripts.has_sound
     bad = sound.parent / "bad.mp3"
     bad.write_text("no sound")
     put(viewer, bad)

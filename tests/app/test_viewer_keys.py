@@ -32,7 +32,7 @@ def test_escape_closes_one_thing_after_another(viewer):
 
 def test_each_command_has_its_own_name_and_keys(viewer):
     """No two commands share a label or a key."""
-    doing = [each for each in viewer.commands if each.submenu is None]
+    doing = [each for each in viewer.face.commands if each.submenu is None]
     for each in ([command.label for command in doing], [key for c in doing for key in c.keys]):
         assert len(each) == len({*each})
 

@@ -17,7 +17,7 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("alive")]
 def alive(viewer: Viewer, calm: None) -> Iterator[None]:
     """Life is switched on for one test."""
     viewer.settings.is_alive = True
-    viewer.life.note_input()
+    viewer.face.life.note_input()
     yield
     viewer.settings.is_alive = False
 
@@ -31,7 +31,7 @@ def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer):
     assert not any(session.values.values())
     assert not session.work.unsaved
     assert not session.can_undo
-    eye = viewer.view.camera.eye
+    eye = viewer.face.view.camera.eye
     motion = session.scene.bone_transforms()["eye_left"][:3, :3]
     assert (motion @ [0.0, 0.0, 1.0]) @ (eye / np.linalg.norm(eye)) > 0.97
 
@@ -41,11 +41,11 @@ def test_a_key_switches_it_off_and_on(viewer):
     assert until(viewer, lambda: moved(viewer) > 0.1)
     press_keys(viewer, "a")
     assert not viewer.settings.is_alive
-    assert until(viewer, lambda: viewer.is_idle)
+    assert until(viewer, lambda: viewer.schedule.is_idle)
     assert moved(viewer) < 0.05
     press_keys(viewer, "a")
     assert viewer.settings.is_alive
-    assert not viewer.is_idle
+    assert not viewer.schedule.is_idle
     assert until(viewer, lambda: moved(viewer) > 0.1)
 
 
@@ -53,19 +53,19 @@ def test_a_script_moves_the_face_alone(viewer):
     """While it plays, and where it is stopped; at its end the face is left to its life."""
     session = viewer.session
     session.toggle_playing()
-    assert not viewer.life.is_on
+    assert not viewer.face.life.is_on
     session.advance(0.1)
     session.toggle_playing()
     assert session.is_following
-    assert not viewer.life.is_on
+    assert not viewer.face.life.is_on
     session.seek(session.script.duration)
-    assert viewer.life.is_on
+    assert viewer.face.life.is_on
 
 
 def test_it_sleeps_when_nobody_is_there(viewer):
     """After some minutes without input the window rests; a key wakes the face."""
-    viewer.life.after(SLEEP_DELAY, is_held=False)
-    assert not viewer.life.is_on
-    assert until(viewer, lambda: viewer.is_idle)
+    viewer.face.life.after(SLEEP_DELAY, is_held=False)
+    assert not viewer.face.life.is_on
+    assert until(viewer, lambda: viewer.schedule.is_idle)
     press_keys(viewer, "Shift_L")
-    assert viewer.life.is_on
+    assert viewer.face.life.is_on

@@ -57,16 +57,16 @@ def clock(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> FrameClock:
 @pytest.fixture
 def silent(viewer: Viewer, clock: FrameClock) -> Iterator[None]:
     """Listen to nobody before and after."""
-    viewer.live.stop()
-    viewer.live.wanted = Listening("livelink", port=0)
+    viewer.context.live.stop()
+    viewer.context.live.wanted = Listening("livelink", port=0)
     yield
-    viewer.live.stop()
+    viewer.context.live.stop()
 
 
 def listen(viewer):
     """Listen on a free port."""
-    viewer.live.start(Listening("livelink", port=0))
-    face = viewer.live.face
+    viewer.context.live.start(Listening("livelink", port=0))
+    face = viewer.context.live.face
     assert face is not None
     return face
 
@@ -119,13 +119,13 @@ def test_a_recording_that_is_sent_moves_the_face(viewer, tmp_path):
     with sending(face, write_take(tmp_path / "take.csv", jawOpen=0.9, browInnerUp=0.5)):
         assert until(viewer, lambda: moved(viewer) > 8.0)
         assert face.state is State.RECEIVING
-        assert not viewer.is_idle
+        assert not viewer.schedule.is_idle
         assert viewer.session.current["jawOpen"] > 0.1
         assert not face.unusable
     assert until(viewer, lambda: face.presence == 0.0)
     assert face.state is State.LOST
     assert until(viewer, lambda: moved(viewer) < 0.3)
-    assert until(viewer, lambda: viewer.is_idle)
+    assert until(viewer, lambda: viewer.schedule.is_idle)
     assert not viewer.session.work.unsaved
 
 
@@ -150,15 +150,15 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer):
     session = viewer.session
     click(viewer, "tab Live")
     click(viewer, "listen")
-    face = viewer.live.face
+    face = viewer.context.live.face
     assert face is not None
-    assert not viewer.live.is_receiving
+    assert not viewer.context.live.is_receiving
     frown = {"browDownLeft": 0.3, "mouthFrownLeft": 0.2}
     hold(viewer, face, 0.6, **frown)
     assert session.current["browDownLeft"] > 0.2
     place = viewer.gui.places["calibrate"]
     assert place
-    viewer.live.calibrate()
+    viewer.context.live.calibrate()
     hold(viewer, face, 1.2, **frown)
     assert viewer.messages.text == "This face is neutral now"
     assert session.current["browDownLeft"] == approx(0.0, abs=1e-6)
@@ -166,7 +166,7 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer):
     hold(viewer, face, 0.5, **{**frown, "mouthSmileLeft": 0.6})
     assert session.current["mouthSmileRight"] == approx(0.6, abs=1e-6)
     click(viewer, "listen")
-    assert viewer.live.face is None
+    assert viewer.context.live.face is None
     assert session.current == session.values
 
 
@@ -174,13 +174,13 @@ def test_a_packet_wakes_an_idle_window(viewer):
     """It sleeps while nothing comes, and does not wait for its time when something does."""
     face = listen(viewer)
     viewer.messages.text = ""
-    assert until(viewer, lambda: viewer.is_idle)
+    assert until(viewer, lambda: viewer.schedule.is_idle)
     with Sender(LOOPBACK, face.port, "Ada") as sender:
         sender.send({"jawOpen": 0.8})
-        viewer.pause()
+        viewer.schedule.pause()
         viewer.frame()
         assert face.silence < 60.0
-        assert not viewer.is_idle
+        assert not viewer.schedule.is_idle
 
 
 def test_a_port_that_is_taken_is_a_message(viewer):
@@ -188,12 +188,12 @@ def test_a_port_that_is_taken_is_a_message(viewer):
     other = LiveCommands(viewer.session, lambda: None, lambda: None)
     other.start(Listening("livelink", port=0))
     try:
-        viewer.live.wanted = Listening("livelink", port=other.face.port)
+        viewer.context.live.wanted = Listening("livelink", port=other.face.port)
         press_keys(viewer, "ctrl+l")
         assert viewer.messages.is_error
         assert "cannot listen" in viewer.messages.text
-        assert viewer.live.face is None
+        assert viewer.context.live.face is None
         with pytest.raises(UserError):
-            viewer.live.start(viewer.live.wanted)
+            viewer.context.live.start(viewer.context.live.wanted)
     finally:
         other.stop()

@@ -19,7 +19,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.marking import Marking
 from risorius.app.viewer.marking.marking import FIRST, ORDER
-from risorius.app.viewer.marking.mode import places_in
+from risorius.app.viewer.marking.picture import places_in
 from risorius.assets import AssetError
 from risorius.assets.fitting.guess import placing
 from risorius.assets.fitting.landmark_file import read_landmarks
@@ -149,7 +149,7 @@ class TestInTheWindow:
         """Leave the window as it was."""
         before = viewer.session.scene
         yield
-        viewer.question.task = None
+        viewer.context.question.task = None
         viewer.leave_marking()
         if viewer.session.scene is not before:
             viewer.show_scene(before)
@@ -279,15 +279,15 @@ class TestInTheWindow:
         self.mark_first(viewer)
         mode = viewer.marking_mode
         click(viewer, "Leave")
-        assert viewer.question.is_open
+        assert viewer.context.question.is_open
         assert "question: Save pose ..." not in viewer.gui.places
         press_keys(viewer, "Escape")
         assert viewer.marking_mode is mode
         viewer.drop([str(mesh)])
-        assert viewer.question.is_open
+        assert viewer.context.question.is_open
         press_keys(viewer, "Escape")
         press_keys(viewer, "ctrl+q")
-        assert viewer.question.unsaved == "the landmarks of stranger.obj"
+        assert viewer.context.question.unsaved == "the landmarks of stranger.obj"
         press_keys(viewer, "Escape")
         click(viewer, "Leave")
         click(viewer, "question: Save landmarks")

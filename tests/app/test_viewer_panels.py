@@ -69,7 +69,7 @@ def in_panel(viewer, *rows):
 
 def only_open(viewer, title):
     """Fold all of the Mechanism panel but one heading, so that there is room for it."""
-    viewer.wanted_tab = "Mechanism"
+    viewer.context.wanted_tab = "Mechanism"
     titles = ("Refinement", "Style", "Anatomy", "Light and person", "Milliseconds")
     viewer.settings.folds.update({each: each == title for each in titles})
     settle(viewer)
@@ -92,11 +92,11 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
     only_open(viewer, "Style")
     click(viewer, "Colour by splits")
     press_keys(viewer, "d")
-    assert until(viewer, lambda: viewer.is_idle)
+    assert until(viewer, lambda: viewer.schedule.is_idle)
     assert len(viewer.surface.labels) == 3
-    height = viewer.view.viewport[3]
+    height = viewer.face.view.viewport[3]
     size = max(height / 36.0, 15.0)
-    count = viewer.stage.refined.triangle_count
+    count = viewer.context.stage.refined.triangle_count
     for text, label in zip(
         ("static\n2030 triangles", f"smooth\n{count} triangles"),
         viewer.surface.labels,
@@ -107,7 +107,7 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
     press_keys(viewer, "F12")
     (path,) = tmp_path.glob("*.png")
     page = np.asarray(Image.open(path))
-    assert seen_labels(viewer, page, viewer.view.viewport[:2]) == [True] * 3
+    assert seen_labels(viewer, page, viewer.face.view.viewport[:2]) == [True] * 3
     viewer.settings.display = Display()
     settle(viewer)
     assert not viewer.surface.labels
@@ -116,22 +116,22 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
 def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
     """Chosen by the mouse it draws from the card, and the picture is as it was; set back, too."""
     only_open(viewer, "Refinement")
-    pictures = [viewer.stage.draw_image(viewer.view)]
+    pictures = [viewer.context.stage.draw_image(viewer.face.view)]
     in_panel(viewer, ("Refiner", "kahler-gl"))
-    assert isinstance(viewer.stage.refined.stream, render.GpuStream)
-    pictures.append(viewer.stage.draw_image(viewer.view))
-    assert viewer.stage.refined.label == "kahler-gl"
+    assert isinstance(viewer.context.stage.refined.stream, render.GpuStream)
+    pictures.append(viewer.context.stage.draw_image(viewer.face.view))
+    assert viewer.context.stage.refined.label == "kahler-gl"
     assert not viewer.messages.text
     assert np.array_equal(*pictures)
     in_panel(viewer, ("scheme", "detail"))
     assert "scheme must be one of ('loop', 'cubic')" in viewer.messages.text
     click(viewer, "Reset all")
-    assert isinstance(viewer.stage.refined.stream, render.Stream)
+    assert isinstance(viewer.context.stage.refined.stream, render.Stream)
 
 
 def test_the_number_pad_looks_from_all_sides(viewer):
     """Exactly, and about the same point from as far; Alt does where there is no number pad."""
-    camera = viewer.view.camera
+    camera = viewer.face.view.camera
     place = camera.distance, camera.target.tolist()
     for keys, yaw, pitch in (
         ("KP_Next", 90.0, 0.0),
@@ -151,23 +151,23 @@ def test_the_number_pad_looks_from_all_sides(viewer):
 def test_a_key_shows_the_muscles_as_capture_draws_them(viewer):
     """U switches them on and off; nothing stays behind."""
     settle(viewer)
-    usual = viewer.stage.draw_image(viewer.view).astype(int)
+    usual = viewer.context.stage.draw_image(viewer.face.view).astype(int)
     press_keys(viewer, "u")
     settle(viewer)
     assert viewer.settings.display.overlays == ["muscles"]
-    shown = viewer.stage.draw_image(viewer.view).astype(int)
+    shown = viewer.context.stage.draw_image(viewer.face.view).astype(int)
     assert (np.abs(shown - usual).max(axis=2) > 16).mean() > 0.05
     size = shown.shape[1], shown.shape[0]
-    style = render.Style(albedo=SKINS["textured"][1], background=viewer.view.background)
+    style = render.Style(albedo=SKINS["textured"][1], background=viewer.face.view.background)
     options = CaptureOptions(size=size, style=style, anatomy=AnatomyView(("muscles",)))
     with Capture(viewer.session.scene, options) as capture:
-        capture.camera = viewer.view.camera
+        capture.camera = viewer.face.view.camera
         off = np.abs(capture.draw_image().astype(int) - shown)
     assert np.percentile(off, 99) <= 2.0
     viewer.surface.make_current()
     press_keys(viewer, "u")
     settle(viewer)
-    assert np.array_equal(viewer.stage.draw_image(viewer.view), usual)
+    assert np.array_equal(viewer.context.stage.draw_image(viewer.face.view), usual)
 
 
 def test_headings_stay_folded(viewer):
@@ -186,11 +186,13 @@ def test_headings_stay_folded(viewer):
 
 def test_the_panel_can_be_made_wider(viewer):
     """Its edge follows the mouse, as far as the picture keeps more than half of the window."""
-    left, top, _, height = viewer.view.area
+    left, top, _, height = viewer.face.view.area
     drag_and_release(viewer, on_screen(viewer, left - 1, top + 0.5 * height), (-90, 0))
-    assert viewer.view.area[0] == approx(left - 90, abs=3)
+    assert viewer.face.view.area[0] == approx(left - 90, abs=3)
     viewer.settings.panel_width = 22.5
-    drag_and_release(viewer, on_screen(viewer, viewer.view.area[0] - 1, top + 0.5 * height), (5, 0))
+    drag_and_release(
+        viewer, on_screen(viewer, viewer.face.view.area[0] - 1, top + 0.5 * height), (5, 0)
+    )
 
 
 @pytest.mark.parametrize("zoom", [1.0, 3.0])
@@ -199,7 +201,7 @@ def test_everything_stays_inside_its_panel(viewer, zoom):
     try:
         viewer.settings.zoom = zoom
         settle(viewer)
-        left, _, width, height = viewer.view.area
+        left, _, width, height = viewer.face.view.area
         assert width > 0.5 * SIZE[0]
         assert height > 0.4 * SIZE[1]
         for name in ("Mirror", "Link sides", "search", "show joy", "show blink"):
@@ -216,7 +218,7 @@ def test_any_size_can_be_drawn(viewer):
     """Made tiny, flat, and large again while the face moves: it goes on, and nothing explodes."""
     import glfw
 
-    before = viewer.view.area
+    before = viewer.face.view.area
     press_keys(viewer, "1")
     try:
         for size in ((1, 1), (40, 30), (700, 20), (20, 500), SIZE):
@@ -226,9 +228,9 @@ def test_any_size_can_be_drawn(viewer):
     finally:
         glfw.set_window_size(viewer.surface.handle, *SIZE)
         settle(viewer)
-    assert until(viewer, lambda: viewer.is_idle)
+    assert until(viewer, lambda: viewer.schedule.is_idle)
     assert viewer.surface.read().shape == (SIZE[1], SIZE[0], 3)
-    assert viewer.view.area == before  # the panel is as wide as it was
+    assert viewer.face.view.area == before  # the panel is as wide as it was
 
 
 @pytest.mark.slow

@@ -48,7 +48,7 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
     xdotool(viewer, "mouseup", 1)
     time = pose_times(viewer)[1]
     assert time == on_frame(time) > 1.1
-    assert viewer.selection.places == {KeyPlace(POSES, time)}
+    assert viewer.face.selection.places == {KeyPlace(POSES, time)}
     assert session.work.name == "own.toml"
     assert session.work.script_is_unsaved
     press_keys(viewer, "ctrl+s")
@@ -67,17 +67,17 @@ def test_a_click_selects_a_key_and_goes_there(viewer):
     """The pose under the mouse is selected and shown; Shift adds another and stays."""
     session = viewer.session
     press(viewer, key_at(viewer, JOY))
-    assert viewer.selection.places == {JOY}
+    assert viewer.face.selection.places == {JOY}
     assert session.time == 1.0
     assert session.values["joy"] == 1.0
     press(viewer, key_at(viewer, REST), "shift")
-    assert viewer.selection.places == {JOY, REST}
+    assert viewer.face.selection.places == {JOY, REST}
     assert session.time == 1.0
     press(viewer, key_at(viewer, JOY), "shift")
-    assert viewer.selection.places == {REST}
+    assert viewer.face.selection.places == {REST}
     x, y = key_at(viewer, KeyPlace(POSES, 1.0))
     press(viewer, (x + 50, y))
-    assert not viewer.selection.places
+    assert not viewer.face.selection.places
     assert not session.work.unsaved
 
 
@@ -87,7 +87,7 @@ def test_a_box_selects_keys_that_then_move_together(viewer):
     x, y = key_at(viewer, JOY)
     right, low = key_at(viewer, KeyPlace("blink", 2.4))
     drag_and_release(viewer, (x - 30, y - 4), (right + 12 - x + 30, low - y + 8))
-    chosen = viewer.selection.places
+    chosen = viewer.face.selection.places
     assert {place.track for place in chosen} == {POSES, "blink"}
     assert len(chosen) == 5
     drag_and_release(viewer, key_at(viewer, JOY), (-30, 0))
@@ -108,7 +108,7 @@ def test_delete_and_paste(viewer):
     press_keys(viewer, "ctrl+c", "ctrl+v")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert viewer.session.script.poses[2].name == "joy"
-    assert viewer.selection.places == {KeyPlace(POSES, 2.0)}
+    assert viewer.face.selection.places == {KeyPlace(POSES, 2.0)}
     press_keys(viewer, "Delete")
     assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
     assert "1 key deleted" in viewer.messages.text
@@ -131,7 +131,7 @@ def test_the_face_becomes_a_key(viewer):
     press_keys(viewer, "shift+k")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert session.script.at(2.0)["jaw_open"] == approx(wanted["jaw_open"])
-    assert viewer.selection.places == {KeyPlace(POSES, 2.0)}
+    assert viewer.face.selection.places == {KeyPlace(POSES, 2.0)}
     assert session.work.unsaved == "the script"
     press_keys(viewer, "Home")
     press(viewer, key_at(viewer, KeyPlace(POSES, 2.0)))
@@ -163,7 +163,7 @@ def test_the_menu_of_a_bar_keys_one_control(viewer):
 
 def test_the_ruler_scrubs_and_the_wheel_zooms(viewer):
     """A drag in the ruler goes through frames; its end can be dragged; wheels zoom and scroll."""
-    axis = viewer.time_axis
+    axis = viewer.face.time_axis
     session = viewer.session
     x, y = middle(viewer, "time")
     drag(viewer, (x, y), (30, 0))
@@ -192,16 +192,16 @@ def test_the_ruler_scrubs_and_the_wheel_zooms(viewer):
 def test_tracks_unfold_into_rows(viewer):
     """A click on the arrow gives each track a row; its keys are then selected alone."""
     left = viewer.gui.places["keys"][0]
-    rows = viewer.timeline.height()
+    rows = viewer.face.timeline.height()
     _, y = where_key(viewer, KeyPlace("blink", 2.0))
     xdotool(viewer, "mousemove", *on_screen(viewer, left + 8, y))
     xdotool(viewer, "click", 1)
-    assert viewer.timeline.height() > rows
+    assert viewer.face.timeline.height() > rows
     assert viewer.settings.folds["Tracks"]
     settle(viewer)
     x, y = where_key(viewer, KeyPlace("blink", 2.4))
     press(viewer, on_screen(viewer, x, y + imgui.get_font_size() * 1.35))
-    assert viewer.selection.places == {KeyPlace("blink", 2.4)}
+    assert viewer.face.selection.places == {KeyPlace("blink", 2.4)}
 
 
 def open_jaw(viewer):
@@ -216,7 +216,7 @@ def open_jaw(viewer):
 
 def scrub(viewer, time):
     """Click in the ruler."""
-    x = on_screen(viewer, viewer.time_axis.x(time), 0.0)[0]
+    x = on_screen(viewer, viewer.face.time_axis.x(time), 0.0)[0]
     press(viewer, (x, middle(viewer, "time")[1]))
 
 
@@ -245,7 +245,7 @@ def curves(viewer: Viewer, own: Path) -> None:
 
 def place_of(viewer, when, value):
     """Where a time and a value are in the graph [window units]."""
-    return viewer.time_axis.x(when), float(viewer.timeline.dope_sheet.graph.y(value))
+    return viewer.face.time_axis.x(when), float(viewer.face.timeline.dope_sheet.graph.y(value))
 
 
 def at(viewer, when, value):
@@ -289,7 +289,7 @@ def test_easings_are_chosen_and_seen(viewer):
     assert drawn == approx(played)
     assert max(np.abs(np.diff(drawn))) == approx(0.4)  # it jumps
     xdotool(viewer, "mousemove", *at(viewer, 2.9, 1.0))  # on the curve that now stays
-    graph = viewer.timeline.dope_sheet.graph
+    graph = viewer.face.timeline.dope_sheet.graph
     hit = graph.at(*place_of(viewer, 2.9, 1.0))
     assert hit.curve.name == "pose joy"
     assert not hit.key
@@ -300,9 +300,9 @@ def test_handles_set_slopes(viewer):
     """Handles of the way to a selected key bend it; face and file get the same; undo, Escape."""
     session = viewer.session
     before = session.script
-    viewer.selection.places = Places.of(KeyPlace(POSES, 1.0))
+    viewer.face.selection.places = Places.of(KeyPlace(POSES, 1.0))
     settle(viewer)
-    graph = viewer.timeline.dope_sheet.graph
+    graph = viewer.face.timeline.dope_sheet.graph
     first, last = (handle for handle in graph.handles() if handle.ends in ((0, 1), (1, 0)))
     assert first.slopes == last.slopes == (2.0, 0.0)  # ease-out
     drag(viewer, on_screen(viewer, *first.place), (0, 8))

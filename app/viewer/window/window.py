@@ -1,47 +1,110 @@
-"""The window as it runs: one turn of its loop, and when that rests. Its parts: application.py.
+"""The window: its two modes joined, one turn of its loop, and its end.
 
 Physics goes in steps of its own, apart from frames (physics.py). The scene is drawn only when
 something in it has changed, with less detail while it moves if the machine is slow (stage.py);
-panels are drawn around it less often then. A window in which nothing happens waits for events.
+panels are drawn around it less often then. A window in which nothing happens waits (schedule.py).
 """
 
 from __future__ import annotations
 
+import logging
 import math
-import time
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
 from imgui_bundle import imgui
 
+from risorius.assets.fitting import FittedHead
+
+from ...errors import UserError
+from ...scenes import Scene
+from ...script import Script
 from ...stopping import cleaned_up_if_stopped
-from ..documents.file_drop import LANDMARKS_SUFFIX
+from ..documents.export import ExportDialog
+from ..documents.file_drop import FileDrop
 from ..documents.scripts import draw_question
 from ..interface.commands import run_pressed
 from ..interface.gui import on_drop
+from ..marking import Marking, MarkingMode
+from ..messages import Message, Task
 from ..panels.layout import draw_message
-from ..picture.stage import Painter
-from ..session.live_commands import PACKET_WAIT
-from .application import Application
+from ..session.recovery import Recovery
+from ..settings import Display, save_settings
+from .face_mode import FaceMode
+from .mode import Mode
+from .opening import open_window, without_refused_options
+from .schedule import Schedule
+from .splash_screen import SplashScreen
 
 
-class Viewer(Application):
-    """The window with everything in it, as it runs; a context manager."""
+class Viewer:
+    """The window with everything in it, as it runs; a context manager.
 
-    FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
+    face: the mode in which the face moves. marking_mode: the one in which landmarks of a mesh are
+    marked, None while the face is shown.
+    """
 
-    _last: float  # when the last frame began [s]
-    _awake: int  # frames that are drawn in any case
     refresh = 0.1  # [s] that a picture of the panels may be old while the face moves
-    # Of the panels as they were drawn last: age [s], size of the window [pixels], over the scene?
-    _panels_age = math.inf
-    _panels_size = (0, 0)
-    _is_scene_covered = True
+
+    def __init__(
+        self,
+        script: Script,
+        size: tuple[int, int] | None = None,
+        display: Display | None = None,
+        *,
+        head: FittedHead | None = None,
+        settings_path: Path | None = None,
+        splash: SplashScreen | None = None,
+    ) -> None:
+        """Open the window; nothing moves yet.
+
+        head: a user's own, None for the built-in one. size, display: None takes those remembered.
+        splash: the window, where it is open already.
+        settings_path: of the settings, beside which unsaved work is kept; None for nowhere.
+        Raises UserError for a script that names controls which the scene has not.
+        """
+        splash = splash or SplashScreen(size, settings_path)
+        context, resources, complaint = open_window(splash, script, head, display)
+        self._resources = resources
+        self._settings_path = settings_path
+        self.context = context
+        self.session = context.session
+        self.settings = context.settings
+        self.surface = context.surface
+        self.gui = context.gui
+        self.messages = context.messages
+        self.files = context.files
+        self.exporter = context.exporter
+        self.recovery = Recovery(settings_path and settings_path.parent, self.session)
+        self.file_drop = FileDrop(self.files, context.scripts, self.show_scene, self.read)
+        self.face = FaceMode(context, self.file_drop, self.ask_to_close)
+        self.marking_mode: MarkingMode | None = None
+        self.gui.keys = {each.label: each.displayed_keys for each in self.face.commands}
+        self.export_dialog = ExportDialog(self.gui, self.exporter, self.files, context.view)
+        self.schedule = Schedule(context, self.file_drop, lambda: self.mode, self.recovery.due_in)
+        self.is_leaving = False
+        # Of the panels as they were drawn last: age [s], size of the window [pixels].
+        self._panels_age = math.inf
+        self._panels_size = (0, 0)
+        self._is_scene_covered = True  # by panels
+        self._greet(complaint, script)
+
+    def _greet(self, complaint: str, script: Script) -> None:
+        """Show the first message, and remember the files that are open."""
+        settings = self.settings
+        if script.is_converted or self.session.file.path is not None:
+            settings.note_recent(Path(script.source))
+        if (kept := self.recovery.found) is not None:
+            settings.note_recent(kept)
+            complaint = complaint or f"unsaved work is in File > Recent: {kept.name}"
+        if complaint:
+            self.messages.say(complaint, error=True)
+        elif self._settings_path is not None and not self._settings_path.exists():
+            self.messages.say("Drag the skin, or open one of File > Examples; menus show every key")
 
     def __enter__(self) -> Viewer:
-        self._last = time.perf_counter()
-        self._awake = self.FRAMES_AFTER_EVENT
+        self.schedule.restart()
         on_drop(self.surface.handle, self.drop)
         for _ in range(2):  # panels and tabs find their places before the first picture
             self._draw_gui(is_visible=False)
@@ -54,12 +117,12 @@ class Viewer(Application):
         """Show the window until it is closed (with `once`: until the script has ended)."""
         if playing:
             self.session.toggle_playing()
-        self._last = time.perf_counter()
+        self.schedule.restart()
         stopping = cleaned_up_if_stopped(self.exporter.close)  # when the work is safe
         with stopping, self.recovery.guarding(), cleaned_up_if_stopped(self.remember):
             while True:
                 if self.gui.is_minimised:  # time stands still, and nothing is drawn
-                    self._wait()
+                    self.schedule.sleep()
                 else:
                     self.frame()
                 self.messages.attempt(self.recovery.watch)
@@ -72,122 +135,47 @@ class Viewer(Application):
                 is_over = playing and not self.session.is_playing
                 if once and is_over and not self.session.work.unsaved:
                     break
-                self.pause()
+                self.schedule.pause()
 
     # One turn of the loop
 
+    @property
+    def mode(self) -> Mode:
+        """The mode that the window shows."""
+        return self.marking_mode or self.face
+
     def frame(self) -> None:
         """Input, time, picture, panels."""
+        schedule = self.schedule
         if self.gui.look():
-            self._awake = self.FRAMES_AFTER_EVENT
-            self.life.note_input()
+            schedule.wake()
+            self.face.life.note_input()
         for _ in self.gui.turns():
             self._draw_gui(is_visible=False)
-        if self.exporter.has_news:
-            self._awake = max(self._awake, 1)
-        self.messages.attempt(self.exporter.poll, stays=True)
-        if self.file_drop.has_news:
-            self._awake = max(self._awake, 2)  # the box of the message grows a frame late
-            self.messages.text = ""
-            self.messages.attempt(self.file_drop.poll, stays=True)
-        now = time.perf_counter()
-        elapsed = now - self._last
-        self._last = now
-        mode = self.marking_mode
-        name = self.session.work.name if mode is None else mode.marking.path.name
-        is_unsaved = self.session.work.unsaved if mode is None else mode.marking.unsaved
-        self.gui.set_title(f"Risorius: {name}{' *' if is_unsaved else ''}")
-        is_moving = self._move_face(elapsed) if mode is None else mode.paint(elapsed)
-        is_calm = self.physics.is_at_rest or self.physics.is_left_alone
-        self.times.note_frame(elapsed if is_moving or not is_calm else 0.0)
-        if self.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
+        self._take_results()
+        elapsed = schedule.begin_frame()
+        mode = self.mode
+        self.gui.set_title(f"Risorius: {mode.name}{' *' if mode.unsaved else ''}")
+        is_moving = mode.paint(elapsed)
+        if mode.has_news:
+            schedule.wake()
+        if schedule.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
             return  # the picture stays as it is; in a line of text the cursor blinks
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
-        if is_moving and not self.is_left_alone:
-            self.shown_painter.level_of_detail.note(time.perf_counter() - now)
-        self._awake = max(self._awake - 1, 0)
+        if is_moving and not schedule.is_left_alone:
+            self.mode.painter.level_of_detail.note(schedule.spent)
+        schedule.end_frame()
 
-    def _move_face(self, elapsed: float) -> bool:
-        """Let time pass for the face, and draw it; whether the picture has changed."""
-        self.messages.attempt(self.soundtrack.refresh)
-        seconds = self.soundtrack.elapsed(elapsed)
-        is_skin_dragged = self.mouse.is_dragging_skin
-        self.messages.attempt(partial(self.live.advance, elapsed))
-        if self.live.has_changed:
-            self._awake = self.FRAMES_AFTER_EVENT
-        is_held = is_skin_dragged or imgui.is_any_item_active()
-        life = partial(self.life.after, is_held=is_held) if self.life.is_on else None
-        advance = partial(self.physics.advance, seconds, is_skin_dragged=is_skin_dragged)
-        self.messages.attempt(partial(advance, is_urgent=self.live.is_urgent, life=life))
-        return self.painter.paint(
-            elapsed, has_moved=self.physics.has_moved, is_alive=self.physics.is_left_alone
-        )
-
-    @property
-    def shown_painter(self) -> Painter:
-        """The painter of the present picture: of the face, or of a mesh that is marked."""
-        return self.painter if self.marking_mode is None else self.marking_mode.painter
-
-    @property
-    def is_idle(self) -> bool:
-        """Whether nothing moves, and nothing is about to."""
-        is_settled = (
-            self._awake == 0 and self.shown_painter.is_complete and not self.messages.is_fading
-        )
-        if self.marking_mode is not None:
-            return is_settled
-        return (
-            is_settled
-            and self.physics.is_at_rest
-            and not self.life.is_on
-            and not self.session.is_recording
-            and not self.live.is_busy
-            and not self.soundtrack.is_heard
-        )
-
-    @property
-    def is_left_alone(self) -> bool:
-        """Whether the face does no more than live, and nothing else happens."""
-        return (
-            self.marking_mode is None
-            and self.physics.is_left_alone
-            and self._awake == 0
-            and not self.messages.is_fading
-            and not self.files.is_waiting
-        )
-
-    def pause(self) -> None:
-        """Sleep where nothing happens, and between frames where the face only lives.
-
-        The latter half of the time at least, however long a frame takes. A live face that has just
-        been shown is waited for: a frame that begins with its packet shows it at once.
-        """
-        # [s] from one frame to the next while the face does no more than live.
-        life_wait = 1.0 / 30.0
-        if self.is_idle:
-            self._wait()
-        elif self.is_left_alone:
-            spent = time.perf_counter() - self._last
-            self.gui.look(max(life_wait - spent, spent))
-        elif self.live.is_receiving and not self.live.has_frame:
-            self.gui.look(PACKET_WAIT)
-
-    def _wait(self) -> None:
-        """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
-        is_watching = self.files.is_waiting or imgui.get_io().want_text_input  # a cursor blinks
-        is_watching |= self.file_drop.making is not None or self.exporter.job is not None
-        idle_wait = 2.0  # [s] between two frames while nothing happens
-        watchful_wait = 0.1  # [s] the same while a file dialog is open, or words are typed
-        patience = watchful_wait if is_watching else idle_wait
-        due_in = min(self.recovery.due_in(), self.live.due_in())
-        patience = min(patience, max(due_in, 0.0))
-        self.soundtrack.rest()
-        begin = time.perf_counter()
-        self.gui.look(patience)
-        self._last = time.perf_counter()
-        if self._last - begin < patience and not self.live.has_frame:
-            self._awake = self.FRAMES_AFTER_EVENT
+    def _take_results(self) -> None:
+        """Take in the work of threads and processes: an export, a head that is made."""
+        if self.exporter.has_news:
+            self.schedule.wake(1)
+        self.messages.attempt(self.exporter.poll, stays=True)
+        if self.file_drop.has_news:
+            self.schedule.wake(2)  # the box of the message grows a frame late
+            self.messages.text = ""
+            self.messages.attempt(self.file_drop.poll, stays=True)
 
     def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:
         """Draw the panels around the scene, unless their last picture does.
@@ -195,62 +183,126 @@ class Viewer(Application):
         On software OpenGL they cost as much as a quarter of the face, and while a script plays only
         sliders creep in them. Every action of the user is answered in the same frame.
         """
+        mode = self.mode
         size = self.surface.size
-        is_answering = self._awake > 0 or imgui.is_any_item_active()
-        if not self.is_left_alone:  # the face's own life moves no slider
+        is_answering = self.schedule.is_awake or imgui.is_any_item_active()
+        if not self.schedule.is_left_alone:  # the face's own life moves no slider
             self._panels_age += elapsed
-        # A drag in the scene moves no slider.
-        has_input = self.marking_mode is not None or (is_answering and not self.mouse.is_dragging)
+        has_input = mode.draws_over_picture or (is_answering and not mode.mouse.is_dragging)
         is_stale = self._panels_age >= self.refresh or size != self._panels_size
         if is_moving and not (has_input or is_stale or self._is_scene_covered):
             return
         self.surface.resolve()
-        view = self.view if self.marking_mode is None else self.marking_mode.view
-        left, bottom, width, _ = view.viewport
+        left, bottom, width, _ = mode.view.viewport
         self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
         self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
         self._draw_gui(is_visible=True)
         self._panels_age = 0.0
         self._panels_size = size
-        self._is_scene_covered = self.gui.covers(view.area)
+        self._is_scene_covered = self.gui.covers(mode.view.area)
 
     def _draw_gui(self, *, is_visible: bool) -> None:
         """Draw panels, and answer the user in them and in the face; is_visible: see Gui.frame."""
         messages = self.messages
         gui = self.gui
-        mode = self.marking_mode
-        view = self.view
-        commands = self.commands
-        if mode is not None:
-            view = mode.view
-            commands = mode.commands
+        files = self.files
+        question = self.context.question
+        mode = self.mode
         with gui.frame(is_visible=is_visible):
             gui.set_theme(self.settings.theme, self.settings.zoom)
-            if mode is None:
-                self.layout.draw(view)
-            else:
-                mode.panel.draw(mode.view)
+            mode.draw_panels()
             messages.age(imgui.get_io().delta_time)
-            draw_message(gui, messages, view)
+            draw_message(gui, messages, mode.view)
             if imgui.is_any_mouse_down():
-                view.pointed = {}
-            dialogs = partial(self.files.draw, gui), self.export_dialog.draw
-            for draw in (
-                *(() if self.question.is_open else dialogs),  # which wait for the answer
-                partial(draw_question, gui, self.question, self.session, self.scripts),
-            ):
-                messages.attempt(draw)
-            if not (self.files.is_waiting or self.question.is_open or self.exporter.is_asking):
-                run_pressed(commands, messages, gui)
-                (self if mode is None else mode).mouse.follow()
+                mode.view.pointed = {}
+            if not question.is_open:  # dialogs wait for the answer
+                messages.attempt(partial(files.draw, gui))
+                messages.attempt(self.export_dialog.draw)
+            scripts = self.context.scripts
+            messages.attempt(partial(draw_question, gui, question, self.session, scripts))
+            if not (files.is_waiting or question.is_open or self.exporter.is_asking):
+                run_pressed(mode.commands, messages, gui)
+                mode.mouse.follow()
 
     def drop(self, paths: Sequence[str]) -> None:
         """Open files that were dropped onto the window."""
-        self._awake = self.FRAMES_AFTER_EVENT
-        open_files = partial(self.file_drop.open, paths)
-        if self.marking_mode is None:
-            self.messages.carry_out(open_files)
-        elif [Path(path).suffix for path in paths] == [LANDMARKS_SUFFIX]:
-            self.messages.carry_out(partial(self.marking_mode.marking.open, Path(paths[0])))
-        else:
-            self.messages.carry_out(partial(self.marking_mode.leave, open_files))
+        self.schedule.wake()
+        self.messages.carry_out(partial(self.mode.drop, paths))
+
+    # Changes of the window as a whole
+
+    def show_scene(self, scene: Scene) -> None:
+        """Take another scene with the same controls in place of this one."""
+        if self.marking_mode is not None and self.marking_mode.unsaved:
+            raise UserError("landmarks were moved meanwhile: use this head once more")
+        self.session.move_to(scene)
+        self.leave_marking()
+        display = self.settings.display
+        display.remove_missing_overlays(scene)
+        refused = without_refused_options(display, scene)
+        self.context.stage.set_scene(scene, display)
+        self.face.begin_anew()
+        if refused:
+            self.messages.say(refused)
+
+    def read(self, mesh: Path, landmarks: Path | None = None) -> Task:
+        """Read a mesh, in any thread; returns a task that has its landmarks marked.
+
+        The marking begins with those of a file, if there is one. The face waits meanwhile.
+        UserError where the mesh or the file cannot be used.
+        """
+        marking = Marking(mesh, self.files)
+        line = None if landmarks is None else marking.open(landmarks)
+
+        def mark() -> Message:
+            """Open the marking, in the window's thread."""
+            self.face.set_aside()
+            self.marking_mode = MarkingMode(
+                marking, self.context, self.face.commands, self.file_drop.open, self.leave_marking
+            )
+            return line
+
+        return mark
+
+    def leave_marking(self) -> None:
+        """Go back to the face."""
+        if self.marking_mode is not None:
+            self.marking_mode = None
+            self.face.resume()
+
+    def ask_to_close(self) -> str | None:
+        """Close the window, unless work would be lost: then ask first."""
+        job = self.exporter.job
+        if job is not None and not job.task.is_stopped:
+            name = job.target.name
+            self.messages.say(f"{name} is being written: wait, or cancel it first", error=True)
+            return None
+        if self.is_leaving:
+            return self._close()
+        ask = partial(self.context.question.before, "Close", self._close)
+        return self.mode.leave(ask)
+
+    def _close(self) -> str | None:
+        self.is_leaving = True
+        self.surface.should_close = True
+        return None
+
+    def remember(self) -> None:
+        """Write the settings as they are now; UserError where that cannot be."""
+        if self._settings_path is not None:
+            self.settings.size = self.gui.window_size
+            save_settings(self._settings_path, self.settings)
+
+    def close(self) -> None:
+        """Remember the settings, and let go of everything."""
+        try:
+            self.remember()
+        except UserError as error:  # a disk that is full must not keep the window open
+            log = logging.getLogger("risorius.viewer")  # reports when there is no window any more
+            log.warning("risorius: %s; the next window does not look as this one", error)
+        self.context.live.stop()
+        self.exporter.close()
+        self.leave_marking()
+        self.face.soundtrack.close()
+        self.recovery.close()
+        self._resources.close()

@@ -1,0 +1,131 @@
+"""The picture of a mesh that is marked, and the mouse in it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from imgui_bundle import imgui
+
+from risorius import render
+
+from ...passes.labels import CameraLabels
+from ...refining.presets import STATIC
+from ..interface.gui import LEFT, em
+from ..messages import Messages
+from ..picture.mouse import CameraMouse
+from ..picture.stage import Stage, View
+from ..settings import Display, Settings
+from .marking import Marking
+
+Spot = tuple[float, float]  # [window units]
+
+
+class MarkingView(View):
+    """How the mesh is seen: as clay, by a camera that frames all of it."""
+
+    def __init__(self, marking: Marking, settings: Settings, surface: render.WindowSurface) -> None:
+        self._marking = marking
+        self._settings = settings
+        self._surface = surface
+        self.area = (0.0, 0.0, 1.0, 1.0)
+        self.pointed = {}
+        self.fit_scene()
+
+    def fit_scene(self) -> None:
+        marking = self._marking
+        self.camera = render.OrbitCamera.framing(marking.positions)
+        if marking.is_upright:  # all of the face, however much there is of hair and shoulders
+            self.camera.fit(marking.seen(marking.marks.places)[0], 0.14)
+
+    @property
+    def display(self) -> Display:
+        return Display(skin="clay", refiner=STATIC)
+
+    @property
+    def state(self) -> object:
+        return super().state, id(self._marking.positions)
+
+    def places(self) -> dict[int, Spot]:
+        """The places of the marks on the visible side, by number."""
+        numbers = list(self._marking.marks.places)
+        points, normals = self._marking.seen(numbers)
+        spots = places_in(self.area, self.camera, points)
+        to_eye = self.camera.eye - points
+        toward = np.einsum("nki,ni->nk", normals, to_eye).max(axis=1)
+        toward /= np.linalg.norm(to_eye, axis=1)
+        least_facing_cosine = 0.15  # cosine to the line of sight beyond which a mark is seen
+        faces = toward > least_facing_cosine
+        return {n: spots[index] for index, n in enumerate(numbers) if faces[index]}
+
+
+def places_in(
+    area: tuple[float, float, float, float], camera: render.OrbitCamera, points: npt.ArrayLike
+) -> list[Spot]:
+    """Where a camera that fills an area of the window sees points (n, 3) [window units]."""
+    left, top, width, height = area
+    seen = CameraLabels.of(camera, (width, max(height, 1.0))).project(np.asarray(points))
+    return [(left + x, top + y) for x, y in seen.tolist()]
+
+
+class MarkingMouse(CameraMouse):
+    """A click places the current mark, a drag moves one, or turns the camera."""
+
+    def __init__(
+        self, view: MarkingView, stage: Stage, marking: Marking, messages: Messages
+    ) -> None:
+        super().__init__(view, stage)
+        self._seen = view
+        self._marking = marking
+        self._messages = messages
+
+    def _hover(self, io: Any) -> None:
+        if self._mark_under(io) is not None:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
+
+    def _take(self, io: Any) -> str:
+        pointed = self._mark_under(io)
+        if pointed is None:
+            return "orbit"
+        self._marking.current = pointed
+        return "mark"
+
+    def _drag(self, io: Any) -> None:
+        if not self._has_moved(io):
+            return
+        if self._doing == "mark":
+            self._put(io)
+        super()._drag(io)
+
+    def _release(self, io: Any) -> None:
+        is_click = self._doing == "orbit" and imgui.is_mouse_released(LEFT)
+        is_click = is_click and not self._has_moved(io)
+        if is_click and not self._put(io):
+            self._messages.say("No skin looks at you here, as in a mouth or eye; click beside it")
+        elif is_click or self._doing == "mark":
+            self._messages.carry_out(self._marking.note)
+        self.forget()
+
+    def _put(self, io: Any) -> bool:
+        """Place the current mark under the mouse; whether there is skin on which it is seen."""
+        marking = self._marking
+        before = self._marking.marks
+        point = self._skin_under(io)
+        if point is None:
+            return False
+        marking.put(marking.current, point)
+        is_seen = marking.current in self._seen.places()
+        marking.marks = marking.marks if is_seen else before
+        return is_seen
+
+    def _mark_under(self, io: Any) -> int | None:
+        # Of marks in one place, as on lips that touch, the current one is meant.
+        off = {
+            number: math.dist(spot, io.mouse_pos) - em(0.3) * (number == self._marking.current)
+            for number, spot in self._seen.places().items()
+        }
+        nearest = min(off, key=lambda number: off[number], default=0)
+        mark_reach = 0.8  # [em] around a mark in which the mouse takes it
+        return nearest if off.get(nearest, math.inf) < em(mark_reach) else None

@@ -1,0 +1,74 @@
+"""The window opens: the scene is made behind a splash screen, then the parts that panels share."""
+
+from __future__ import annotations
+
+import contextlib
+from functools import partial
+
+from risorius import refine
+from risorius.assets.fitting import FittedHead
+
+from ...errors import UserError
+from ...refining.plug_ins import plug_ins_of, reported
+from ...refining.refiners import refiner_for
+from ...scenes import Scene, build_scene
+from ...script import Script
+from ..context import ApplicationContext
+from ..session.session import Session
+from ..settings import Display
+from .splash_screen import SplashScreen
+
+
+def open_window(
+    splash: SplashScreen, script: Script, head: FittedHead | None, display: Display | None
+) -> tuple[ApplicationContext, contextlib.ExitStack, str]:
+    """Make the scene, and the shared parts in the open window.
+
+    display: None takes the one remembered.
+    Returns the parts, a stack that closes them with the window, and a complaint about remembered
+    settings, "" for none. UserError where script or display do not fit the scene; the window is
+    closed then.
+    """
+    settings = splash.settings
+    complaint = splash.complaint
+    scene = splash.during(partial(_ready_scene, script, head, display or settings.display))
+    with contextlib.ExitStack() as stack:
+        stack.push(splash)
+        if display is not None:
+            settings.display = display
+            _refine_once(scene, display)
+        else:
+            complaint = complaint or without_refused_options(settings.display, scene)
+        settings.display.remove_missing_overlays(scene)
+        context = ApplicationContext(Session(scene, script), settings, splash.surface)
+        stack.callback(context.close)
+        return context, stack.pop_all(), complaint
+
+
+def without_refused_options(display: Display, scene: Scene) -> str:
+    """Refine by the look alone where a refiner refuses the scene; a line says why, "" for none."""
+    try:
+        _refine_once(scene, display)
+    except UserError as error:
+        display.choose_preset(display.look)
+        return f"{error}; as at first"
+    return ""
+
+
+def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> Scene:
+    """The scene, at rest; the code of its first frames has run once, and is compiled."""
+    scene = build_scene(script.scene, head)
+    script.check(scene.limits)
+    scene.step(1.0 / 60.0)
+    scene.reset()
+    with contextlib.suppress(UserError):  # which is reported when the window is there
+        _refine_once(scene, display)
+    return scene
+
+
+def _refine_once(scene: Scene, display: Display) -> None:
+    """Refine a scene as it is; UserError for a refiner that refuses it, or fails."""
+    refinement = display.refinement_on(scene)
+    refiner = refiner_for(scene, refinement)
+    with reported(plug_ins_of(*refinement.on(scene.name))):
+        refiner.refine(scene.positions, view=refine.View(scene.framing.focus + 400.0))

@@ -1,0 +1,122 @@
+"""When the window draws a frame, and how long it waits for an event before it draws the next."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from imgui_bundle import imgui
+
+from ..context import ApplicationContext
+from ..documents.file_drop import FileDrop
+from ..session.live_commands import PACKET_WAIT
+from .mode import Mode
+
+
+class Schedule:
+    """Keeps the time of frames; a window in which nothing happens sleeps until an event."""
+
+    FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
+
+    def __init__(
+        self,
+        context: ApplicationContext,
+        file_drop: FileDrop,
+        mode: Callable[[], Mode],
+        due_in: Callable[[], float],
+    ) -> None:
+        """mode: the window's present one. due_in: [s] until unsaved work is copied next."""
+        self._context = context
+        self._file_drop = file_drop
+        self._mode = mode
+        self._due_in = due_in
+        self._begun = time.perf_counter()  # the present frame [s]
+        self._awake = self.FRAMES_AFTER_EVENT  # frames that are drawn in any case
+
+    def restart(self) -> None:
+        """Forget the time that has passed since the last frame."""
+        self._begun = time.perf_counter()
+
+    def wake(self, frames: int = FRAMES_AFTER_EVENT) -> None:
+        """Draw so many frames at least."""
+        self._awake = max(self._awake, frames)
+
+    def begin_frame(self) -> float:
+        """Begin a frame; returns the seconds since the last one began."""
+        last = self._begun
+        self._begun = time.perf_counter()
+        return self._begun - last
+
+    def end_frame(self) -> None:
+        """Note that a frame is drawn."""
+        self._awake = max(self._awake - 1, 0)
+
+    @property
+    def spent(self) -> float:
+        """How long the present frame has taken so far [s]."""
+        return time.perf_counter() - self._begun
+
+    @property
+    def is_awake(self) -> bool:
+        """Whether frames are drawn because of an event."""
+        return self._awake > 0
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing moves, and nothing is about to."""
+        mode = self._mode()
+        return (
+            not self.is_awake
+            and mode.painter.is_complete
+            and not self._context.messages.is_fading
+            and mode.is_at_rest
+        )
+
+    @property
+    def is_left_alone(self) -> bool:
+        """Whether the face does no more than live, and nothing else happens."""
+        return (
+            self._mode().is_left_alone
+            and not self.is_awake
+            and not self._context.messages.is_fading
+            and not self._context.files.is_waiting
+        )
+
+    def pause(self) -> None:
+        """Sleep where nothing happens, and between frames where the face only lives.
+
+        The latter half of the time at least, however long a frame takes. A live face that has just
+        been shown is waited for: a frame that begins with its packet shows it at once.
+        """
+        gui = self._context.gui
+        live = self._context.live
+        life_wait = 1.0 / 30.0  # [s] from one frame to the next while the face only lives
+        if self.is_idle:
+            self.sleep()
+        elif self.is_left_alone:
+            spent = self.spent
+            gui.look(max(life_wait - spent, spent))
+        elif live.is_receiving and not live.has_frame:
+            gui.look(PACKET_WAIT)
+
+    def sleep(self) -> None:
+        """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
+        context = self._context
+        is_watching = (
+            context.files.is_waiting
+            or imgui.get_io().want_text_input  # a cursor blinks
+            or self._file_drop.making is not None
+            or context.exporter.job is not None
+        )
+        idle_wait = 2.0  # [s] between two frames while nothing happens
+        watchful_wait = 0.1  # [s] the same while a file dialog is open, or words are typed
+        patience = watchful_wait if is_watching else idle_wait
+        due_in = min(self._due_in(), context.live.due_in())
+        patience = min(patience, max(due_in, 0.0))
+        self._mode().rest()
+        self.restart()
+        context.gui.look(patience)
+        is_woken = self.spent < patience
+        self.restart()
+        if is_woken and not context.live.has_frame:
+            self.wake()
