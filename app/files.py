@@ -16,9 +16,10 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from .errors import UserError, as_text
+from .errors import UserError
 from .staging import StagingFolder, is_staging_folder
 from .stopping import cleaned_up_if_stopped, done_whole
+from .text import as_text
 
 
 class NoSuchFileError(UserError):

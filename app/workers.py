@@ -24,9 +24,10 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from .errors import UserError, as_text, in_one_line, line_for, traceback_of
+from .errors import UserError, line_for, traceback_of
 from .motion import tally
 from .stopping import cleaned_up_if_stopped, handle_signals
+from .text import as_text, in_one_line
 
 Send = Callable[[object], None]  # sends a message to the process that started the work
 """Each takes as many threads as there are cores, in each process: OpenGL, BLAS and refinement."""

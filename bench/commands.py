@@ -7,7 +7,8 @@ from pathlib import Path
 import click
 
 from risorius.app.cli.options import FiniteRange, Size
-from risorius.app.errors import UserError, in_one_line
+from risorius.app.errors import UserError
+from risorius.app.text import in_one_line
 
 from .report import conclude, say_progress
 

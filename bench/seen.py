@@ -27,7 +27,8 @@ import numpy as np
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.drawing import camera_for
 from risorius.app.control_names import parted, twin_of
-from risorius.app.errors import UserError, needed
+from risorius.app.errors import UserError
+from risorius.app.extras import needed
 from risorius.app.motion import SETTLING
 from risorius.app.pictures import Image
 from risorius.app.recordings.names import ARKIT

@@ -13,8 +13,10 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any
 
-from ..errors import UserError, in_one_line, needed
+from ..errors import UserError
+from ..extras import needed
 from ..stopping import cleaned_up_if_stopped
+from ..text import in_one_line
 from ..workers import ATTEMPTS, WorkerPool, share_of_cores
 
 PATIENCE = 10.0  # [s] for the scheduler to answer

@@ -14,10 +14,11 @@ from pathlib import Path
 
 import click
 
-from ..errors import UserError, as_text, counted
+from ..errors import UserError
 from ..files import written_atomically
 from ..motion import tally
 from ..stopping import cleaned_up_if_stopped
+from ..text import as_text, counted
 from ..workers import Send, WorkerPool
 from .listing import Job
 

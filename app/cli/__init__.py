@@ -12,7 +12,8 @@ import click
 from risorius import __version__
 
 from ..compiling_note import announce_compiling
-from ..errors import in_one_line, report_user_errors
+from ..errors import report_user_errors
+from ..text import in_one_line
 from . import commands
 
 

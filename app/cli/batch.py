@@ -13,9 +13,10 @@ from typing import Any
 import click
 
 from ..batch.listing import Job, clashes, lines_of, words_of
-from ..errors import UserError, counted, in_one_line
+from ..errors import UserError
 from ..files import cannot_be_written, check_apart, check_folder
 from ..stopping import cleaned_up_if_stopped
+from ..text import counted, in_one_line
 from .options import PATH, SILENT
 
 LISTED = ("capture", "export", "convert")  # commands that a line may hold

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import UserError, in_one_line
+from ..errors import UserError
 from ..refining.presets import STATIC, Refinement
+from ..text import in_one_line
 from .help import GroupedCommand
 from .options import (
     PATH,

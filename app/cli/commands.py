@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
-from ..errors import UserError, counted, in_one_line
+from ..errors import UserError
 from ..live.protocols import LOOPBACK, PROTOCOLS, Listening
 from ..playback import Playback
+from ..text import counted, in_one_line
 from .batch import batch
 from .capture import capture, demo
 from .dataset import dataset

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from ..errors import counted, in_one_line
+from ..text import counted, in_one_line
 from .options import PATH, SILENT, Size, printing
 
 

@@ -12,8 +12,9 @@ from typing import Any
 
 from risorius import __version__, render
 
-from ..errors import UserError, in_one_line
+from ..errors import UserError
 from ..sound.decoding import ffmpeg
+from ..text import in_one_line
 
 PATIENCE = 20.0  # [s] for ffmpeg to say which it is
 EXTRAS = {

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import click
 
-from ..errors import in_one_line
 from ..export.formats import FORMATS, Request, check_request, format_for
 from ..export.formats import export as write
+from ..text import in_one_line
 from .help import GroupedCommand
 from .options import (
     PATH,

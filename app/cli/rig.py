@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import UserError, counted, in_one_line
+from ..errors import UserError
+from ..text import counted, in_one_line
 from .options import PATH, HeadName, option, packed
 
 if TYPE_CHECKING:

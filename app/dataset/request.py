@@ -10,10 +10,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from ..errors import as_text
 from ..passes.labels import check_wanted
 from ..passes.passes import IMAGES
 from ..refining.refiners import parse_options
+from ..text import as_text
 from .surroundings import Backgrounds, backgrounds_of
 from .table import SampleTable, load_table
 

@@ -18,8 +18,9 @@ import PIL.ImageOps
 
 from risorius.render import LIGHTS, Background, Light
 
-from ..errors import UserError, as_text
+from ..errors import UserError
 from ..pictures import Image
+from ..text import as_text
 
 
 @dataclass(frozen=True)

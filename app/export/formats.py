@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from ..errors import UserError, counted
+from ..errors import UserError
 from ..files import (
     cannot_be_written,
     check_file,
@@ -19,6 +19,7 @@ from ..files import (
     written_atomically,
 )
 from ..stopping import cleaned_up_if_stopped
+from ..text import counted
 
 if TYPE_CHECKING:
     from risorius.assets.fitting import FittedHead

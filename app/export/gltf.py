@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import as_text
 from ..rig.glb import Glb
 from ..rig.poses import CRANIUM, without_head_pose
 from ..rig.scene_meshes import Piece, add_mesh
 from ..rig.skeleton import Skeleton
 from ..rig.surface import Floats, RefinedSurface
+from ..text import as_text
 from .clip import Clip
 from .formats import Request
 from .morphs import TOLERANCE, decompose, follow

@@ -18,8 +18,9 @@ import PIL.Image
 
 from risorius.geometry.colour import to_linear
 
-from ..errors import as_text, needed
+from ..extras import needed
 from ..rig.surface import METRES, Surface
+from ..text import as_text
 from .clip import Clip
 from .formats import Request
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import needed
+from ..extras import needed
 from .clip import Clip, FrameSurface, frame_surfaces
 from .formats import Request
 

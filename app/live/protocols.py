@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from ..errors import UserError, in_one_line, needed
+from ..errors import UserError
+from ..extras import needed
+from ..text import in_one_line
 
 if TYPE_CHECKING:
     from .frame import LiveFrame

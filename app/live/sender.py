@@ -6,9 +6,10 @@ import socket
 import time
 from collections.abc import Callable, Mapping
 
-from ..errors import UserError, in_one_line
+from ..errors import UserError
 from ..recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES
 from ..recordings.take import Take
+from ..text import in_one_line
 from .livelink import packet_of
 from .protocols import PROTOCOLS, resolved
 

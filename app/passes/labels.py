@@ -25,7 +25,8 @@ import PIL.Image
 
 from risorius import render
 
-from ..errors import UserError, needed
+from ..errors import UserError
+from ..extras import needed
 from ..files import named_in_text, written_atomically
 from ..pictures import Image
 from ..scenes import Face, Scene

@@ -14,10 +14,10 @@ from pathlib import Path
 import numpy as np
 
 from ..control_names.limits import Limits
-from ..errors import in_one_line
 from ..playback import LEAD, Playback
 from ..script import POSE_SECONDS, Channel, Pose, Script, rounded
 from ..script.thinning import TOLERANCE, thinned
+from ..text import in_one_line
 from .calibration import calibration_for
 from .mapping import controls_of
 from .report import Report, report_of

@@ -11,7 +11,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..errors import UserError, counted
+from ..errors import UserError
+from ..text import counted
 from .names import ANGLES, NONSENSE
 from .take import Array, Take
 

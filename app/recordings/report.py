@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import counted, in_one_line
+from ..text import counted, in_one_line
 from .calibration import Calibration
 from .mapping import chosen
 from .names import ANGLES, ARKIT

@@ -20,7 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import UserError, counted
+from ..errors import UserError
+from ..text import counted
 from .take import Array, Request
 
 LARGEST = 1e30  # a larger number is no measurement; nanoseconds since 1970 are 1.8e18

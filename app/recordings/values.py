@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import counted
+from ..text import counted
 from .names import ARKIT, NONSENSE
 from .take import Array
 

@@ -27,8 +27,9 @@ import numpy.typing as npt
 
 from risorius.schema import MadeFrom, Record, parsed_toml, quoted, read
 
-from ..errors import UserError, as_text, in_one_line
+from ..errors import UserError
 from ..files import read_text, save_text
+from ..text import as_text, in_one_line
 from . import (
     LARGEST,
     LONGEST_FILE,

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import UserError, needed
+from ..errors import UserError
+from ..extras import needed
 from ..files import read_bytes
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ settings.py the settings that are remembered, among them how the scene is displa
 
 from typing import TYPE_CHECKING, Any
 
-from ..errors import needed
+from ..extras import needed
 
 needed("imgui_bundle", "the window", "window", package="imgui-bundle")  # before glfw: see gui.py
 needed("glfw", "the window", "window")

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..control_names import sentence
-from ..errors import UserError, as_text
+from ..errors import UserError
+from ..text import as_text
 
 Message = str | None  # to be shown; None for nothing to say
 Task = Callable[[], Message]  # an action of the user; it may raise UserError or OSError

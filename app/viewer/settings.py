@@ -28,11 +28,12 @@ from risorius.schema import (
 
 from ..anatomy import OPACITY, SIDES, SKIN_ALONE, STRUCTURES, AnatomyView
 from ..capture.outputs import FORMATS as FILMS
-from ..errors import UserError, in_one_line
+from ..errors import UserError
 from ..export.formats import FORMATS as MOTION
 from ..files import NoSuchFileError, read_text, save_text
 from ..refining.presets import CHANGED, FIRST_PRESET, PRESETS, STATIC, Refinement
 from ..scenes import Drawable
+from ..text import in_one_line
 from .interface.gui import THEMES
 
 SIDES_SHOWN = 200, 16384  # [screen units] of the window, least and most

@@ -13,7 +13,7 @@ from pathlib import Path
 import click
 
 from risorius import __version__
-from risorius.app.errors import in_one_line
+from risorius.app.text import in_one_line
 
 from ..report import processor, say_progress, table
 from .experiments import EXPERIMENTS, Result

@@ -13,11 +13,12 @@ import numpy as np
 import PIL.Image
 import pytest
 
-from risorius.app.errors import UserError, as_text, in_one_line
+from risorius.app.errors import UserError
 from risorius.app.files import check_apart, check_file, save_text
 from risorius.app.pictures import save_png
 from risorius.app.script import Pose, Script
 from risorius.app.script.script_file import load_script, save_script, script_text
+from risorius.app.text import as_text, in_one_line
 
 from .command_line import refusal, risorius, succeeded
 from .recording_files import timecodes, written

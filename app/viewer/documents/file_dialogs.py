@@ -11,7 +11,7 @@ from pathlib import Path
 from imgui_bundle import imgui
 
 from ...control_names import sentence
-from ...errors import as_text
+from ...text import as_text
 from ..interface.gui import Gui, colour
 from ..interface.widgets import button, dialog, muted, shortened
 from ..messages import Message

@@ -10,11 +10,12 @@ from typing import Protocol
 
 from imgui_bundle import imgui
 
-from ...errors import UserError, as_text
+from ...errors import UserError
 from ...performances import read_performance
 from ...script import Script
 from ...script.script_file import is_pose
 from ...sound.decoding import with_sound
+from ...text import as_text
 from ..interface.gui import Gui
 from ..interface.widgets import button, dialog
 from ..messages import Message, Task

@@ -24,7 +24,7 @@ from imgui_bundle import imgui
 
 from risorius import render
 
-from ...errors import as_text
+from ...text import as_text
 
 import glfw  # isort: skip - after imgui_bundle, see above
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from imgui_bundle import imgui
 
 from ...control_names import readable, sentence
-from ...errors import as_text
+from ...text import as_text
 from .gui import LEFT, RIGHT, Gui, colour, em, ink_of
 
 # Knob and number of imgui's own sliders; bars have others.

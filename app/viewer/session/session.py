@@ -10,13 +10,14 @@ from pathlib import Path
 
 from ...control_names import copied, mirrored, readable, twin_of
 from ...control_names.limits import ControlValues
-from ...errors import UserError, as_text, counted
+from ...errors import UserError
 from ...motion import SETTLING
 from ...performances import new_script
 from ...scenes import Scene
 from ...script import Script, keyframes, rounded
 from ...script.recorder import Recorder
 from ...script.script_file import is_pose, pose_script, save_script
+from ...text import as_text, counted
 from ..messages import Message
 from .document import Document, History, LiveOverride, SceneControls, ScriptFile
 

@@ -14,9 +14,9 @@ from typing import Any
 
 from imgui_bundle import imgui
 
-from ...errors import counted
 from ...script import Script, keyframes
 from ...script.places import NOWHERE, Places
+from ...text import counted
 from ..context import ApplicationContext
 from ..interface.commands import MenuBar
 from ..interface.gui import LEFT, MIDDLE, RIGHT, em, ink_of

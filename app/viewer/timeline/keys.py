@@ -9,10 +9,11 @@ from functools import partial
 import numpy as np
 
 from ...control_names import called
-from ...errors import UserError, counted
+from ...errors import UserError
 from ...script import Channel, Script, keyframes
 from ...script.keyframes import POSES, places_of
 from ...script.places import NOWHERE, Places
+from ...text import counted
 from ..messages import Message
 from ..session.session import Session
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from imgui_bundle import imgui
 
-from ...errors import counted
+from ...text import counted
 from ..context import ApplicationContext
 from ..interface.commands import Command, command_button
 from ..interface.gui import colour, em

@@ -14,11 +14,11 @@ from imgui_bundle import imgui
 from risorius import __version__
 
 from ...control_names import readable
-from ...errors import as_text
 from ...performances import examples
 from ...refining.presets import FIRST_PRESET, PAPERS_PRESET
 from ...scenes import BUILT_IN
 from ...script.easings import EASINGS
+from ...text import as_text
 from ..documents.export import Exporter
 from ..documents.file_drop import FileDrop
 from ..documents.scripts import ScriptCommands
