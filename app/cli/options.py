@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 LEAST_SIDE = 16  # [pixels]
 LONGEST_SIDE = 8192  # [pixels]
 BACKGROUNDS = ("light", "dark", "white", "black")  # of `render`
-PERSON_NAMES = ("ada", "kofi", "maria")  # of `assets.identities`, which is not imported yet
+HEAD_NAMES = ("ada", "kofi", "maria", "coarse")  # of `assets`, which is not imported yet
 
 
 class Size(click.ParamType[tuple[int, int]]):
@@ -115,15 +115,15 @@ class FiniteRange(click.FloatRange):
 
 
 class HeadName(click.ParamType["Path | int | str"]):
-    """A head: a file, or the number or name of a person."""
+    """A head: a file, the number or name of a person, or the coarse head."""
 
-    name = "FILE|PERSON"
+    name = "FILE|NAME"
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> Path | int | str:
-        """A number or a name of PERSON_NAMES is a person; all else is a path."""
-        if value in PERSON_NAMES:
+        """A number is a person, HEAD_NAMES are heads; all else is a path."""
+        if value in HEAD_NAMES:
             return str(value)
         if str(value).isdecimal():
             return click.IntRange(0, 2**32 - 1).convert(value, param, ctx)
@@ -195,7 +195,7 @@ class Subject:
     head: Path | int | str | None = option(
         type=HeadName(),
         help="A head of your own, any triangle mesh; or a person: each number is one, and ada, "
-        "kofi and maria.",
+        "kofi and maria; or coarse, the built-in head with a quarter of its triangles.",
     )
     landmarks: Path | None = option(type=PATH, help="The 68 iBug landmarks of --head, as JSON.")
     look: str = option(
@@ -225,11 +225,9 @@ class Subject:
 
     def check_head(self) -> None:
         """Raise UserError for options that exclude or need each other."""
-        is_person = self.head is not None and not isinstance(self.head, Path)
-        if is_person and self.landmarks is not None:
-            raise UserError(
-                f"--head {self.head} is a person, whose landmarks are known; leave --landmarks out"
-            )
+        is_named = self.head is not None and not isinstance(self.head, Path)
+        if is_named and self.landmarks is not None:
+            raise UserError(f"--head {self.head}: its landmarks are known; leave --landmarks out")
         if len(self.files) == 1:
             raise UserError(
                 "--head HEAD.obj and --landmarks LANDMARKS.json go together; "
@@ -237,14 +235,14 @@ class Subject:
             )
 
     def fitted_head(self) -> FittedHead | None:
-        """The user's own head, fitted, or a person; None for the built-in head."""
+        """The user's own head, fitted, or one with a name; None for the built-in head."""
         self.check_head()
         if self.head is None:
             return None
         if not isinstance(self.head, Path):
-            from risorius.assets.identities import person_called
+            from ..scenes import called_head
 
-            return person_called(self.head)
+            return called_head(self.head)
         from ..scenes import own_head
 
         assert self.landmarks is not None

@@ -67,9 +67,8 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     on the error stream report what each piece of the file was taken for, and how far sums of shapes
     are from the simulation.
     """
-    from risorius.assets.identities import person_called
-
     from ..rig.avatar import RigRequest, avatar_of, read_file_head
+    from ..scenes import called_head
 
     file_path = head if isinstance(head, Path) else None
     if (file_path is None) != (rigging.landmarks is None):
@@ -98,9 +97,9 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
         avatar = avatar_of(file.head, request, say, file=file)
         title = file_path.stem
     else:
-        person = None if head is None or isinstance(head, Path) else person_called(head)
-        avatar = avatar_of(person, request, say)
-        title = "head" if person is None else f"person {head}"
+        named = None if head is None or isinstance(head, Path) else called_head(head)
+        avatar = avatar_of(named, request, say)
+        title = "head" if named is None else f"head {head}"
     size = _written(output, avatar, title, is_folder=is_folder)
     meshes = "1 mesh" if len(avatar.shapes) == 1 else f"{len(avatar.shapes)} meshes"
     shapes = counted(len(avatar.names), "shape")

@@ -13,7 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from risorius import assets, sim
+from risorius.assets.coarse import COARSE, coarse_head
 from risorius.assets.fitting import FittedHead, fit_head
+from risorius.assets.identities import person_called, person_in_words
 
 from ..control_names.limits import Limits
 from ..errors import UserError
@@ -25,6 +27,7 @@ from .scene import Scene
 __all__ = [
     "BARE",
     "BUILT_IN",
+    "COARSE",
     "OWN",
     "SCENES",
     "Drawable",
@@ -36,7 +39,9 @@ __all__ = [
     "SkinImages",
     "build_face",
     "build_scene",
+    "called_head",
     "controls_of",
+    "head_in_words",
     "own_head",
 ]
 
@@ -89,3 +94,13 @@ def own_head(head: Path, landmarks: Path) -> FittedHead:
     for note in fitted.notes:
         LOG.warning("risorius: %s: %s", head, note)
     return fitted
+
+
+def called_head(who: int | str) -> FittedHead:
+    """The person of a number or of a name, or the coarse head."""
+    return coarse_head() if who == COARSE else person_called(who)
+
+
+def head_in_words(who: int | str) -> str:
+    """Such a head, as a list shows it."""
+    return "Coarse head" if who == COARSE else person_in_words(who)

@@ -123,9 +123,6 @@ class FaceScene(Scene):
 def _images_of(head: assets.Head | FittedHead) -> SkinImages:
     """What is on the skin of a head."""
     person = head if isinstance(head, Person) else None
-    fade = None
-    if isinstance(head, FittedHead) and person is None:  # others have a shirt
-        fade = head.fade()
     in_tone = None if person is None else person.in_tone
     return SkinImages(
         uv=head.uv,
@@ -135,7 +132,7 @@ def _images_of(head: assets.Head | FittedHead) -> SkinImages:
         ambient_occlusion=head.ambient_occlusion,
         fine_shape=head.fine_shape,
         wrinkles=head.wrinkles,
-        fade=fade,
+        fade=head.fade() if isinstance(head, FittedHead) else None,
     )
 
 
@@ -156,4 +153,4 @@ def _name_of(head: assets.Head | FittedHead) -> str:
     """How the user calls a head."""
     if isinstance(head, assets.Head):
         return BUILT_IN
-    return (isinstance(head, Person) and head.called) or OWN
+    return head.called or OWN

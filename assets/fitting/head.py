@@ -63,6 +63,7 @@ class FittedHead:
     to_millimetres: takes the file's coordinates to these.
     file_vertices: numbers in the file of the vertices, or of the nearest, shape (V,), int32.
     notes: changes of the mesh that its owner should know, a line each.
+    called: its name or number, "" where it has none.
     """
 
     vertices: FloatArray
@@ -83,6 +84,7 @@ class FittedHead:
     file_vertices: IndexArray
     notes: tuple[str, ...] = field(default=(), kw_only=True)
     fine_shape: FineShape | None = field(default=None, kw_only=True)
+    called: str = field(default="", kw_only=True)
 
     def __post_init__(self) -> None:
         make_read_only(self)

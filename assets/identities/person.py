@@ -38,7 +38,6 @@ class Person(FittedHead):
     mandible_weight, jaw_axis, anatomy, mirror: as of `Head`. `mirror` is that of the built-in head
         where left and right differ, too.
     identity: the weights and features that it was made from.
-    called: its number or name, "" for none.
     in_tone: makes the texture in another tone, from the angle of `recoloured` [deg].
     """
 
@@ -47,8 +46,10 @@ class Person(FittedHead):
     anatomy: Mapping[str, int]
     mirror: IndexArray
     identity: Identity
-    called: str = field(default="", kw_only=True)
     in_tone: Callable[[float], Image] | None = field(default=None, kw_only=True)
+
+    def fade(self) -> None:
+        """A shirt covers the edge of its neck."""
 
     @property
     def measures(self) -> dict[str, float]:

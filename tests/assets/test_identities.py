@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from numpy.linalg import norm
 
 from risorius import sim
-from risorius.app.cli.options import PERSON_NAMES
+from risorius.app.cli.options import HEAD_NAMES
 from risorius.app.scenes import FaceScene
+from risorius.assets.coarse import COARSE
 from risorius.assets.fitting.mesh_validation import SkinPiece, check_manifold, check_openings
 from risorius.assets.identities import (
     NAMED,
@@ -118,7 +119,7 @@ def test_upper_lids_cover_a_part_of_the_iris():
 def test_named_persons_are_different_people(head):
     """Of both sexes, in tones and ages far apart, and none has the built-in head's face."""
     people = [person_called(name) for name in NAMED]
-    assert tuple(NAMED) == PERSON_NAMES
+    assert HEAD_NAMES == (*NAMED, COARSE)
     assert {each.identity.sex for each in people} == set(Sex)
     assert np.ptp([each.identity.age for each in people]) > 30.0
     for i, each in enumerate(people):

@@ -10,12 +10,11 @@ from pathlib import Path
 
 from risorius import assets
 from risorius.assets.fitting.landmark_file import UnfinishedError
-from risorius.assets.identities import person_called, person_in_words
 from risorius.assets.meshes import FORMATS
 
 from ...errors import UserError
 from ...recordings.reading import is_recording
-from ...scenes import Scene, build_scene, own_head
+from ...scenes import Scene, build_scene, called_head, head_in_words, own_head
 from ..interface.gui import wake_up
 from ..messages import Message, Task
 from .file_dialogs import FileDialogs
@@ -87,13 +86,13 @@ class FileDrop:
         return None
 
     def show_person(self, who: int | str | None) -> None:
-        """Begin to make a person by number or name, in place of the head; None: the built-in."""
+        """Begin to make a head by number or name, in place of this one; None: the built-in."""
 
         def make() -> Task:
-            person = None if who is None else person_called(who)
-            return partial(self._show_scene, build_scene("face", person))
+            head = None if who is None else called_head(who)
+            return partial(self._show_scene, build_scene("face", head))
 
-        self._begin(f"Making {'the built-in head' if who is None else person_in_words(who)}", make)
+        self._begin(f"Making {'the built-in head' if who is None else head_in_words(who)}", make)
 
     def _begin(self, action: str, make: Callable[[], Task]) -> None:
         """Make the task that shows a head in a thread; the result of one before is dropped."""

@@ -11,13 +11,13 @@ import numpy as np
 from imgui_bundle import imgui
 
 from risorius import refine, render
-from risorius.assets.identities import NAMED, person_in_words
+from risorius.assets.identities import NAMED
 
 from ...anatomy import OPACITY, SIDES, STRUCTURES
 from ...control_names import readable
 from ...refining.presets import PRESETS, STATIC, THRESHOLDS, words_of_presets
 from ...refining.refiners import DETAIL, can_detail, open_choices, options_of
-from ...scenes import BUILT_IN, OWN
+from ...scenes import BUILT_IN, COARSE, OWN, head_in_words
 from ..context import ApplicationContext
 from ..documents.file_drop import FileDrop
 from ..interface.widgets import LabelledRows, button, heading, muted
@@ -183,10 +183,10 @@ class MechanismPanel:
         if scene.skin.in_tone is not None:
             self._pick("Skin tone", tuple(TONES))
         if scene.called:
-            listed = (*NAMED, *range(20))  # and some of those without names
-            people = {person_in_words(who): who for who in listed}
+            listed = (COARSE, *NAMED, *range(20))  # and some of those without names
+            people = {head_in_words(who): who for who in listed}
             who = int(scene.called) if scene.called.isdecimal() else scene.called
-            present = scene.called if who in (BUILT_IN, OWN) else person_in_words(who)
+            present = scene.called if who in (BUILT_IN, OWN) else head_in_words(who)
             show = lambda name: self._file_drop.show_person(people.get(name))  # noqa: E731
             self._choose("Person", present, (BUILT_IN, *people), show)
 

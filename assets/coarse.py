@@ -1,0 +1,97 @@
+"""The built-in head with a quarter of its triangles, on which everybody sees what refinement does.
+
+    head = coarse_head()
+
+The layout was made by hand (`coarse.toml`). Its vertices are vertices of the built-in head, so rig,
+landmarks, teeth and picture fit as they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from .data_files import read_toml
+from .fitting.head import FittedHead
+from .fitting.warp import Similarity
+from .loading import load
+from .model import FloatArray, Head, IndexArray, Part
+
+COARSE = "coarse"  # how a user calls it
+LAYOUT_FILE = Path(__file__).parent / "coarse.toml"
+
+
+@dataclass(frozen=True)
+class CoarseHead(FittedHead):
+    """A head with some vertices of the built-in one. It has the fields of a fitted head, and:
+
+    mandible_weight, jaw_axis, mirror: as of `Head`.
+    anatomy: the anatomical points that are among its vertices, name -> vertex number.
+    """
+
+    mandible_weight: FloatArray
+    jaw_axis: FloatArray
+    anatomy: Mapping[str, int]
+    mirror: IndexArray
+
+    def fade(self) -> None:
+        """A shirt covers the edge of its neck."""
+
+
+def coarse_head() -> CoarseHead:
+    """The coarse head: some 500 triangles, with the landmarks and the rig of the built-in head.
+
+    Raises AssetError where a file is missing or broken.
+    """
+    known = load("head")
+    kept, faces = _layout(known)
+    number = np.full(len(known.vertices), -1, np.int32)
+    number[kept] = np.arange(len(kept))
+    # No part hangs from its lids, and no map shows what its triangles do not hold.
+    parts = tuple(_behind_lids(known, part) for part in known.parts if part.roots is None)
+    still = replace(known.wrinkles, across=np.zeros((len(kept), 2, 3), np.float32))
+    return CoarseHead(
+        vertices=known.vertices[kept],
+        faces=faces,
+        landmarks=number[known.landmarks],
+        bone_depth=known.bone_depth[kept],
+        eyes=known.eyes,
+        parts=parts,
+        uv=known.uv[kept],
+        face_uv=faces,
+        albedo=known.albedo,
+        wrinkles=still,
+        segments=known.segments,
+        ambient_occlusion=known.ambient_occlusion,
+        rig=known.rig,
+        layers=known.layers,
+        to_millimetres=Similarity(1.0, np.eye(3), np.zeros(3)),
+        file_vertices=kept,
+        mandible_weight=known.mandible_weight[kept],
+        jaw_axis=known.jaw_axis,
+        anatomy={name: int(number[v]) for name, v in known.anatomy.items() if number[v] >= 0},
+        mirror=number[known.mirror[kept]],
+        called=COARSE,
+    )
+
+
+def _behind_lids(known: Head, part: Part) -> Part:
+    """The part, an eyeball a little smaller: straight edges of lids cut into the built-in one."""
+    share = 0.95  # of the radius
+    for eye in known.eyes:
+        if part.name == f"eyeball_{eye.name}":
+            vertices = eye.centre + share * (part.vertices - eye.centre)
+            return replace(part, vertices=vertices.astype(np.float32))
+    return part
+
+
+def _layout(known: Head) -> tuple[IndexArray, IndexArray]:
+    """The vertices of the built-in head that are kept, (V,), and triangles among them, (F, 3)."""
+    table = read_toml(LAYOUT_FILE)["triangles"]
+    left = np.vstack([*table.values()]).astype(np.int32)
+    right = known.mirror[left][:, ::-1]
+    kept, corners = np.unique(np.vstack([left, right]), return_inverse=True)
+    return kept, corners.reshape(-1, 3).astype(np.int32)

@@ -1,0 +1,110 @@
+"""The coarse head moves as the built-in one does, and every look refines it without a crack."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from risorius import refine
+from risorius.app.refining.presets import PRESETS, Refinement
+from risorius.app.refining.refiners import refiner_for
+from risorius.app.scenes import FaceScene, called_head
+from tests.app.command_line import refusal, risorius, succeeded
+
+STEPS = 40  # of 1/60 s, after which a pose is reached
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """A face of the coarse head."""
+    return FaceScene(called_head("coarse"))
+
+
+def held(scene, **pose):
+    """Where the vertices are when a pose is held, shape (V, 3) [mm]."""
+    scene.reset()
+    scene.pose(pose)
+    for _ in range(STEPS):
+        scene.step(1.0 / 60.0)
+    return scene.positions.copy()
+
+
+def gap(scene, positions, upper, lower):
+    """How far two landmarks are apart [mm]."""
+    first, second = positions[scene.landmarks[[upper, lower]]]
+    return float(np.linalg.norm(first - second))
+
+
+def test_coarse_head_has_all_controls_of_the_built_in_one(scene):
+    """The same muscles, action units, expressions, visemes and shapes."""
+    assert scene.groups == FaceScene().groups
+
+
+def test_each_shape_moves_the_coarse_head_sanely(scene):
+    """All 52 of ARKit's move skin, none throws it away, and both halves do the same."""
+    shapes = scene.groups["ARKit shapes"]
+    assert len(shapes) == 52
+    rest = held(scene)
+    looks = {f"eyeLook{way}{side}" for way, side in product(("In", "Out"), ("Left", "Right"))}
+    alone_still = {*looks, "tongueOut", "mouthClose"}
+    for name in shapes:
+        moved = held(scene, **{name: 1.0})
+        far = np.abs(moved - rest).max()
+        assert np.isfinite(moved).all(), name
+        assert far < 45.0, name
+        assert far > 0.3 or name in alone_still, name
+    left = held(scene, mouthSmileLeft=1.0)
+    right = held(scene, mouthSmileRight=1.0)
+    mirrored = left[scene.head.mirror] * (-1.0, 1.0, 1.0)
+    assert np.abs(mirrored - right).max() < 1e-6
+
+
+def test_even_poses_keep_the_coarse_head_even(scene):
+    """A mirrored pose gives a mirrored face."""
+    for pose in ({"joy": 1.0}, {"jaw_open": 1.0}, {"mouthPucker": 1.0}):
+        moved = held(scene, **pose)
+        mirrored = moved[scene.head.mirror] * (-1.0, 1.0, 1.0)
+        assert np.abs(mirrored - moved).max() < 1e-6
+
+
+def test_lips_and_lids_of_the_coarse_head_close(scene):
+    """Lips lie on each other at rest and part with the jaw; lids meet in a blink."""
+    middle_of_lips = (62, 66)
+    rest = held(scene)
+    assert gap(scene, rest, *middle_of_lips) < 1.0
+    assert gap(scene, held(scene, jaw_open=1.0), *middle_of_lips) > 20.0
+    shut = held(scene, eyeBlinkLeft=1.0, eyeBlinkRight=1.0)
+    for lids in ((43, 47), (44, 46), (37, 41), (38, 40)):
+        assert gap(scene, shut, *lids) < 0.35 * gap(scene, rest, *lids)
+
+
+def test_smile_of_the_coarse_head_lifts_the_corners(scene):
+    """And draws them apart."""
+    corners = scene.landmarks[[48, 54]]
+    rest = held(scene)[corners]
+    smile = held(scene, joy=1.0)[corners]
+    assert (smile[:, 1] - rest[:, 1]).min() > 4.0
+    assert np.ptp(smile[:, 0]) > np.ptp(rest[:, 0]) + 6.0
+
+
+def test_refined_coarse_head_has_no_crack(scene):
+    """By every look, in poses that bend it most; each makes more triangles."""
+    for look in PRESETS:
+        refiner = refiner_for(scene, Refinement(look))
+        for pose in ({}, {"joy": 1.0}, {"jaw_open": 1.0}, {"mouthPucker": 1.0}, {"fear": 1.0}):
+            positions = held(scene, **pose)
+            mesh = refiner.refine(positions)
+            refine.check(refiner, mesh, positions)
+        assert len(mesh.triangles) > len(scene.faces)
+
+
+def test_command_draws_the_coarse_head(tmp_path):
+    """`--head coarse` chooses it, and excludes landmarks of a file."""
+    picture = tmp_path / "coarse.png"
+    pose = ("--set", "joy", "--size", "64x48", "--quiet", "-o", picture)
+    said = succeeded("capture", "--head", "coarse", "--refiner", "none", *pose)
+    assert f"{len(called_head('coarse').faces)} triangles at most" in said
+    assert Image.open(picture).size == (64, 48)
+    refused = refusal(risorius("capture", "--head", "coarse", "--landmarks", "a.json", *pose))
+    assert "its landmarks are known" in refused

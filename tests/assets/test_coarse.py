@@ -1,0 +1,75 @@
+"""The coarse head: one clean, symmetric piece made of vertices of the built-in head."""
+
+import numpy as np
+import pytest
+import scipy
+import trimesh
+
+from risorius.assets.coarse import coarse_head
+from risorius.assets.intersections import self_intersections
+from risorius.assets.topology import boundary_loops
+from risorius.geometry.normals import cross_products
+from tests.assets import checks
+
+
+@pytest.fixture(scope="module")
+def coarse():
+    """The coarse head."""
+    return coarse_head()
+
+
+def test_coarse_head_has_a_quarter_of_the_triangles(coarse):
+    """About 500, and no vertex is unused."""
+    assert 480 <= len(coarse.faces) <= 540
+    assert np.array_equal(np.unique(coarse.faces), np.arange(len(coarse.vertices)))
+
+
+def test_coarse_head_is_one_manifold_piece(coarse):
+    """With four holes: the rim of the neck, the mouth, both eyes."""
+    assert checks.is_manifold(coarse.faces)
+    assert checks.component_count(coarse.faces) == 1
+    assert checks.euler_characteristic(coarse.vertices, coarse.faces) == 2 - 4
+    assert len(boundary_loops(coarse.faces)) == 4
+
+
+def test_coarse_head_is_its_own_mirror_image(coarse):
+    """To the last bit, vertices and faces."""
+    assert checks.mirror_error(coarse.vertices, coarse.mirror) == 0.0
+    assert checks.is_mirrored(coarse.faces, coarse.mirror)
+
+
+def test_coarse_triangles_are_sound(coarse):
+    """No sliver, no vertex with two or with a dozen neighbours, no triangle that cuts another."""
+    angles = np.degrees(trimesh.triangles.angles(coarse.vertices[coarse.faces]))
+    assert angles.min() > 8.0
+    assert np.percentile(angles.min(axis=1), 5) > 15.0
+    edges = np.array(list(checks.edge_faces(coarse.faces)))
+    neighbours = np.bincount(edges.ravel())
+    assert neighbours.min() >= 3
+    assert neighbours.max() <= 10
+    assert len(self_intersections(coarse.vertices, coarse.faces)) == 0
+
+
+def test_coarse_head_lies_on_the_built_in_one(coarse, head):
+    """Its vertices and all landmarks are those of the built-in head; the rest lies near it."""
+    assert np.array_equal(coarse.vertices, head.vertices[coarse.file_vertices])
+    marked = coarse.vertices[coarse.landmarks]
+    assert np.array_equal(marked, head.vertices[head.landmarks])
+    middles = coarse.vertices[coarse.faces].mean(axis=1)
+    fine = head.finer(1).vertices
+    distance = scipy.spatial.cKDTree(fine).query(middles)[0]
+    assert distance.max() < 15.0
+    assert np.median(distance) < 3.0
+
+
+def test_coarse_triangles_look_outward(coarse, head):
+    """In front of the ears, which are sheets, each as the built-in head does at its corners."""
+    corners = coarse.file_vertices[coarse.faces]
+    fine = np.zeros_like(head.vertices)
+    for corner in range(3):
+        np.add.at(fine, head.faces[:, corner], cross_products(head.vertices, head.faces))
+    facing = cross_products(coarse.vertices, coarse.faces)
+    agreeing = (facing * fine[corners].sum(axis=1)).sum(axis=1)
+    is_before_ears = coarse.vertices[coarse.faces][:, :, 2].min(axis=1) > 10.0
+    assert is_before_ears.sum() > 300
+    assert agreeing[is_before_ears].min() > 0.0
