@@ -17,15 +17,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Flags, Floats64, Integers64, Unsigned8
 from .gltf_file import DRACO, GltfFile, entry, packed
 from .gltf_painter import GltfPainter
 from .pictures import Texture
 from .topology import strip_triangles, unique_points
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -40,13 +37,13 @@ class GltfSurface:
     has_colour: which vertices have one, shape (V,).
     """
 
-    vertices: Floats
-    faces: Integers
-    same: Integers
-    corners: Integers
+    vertices: Floats64
+    faces: Integers64
+    same: Integers64
+    corners: Integers64
     texture: Texture | None
-    colours: npt.NDArray[np.uint8] | None
-    has_colour: npt.NDArray[np.bool_]
+    colours: Unsigned8 | None
+    has_colour: Flags
 
 
 @dataclass(frozen=True)
@@ -62,7 +59,7 @@ class StoredPiece:
     mesh: int
     primitive: int
     count: int
-    to_scene: Floats
+    to_scene: Floats64
 
 
 class _Piece(NamedTuple):
@@ -71,14 +68,14 @@ class _Piece(NamedTuple):
     node: int
     mesh: int
     primitive: int
-    to_scene: Floats
-    stored: Floats  # (V, 3) positions as in the file
-    seen: Floats  # (V, 3) in the scene
-    motion: Floats  # (V, 4) of shapes and bones, mixed: alike where vertices move alike
-    faces: Integers  # (F, 3)
+    to_scene: Floats64
+    stored: Floats64  # (V, 3) positions as in the file
+    seen: Floats64  # (V, 3) in the scene
+    motion: Floats64  # (V, 4) of shapes and bones, mixed: alike where vertices move alike
+    faces: Integers64  # (F, 3)
     picture: int  # its number, -1 for none
-    uv: Floats  # (V, 2), v up
-    colours: npt.NDArray[np.uint8] | None  # (V, 3)
+    uv: Floats64  # (V, 2), v up
+    colours: Unsigned8 | None  # (V, 3)
 
 
 def read_gltf(content: bytes, folder: Path) -> GltfSurface:
@@ -219,13 +216,13 @@ class _Reader:
 
     def _bent(
         self,
-        points: Floats,
-        unbent: Floats,
-        world: Floats,
+        points: Floats64,
+        unbent: Floats64,
+        world: Floats64,
         attributes: Mapping[str, Any],
         skin: int,
         mixture: np.random.Generator,
-    ) -> tuple[Floats, Floats, Floats]:
+    ) -> tuple[Floats64, Floats64, Floats64]:
         """Where bones bring points (V, 3), a mixture of these bones for each, shape (V,), and how
         they turn and scale each, (V, 3, 3).
 
@@ -253,7 +250,7 @@ class _Reader:
         turns[~is_held] = world[:3, :3]
         return bent, (weights * names[joints.astype(int)]).sum(axis=1), turns
 
-    def _faces(self, primitive: Any, count: int) -> Integers:
+    def _faces(self, primitive: Any, count: int) -> Integers64:
         """The triangles of a primitive with so many vertices."""
         numbers = np.arange(count)
         if primitive.indices is not None:
@@ -268,16 +265,16 @@ class _Reader:
         return numbers[: len(numbers) // 3 * 3].reshape(-1, 3)
 
 
-def _moved(points: Floats, matrices: Floats) -> Floats:
+def _moved(points: Floats64, matrices: Floats64) -> Floats64:
     """Points (V, 3) moved by a matrix (4, 4), or by one each, (V, 4, 4)."""
     rows = matrices[..., :3, :]
     # Written out: equal points come out equal to the last bit, wherever they stand in the list.
     along = [rows[..., axis] * points[:, axis, None] for axis in range(3)]
-    moved: Floats = along[0] + along[1] + along[2] + rows[..., 3]
+    moved: Floats64 = along[0] + along[1] + along[2] + rows[..., 3]
     return moved
 
 
-def _places(nodes: list[Any]) -> list[Floats]:
+def _places(nodes: list[Any]) -> list[Floats64]:
     """The matrix of each node to the scene, (4, 4)."""
     parents = {child: number for number, node in enumerate(nodes) for child in node.children or []}
     local = [_local(node) for node in nodes]
@@ -296,7 +293,7 @@ def _places(nodes: list[Any]) -> list[Floats]:
     return found
 
 
-def _local(node: Any) -> Floats:
+def _local(node: Any) -> Floats64:
     """The matrix of a node to its parent, (4, 4)."""
     from scipy.spatial.transform import Rotation  # which to load a head takes no time for
 
@@ -310,7 +307,7 @@ def _local(node: Any) -> Floats:
     return matrix
 
 
-def _same_vertices(pieces: list[_Piece], starts: Integers) -> Iterator[Integers]:
+def _same_vertices(pieces: list[_Piece], starts: Integers64) -> Iterator[Integers64]:
     """For each node in turn, which of its vertices is the first of those that are one."""
     for node in dict.fromkeys(piece.node for piece in pieces):
         own = [piece for piece in pieces if piece.node == node]
@@ -320,7 +317,7 @@ def _same_vertices(pieces: list[_Piece], starts: Integers) -> Iterator[Integers]
         yield start + _first_of_same(np.vstack([piece.stored for piece in own]), motion)
 
 
-def _first_of_same(stored: Floats, motion: Floats) -> Integers:
+def _first_of_same(stored: Floats64, motion: Floats64) -> Integers64:
     """The first of the vertices that lie in one place and move alike, shape (V,)."""
     same = np.arange(len(stored))
     left = np.arange(len(stored))

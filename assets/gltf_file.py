@@ -21,6 +21,7 @@ from urllib.parse import unquote_to_bytes
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Floats64
 from .errors import AssetError
 from .user_files import MOST_VERTICES, beside, named, read_file
 
@@ -167,7 +168,7 @@ def entry(part: Any, name: str) -> Any:
     return part.get(name) if isinstance(part, Mapping) else getattr(part, name, None)
 
 
-def shares(rows: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+def shares(rows: npt.NDArray[Any]) -> Floats64:
     """Integers as shares of the greatest: 0 to 1, those with a sign -1 to 1."""
     greatest = np.iinfo(rows.dtype).max
     return np.maximum(rows.astype(np.float64) / greatest, -1.0)

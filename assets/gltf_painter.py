@@ -11,16 +11,14 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius.geometry.colour import to_screen
 
+from ..geometry.arrays import Floats64, Unsigned8
 from .data_files import Image
 from .errors import AssetError
 from .gltf_file import GltfFile, entry, shares
 from .pictures import decoded, tinted
-
-Floats = npt.NDArray[np.float64]
 
 WHITE = (1.0, 1.0, 1.0)
 
@@ -35,7 +33,7 @@ class GltfPainter:
         self._file = file
         self._document = file.document
 
-    def painted(self, primitive: Any, count: int) -> tuple[int, Floats, tuple[float, ...]]:
+    def painted(self, primitive: Any, count: int) -> tuple[int, Floats64, tuple[float, ...]]:
         """The number of its picture, texture coordinates (V, 2), and the tint of its material."""
         attributes = vars(primitive.attributes)
         nowhere = np.zeros((count, 2))
@@ -83,9 +81,7 @@ class GltfPainter:
         picture = decoded(content, title)
         return picture if factor == WHITE else tinted(picture, factor)
 
-    def colours(
-        self, attributes: Mapping[str, Any], factor: tuple[float, ...]
-    ) -> npt.NDArray[np.uint8] | None:
+    def colours(self, attributes: Mapping[str, Any], factor: tuple[float, ...]) -> Unsigned8 | None:
         """The colours of vertices, which are linear light in the file, shape (V, 3)."""
         if attributes.get("COLOR_0") is None:
             return None
@@ -112,7 +108,7 @@ def _base_colour(material: Any) -> tuple[Any, tuple[float, ...]]:
     return (info if is_there else None), tint
 
 
-def _placed(uv: Floats, placing: Mapping[str, Any]) -> Floats:
+def _placed(uv: Floats64, placing: Mapping[str, Any]) -> Floats64:
     """Texture coordinates, v down, where KHR_texture_transform moves them.
 
     They are scaled, then turned counter-clockwise as seen with v down, then shifted.
@@ -123,7 +119,7 @@ def _placed(uv: Floats, placing: Mapping[str, Any]) -> Floats:
     return np.asarray(scaled @ turn.T + placing.get("offset", (0.0, 0.0)))
 
 
-def _within_picture(values: Floats, way: int | None) -> Floats:
+def _within_picture(values: Floats64, way: int | None) -> Floats64:
     """Coordinates along one axis of a picture that goes on beyond its edge in some way."""
     clamped = 33071  # numbers of ways to continue a picture beyond its edge
     if way == clamped:

@@ -1,11 +1,11 @@
 """Where a surface cuts through itself."""
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from risorius.geometry.rays import PARALLEL, crossings
 
+from ..geometry.arrays import Flags, Integers64
 from .smooth import Points
 from .topology import Faces
 
@@ -27,7 +27,7 @@ def self_intersections(vertices: Points, faces: Faces) -> Faces:
     return np.asarray(pairs[hit], np.int32)
 
 
-def _near_pairs(corner: Points) -> npt.NDArray[np.int64]:
+def _near_pairs(corner: Points) -> Integers64:
     """Pairs of triangles whose surrounding balls meet, each pair once, shape (k, 2)."""
     centre = corner.mean(axis=1)
     radius = np.linalg.norm(corner - centre[:, None], axis=2).max(axis=1)
@@ -40,7 +40,7 @@ def _near_pairs(corner: Points) -> npt.NDArray[np.int64]:
     return np.asarray(pairs[distance < radius[pairs].sum(axis=1)])
 
 
-def _segment_cuts(start: Points, end: Points, triangle: Points) -> npt.NDArray[np.bool_]:
+def _segment_cuts(start: Points, end: Points, triangle: Points) -> Flags:
     """Whether segments cut triangles, row by row."""
     volume, u, v, along = crossings(start, end - start, triangle)
     margin = 1e-6  # relative; touching at a corner or an edge does not count as intersecting

@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 from risorius.geometry.read_only import make_read_only
 
+from ..geometry.arrays import Flags, Floats64, Integers32, Unsigned8
 from .errors import AssetError
 from .gltf import read_gltf
 from .pictures import Texture, texture_of
@@ -47,13 +48,13 @@ class Mesh:
     notes: what its bringer should know, a line each.
     """
 
-    vertices: npt.NDArray[np.float64]
-    faces: npt.NDArray[np.int32]
+    vertices: Floats64
+    faces: Integers32
     texture: Texture | None = None
-    colours: npt.NDArray[np.uint8] | None = None
-    has_colour: npt.NDArray[np.bool_] | None = None
+    colours: Unsigned8 | None = None
+    has_colour: Flags | None = None
     same: npt.NDArray[np.integer[Any]] | None = None
-    corners: npt.NDArray[np.int32] | None = None
+    corners: Integers32 | None = None
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -113,7 +114,7 @@ def _read(content: bytes, suffix: str, folder: Path) -> Mesh:
     return Mesh(vertices, _numbers(faces))
 
 
-def _numbers(faces: npt.NDArray[Any]) -> npt.NDArray[np.int32]:
+def _numbers(faces: npt.NDArray[Any]) -> Integers32:
     """Vertex numbers as 32 bits hold them; those beyond are beyond any mesh."""
     return faces.clip(-1, np.iinfo(np.int32).max).astype(np.int32)
 

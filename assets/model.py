@@ -18,16 +18,12 @@ from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius.geometry.read_only import make_read_only
 
+from ..geometry.arrays import Floats32, Floats64, Integers32
 from .data_files import Image, read_arrays, read_image
 from .topology import quarter
-
-FloatArray = npt.NDArray[np.float64]
-SingleArray = npt.NDArray[np.float32]
-IndexArray = npt.NDArray[np.int32]
 
 
 class Segment(IntEnum):
@@ -65,7 +61,7 @@ class Eye:
     """
 
     name: str
-    centre: FloatArray
+    centre: Floats64
     radius: float
     iris_radius: float
 
@@ -95,16 +91,16 @@ class Part:
     """
 
     name: str
-    vertices: SingleArray
-    normals: SingleArray
-    faces: IndexArray
-    colours: SingleArray
+    vertices: Floats32
+    normals: Floats32
+    faces: Integers32
+    colours: Floats32
     bone: str
     shine: float
-    roots: IndexArray | None = None
+    roots: Integers32 | None = None
     strand_radius: float = 0.0
-    striation: SingleArray | None = None
-    mandible_shares: SingleArray | None = None
+    striation: Floats32 | None = None
+    mandible_shares: Floats32 | None = None
 
     def __post_init__(self) -> None:
         make_read_only(self)
@@ -146,8 +142,8 @@ class Wrinkles:
 
     map: Image
     steepest: float
-    across: SingleArray
-    resting: SingleArray = field(default_factory=lambda: np.zeros(1, np.float32))
+    across: Floats32
+    resting: Floats32 = field(default_factory=lambda: np.zeros(1, np.float32))
 
     def __post_init__(self) -> None:
         make_read_only(self)
@@ -173,12 +169,12 @@ class FineMesh:
         new vertices are numbered as they are.
     """
 
-    vertices: FloatArray
-    faces: IndexArray
-    normals: FloatArray
-    edges: tuple[IndexArray, ...]
+    vertices: Floats64
+    faces: Integers32
+    normals: Floats64
+    edges: tuple[Integers32, ...]
 
-    def interpolate(self, values: FloatArray | SingleArray) -> FloatArray:
+    def interpolate(self, values: Floats64 | Floats32) -> Floats64:
         """Carry values of the head's vertices (depth, weight, motion) over to the fine ones.
 
         values: shape (V,) or (V, k). Returns shape (n,) or (n, k).
@@ -220,19 +216,19 @@ class Head:
     layers: action units, expressions, visemes, ARKit shapes, from the lowest up.
     """
 
-    vertices: FloatArray
-    faces: IndexArray
-    landmarks: IndexArray
-    bone_depth: FloatArray
-    mandible_weight: FloatArray
-    jaw_axis: FloatArray
-    mirror: IndexArray
+    vertices: Floats64
+    faces: Integers32
+    landmarks: Integers32
+    bone_depth: Floats64
+    mandible_weight: Floats64
+    jaw_axis: Floats64
+    mirror: Integers32
     anatomy: Mapping[str, int]
-    rings: Mapping[str, IndexArray]
+    rings: Mapping[str, Integers32]
     eyes: tuple[Eye, ...]
     parts: tuple[Part, ...]
-    uv: SingleArray
-    face_uv: IndexArray
+    uv: Floats32
+    face_uv: Integers32
     file: Path
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
@@ -318,5 +314,5 @@ class Plane:
     faces: vertex numbers, counter-clockwise seen from +z, shape (154, 3), int32.
     """
 
-    vertices: FloatArray
-    faces: IndexArray
+    vertices: Floats64
+    faces: Integers32

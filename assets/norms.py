@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ..geometry.arrays import Floats64
 from .data_files import read_toml
-from .model import FloatArray
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ NORMS = {
 }
 
 
-def measures_of(vertices: FloatArray, anatomy: Mapping[str, int]) -> dict[str, float]:
+def measures_of(vertices: Floats64, anatomy: Mapping[str, int]) -> dict[str, float]:
     """All `DISTANCES` between vertices (V, 3), code -> [mm].
 
     A measure of one side is the mean of both.

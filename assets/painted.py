@@ -11,14 +11,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Floats64, Integers64
 from .meshes import Mesh, read_mesh
 from .pictures import libraries_of, material_key
 from .user_files import MOST_VERTICES, beside, read_file
 from .wavefront import MaterialLook, ObjSurface, Placing, looks_of, pictures_of, read_obj
-
-Numbers = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -46,11 +44,11 @@ class PaintedMesh:
     """
 
     mesh: Mesh
-    uv: npt.NDArray[np.float64]
-    face_uv: Numbers
-    normals: npt.NDArray[np.float64]
-    face_normals: Numbers
-    material: Numbers
+    uv: Floats64
+    face_uv: Integers64
+    normals: Floats64
+    face_normals: Integers64
+    material: Integers64
     materials: tuple[Material, ...]
 
 
@@ -75,7 +73,7 @@ def read_painted(path: Path) -> PaintedMesh:
     return PaintedMesh(mesh, np.zeros((0, 2)), none, np.zeros((0, 3)), none, none[:, 0], ())
 
 
-def _within(numbers: Numbers, count: int) -> Numbers:
+def _within(numbers: Integers64, count: int) -> Integers64:
     """Numbers of which those beyond the last count as none."""
     return np.where(numbers < count, numbers, -1)
 

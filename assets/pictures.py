@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius.geometry.colour import to_linear, to_screen
 
+from ..geometry.arrays import Floats32, Integers32, Integers64
 from .data_files import Image
 from .errors import AssetError
 from .user_files import beside, named, read_file
@@ -38,9 +38,9 @@ class Texture:
     pictures: functions that read one each, shape (H, W, 3), and raise AssetError if they cannot.
     """
 
-    uv: npt.NDArray[np.float32]
-    face_uv: npt.NDArray[np.int32]
-    picture: npt.NDArray[np.int64]
+    uv: Floats32
+    face_uv: Integers32
+    picture: Integers64
     pictures: tuple[Callable[[], Image], ...]
 
 

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Floats64, Integers64, Unsigned8
 from .topology import strip_triangles
 from .user_files import MOST_VERTICES, plain_text
 
@@ -28,15 +29,15 @@ class PlySurface:
     colours: of vertices, shape (V, 3), uint8; None where there are none.
     """
 
-    vertices: npt.NDArray[np.float64]
-    faces: npt.NDArray[np.int64]
-    colours: npt.NDArray[np.uint8] | None
+    vertices: Floats64
+    faces: Integers64
+    colours: Unsigned8 | None
 
 
 class _Lists(NamedTuple):
     """Lists of numbers, one a row, one behind the other."""
 
-    lengths: npt.NDArray[np.int64]  # (n,)
+    lengths: Integers64  # (n,)
     values: npt.NDArray[Any]  # all of them
 
 
@@ -217,18 +218,18 @@ def _corners(columns: dict[str, Any]) -> _Lists:
     return _Lists(found.lengths, found.values.astype(np.int64))
 
 
-def _fans(polygons: _Lists) -> npt.NDArray[np.int64]:
+def _fans(polygons: _Lists) -> Integers64:
     """Triangles around the first corner of each polygon, shape (F, 3)."""
     starts = np.cumsum(polygons.lengths) - polygons.lengths
     counts = np.maximum(polygons.lengths - 2, 0)
     first = np.repeat(starts, counts)
     second = first + np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + 1
     corners = np.stack([first, second, second + 1], axis=1)
-    triangles: npt.NDArray[np.int64] = polygons.values[corners]
+    triangles: Integers64 = polygons.values[corners]
     return triangles
 
 
-def _strips(strips: _Lists) -> list[npt.NDArray[np.int64]]:
+def _strips(strips: _Lists) -> list[Integers64]:
     """The triangles of each strip; a number below 0 ends one within a list."""
     ends = np.cumsum(strips.lengths)
     parts = np.split(strips.values, ends[:-1])
@@ -236,7 +237,7 @@ def _strips(strips: _Lists) -> list[npt.NDArray[np.int64]]:
     return [strip_triangles(piece[piece >= 0]) for piece in pieces]
 
 
-def _colours(points: dict[str, Any]) -> npt.NDArray[np.uint8] | None:
+def _colours(points: dict[str, Any]) -> Unsigned8 | None:
     """The colours of vertices, shape (V, 3): shares, or integers of 8 or 16 bits."""
     names_of_colours = (
         ("red", "green", "blue"),
@@ -251,6 +252,6 @@ def _colours(points: dict[str, Any]) -> npt.NDArray[np.uint8] | None:
                 found = 255.0 * found
             elif greatest > 255:
                 found = found / 257.0
-            colours: npt.NDArray[np.uint8] = np.rint(found).clip(0, 255).astype(np.uint8)
+            colours: Unsigned8 = np.rint(found).clip(0, 255).astype(np.uint8)
             return colours
     return None

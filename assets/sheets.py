@@ -7,7 +7,7 @@ about as wide as the figure shows.
 
 import numpy as np
 
-from .model import FloatArray, IndexArray
+from ..geometry.arrays import Floats64, Integers32
 from .topology import grid_faces
 
 COLUMNS = 11  # of cells along x; chosen: 2 * 7 * 11 = 154
@@ -15,7 +15,7 @@ ROWS = 7  # along y
 CELL = 10.0  # [mm]; chosen, so that the plane is as large as a hand
 
 
-def make_grid(columns: int, rows: int, cell: float) -> tuple[FloatArray, IndexArray]:
+def make_grid(columns: int, rows: int, cell: float) -> tuple[Floats64, Integers32]:
     """Vertices and faces of square cells around the origin of z = 0, facing +z; read-only.
 
     Every cell is halved along the same diagonal, lower left to upper right.

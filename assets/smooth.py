@@ -3,11 +3,12 @@
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Floats64
+
 Points = npt.NDArray[np.float64]
-Values = npt.NDArray[np.float64]
 
 
-def smooth_step(low: float, high: float, values: Values) -> Values:
+def smooth_step(low: float, high: float, values: Floats64) -> Floats64:
     """Rise from 0 at `low` to 1 at `high` without a kink."""
     t = np.clip((values - low) / (high - low), 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)

@@ -5,7 +5,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from ..geometry.arrays import Floats64, Integers64
+
 Faces = npt.NDArray[np.int32]
 Edge = tuple[int, int]
 
@@ -38,19 +39,19 @@ def boundary_loops(faces: Faces) -> list[list[int]]:
     return sorted(loops, key=len, reverse=True)
 
 
-def unique_points(points: FloatArray) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+def unique_points(points: Floats64) -> tuple[Integers64, Integers64]:
     """The first of all points (n, 3) that are the same, in their order, and which each one is."""
     _, first, number = np.unique(points, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)
     return first[order], np.argsort(order)[number.reshape(-1)]
 
 
-def strip_triangles(corners: npt.NDArray[np.integer[Any]]) -> npt.NDArray[np.int64]:
+def strip_triangles(corners: npt.NDArray[np.integer[Any]]) -> Integers64:
     """The triangles of a strip (n,), shape (F, 3); those without area join parts of it, and go."""
     if len(corners) < 3:
         return np.zeros((0, 3), np.int64)
     windows = np.lib.stride_tricks.sliding_window_view(corners.astype(np.int64), 3)
-    triangles: npt.NDArray[np.int64] = windows.copy()
+    triangles: Integers64 = windows.copy()
     triangles[1::2, :2] = windows[1::2, 1::-1]  # each other one runs the other way
     has_area = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
     triangles = triangles[has_area]
@@ -98,8 +99,8 @@ def quarter(faces: Faces, vertex_count: int) -> Quartered:
 
 
 def decimated(
-    vertices: FloatArray, faces: Faces, count: int, attempt: int = 0
-) -> tuple[FloatArray, Faces]:
+    vertices: Floats64, faces: Faces, count: int, attempt: int = 0
+) -> tuple[Floats64, Faces]:
     """Other vertices and about `count` triangles; the edges of openings stay where they are.
 
     By quadric error metrics (Garland, Heckbert 1997, "Surface simplification using quadric error

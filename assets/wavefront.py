@@ -18,8 +18,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Floats64, Integers64
 from .errors import AssetError
 from .user_files import plain_text
 
@@ -37,13 +37,13 @@ class ObjSurface:
     libraries: names of files that define materials.
     """
 
-    vertices: npt.NDArray[np.float64]
-    faces: npt.NDArray[np.int64]
-    uv: npt.NDArray[np.float64]
-    face_uv: npt.NDArray[np.int64]
-    normals: npt.NDArray[np.float64]
-    face_normals: npt.NDArray[np.int64]
-    material: npt.NDArray[np.int64]
+    vertices: Floats64
+    faces: Integers64
+    uv: Floats64
+    face_uv: Integers64
+    normals: Floats64
+    face_normals: Integers64
+    material: Integers64
     materials: tuple[str, ...]
     libraries: tuple[str, ...]
 
@@ -145,7 +145,7 @@ class Placing:
     offset: tuple[float, float] = (0.0, 0.0)
     is_clamped: bool = False
 
-    def placed(self, uv: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def placed(self, uv: Floats64) -> Floats64:
         """Texture coordinates (U, 2) of the file in this picture."""
         placed = uv * self.scale + self.offset
         return placed.clip(0.0, 1.0) if self.is_clamped else placed

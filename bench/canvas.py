@@ -17,8 +17,9 @@ from risorius.app.pictures import Image
 from risorius.app.refining.drawn_mesh import DrawnMesh
 from risorius.app.scenes import Scene
 from risorius.assets.identities import HAIR
+from risorius.geometry.arrays import Floats64
 
-Transforms = Mapping[str, npt.NDArray[np.float64]]
+Transforms = Mapping[str, Floats64]
 CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE)
 FLAT = replace(CLAY, shading=render.Shading.FLAT)
 GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
@@ -56,9 +57,7 @@ class Canvas:
             self._meshes[refiner] = DrawnMesh("", refiner, self.renderer.lend_stream(*room))
         return self._meshes[refiner]
 
-    def draw(
-        self, refiner: refine.Refiner, positions: npt.NDArray[np.float64], drawing: Drawing
-    ) -> None:
+    def draw(self, refiner: refine.Refiner, positions: Floats64, drawing: Drawing) -> None:
         """Refine, upload and draw, without reading back."""
         drawn = self.mesh_of(refiner)
         drawn.refine(positions, drawing.camera)
@@ -67,9 +66,7 @@ class Canvas:
         values = drawn.splits() if splits else None
         self._draw(render.Skin(drawn.stream, values=values), drawing)
 
-    def draw_image(
-        self, refiner: refine.Refiner, positions: npt.NDArray[np.float64], drawing: Drawing
-    ) -> Image:
+    def draw_image(self, refiner: refine.Refiner, positions: Floats64, drawing: Drawing) -> Image:
         """Draw and read back."""
         self.draw(refiner, positions, drawing)
         return self.surface.read()

@@ -26,12 +26,12 @@ import numpy.typing as npt
 from risorius import assets, refine, sim
 from risorius.app.dataset.openings import LOWER_EDGES, around, cut_by, opening, to_viewer
 from risorius.app.refining.presets import FIRST_PRESET, PRESETS
+from risorius.geometry.arrays import Floats64
 from risorius.geometry.normals import cross_products
 
 from .report import Target, at_most, table
 from .subjects import settled_positions
 
-Array = npt.NDArray[np.float64]
 Triangles = npt.NDArray[Any]
 
 LARGEST_FAULTS = {"slit": 0.2, "eye": 0.2, "lips": 0.1, "lids": 0.1, "teeth": 0.1}  # mm
@@ -134,7 +134,7 @@ def _values(
 
 def meshes_of(
     simulation: sim.Simulation, refiner: refine.Refiner
-) -> dict[str, tuple[Array, Triangles]]:
+) -> dict[str, tuple[Floats64, Triangles]]:
     """Positions [mm] and triangles of the face as it is simulated ("static") and "refined"."""
     drawn = refiner.refine(simulation.positions)
     return {
@@ -143,7 +143,7 @@ def meshes_of(
     }
 
 
-def widest_slit(positions: Array, triangles: Triangles, landmarks: Array) -> float:
+def widest_slit(positions: Floats64, triangles: Triangles, landmarks: Floats64) -> float:
     """Greatest height [mm] of the slit between the lips that one looks through from any of VIEWS.
 
     `landmarks`: where the 68 are now (68, 3).
@@ -155,7 +155,7 @@ def widest_slit(positions: Array, triangles: Triangles, landmarks: Array) -> flo
     return max(opening(near @ turn.T, lip @ turn.T) for turn in turns)
 
 
-def _turned_by(yaw: float, pitch: float) -> Array:
+def _turned_by(yaw: float, pitch: float) -> Floats64:
     """Rotation that brings the look from `yaw`, `pitch` [degrees] to the front."""
     a, b = np.radians([yaw, pitch])
     about_y = [[np.cos(a), 0.0, np.sin(a)], [0.0, 1.0, 0.0], [-np.sin(a), 0.0, np.cos(a)]]
@@ -163,7 +163,7 @@ def _turned_by(yaw: float, pitch: float) -> Array:
     return np.array(about_x) @ np.array(about_y)
 
 
-def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Array]:
+def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Floats64]:
     """Triangles (n, 3, 3) of the eyeballs that the head brings, turned as they are now, by side."""
     bones = simulation.bones.transforms()
     found = {}
@@ -176,7 +176,7 @@ def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Array]:
 
 
 def lid_gaps(
-    positions: Array, triangles: Triangles, landmarks: Array, eyeballs: Mapping[str, Array]
+    positions: Floats64, triangles: Triangles, landmarks: Floats64, eyeballs: Mapping[str, Floats64]
 ) -> dict[str, float]:
     """Greatest height [mm] at which each eyeball, or the space past it, is seen from any of VIEWS.
 
@@ -196,7 +196,7 @@ def lid_gaps(
     return gaps
 
 
-def _lid_gap(near: Array, ends: Array, ball: Array) -> float:
+def _lid_gap(near: Floats64, ends: Floats64, ball: Floats64) -> float:
     """Greatest height [mm] without skin between the corners of an eye (2, 3), along z.
 
     A gap with skin above and below it counts.
@@ -219,7 +219,7 @@ def _lid_gap(near: Array, ends: Array, ball: Array) -> float:
     return lid_step * widest
 
 
-def _front(triangles: Array, x: float, heights: Array) -> Array:
+def _front(triangles: Floats64, x: float, heights: Floats64) -> Floats64:
     """How far to the front triangles (n, 3, 3) reach in the plane at x, shape (len(heights),).
 
     -inf where there is none at that height.
@@ -233,11 +233,11 @@ def _front(triangles: Array, x: float, heights: Array) -> Array:
     share = (heights - low[:, 0]) / np.maximum(high[:, 0] - low[:, 0], 1e-9)
     depth = low[:, 1] + share * (high[:, 1] - low[:, 1])
     inside = (share >= 0.0) & (share <= 1.0)
-    reach: Array = np.where(inside, depth, -np.inf).max(axis=0, initial=-np.inf)
+    reach: Floats64 = np.where(inside, depth, -np.inf).max(axis=0, initial=-np.inf)
     return reach
 
 
-def _inverted(rest: Array, now: Array, faces: Triangles) -> int:
+def _inverted(rest: Floats64, now: Floats64, faces: Triangles) -> int:
     """How many triangles turned by more than a right angle against the skin around them."""
     before = cross_products(rest, faces)
     after = cross_products(now, faces)

@@ -25,6 +25,7 @@ from risorius import assets
 from risorius.app.errors import UserError
 from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.loading import load_head
+from risorius.geometry.arrays import Flags
 from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 
@@ -99,7 +100,7 @@ class IdentitySpace:
         found[self._hidden()] = ""
         return found
 
-    def _hidden(self) -> npt.NDArray[np.bool_]:
+    def _hidden(self) -> Flags:
         """Which vertices look at skin: straight ahead, or in three of seven directions, (V,)."""
         facing = vertex_normals(self.mean, self.triangles)
         aside = np.cross(facing, np.roll(facing, 1, axis=1))

@@ -27,6 +27,7 @@ import numpy.typing as npt
 
 from risorius import refine, render
 from risorius.app.refining.presets import FIRST_PRESET, PRESETS
+from risorius.geometry.arrays import Flags, Floats32
 from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 from risorius.refine.kahler.criterion import Thresholds
@@ -90,7 +91,7 @@ class Everywhere(refine.Criterion):
     def __init__(self, splits: int) -> None:
         self._splits = splits
 
-    def measure(self, positions: object, normals: object, metric: npt.NDArray[np.float32]) -> None:
+    def measure(self, positions: object, normals: object, metric: Floats32) -> None:
         """Write metrics at which all points have grown."""
         metric[:] = self._splits
 
@@ -170,7 +171,7 @@ def _slid(
 
 def _shoot(
     canvas: Canvas, cameras: Sequence[render.OrbitCamera], mesh: Mesh
-) -> tuple[Points, npt.NDArray[np.bool_]]:
+) -> tuple[Points, Flags]:
     """Grey levels over the background (views, SIZE, SIZE), and which fine pixels are covered.
 
     The latter has shape (views, FINER * SIZE, FINER * SIZE).
@@ -184,9 +185,7 @@ def _shoot(
     return _block_means(np.where(covered, fine, level_behind)), covered
 
 
-def _apart(
-    shots: tuple[Points, npt.NDArray[np.bool_]], truth: tuple[Points, npt.NDArray[np.bool_]]
-) -> tuple[float, float]:
+def _apart(shots: tuple[Points, Flags], truth: tuple[Points, Flags]) -> tuple[float, float]:
     """Root mean square of grey levels, and pixels of the outline in a view."""
     (grey, covered) = shots
     (true_grey, true_covered) = truth

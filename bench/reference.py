@@ -25,11 +25,11 @@ from risorius import assets
 from risorius.app.errors import UserError
 from risorius.app.files import check_file, written_atomically
 from risorius.assets.wavefront import read_obj
+from risorius.geometry.arrays import Floats32, Integers32, Integers64
 
 from .subjects import DENSE, MODES
 
 Points = npt.NDArray[np.float64]
-Faces = npt.NDArray[np.int64]
 
 MODEL = "FaceXModel"
 FACE_VERTICES = 9409
@@ -60,7 +60,7 @@ def make(checkout: Path, folder: Path) -> list[str]:
     neutral = head[:FACE_VERTICES]
     triangles = corners[(corners < len(neutral)).all(axis=1)].astype(np.int32)
 
-    def moved(name: str) -> npt.NDArray[np.float32]:
+    def moved(name: str) -> Floats32:
         positions, _ = _read(checkout, name)
         if len(positions) != len(head):
             raise UserError(f"{checkout}: {name} has other vertices than the neutral head")
@@ -99,7 +99,7 @@ def _file(checkout: Path, name: str) -> Path | None:
     return next((file for file in files if file.is_file()), None)
 
 
-def _read(checkout: Path, name: str) -> tuple[Points, Faces]:
+def _read(checkout: Path, name: str) -> tuple[Points, Integers64]:
     """Vertices and triangles of an OBJ file; polygons are fans."""
     file = _file(checkout, name)
     if file is None:
@@ -117,7 +117,7 @@ def _read(checkout: Path, name: str) -> tuple[Points, Faces]:
         raise UserError(f"{file}: {error}") from None
 
 
-def _landmarks(readme: Path) -> npt.NDArray[np.int32]:
+def _landmarks(readme: Path) -> Integers32:
     """The 68 landmarks as vertex numbers, as the checkout's README has them."""
     found = LANDMARKS.search(readme.read_text("utf-8", "replace")) if readme.is_file() else None
     if found is None:

@@ -31,6 +31,7 @@ import numpy.typing as npt
 from risorius import assets, refine, sim
 from risorius.app.errors import UserError
 from risorius.assets.sheets import make_grid
+from risorius.geometry.arrays import Floats32, Floats64
 from risorius.refine_gl import KahlerGl
 from risorius.refine_gl.context import own_context
 from risorius.refine_gl.refined import GpuBuffers
@@ -169,7 +170,7 @@ def _waving_cases(load: Load) -> list[_Case]:
     plain = refine.create("none", load.faces, load.rest)
     a, b = plain.edges.T
 
-    def cosines(positions: Points) -> npt.NDArray[np.float32]:
+    def cosines(positions: Points) -> Floats32:
         normals = plain.refine(positions).normals
         return np.asarray(np.einsum("ei,ei->e", normals[a], normals[b]))
 
@@ -251,7 +252,7 @@ def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:
     ]
 
 
-def interleaved(calls: Sequence[Callable[[], object]], rounds: int) -> npt.NDArray[np.float64]:
+def interleaved(calls: Sequence[Callable[[], object]], rounds: int) -> Floats64:
     """Return the seconds of each call in each round, shape (rounds, len(calls)).
 
     The speed of a call depends on the caches that the call before it left. Of three or more calls

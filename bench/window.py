@@ -13,7 +13,6 @@ import time
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius.app.performances import script_for
 from risorius.app.script import Pose, Script
@@ -21,6 +20,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.picture.stage import LevelOfDetail
 from risorius.app.viewer.session.physics import PHASES
 from risorius.app.viewer.settings import Display
+from risorius.geometry.arrays import Floats64
 
 from .report import Target, at_least, processor, table
 
@@ -122,11 +122,11 @@ def _idle_share(viewer: Viewer, *, is_alive: bool) -> float:
     return (time.process_time() - used) / (time.perf_counter() - begin)
 
 
-def _rate(frames: npt.NDArray[np.float64]) -> float:
+def _rate(frames: Floats64) -> float:
     return len(frames) / float(frames[:, 0].sum())
 
 
-def _cells(name: str, frames: npt.NDArray[np.float64]) -> list[object]:
+def _cells(name: str, frames: Floats64) -> list[object]:
     """The row of a case."""
     elapsed = 1e3 * frames[:, 0]
     stages = frames[:, 2:]

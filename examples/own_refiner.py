@@ -18,6 +18,7 @@ from typing import Unpack
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.arrays import Floats64
 from risorius.refine import (
     BaseRefiner,
     Origins,
@@ -103,7 +104,7 @@ class Quarters(BaseRefiner):
         halves = np.tile([0.5, 0.5, 0.0], (len(a), 1))
         return super().origins().followed_by(np.column_stack([a, b, a]), halves)
 
-    def _longest_edge(self, positions: npt.NDArray[np.float64]) -> float:
+    def _longest_edge(self, positions: Floats64) -> float:
         a, b = positions[self.edges].transpose(1, 0, 2)
         return float(np.linalg.norm(a - b, axis=1).max(initial=0.0))
 

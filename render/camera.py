@@ -16,9 +16,8 @@ import numpy as np
 import numpy.typing as npt
 from pyrr import Matrix44
 
+from ..geometry.arrays import Floats64
 from .render_target import Rectangle, intersection, scaled
-
-FloatArray = npt.NDArray[np.float64]
 
 FIELD_OF_VIEW = 25.0  # [degrees] a portrait lens: about 80 mm on 35 mm film, so noses stay small
 MARGIN = 0.06  # of the frame, left free on each side when framing; mouths open and brows rise
@@ -50,11 +49,11 @@ class OrbitCamera:
     scene_centre, scene_radius: a sphere that holds the framed scene; sets the clipping planes.
     """
 
-    target: FloatArray
+    target: Floats64
     distance: float
     yaw: float
     pitch: float
-    scene_centre: FloatArray
+    scene_centre: Floats64
     scene_radius: float
     field_of_view: float = FIELD_OF_VIEW
     narrowest_aspect: float = 0.0
@@ -116,7 +115,7 @@ class OrbitCamera:
         farthest = 100.0 * self.scene_radius
         self.distance = min(max(self.distance / factor, closest), farthest)
 
-    def axes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def axes(self) -> tuple[Floats64, Floats64, Floats64]:
         """Unit vectors of the frame in the world: right, up, and from the target to the eye."""
         yaw = math.radians(self.yaw)
         pitch = math.radians(self.pitch)
@@ -129,7 +128,7 @@ class OrbitCamera:
         return right, up, np.array([sine * level, rise, cosine * level])
 
     @property
-    def eye(self) -> FloatArray:
+    def eye(self) -> Floats64:
         """Where the camera stands, shape (3,), float64."""
         return self.target + self.distance * self.axes()[2]
 
@@ -222,15 +221,15 @@ class PlacedView:
         if view.clip is not None:
             self.clip = intersection(self.viewport, scaled(view.clip, scale))
         aspect = self.viewport[2] / self.viewport[3]
-        self.world_to_view: FloatArray = np.asarray(camera.view_matrix())
-        self.projection: FloatArray = np.asarray(camera.projection_matrix(aspect))
+        self.world_to_view: Floats64 = np.asarray(camera.view_matrix())
+        self.projection: Floats64 = np.asarray(camera.projection_matrix(aspect))
 
     @cached_property
-    def world_to_clip(self) -> FloatArray:
+    def world_to_clip(self) -> Floats64:
         """World -> clip space, shape (4, 4)."""
         return self.world_to_view @ self.projection
 
-    def covered_pixels(self, corners: FloatArray, padding: float = 2.0) -> Rectangle:
+    def covered_pixels(self, corners: Floats64, padding: float = 2.0) -> Rectangle:
         """The pixels of the clip that the hull of `corners`, shape (n, 3), can touch.
 
         The whole clip where a corner is not finite or lies behind the eye; a width or height of 0
@@ -249,10 +248,10 @@ class PlacedView:
         return intersection(covered, self.clip)
 
 
-def box_corners(points: npt.NDArray[Any]) -> FloatArray:
+def box_corners(points: npt.NDArray[Any]) -> Floats64:
     """The corners of the box that holds all points (n, 3), shape (8, 3), float64."""
     low = points.min(axis=0).astype(np.float64)
     high = points.max(axis=0).astype(np.float64)
     with np.errstate(over="ignore", invalid="ignore"):  # a simulation that blew up is drawn, too
-        corners: FloatArray = low + _CORNERS * (high - low)
+        corners: Floats64 = low + _CORNERS * (high - low)
     return corners

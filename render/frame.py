@@ -9,9 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol, Self
 
-import numpy as np
-import numpy.typing as npt
-
+from ..geometry.arrays import Floats32, Floats64, Integers32, Unsigned8
 from .camera import CameraView
 from .lines import Lines
 from .stream import MeshBuffers, UploadedMesh
@@ -38,13 +36,13 @@ class Part(Protocol):
     @property
     def name(self) -> str: ...
     @property
-    def vertices(self) -> npt.NDArray[np.float32]: ...
+    def vertices(self) -> Floats32: ...
     @property
-    def normals(self) -> npt.NDArray[np.float32]: ...
+    def normals(self) -> Floats32: ...
     @property
-    def faces(self) -> npt.NDArray[np.int32]: ...
+    def faces(self) -> Integers32: ...
     @property
-    def colours(self) -> npt.NDArray[np.float32]: ...
+    def colours(self) -> Floats32: ...
     @property
     def bone(self) -> str: ...
     @property
@@ -54,7 +52,7 @@ class Part(Protocol):
     @property
     def strand_radius(self) -> float: ...
     @property
-    def striation(self) -> npt.NDArray[np.float32] | None: ...
+    def striation(self) -> Floats32 | None: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,12 +66,12 @@ class PlacedPart:
     """
 
     part: Part
-    transform: npt.NDArray[np.float64]
+    transform: Floats64
     lies_beneath: bool = False
     throws_shadow: bool = False
-    vertices: npt.NDArray[np.float32] = field(init=False)
-    normals: npt.NDArray[np.float32] = field(init=False)
-    colours: npt.NDArray[np.float32] = field(init=False)
+    vertices: Floats32 = field(init=False)
+    normals: Floats32 = field(init=False)
+    colours: Floats32 = field(init=False)
 
     def __post_init__(self) -> None:
         for name in ("vertices", "normals", "colours"):
@@ -83,7 +81,7 @@ class PlacedPart:
     def of(
         cls,
         part: Part,
-        transforms: Mapping[str, npt.NDArray[np.float64]],
+        transforms: Mapping[str, Floats64],
         *,
         lies_beneath: bool = False,
         throws_shadow: bool = False,
@@ -127,7 +125,7 @@ class Skin:
     stream: MeshBuffers
     maps: SkinMaps = NO_MAPS
     fade: Plane | None = None
-    values: npt.NDArray[np.uint8] | None = None
+    values: Unsigned8 | None = None
     mesh: UploadedMesh = field(init=False)
     """The upload that it shows."""
 

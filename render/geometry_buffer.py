@@ -10,15 +10,13 @@ from typing import NamedTuple
 
 import moderngl
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Flags, Floats32, Integers32
 from .camera import PlacedView
 from .frame import Frame
 from .parts import PlacedBuffers
 from .programs import compile_program, write_uniform
 from .texture import BumpMap
-
-Floats = npt.NDArray[np.float32]
 
 
 class Geometry(NamedTuple):
@@ -27,15 +25,15 @@ class Geometry(NamedTuple):
     Axes are those of pictures: x right, y down, z away from the camera.
     """
 
-    depth: Floats
+    depth: Floats32
     """How far away along the camera's axis, not along the ray [unit of the scene], (H, W)."""
-    normal: Floats
+    normal: Floats32
     """Interpolated unit normals of the side that is seen, shape (H, W, 3)."""
-    triangle: npt.NDArray[np.int32]
+    triangle: Integers32
     """Number among the triangles of the skin, then of each part without strands, (H, W)."""
-    is_inside: npt.NDArray[np.bool_]
+    is_inside: Flags
     """Whether a triangle of the skin is seen from its back, shape (H, W)."""
-    uv: Floats
+    uv: Floats32
     """Texture coordinates; 0 on parts and in streams without, shape (H, W, 2)."""
 
 

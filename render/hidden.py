@@ -14,6 +14,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Flags, Floats32
 from .camera import PlacedView
 from .frame import Frame
 from .parts import PlacedBuffers
@@ -64,7 +65,7 @@ class Occluder:
 class FarthestDepths:
     """The farthest depth in each tile of a target, as a view saw it."""
 
-    def __init__(self, view: PlacedView, tiles: npt.NDArray[np.float32]) -> None:
+    def __init__(self, view: PlacedView, tiles: Floats32) -> None:
         """tiles: depths by row and column."""
         self._view = view
         self._farthest = [tiles]  # by level
@@ -99,7 +100,7 @@ class FarthestDepths:
         triangles: npt.NDArray[np.integer],
         *,
         away: bool = False,
-    ) -> npt.NDArray[np.bool_]:
+    ) -> Flags:
         """Which triangles (M, 3) of vertices in the world, (V, 3), are not surely hidden, (M,).
 
         away: of those that turn away from the eye, else to it; none of the others.
@@ -130,9 +131,7 @@ class FarthestDepths:
         is_seen[turned] = ~np.isfinite(nearest + low[0] + low[1]) | (nearest <= farthest + MARGIN)
         return is_seen
 
-    def _farthest_within(
-        self, low: list[npt.NDArray[np.float32]], high: list[npt.NDArray[np.float32]]
-    ) -> npt.NDArray[np.float32]:
+    def _farthest_within(self, low: list[Floats32], high: list[Floats32]) -> Floats32:
         """The farthest depth of all tiles between two places [tiles]; 1 between distant ones."""
         rows, columns = self._farthest[0].shape
         # A corner that is not finite may be in any tile.

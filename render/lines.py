@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Floats32, Unsigned32
 from .style import Colour
 
 
@@ -23,7 +24,7 @@ class Lines(NamedTuple):
     opacity: float = 1.0
     """0 to 1, in front."""
 
-    def segments(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
+    def segments(self) -> tuple[Floats32, Unsigned32]:
         """Position and sRGB of all points, (n, 6), and the ends of each segment, (s, 2)."""
         polylines = self.polylines
         colours = np.asarray(self.colour, np.float32)

@@ -4,10 +4,10 @@ from collections.abc import Iterable
 
 import moderngl
 import numpy as np
-import numpy.typing as npt
 
 from risorius.geometry.colour import to_linear
 
+from ..geometry.arrays import Unsigned8
 from .camera import PlacedView
 from .parts import PartBuffers
 from .programs import write_uniform
@@ -96,7 +96,7 @@ def set_light(program: moderngl.Program, light: Light) -> None:
 
 
 def value_texture(
-    gl: moderngl.Context, values: npt.NDArray[np.uint8] | None, triangle_count: int
+    gl: moderngl.Context, values: Unsigned8 | None, triangle_count: int
 ) -> moderngl.Texture:
     """One small number per triangle, shape (M,), to be looked up by gl_PrimitiveID.
 

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import moderngl
 import numpy as np
-import numpy.typing as npt
 
 from risorius.geometry.colour import to_linear
 
+from ..geometry.arrays import Flags, Floats32, Floats64
 from .camera import PlacedView, box_corners
 from .frame import Part, PlacedPart
 from .translucency import blending
@@ -49,7 +49,7 @@ class PartBuffers:
         # Blended over earlier drawings by its opacity.
         self.is_mixed = self.kind in ("STRANDS", "SHELLS")
         self._vertices = gl.buffer(reserve=4 * (9 + columns) * len(part.vertices))
-        self._uploaded: npt.NDArray[np.float32] | None = None
+        self._uploaded: Floats32 | None = None
         self._striation = part.striation
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
         self._chosen = gl.buffer(reserve=self._indices.size, dynamic=True)
@@ -67,7 +67,7 @@ class PartBuffers:
         self._vertices.write(rows.astype(np.float32).tobytes())
         self._uploaded = vertices
 
-    def choose(self, is_chosen: npt.NDArray[np.bool_]) -> None:
+    def choose(self, is_chosen: Flags) -> None:
         """Choose among its faces, (m,), for `draw` of the chosen."""
         chosen = np.ascontiguousarray(np.asarray(self.faces)[is_chosen], np.uint32)
         self._chosen_count = len(chosen)
@@ -75,7 +75,7 @@ class PartBuffers:
         if len(chosen):
             self._chosen.write(chosen)
 
-    def sides(self) -> list[npt.NDArray[np.float32]]:
+    def sides(self) -> list[Floats32]:
         """Its vertices; of shells those of the innermost and of the outermost."""
         assert self._uploaded is not None
         if self._way is None:
@@ -123,7 +123,7 @@ class PlacedBuffers(NamedTuple):
     part: PlacedPart
 
     @property
-    def corners(self) -> npt.NDArray[np.float64]:
+    def corners(self) -> Floats64:
         """Of a box in the world that holds it, shape (8, 3)."""
         transform = self.part.transform
         return self.buffers.corners @ transform[:3, :3].T + transform[:3, 3]

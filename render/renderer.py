@@ -10,8 +10,8 @@ from contextlib import nullcontext
 
 import moderngl
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Floats64
 from .camera import PlacedView, box_corners
 from .compositor import Backdrop
 from .frame import Frame, Plane, Skin
@@ -286,9 +286,7 @@ class Renderer:
             )
         return self._programs[key]
 
-    def _use_layer(
-        self, view: PlacedView, corners: npt.NDArray[np.float64], padding: float = 2.0
-    ) -> bool:
+    def _use_layer(self, view: PlacedView, corners: Floats64, padding: float = 2.0) -> bool:
         """Set the drawing area to the hull of corners; False where the view does not see it."""
         covered = view.covered_pixels(corners, padding)
         if is_seen := min(covered[2:]) > 0:

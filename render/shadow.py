@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import moderngl
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Floats64
 from .camera import PlacedView
 from .frame import Frame
 from .parts import PlacedBuffers
@@ -26,7 +26,6 @@ TEXEL = 2.0 * MAP_REACH / RESOLUTION  # of the scene's radius
 OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
 STEEP_HEIGHT = 0.999  # of a light's height, from which on it has no direction sideways
 
-FloatArray = npt.NDArray[np.float64]
 
 # -1..1 -> 0..1 in x, y and z, for row vectors.
 _TO_TEXTURE = np.array([[0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 0.5, 0], [0.5, 0.5, 0.5, 1.0]])
@@ -41,7 +40,7 @@ class Shadow:
     """
 
     depth: moderngl.Texture
-    view_to_light: FloatArray
+    view_to_light: Floats64
     radius: float
 
     def set_uniforms(self, program: moderngl.Program, unit: int) -> None:
@@ -85,7 +84,7 @@ class ShadowMap:
         return Shadow(self._depth, view_to_light, view.camera.scene_radius)
 
 
-def _view_to_light(view: PlacedView, basis: FloatArray) -> FloatArray:
+def _view_to_light(view: PlacedView, basis: Floats64) -> Floats64:
     """View space -> the light's clip space: all that throws and takes shadows fills it."""
     camera = view.camera
     centre = (np.append(camera.scene_centre, 1.0) @ view.world_to_view)[:3]
@@ -95,7 +94,7 @@ def _view_to_light(view: PlacedView, basis: FloatArray) -> FloatArray:
     return matrix
 
 
-def _basis(toward: FloatArray) -> FloatArray:
+def _basis(toward: Floats64) -> Floats64:
     """Rows: right, up, and away from the light, for a camera in the light."""
     toward = toward / np.linalg.norm(toward)
     above = (0.0, 0.0, 1.0) if abs(toward[1]) > STEEP_HEIGHT else (0.0, 1.0, 0.0)

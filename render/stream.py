@@ -13,6 +13,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Flags, Floats32, Integers32, Unsigned32
 from .camera import box_corners
 
 
@@ -42,19 +43,19 @@ class UploadedMesh(Protocol):
         """How many triangles."""
 
     @property
-    def vertices(self) -> npt.NDArray[np.float32]:
+    def vertices(self) -> Floats32:
         """x y z, nx ny nz[, u v], shape (vertex_count, columns)."""
 
     @property
-    def triangles(self) -> npt.NDArray[np.uint32]:
+    def triangles(self) -> Unsigned32:
         """Shape (triangle_count, 3)."""
 
 
 class _Uploaded(NamedTuple):
     """A mesh of a `Stream`."""
 
-    vertices: npt.NDArray[np.float32]
-    triangles: npt.NDArray[np.uint32]
+    vertices: Floats32
+    triangles: Unsigned32
 
     @property
     def vertex_count(self) -> int:
@@ -91,7 +92,7 @@ class MeshBuffers:
         self.columns = columns
         none = np.zeros((0, columns), np.float32)
         self.mesh: UploadedMesh = _Uploaded(none, np.zeros((0, 3), np.uint32))
-        self.places: npt.NDArray[np.float32] = none[:, :3]
+        self.places: Floats32 = none[:, :3]
         self.corners = np.zeros((8, 3))
         self.has_bumps = False
         self._room = vertex_capacity, triangle_capacity
@@ -125,7 +126,7 @@ class MeshBuffers:
         self._more[name].orphan()
         self._more[name].write(np.ascontiguousarray(array))
 
-    def _upload_bumps(self, bump_amounts: npt.NDArray[np.float32]) -> None:
+    def _upload_bumps(self, bump_amounts: Floats32) -> None:
         """Upload amounts, and the triangles anew: first those that have bumps."""
         parts = self.mesh.triangles
         is_bumped = (bump_amounts.max(axis=1) > 0.0)[parts].any(axis=1)
@@ -144,7 +145,7 @@ class MeshBuffers:
                 "texture"
             )
 
-    def choose(self, is_chosen: npt.NDArray[np.bool_]) -> None:
+    def choose(self, is_chosen: Flags) -> None:
         """Choose among the uploaded triangles, (triangle_count,), for `draw`."""
         chosen = self.mesh.triangles[is_chosen]
         self._ranges[Share.CHOSEN] = 0, len(chosen)
@@ -204,15 +205,15 @@ class Stream(MeshBuffers):
         self, gl: moderngl.Context, vertex_capacity: int, triangle_capacity: int, columns: int
     ) -> None:
         super().__init__(gl, vertex_capacity, triangle_capacity, columns)
-        self.vertices: npt.NDArray[np.float32] = np.zeros((vertex_capacity, columns), np.float32)
-        self.triangles: npt.NDArray[np.uint32] = np.zeros((triangle_capacity, 3), np.uint32)
-        self.source: npt.NDArray[np.int32] = np.zeros(triangle_capacity, np.int32)
+        self.vertices: Floats32 = np.zeros((vertex_capacity, columns), np.float32)
+        self.triangles: Unsigned32 = np.zeros((triangle_capacity, 3), np.uint32)
+        self.source: Integers32 = np.zeros(triangle_capacity, np.int32)
 
     def upload(
         self,
         vertex_count: int,
         triangle_count: int,
-        bump_amounts: npt.NDArray[np.float32] | None = None,
+        bump_amounts: Floats32 | None = None,
     ) -> None:
         """Hand the first `vertex_count` vertices and `triangle_count` triangles to OpenGL.
 
@@ -278,7 +279,7 @@ class GpuStream(MeshBuffers):
         self,
         mesh: UploadedMesh,
         positions: npt.NDArray[np.floating],
-        bump_amounts: npt.NDArray[np.float32] | None = None,
+        bump_amounts: Floats32 | None = None,
     ) -> None:
         """Draw the content of these buffers from now on.
 

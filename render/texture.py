@@ -9,10 +9,10 @@ afar, not like a darker grey.
 
 import moderngl
 import numpy as np
-import numpy.typing as npt
 
 from risorius.geometry.colour import to_linear
 
+from ..geometry.arrays import Floats32
 from .surface import Image, Surface, is_software
 
 Slopes = tuple[Image, float]  # a map (H, W, 2), and the slope of 255 in it, see `BumpMap`
@@ -136,12 +136,12 @@ class BumpMap(_Mipmaps):
         program[f"{name}_strength"] = strength
 
 
-def _roots(values: npt.NDArray[np.float32]) -> Image:
+def _roots(values: Floats32) -> Image:
     """The square roots of values 0..1 as bytes."""
     return np.rint(255.0 * np.sqrt(values)).astype(np.uint8)
 
 
-def _halved(values: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+def _halved(values: Floats32) -> Floats32:
     """Means of 2 x 2 values; a last row or column without another is left out, unless alone."""
     for axis in (0, 1):
         count = values.shape[axis] // 2

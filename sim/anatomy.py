@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Floats64
 from .bones import Bones
 from .controls import Controls, MuscleDrive
 from .face_model import FaceModel
@@ -28,7 +29,7 @@ class Anatomy:
             self._resting_tongue = model.space.to_head(model.tongue.rest)
             self._resting_tongue.flags.writeable = False
 
-    def tongue(self) -> npt.NDArray[np.float64] | None:
+    def tongue(self) -> Floats64 | None:
         """Vertices of the part "tongue" now, shape (T, 3); None for a head without one.
 
         As the mandible's motion finds them: its bone's matrix has still to be applied. A tongue at
@@ -42,7 +43,7 @@ class Anatomy:
             return self._resting_tongue
         return model.space.to_head(model.tongue.bent(out, up, self._state.x, self._bones.mandible))
 
-    def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:
+    def fibres(self) -> dict[str, list[Floats64]]:
         """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""
         pull = self._drive.pull(self._drive.activation())
         lines = self._model.muscles.lines(pull, self._bones.mandible, self._state)

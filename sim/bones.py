@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..geometry.arrays import Floats64
 from ..geometry.read_only import read_only
 from .controls import Controls
 from .face_model import FaceModel
-from .landmarks import Array
 from .skull import HEAD_CONTROLS, REST
 
 
@@ -36,7 +36,7 @@ class Bones:
         self.jaw = (0.0, 0.0, 0.0)
         self._head_values = [0.0, 0.0, 0.0]
         self.mandible = self.head = REST  # seen from the cranium, and from the neck
-        self.turn: Array = read_only(np.eye(4))  # of the head, for column vectors [head units]
+        self.turn: Floats64 = read_only(np.eye(4))  # of the head, for column vectors [head units]
 
     def follow(self) -> None:
         """Jaw, lips and head go where the controls are now."""
@@ -55,11 +55,11 @@ class Bones:
             turn = np.eye(4) if self.head is REST else self.head.matrix(self._space)
             self.turn = read_only(turn)
 
-    def gaze(self) -> Array:
+    def gaze(self) -> Floats64:
         """Where each eyeball looks: to the subject's left and up, -1 to 1, shape (eyes, 2)."""
         return self._controls.reached[self._gaze].reshape(-1, 2)
 
-    def transforms(self) -> dict[str, Array]:
+    def transforms(self) -> dict[str, Floats64]:
         """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
         transforms = {
             "neck": np.eye(4),
@@ -71,7 +71,7 @@ class Bones:
             transforms[f"eye_{ball.side.value}"] = self.head.after(motion).matrix(self._space)
         return transforms
 
-    def pivots(self) -> dict[str, Array]:
+    def pivots(self) -> dict[str, Floats64]:
         """The pivot of each bone at rest, name of `transforms` -> (3,) [head units]."""
         middle = self._skull.condyles.mean(axis=0)
         points = {"cranium": middle + self._skull.head.joint, "mandible": middle}

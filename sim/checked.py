@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Floats64, Integers64
 from ..schema import quoted
-from .landmarks import Array
 
 Shape = tuple[int | None, ...]  # None: any length
 
@@ -31,14 +31,14 @@ def number(what: str, value: Any) -> float:
     return result
 
 
-def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Array:
+def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Floats64:
     """Finite numbers of a shape, a copy in rows; wanted: the shape in words."""
     wanted = wanted or str(shape)
     array = _array(what, given, "fiub", f"numbers, shape {wanted}")
     if not _fits(array, shape):
         raise ValueError(f"{what}: shape was {array.shape}, must be {wanted} and finite")
     with np.errstate(all="ignore"):  # wider kinds of numbers become infinite
-        result: Array = np.array(array, dtype=np.float64, order="C")
+        result: Floats64 = np.array(array, dtype=np.float64, order="C")
     if not np.isfinite(result).all():
         raise ValueError(f"{what}: must all be finite numbers, but some are NaN or infinite")
     return result
@@ -46,7 +46,7 @@ def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Array:
 
 def vertex_numbers(
     what: str, given: Any, shape: Shape, vertex_count: int, wanted: str
-) -> npt.NDArray[np.int64]:
+) -> Integers64:
     """Numbers of vertices, a copy in rows; wanted: the allowed values, in words."""
     array = _array(what, given, "fiub", wanted)
     is_whole = array.dtype.kind in "iu" or array.size == 0  # an empty list has no kind

@@ -18,9 +18,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from .landmarks import Array, mouth_line, polyline_distance
+from ..geometry.arrays import Floats64, Integers32, Integers64
+from .landmarks import mouth_line, polyline_distance
 from .skull import Eyeball
 from .substep import SLIDE_DISTANCE
 from .surface import Surface
@@ -33,23 +33,23 @@ EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the ey
 class LipPairs(NamedTuple):
     """Vertices of one lip and the points of the other that lie on them when the mouth is closed."""
 
-    vertex: npt.NDArray[np.int32]  # (P,)
-    beside: npt.NDArray[np.int32]  # (P, 2) ends of an edge-like segment of the other lip
-    share: Array  # (P,) of the first end
-    below: Array  # (P,) 1 for a vertex of the lower lip, -1 for one of the upper
-    least_gap: Array  # (P,) mm, vertical; small negative where lips overlap at rest
-    seal: Array  # (P,) stiffness
-    averaging: Array  # (P,) 1 / number of pairs its vertices are in
-    members: npt.NDArray[np.int32]  # (M,) all vertices in pairs
+    vertex: Integers32  # (P,)
+    beside: Integers32  # (P, 2) ends of an edge-like segment of the other lip
+    share: Floats64  # (P,) of the first end
+    below: Floats64  # (P,) 1 for a vertex of the lower lip, -1 for one of the upper
+    least_gap: Floats64  # (P,) mm, vertical; small negative where lips overlap at rest
+    seal: Floats64  # (P,) stiffness
+    averaging: Floats64  # (P,) 1 / number of pairs its vertices are in
+    members: Integers32  # (M,) all vertices in pairs
 
-    def apart(self, values: Array) -> Array:
+    def apart(self, values: Floats64) -> Floats64:
         """Values (V, 3) of the vertices of all pairs minus those of their points, shape (P, 3)."""
         a, b = self.beside.T
         share = self.share[:, None]
-        apart: Array = values[self.vertex] - share * values[a] - (1.0 - share) * values[b]
+        apart: Floats64 = values[self.vertex] - share * values[a] - (1.0 - share) * values[b]
         return apart
 
-    def deepest(self, x: Array, rest: Array, pressed: float) -> float:
+    def deepest(self, x: Floats64, rest: Floats64, pressed: float) -> float:
         """How far the lips cross at most at positions (V, 3), more than `pressed` and at rest [mm].
 
         A lower lip in front of the upper one, or rolled in behind it (substep.py), crosses nothing.
@@ -80,7 +80,7 @@ class Grip(NamedTuple):
 SEALED = Grip.of(1.0, 0.0)
 
 
-def pair_lips(surface: Surface, landmarks: Array, lip_side: Array, seal: float) -> LipPairs:
+def pair_lips(surface: Surface, landmarks: Floats64, lip_side: Floats64, seal: float) -> LipPairs:
     """Pair the edges of the lips; no pairs if the mouth is open at rest or has no slit."""
     x = surface.positions
     line = mouth_line(landmarks)
@@ -109,7 +109,7 @@ class _LipPair(NamedTuple):
 
 
 def _point_beside(
-    x: Array, vertex: int, other: npt.NDArray[np.int64]
+    x: Floats64, vertex: int, other: Integers64
 ) -> tuple[tuple[int, int], float] | None:
     """The other lip's point beside a lip's vertex: nearest vertices right and left, mixed."""
     reach = np.linalg.norm(x[other] - x[vertex], axis=1)
@@ -146,11 +146,11 @@ def _lip_pairs(surface: Surface, pairs: list[_LipPair], seal: float) -> LipPairs
 class EyeContact(NamedTuple):
     """Skin vertices near an eyeball and how near they may come to its centre."""
 
-    vertex: npt.NDArray[np.int32]  # (C,)
-    centre: Array  # (C, 3)
-    least_distance: Array  # (C,)
+    vertex: Integers32  # (C,)
+    centre: Floats64  # (C, 3)
+    least_distance: Floats64  # (C,)
 
-    def deepest(self, x: Array) -> float:
+    def deepest(self, x: Floats64) -> float:
         """How far skin at positions (V, 3) is inside an eyeball at most [mm]."""
         distance = np.linalg.norm(x[self.vertex] - self.centre, axis=1)
         return float((self.least_distance - distance).max(initial=0.0))

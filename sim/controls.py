@@ -21,12 +21,12 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Floats64
 from ..geometry.read_only import read_only
 from ..jit import njit
 from ..schema import quoted
 from .checked import number as finite
 from .checked import numbers
-from .landmarks import Array
 from .layers import BOTH_SIDES, NO_LAYERS, SIDES, Layers, share_of_whole
 from .rig import Rig
 
@@ -68,11 +68,11 @@ class Controls:
     """The effect of each control, in words; "" where its file has none."""
     tables: Layers
     """The shares that each control of the layers adds to the C lowest ones, in their order."""
-    reached: Array
+    reached: Floats64
     """Activations of the lowest controls now, and a 0 behind them, shape (C + 1,), read only."""
-    wanted: Array
+    wanted: Floats64
     """Sums of the lowest controls, shape (C,), read only."""
-    activation: Array
+    activation: Floats64
     """What follows them, shape (C,), read only."""
 
     def __init__(self, controls: tuple[Control, ...], layers: Layers = NO_LAYERS) -> None:
@@ -100,9 +100,9 @@ class Controls:
         self._share_of = [
             (self._places[name], self._places[whole]) for name, whole in layers.share_of.items()
         ]
-        self._values: Array = np.zeros(len(self.names))
+        self._values: Floats64 = np.zeros(len(self.names))
         self._wanted, self._speed = np.zeros((2, len(controls)))
-        self._reached: Array = np.zeros(len(controls) + 1)
+        self._reached: Floats64 = np.zeros(len(controls) + 1)
         self._activation = self._reached[:-1]
         self.wanted = read_only(self._wanted)
         self.reached = read_only(self._reached)
@@ -152,7 +152,7 @@ class Controls:
         """Set several controls, all others to zero; if one is refused (see `set`), none is set."""
         self._set_over(np.zeros_like(self._values), values)
 
-    def _set_over(self, others: Array, values: Mapping[str, float]) -> None:
+    def _set_over(self, others: Floats64, values: Mapping[str, float]) -> None:
         if not isinstance(values, Mapping):
             raise ValueError(f"values: was {quoted(values)}, must be a mapping of name to number")
         wanted = others.copy()
@@ -164,7 +164,7 @@ class Controls:
         """Set all controls, in the order of `names`, shape (N,); if one is refused, none is set."""
         self._take(numbers("values", values, self._values.shape))
 
-    def _take(self, wanted: Array) -> None:
+    def _take(self, wanted: Floats64) -> None:
         is_beyond = (wanted < self._least) | (wanted > self._most)
         if is_beyond.any():
             place = int(is_beyond.argmax())
@@ -177,16 +177,16 @@ class Controls:
         self._values[:] = wanted
         self._wanted[:] = self._sums(wanted)
 
-    def sums_of(self, values: npt.ArrayLike) -> Array:
+    def sums_of(self, values: npt.ArrayLike) -> Floats64:
         """The sums of the lowest controls, shape (C,), for values of all controls, shape (N,).
 
         Nothing is set.
         """
         return self._sums(numbers("values", values, self._values.shape))
 
-    def _sums(self, values: Array) -> Array:
+    def _sums(self, values: Floats64) -> Floats64:
         count = len(self.lowest)
-        sums: Array = values[:count].copy()
+        sums: Floats64 = values[:count].copy()
         if not len(self._shares):
             return sums
         counted = values.copy()
@@ -242,12 +242,12 @@ class MuscleDrive:
         self._power = rig.tissue.drive_power * np.array([drive[w] for w in wholes], np.float64)
         self._whole = controls.places_in_reached(w if w in halved else "" for w in wholes)
 
-    def activation(self) -> Array:
+    def activation(self) -> Floats64:
         """Activation 0..1 of each muscle, shape (M,): its own control plus that of both halves."""
         reached = self._controls.reached
         return np.minimum(np.maximum(reached[self._own] + reached[self._whole], 0.0), 1.0)
 
-    def pull(self, activation: Array) -> Array:
+    def pull(self, activation: Floats64) -> Floats64:
         """The pull of the fibres: a power that makes the skin's motion about linear, shape (M,)."""
         return activation**self._power
 

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Floats64
 from ..jit import njit
-from .landmarks import Array
 
 
 @dataclass(frozen=True)
@@ -28,12 +28,12 @@ class FaceSpace:
     Standard axes: lateral (to the subject's left), up, forward; millimetres; origin at the nasion.
     """
 
-    origin: Array
-    axes: Array  # rows: unit vectors lateral-left, up, forward in head coordinates
+    origin: Floats64
+    axes: Floats64  # rows: unit vectors lateral-left, up, forward in head coordinates
     scale: float  # head units per standard millimetre
 
     @classmethod
-    def from_landmarks(cls, points: Array) -> FaceSpace:
+    def from_landmarks(cls, points: Floats64) -> FaceSpace:
         """The space of a head from its landmark positions [head units], shape (68, 3).
 
         Raises ValueError if they coincide.
@@ -55,7 +55,7 @@ class FaceSpace:
         return cls(points[27].copy(), axes, span / standard_eye_span)
 
     @classmethod
-    def from_bounds(cls, vertices: Array) -> FaceSpace:
+    def from_bounds(cls, vertices: Floats64) -> FaceSpace:
         """The space for a mesh without landmarks: its own axes, its box scaled to a head's."""
         low = vertices.min(axis=0)
         high = vertices.max(axis=0)
@@ -65,19 +65,19 @@ class FaceSpace:
         scale = diagonal / standard_diagonal if diagonal > 0.0 else 1.0
         return cls((low + high) / 2.0, np.eye(3), scale)
 
-    def to_standard(self, points: npt.ArrayLike) -> Array:
+    def to_standard(self, points: npt.ArrayLike) -> Floats64:
         """Points [head units], shape (..., 3), in the standard space [mm]."""
         return (np.asarray(points, dtype=np.float64) - self.origin) @ self.axes.T / self.scale
 
-    def to_head(self, points: npt.ArrayLike) -> Array:
+    def to_head(self, points: npt.ArrayLike) -> Floats64:
         """Points [mm, standard space], shape (..., 3), in head coordinates."""
         return self.vectors_to_head(points) + self.origin
 
-    def vectors_to_head(self, vectors: npt.ArrayLike) -> Array:
+    def vectors_to_head(self, vectors: npt.ArrayLike) -> Floats64:
         """Displacements [mm, standard space], shape (..., 3), in head units and axes."""
         return np.asarray(vectors, dtype=np.float64) @ self.axes * self.scale
 
-    def vectors_to_standard(self, vectors: npt.ArrayLike) -> Array:
+    def vectors_to_standard(self, vectors: npt.ArrayLike) -> Floats64:
         """Displacements [head units], shape (..., 3), in the standard space [mm]."""
         return np.asarray(vectors, dtype=np.float64) @ self.axes.T / self.scale
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Floats64, Integers64
 from .contact import PAIR_GAP, EyeContact, Grip, LipPairs, pair_lips, watch_eyeballs
 from .controls import Control
 from .coordinates import FaceSpace
@@ -21,7 +21,6 @@ from .landmarks import (
     INNER_CORNERS,
     LOWER_INNER,
     UPPER_INNER,
-    Array,
     mouth_line,
     polyline_distance,
     smoothstep,
@@ -50,8 +49,8 @@ STEP_MARGIN = 1.0 + ROUNDING  # a substep may be this much longer than LONGEST_S
 class SkinModel(NamedTuple):
     """Point masses, springs and contacts of one face; none of it changes while it is simulated."""
 
-    rest: Array  # (V, 3) mm, positions of the undeformed mesh
-    mass: Array  # (V,)
+    rest: Floats64  # (V, 3) mm, positions of the undeformed mesh
+    mass: Floats64  # (V,)
     tissue: TissueSprings
     edges: EdgeSprings
     lips: LipPairs
@@ -72,24 +71,24 @@ class Tick(NamedTuple):
 class FaceModel:
     """A face at rest: nothing here changes while it is simulated."""
 
-    vertices: Array  # (V, 3) as given [head units]
+    vertices: Floats64  # (V, 3) as given [head units]
     space: FaceSpace
     rig: Rig
     surface: Surface
-    landmarks: Array  # (68, 3) mm; zeros without
-    lip_side: Array  # (V,) of lip_lid_sides.lip_side
+    landmarks: Floats64  # (68, 3) mm; zeros without
+    lip_side: Floats64  # (V,) of lip_lid_sides.lip_side
     skull: Skull
     muscles: MuscleForces
     lids: Lids | None
     skin: SkinModel
     tongue: Tongue | None
-    turns: Array  # (V, 1) share of the head's pose: 1, fading to 0 down the neck
-    passive_hold: Array  # (V,)
-    closed_weight: Array  # (V,) of the mandible while the lips are kept closed over an open jaw
+    turns: Floats64  # (V, 1) share of the head's pose: 1, fading to 0 down the neck
+    passive_hold: Floats64  # (V,)
+    closed_weight: Floats64  # (V,) of the mandible while the lips are kept closed over an open jaw
     controls: tuple[Control, ...]
     layers: Layers
 
-    def grip(self, activation: Array, jaw: tuple[float, ...], closed: float) -> Grip:
+    def grip(self, activation: Floats64, jaw: tuple[float, ...], closed: float) -> Grip:
         """How firmly the lips stick together; the jaw and some muscles part them.
 
         activation: of each muscle, shape (M,); jaw: its values open, forward, sideways; closed: how
@@ -128,7 +127,7 @@ def build_plain(foundation: Foundation) -> FaceModel:
     )
 
 
-def build_face(foundation: Foundation, numbers: npt.NDArray[np.int64]) -> FaceModel:
+def build_face(foundation: Foundation, numbers: Integers64) -> FaceModel:
     """A face with lips, and with lids over its eyeballs; numbers: of landmarks, shape (68,)."""
     surface = foundation.surface
     landmarks = foundation.landmarks
@@ -152,9 +151,9 @@ def _assembled(
     *,
     lids: Lids | None,
     tongue: Tongue | None,
-    corners: Array,
-    turns: Array,
-    closed_weight: Array,
+    corners: Floats64,
+    turns: Floats64,
+    closed_weight: Floats64,
 ) -> FaceModel:
     """Muscles, springs and contacts; corners: of the eyes, near which edges differ, (n, 3) [mm]."""
     vertices, space, rig, surface, landmarks, side, skull = foundation[:7]
@@ -196,14 +195,16 @@ def _assembled(
     )
 
 
-def _masses(surface: Surface, springs: TissueSprings, edges: EdgeSprings, greatest: Array) -> Array:
+def _masses(
+    surface: Surface, springs: TissueSprings, edges: EdgeSprings, greatest: Floats64
+) -> Floats64:
     """Mass of each vertex; `greatest`: stiffness of fully active muscles there, shape (V,)."""
     bound = edges.row_bound(surface.vertex_count)
     bound += np.maximum(springs.tangential, springs.normal) + greatest
     return masses_for_step(surface.areas, bound, LONGEST_SUBSTEP * STEP_MARGIN)
 
 
-def _holds(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[Array, Array]:
+def _holds(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[Floats64, Floats64]:
     """Stiffness of relaxed and of fully active muscles, lids included, per vertex."""
     greatest = muscles.hold_of(np.ones_like(muscles.skin.passive), count)
     passive = muscles.hold_of(muscles.skin.passive, count)
@@ -215,14 +216,14 @@ def _holds(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[Array,
     return passive, greatest
 
 
-def _turning_share(surface: Surface, landmarks: Array) -> Array:
+def _turning_share(surface: Surface, landmarks: Floats64) -> Floats64:
     """How far skin follows the pose of the head, shape (V, 1): the foot of the neck stays."""
     below = landmarks[8, 1] - surface.positions[:, 1]
-    share: Array = np.clip(1.0 - below / NECK_LENGTH, 0.0, 1.0)[:, None]
+    share: Floats64 = np.clip(1.0 - below / NECK_LENGTH, 0.0, 1.0)[:, None]
     return share
 
 
-def _closed_weight(surface: Surface, landmarks: Array, weight: Array) -> Array:
+def _closed_weight(surface: Surface, landmarks: Floats64, weight: Floats64) -> Floats64:
     """The mandible's weight where lips stay as at rest although the jaw is open, shape (V,)."""
     distance = polyline_distance(surface.positions, mouth_line(landmarks))
     upper, lower = (landmarks[list(lip)] for lip in (UPPER_INNER, LOWER_INNER))

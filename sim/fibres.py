@@ -23,10 +23,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Flags, Floats64, Integers32, Unsigned32
 from ..jit import njit
-from .landmarks import Array, Side
+from .landmarks import Side
 from .rig import Fibre, LinearMuscle
 from .surface import Surface
 
@@ -42,31 +42,31 @@ class FibreBundle(NamedTuple):
     A line comes after all that it lies on.
     """
 
-    muscle: npt.NDArray[np.int32]  # (B,) number of its muscle
-    points: Array  # (B, FIBRE_POINTS, 3) mm at rest
-    mandible: Array  # (B, FIBRE_POINTS) share of the mandible's motion
-    contraction: Array  # (B,) share of the length lost at full activation; 0 along a sphincter
-    fixed_at: Array  # (B,) place along the fibre that stays still
+    muscle: Integers32  # (B,) number of its muscle
+    points: Floats64  # (B, FIBRE_POINTS, 3) mm at rest
+    mandible: Floats64  # (B, FIBRE_POINTS) share of the mandible's motion
+    contraction: Floats64  # (B,) share of the length lost at full activation; 0 along a sphincter
+    fixed_at: Floats64  # (B,) place along the fibre that stays still
 
 
 class Stack(NamedTuple):
     """Which points of a line lie on which lines; line b has rows[b] up to rows[b + 1]."""
 
-    rows: npt.NDArray[np.uint32]  # (B + 1,)
-    point: npt.NDArray[np.uint32]  # (n,) of the line that is carried
-    line: npt.NDArray[np.uint32]  # (n,) that carries it
-    sample: Array  # (n,) where along it, in samples
-    place: Array  # (n,) the same, in points
-    share: Array  # (n,) of its displacement
-    steady: Array  # (n, 3) mm of displacement at full activation that is linear in it
+    rows: Unsigned32  # (B + 1,)
+    point: Unsigned32  # (n,) of the line that is carried
+    line: Unsigned32  # (n,) that carries it
+    sample: Floats64  # (n,) where along it, in samples
+    place: Floats64  # (n,) the same, in points
+    share: Floats64  # (n,) of its displacement
+    steady: Floats64  # (n, 3) mm of displacement at full activation that is linear in it
 
 
 class LineMotion(NamedTuple):
     """How all lines are displaced [mm], rewritten each tick."""
 
-    contracted: Array  # (B, SAMPLES, 3) along each line by its own contraction, if it is active
-    carried: Array  # (B, FIBRE_POINTS, 3) its points by the muscles beneath
-    is_carried: npt.NDArray[np.bool_]  # (B,) whether any of those moves
+    contracted: Floats64  # (B, SAMPLES, 3) along each line by its own contraction, if it is active
+    carried: Floats64  # (B, FIBRE_POINTS, 3) its points by the muscles beneath
+    is_carried: Flags  # (B,) whether any of those moves
 
     @classmethod
     def of(cls, line_count: int) -> LineMotion:
@@ -79,8 +79,8 @@ class LineMotion(NamedTuple):
 
 
 def build_fibre(
-    fibre: Fibre, muscle: LinearMuscle, surface: Surface, landmarks: Array, side: Side
-) -> Array:
+    fibre: Fibre, muscle: LinearMuscle, surface: Surface, landmarks: Floats64, side: Side
+) -> Floats64:
     """Points of one fibre [mm], shape (FIBRE_POINTS, 3), bent to the skin by the muscle's wrap."""
     along = np.linspace(0.0, 1.0, FIBRE_POINTS)[:, None]
     origin = fibre.origin.on(landmarks, side)
@@ -89,7 +89,7 @@ def build_fibre(
     return points if muscle.wrap == 0.0 else bent_to_skin(points, surface, muscle.wrap)
 
 
-def bent_to_skin(points: Array, surface: Surface, share: float) -> Array:
+def bent_to_skin(points: Floats64, surface: Surface, share: float) -> Floats64:
     """Points (n, 3) of a line moved by a share of the way to the skin near them."""
     if surface.vertex_count < WRAP_NEIGHBOURS:
         return points
@@ -100,18 +100,18 @@ def bent_to_skin(points: Array, surface: Surface, share: float) -> Array:
     for _ in range(2):  # single vertices must not put kinks into a fibre
         inner = 0.25 * correction[:-2] + 0.5 * correction[1:-1] + 0.25 * correction[2:]
         correction[1:-1] = inner
-    bent: Array = points + share * correction
+    bent: Floats64 = points + share * correction
     return bent
 
 
-def over_skin(points: Array, surface: Surface, field: Array) -> Array:
+def over_skin(points: Floats64, surface: Surface, field: Floats64) -> Floats64:
     """A field of the skin, shape (V, ...), at points (n, 3) near it: a mean of the nearest."""
     count = min(WRAP_NEIGHBOURS, surface.vertex_count)
     distance, vertices = surface.tree.query(points, k=range(1, count + 1))
     # The furthest neighbour gets no weight, so a tie for its place cannot bend a midline fibre.
     weight = (1.0 - (distance / np.maximum(distance[:, -1:], 1e-9)) ** 2) ** 2 + 1e-12
     weight /= weight.sum(axis=1, keepdims=True)
-    mean: Array = np.einsum("nk,nk...->n...", weight, field[vertices])
+    mean: Floats64 = np.einsum("nk,nk...->n...", weight, field[vertices])
     return mean
 
 
@@ -119,13 +119,13 @@ def over_skin(points: Array, surface: Surface, field: Array) -> Array:
 class FibreCoordinates:
     """Where n places lie relative to one fibre."""
 
-    weight: Array  # (n,) 1 on the fibre .. 0 far away
-    arc: Array  # (n,) place along the fibre, 0..1
-    foot: Array  # (n, 3) nearest point of the fibre
+    weight: Floats64  # (n,) 1 on the fibre .. 0 far away
+    arc: Floats64  # (n,) place along the fibre, 0..1
+    foot: Floats64  # (n, 3) nearest point of the fibre
 
 
 def fibre_coordinates(
-    points: Array, positions: Array, *, width: float, beyond: float
+    points: Floats64, positions: Floats64, *, width: float, beyond: float
 ) -> FibreCoordinates:
     """Relate places (n, 3) to a fibre (k, 3): Gaussian falloff across it and past its end."""
     start = points[:-1]

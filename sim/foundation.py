@@ -13,11 +13,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Floats64, Integers32, Integers64
 from ..schema import quoted
 from . import checked
 from .controls import GAZE_RATE, Control, Controls
 from .coordinates import FaceSpace
-from .landmarks import LANDMARK_COUNT, Array, Side
+from .landmarks import LANDMARK_COUNT, Side
 from .layers import Layers, read_layers
 from .lip_lid_sides import lip_side
 from .muscles import sides_of
@@ -51,16 +52,16 @@ class Given(NamedTuple):
 class Foundation(NamedTuple):
     """A head before it has muscles and springs; lengths are of the standard face [mm]."""
 
-    vertices: Array  # (V, 3) as given [head units]
+    vertices: Floats64  # (V, 3) as given [head units]
     space: FaceSpace
     rig: Rig
     surface: Surface
-    landmarks: Array  # (68, 3); zeros without
-    lip_side: Array  # (V,) of lip_lid_sides.lip_side; zeros without landmarks
+    landmarks: Floats64  # (68, 3); zeros without
+    lip_side: Floats64  # (V,) of lip_lid_sides.lip_side; zeros without landmarks
     skull: Skull
     controls: tuple[Control, ...]
     layers: Layers
-    landmark_numbers: npt.NDArray[np.int64] | None  # (68,) vertices; None: a plain mesh
+    landmark_numbers: Integers64 | None  # (68,) vertices; None: a plain mesh
     parts: Any  # as given
 
 
@@ -84,7 +85,7 @@ def foundation_of(head: Any) -> Foundation:
     return _face_foundation(vertices, faces, given, rig, numbers)
 
 
-def _plain_foundation(vertices: Array, faces: Faces, given: Given, rig: Rig) -> Foundation:
+def _plain_foundation(vertices: Floats64, faces: Faces, given: Given, rig: Rig) -> Foundation:
     """Of a mesh without landmarks: the jaw and the eyes that it brings, and no muscles."""
     rig = Rig(rig.tissue, rig.jaw, rig.eyes)
     space = FaceSpace.from_bounds(vertices)
@@ -111,7 +112,7 @@ def _plain_foundation(vertices: Array, faces: Faces, given: Given, rig: Rig) -> 
 
 
 def _face_foundation(
-    vertices: Array, faces: Faces, given: Given, rig: Rig, numbers: npt.NDArray[np.int64]
+    vertices: Floats64, faces: Faces, given: Given, rig: Rig, numbers: Integers64
 ) -> Foundation:
     """Of a face: bones and eyes that it does not bring are guessed from its landmarks."""
     space = FaceSpace.from_landmarks(vertices[numbers])
@@ -153,7 +154,7 @@ def _read_layers(tables: Any, controls: tuple[Control, ...]) -> Layers:
     return read_layers(tables, [control.name for control in controls])
 
 
-def mesh_of(what: str, given: Any) -> tuple[Array, npt.NDArray[np.int32]]:
+def mesh_of(what: str, given: Any) -> tuple[Floats64, Integers32]:
     """Checked copies of the vertices and faces of a head; `what`: its name in errors."""
     for name in ("vertices", "faces"):
         if not hasattr(given, name):
@@ -176,7 +177,7 @@ def mesh_of(what: str, given: Any) -> tuple[Array, npt.NDArray[np.int32]]:
     return vertices, faces.astype(np.int32)
 
 
-def _landmark_numbers(given: Any, vertex_count: int) -> npt.NDArray[np.int64] | None:
+def _landmark_numbers(given: Any, vertex_count: int) -> Integers64 | None:
     """Checked vertex numbers of the 68 landmarks, None if the head has none."""
     if given is None:
         return None
@@ -185,14 +186,14 @@ def _landmark_numbers(given: Any, vertex_count: int) -> npt.NDArray[np.int64] | 
     return checked.vertex_numbers("head.landmarks", given, shape, vertex_count, wanted)
 
 
-def _optional(name: str, given: Any, shape: tuple[int, ...]) -> Array | None:
+def _optional(name: str, given: Any, shape: tuple[int, ...]) -> Floats64 | None:
     """A checked optional array of the head."""
     return None if given is None else checked.numbers(f"head.{name}", given, shape)
 
 
 def _skull(
-    condyles: Array | None,
-    weight: Array | None,
+    condyles: Floats64 | None,
+    weight: Floats64 | None,
     balls: tuple[Eyeball, ...],
     rig: Rig,
     surface: Surface,

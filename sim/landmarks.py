@@ -20,7 +20,7 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from ..geometry.arrays import Floats64, Integers64
 
 LANDMARK_COUNT = 68
 
@@ -48,7 +48,7 @@ class Side(Enum):
 EYE_LANDMARKS = {Side.RIGHT: (36, 37, 38, 39, 40, 41), Side.LEFT: (45, 44, 43, 42, 47, 46)}
 
 
-def _mirror_table() -> npt.NDArray[np.int64]:
+def _mirror_table() -> Integers64:
     pairs = [(i, 16 - i) for i in range(8)] + [(i, 43 - i) for i in range(17, 22)]
     pairs += [(31, 35), (32, 34), (36, 45), (37, 44), (38, 43), (39, 42), (40, 47), (41, 46)]
     pairs += [(48, 54), (49, 53), (50, 52), (55, 59), (56, 58), (60, 64), (61, 63), (65, 67)]
@@ -72,7 +72,7 @@ class LandmarkPoint:
     mix: tuple[tuple[int, float], ...]
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
-    def on(self, landmarks: Array, side: Side) -> Array:
+    def on(self, landmarks: Floats64, side: Side) -> Floats64:
         """Position [mm, standard space], shape (3,), on a head with these landmarks (68, 3).
 
         The right side is the mirror image of the position in the rig.
@@ -84,7 +84,7 @@ class LandmarkPoint:
         return point + np.array(self.offset) * (side.sign, 1.0, 1.0)
 
 
-def polyline_distance(points: Array, corners: Array) -> Array:
+def polyline_distance(points: Floats64, corners: Floats64) -> Floats64:
     """Distance [mm] of points (N, 3) to the polyline through `corners` (K, 3), shape (N,)."""
     start = corners[:-1]
     along = np.diff(corners, axis=0)
@@ -92,17 +92,17 @@ def polyline_distance(points: Array, corners: Array) -> Array:
         (along * along).sum(axis=1), 1e-12
     )
     foot = start + np.clip(t, 0.0, 1.0)[:, :, None] * along
-    distance: Array = np.linalg.norm(points[:, None] - foot, axis=2).min(axis=1)
+    distance: Floats64 = np.linalg.norm(points[:, None] - foot, axis=2).min(axis=1)
     return distance
 
 
-def mouth_line(landmarks: Array) -> Array:
+def mouth_line(landmarks: Floats64) -> Floats64:
     """Where the inner lips meet, from corner to corner, of landmarks (68, 3), shape (5, 3)."""
-    line: Array = (landmarks[list(UPPER_INNER)] + landmarks[list(LOWER_INNER)]) / 2.0
+    line: Floats64 = (landmarks[list(UPPER_INNER)] + landmarks[list(LOWER_INNER)]) / 2.0
     return line
 
 
-def smoothstep(x: npt.ArrayLike) -> Array:
+def smoothstep(x: npt.ArrayLike) -> Floats64:
     """0 below 0, 1 above 1, 3x^2 - 2x^3 between."""
     t = np.clip(np.asarray(x, dtype=np.float64), 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)

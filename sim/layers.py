@@ -54,10 +54,10 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from ..geometry.arrays import Floats64
 from ..geometry.read_only import read_only
 from ..schema import OneOf, Record, Rest, Within, question, read
 from .checked import several
-from .landmarks import Array
 
 BOTH_SIDES = "Both sides"  # title of the layer that every face with paired muscles has
 SIDES = ("_left", "_right")
@@ -83,8 +83,8 @@ class Layers:
 
     groups: Mapping[str, tuple[str, ...]]
     actions: Mapping[str, str]
-    shares: Mapping[str, Array]
-    floors: Mapping[str, Array]
+    shares: Mapping[str, Floats64]
+    floors: Mapping[str, Floats64]
     share_of: Mapping[str, str]
 
 
@@ -144,7 +144,7 @@ class _Reader:
     """Collects shares, layer by layer."""
 
     def __init__(self, lowest: Sequence[str]) -> None:
-        self.shares: dict[str, Array] = dict(zip(lowest, np.eye(len(lowest)), strict=True))
+        self.shares: dict[str, Floats64] = dict(zip(lowest, np.eye(len(lowest)), strict=True))
         self.floors = {name: np.zeros(len(lowest)) for name in lowest}
         self.groups: dict[str, tuple[str, ...]] = {}
         self.actions: dict[str, str] = {}
@@ -152,7 +152,7 @@ class _Reader:
 
     def add_both_sides(self) -> None:
         """The layer of names without side, each for both of its sides, or the one that there is."""
-        sides: dict[str, list[Array]] = {}
+        sides: dict[str, list[Floats64]] = {}
         for name, share in self.shares.items():
             if name.endswith(SIDES):
                 sides.setdefault(name.rpartition("_")[0], []).append(share)
@@ -163,7 +163,7 @@ class _Reader:
             self.actions[name] = ""
         self.groups[BOTH_SIDES] = names
 
-    def add(self, where: str, name: str, row: _Row, below: Mapping[str, Array]) -> list[str]:
+    def add(self, where: str, name: str, row: _Row, below: Mapping[str, Floats64]) -> list[str]:
         """Take in one row; the names of the controls that it makes."""
         self._check(where, name, row, below)
         sides = zip(ENDINGS[row.pair], SIDES, strict=True) if row.pair else [("", "")]
@@ -186,7 +186,7 @@ class _Reader:
                 self.share_of[each] = row.share_of
         return list(made)
 
-    def _check(self, where: str, name: str, row: _Row, below: Mapping[str, Array]) -> None:
+    def _check(self, where: str, name: str, row: _Row, below: Mapping[str, Floats64]) -> None:
         """ValueError for names that a row cannot have, or cannot speak of."""
         if row.share_of is not None and row.share_of not in self.shares:
             raise ValueError(
@@ -205,7 +205,7 @@ class _Reader:
                     raise ValueError(f"{where}: in a pair leave the side of '{control}' away")
         self._check_entries(where, row, below)
 
-    def _check_entries(self, where: str, row: _Row, below: Mapping[str, Array]) -> None:
+    def _check_entries(self, where: str, row: _Row, below: Mapping[str, Floats64]) -> None:
         """ValueError unless a layer below has all controls, and they can be part of a row."""
         for control in (*row.entries, *row.at_least):
             if control not in below:
@@ -217,7 +217,9 @@ class _Reader:
                     "value that is set can be; name the controls that it moves instead"
                 )
 
-    def _sums(self, row: _Row, side: str, below: Mapping[str, Array]) -> tuple[Array, Array]:
+    def _sums(
+        self, row: _Row, side: str, below: Mapping[str, Floats64]
+    ) -> tuple[Floats64, Floats64]:
         """Shares and floors of a row, shape (C,) each; `side`: of a pair, or "".
 
         A side takes its side of each entry. Of an entry without sides it adds half the share, and

@@ -12,19 +12,18 @@ Source: own; projection by shares as in Müller et al. 2007, "Position based dyn
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Floats64, Integers32
 from ..geometry.normals import cross_products
 from .contact import EYE_CLEARANCE
-from .landmarks import Array
 from .skull import Eyeball
 
 LIFT_TOLERANCE = 1e-3  # mm
 
 
 def lift_off(
-    x: Array, rest: Array, faces: npt.NDArray[np.int32], moves: Array, ball: Eyeball
-) -> Array:
+    x: Floats64, rest: Floats64, faces: Integers32, moves: Floats64, ball: Eyeball
+) -> Floats64:
     """How far each vertex must come outward [mm], shape (V,), where a lid is closed.
 
     x, rest: of the vertices with the lid closed and at rest (V, 3); skin that lay in the ball at
@@ -55,7 +54,7 @@ def lift_off(
     return lift
 
 
-def _shares() -> Array:
+def _shares() -> Floats64:
     """Shares of the corners in points all over a triangle, shape (S, 3)."""
     edge_steps = 6  # parts of a triangle's edges at whose ends it is held against the eyeball
     n = edge_steps
@@ -63,12 +62,12 @@ def _shares() -> Array:
     return np.array(ways, np.float64) / n
 
 
-def _reach(points: Array, radius: float) -> Array:
+def _reach(points: Floats64, radius: float) -> Floats64:
     """How far from its centre an eyeball's surface is towards `points` (..., 3); it looks ahead."""
     ahead = points[..., 2] / np.maximum(np.linalg.norm(points, axis=-1), LIFT_TOLERANCE)
     cornea_width = 0.49  # radii of the ball: half its width
     beside = np.sqrt(np.maximum(1.0 - ahead**2, 0.0)) / cornea_width
     cornea_rise = 0.085  # radii of the ball: its height above it
     rise = cornea_rise * np.maximum(1.0 - beside**2, 0.0) ** 1.5
-    reach: Array = radius * (1.0 + np.where(ahead > 0.0, rise, 0.0))
+    reach: Floats64 = radius * (1.0 + np.where(ahead > 0.0, rise, 0.0))
     return reach

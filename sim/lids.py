@@ -28,10 +28,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
 from ..jit import njit
-from .landmarks import EYE_LANDMARKS, Array, polyline_distance, smoothstep
+from .landmarks import EYE_LANDMARKS, polyline_distance, smoothstep
 from .lid_lift import lift_off
 from .lip_lid_sides import lid_side
 from .rig import LIDS, Eyes, LidMuscle, Rig
@@ -45,23 +45,23 @@ COLUMNS = 41  # places along the opening where its height is known
 class LidVertices(NamedTuple):
     """All lid vertices of a face, for the kernel."""
 
-    vertex: npt.NDArray[np.int32]  # (L,)
-    eye: npt.NDArray[np.int32]  # (L,) row of the arrays per eye below
-    upper: npt.NDArray[np.bool_]  # (L,) upper or lower lid
-    closing: Array  # (L,) rad, turn to where closed lids meet, without overlap
-    overlap: Array  # (L,) rad by which closed lids overlap there
-    sink: Array  # (L,) mm nearer to the eyeball when closed
-    fold: Array  # (L,) share of the turn of the open lid
-    opening: Array  # (L,) rad, height of the opening at the vertex's column
-    aperture: Array  # (eyes,) rad, greatest height of the opening
-    along: Array  # (L,) share of the slide: 1 at the middle of the margin .. 0 around the eye
-    fold_hold: Array  # (L,) stiffness that holds the fold while it is moved
-    shut_hold: Array  # (L,) stiffness by which its muscle presses down an upper lid that is shut
-    centres: Array  # (eyes, 3)
-    radii: Array  # (eyes,)
-    up: Array  # (eyes, 3) unit, across the lid axis
-    forward: Array  # (eyes, 3) unit
-    inward: Array  # (eyes, 3) unit, from the outer to the inner corner
+    vertex: Integers32  # (L,)
+    eye: Integers32  # (L,) row of the arrays per eye below
+    upper: Flags  # (L,) upper or lower lid
+    closing: Floats64  # (L,) rad, turn to where closed lids meet, without overlap
+    overlap: Floats64  # (L,) rad by which closed lids overlap there
+    sink: Floats64  # (L,) mm nearer to the eyeball when closed
+    fold: Floats64  # (L,) share of the turn of the open lid
+    opening: Floats64  # (L,) rad, height of the opening at the vertex's column
+    aperture: Floats64  # (eyes,) rad, greatest height of the opening
+    along: Floats64  # (L,) share of the slide: 1 at the middle of the margin .. 0 around the eye
+    fold_hold: Floats64  # (L,) stiffness that holds the fold while it is moved
+    shut_hold: Floats64  # (L,) stiffness by which its muscle presses down an upper lid that is shut
+    centres: Floats64  # (eyes, 3)
+    radii: Floats64  # (eyes,)
+    up: Floats64  # (eyes, 3) unit, across the lid axis
+    forward: Floats64  # (eyes, 3) unit
+    inward: Floats64  # (eyes, 3) unit, from the outer to the inner corner
     slide: tuple[float, float]  # mm inward when closed: upper, lower lid
     raise_slide: float  # mm inward when raised
     upper_follows: tuple[float, float]  # share of the vertical gaze: up, down
@@ -73,10 +73,10 @@ class Lids(NamedTuple):
     """The eyelids of a face."""
 
     vertices: LidVertices
-    hold: Array  # (L,) extra stiffness of the tarsal plate
+    hold: Floats64  # (L,) extra stiffness of the tarsal plate
     muscles: tuple[tuple[int, int, int, float], ...]  # control, eye, action (LIDS), travel
 
-    def drive(self, activation: Array) -> Array:
+    def drive(self, activation: Floats64) -> Floats64:
         """How far each eye's upper lid is closed, lower raised, upper raised, shape (eyes, 3)."""
         drive = np.zeros((len(self.vertices.centres), 3))
         for control, eye, action, travel in self.muscles:
@@ -85,7 +85,7 @@ class Lids(NamedTuple):
 
 
 def place_lids(
-    rig: Rig, surface: Surface, landmarks: Array, eyeballs: tuple[Eyeball, ...], names: list[str]
+    rig: Rig, surface: Surface, landmarks: Floats64, eyeballs: tuple[Eyeball, ...], names: list[str]
 ) -> Lids:
     """Find the lids of each eye and how far each of their vertices takes part.
 
@@ -129,7 +129,7 @@ def place_lids(
     return Lids(vertices, hold, _lid_muscles(rig, eyeballs, names))
 
 
-def _lift(lids: LidVertices, surface: Surface, eyeballs: tuple[Eyeball, ...]) -> Array:
+def _lift(lids: LidVertices, surface: Surface, eyeballs: tuple[Eyeball, ...]) -> Floats64:
     """How far each lid vertex must stand out [mm], shape (L,), when all eyes are closed."""
     state = State.at_rest(surface)
     closed = np.zeros((len(eyeballs), len(LIDS)))
@@ -147,50 +147,55 @@ def _lift(lids: LidVertices, surface: Surface, eyeballs: tuple[Eyeball, ...]) ->
 class _OneEye(NamedTuple):
     """The lid vertices of one eye; see LidVertices. `weight`: share of the margin's turn."""
 
-    vertex: npt.NDArray[np.int64]
-    upper: npt.NDArray[np.bool_]
-    weight: Array
-    closing: Array
-    overlap: Array
-    sink: Array
-    fold: Array
-    opening: Array
-    along: Array
+    vertex: Integers64
+    upper: Flags
+    weight: Floats64
+    closing: Floats64
+    overlap: Floats64
+    sink: Floats64
+    fold: Floats64
+    opening: Floats64
+    along: Floats64
 
 
-def _up_and_forward(landmarks: Array, ball: Eyeball) -> tuple[Array, Array]:
+def _up_and_forward(landmarks: Floats64, ball: Eyeball) -> tuple[Floats64, Floats64]:
     """Directions up and forward, both across the line from one eye corner to the other."""
     outer, _, _, inner, _, _ = EYE_LANDMARKS[ball.side]
     along = (landmarks[outer] - landmarks[inner]) * ball.side.sign
     along = along / np.linalg.norm(along)
     forward = np.cross(along, [0.0, 1.0, 0.0])
     forward /= np.linalg.norm(forward)
-    up: Array = np.cross(forward, along)
+    up: Floats64 = np.cross(forward, along)
     return up, forward
 
 
 class _LidAxes(NamedTuple):
     """Where a point lies about the line from the outer corner of an eye to the inner one."""
 
-    centre: Array  # of the eyeball
-    up: Array
-    forward: Array
-    corner: Array  # the outer one
-    axis: Array  # from there to the inner one [mm]
+    centre: Floats64  # of the eyeball
+    up: Floats64
+    forward: Floats64
+    corner: Floats64  # the outer one
+    axis: Floats64  # from there to the inner one [mm]
 
-    def angle(self, points: Array) -> Array:
+    def angle(self, points: Floats64) -> Floats64:
         """Angle [rad] about the axis of the lids, 0 straight forward."""
         away = points - self.centre
         return np.arctan2(away @ self.up, away @ self.forward)
 
-    def column(self, points: Array) -> Array:
+    def column(self, points: Floats64) -> Floats64:
         """Place from the outer corner of the eye, 0, to the inner one, 1."""
-        column: Array = ((points - self.corner) @ self.axis) / (self.axis @ self.axis)
+        column: Floats64 = ((points - self.corner) @ self.axis) / (self.axis @ self.axis)
         return column
 
 
 def _one_eye(
-    eyes: Eyes, surface: Surface, landmarks: Array, ball: Eyeball, up: Array, forward: Array
+    eyes: Eyes,
+    surface: Surface,
+    landmarks: Floats64,
+    ball: Eyeball,
+    up: Floats64,
+    forward: Floats64,
 ) -> _OneEye:
     """Find the lids of one eye and the turn of each of their vertices."""
     outer, upper_outer, upper_inner, inner, lower_inner, lower_outer = EYE_LANDMARKS[ball.side]
@@ -249,20 +254,20 @@ def _one_eye(
 class _OneLid(NamedTuple):
     """One lid of an eye: by vertex, shape (V,), or by column of the opening, shape (COLUMNS,)."""
 
-    weight: Array  # (V,) share of the margin's turn
-    fold: Array  # (V,) share of the turn of the open lid
-    slide: Array  # (V,) share of the slide
-    near: npt.NDArray[np.bool_]  # (V,) near the margin
-    front: Array  # (COLUMNS,) rad, angle of the front edge
-    depth: Array  # (COLUMNS,) mm from the centre of the eyeball to the front edge
+    weight: Floats64  # (V,) share of the margin's turn
+    fold: Floats64  # (V,) share of the turn of the open lid
+    slide: Floats64  # (V,) share of the slide
+    near: Flags  # (V,) near the margin
+    front: Floats64  # (COLUMNS,) rad, angle of the front edge
+    depth: Floats64  # (COLUMNS,) mm from the centre of the eyeball to the front edge
 
 
 def _one_lid(
     eyes: Eyes,
     surface: Surface,
     axes: _LidAxes,
-    line: Array,
-    on_lid: npt.NDArray[np.bool_],
+    line: Floats64,
+    on_lid: Flags,
     fold_ends: tuple[float, float],
 ) -> _OneLid:
     """Measure one lid along its line of landmarks (4, 3). fold_ends: mm, plateau and reach."""
@@ -284,7 +289,7 @@ def _one_lid(
     )
 
 
-def _front_edge(surface: Surface, line: Array, axes: _LidAxes) -> Array:
+def _front_edge(surface: Surface, line: Floats64, axes: _LidAxes) -> Floats64:
     """The way along the mesh that keeps to a lid's line of landmarks (4, 3), points (n, 3)."""
     x = surface.positions
     reaches = np.linalg.norm(line - axes.centre, axis=1)
@@ -292,18 +297,18 @@ def _front_edge(surface: Surface, line: Array, axes: _LidAxes) -> Array:
     expected = np.interp(axes.column(x), axes.column(line)[order], reaches[order])
     edge_cost = 0.3  # 1/mm off the landmarks' distance from the eyeball: no front edge
     behind = edge_cost * np.abs(np.linalg.norm(x - axes.centre, axis=1) - expected)
-    edge: Array = x[surface.way_through(surface.nearest(line), behind)]
+    edge: Floats64 = x[surface.way_through(surface.nearest(line), behind)]
     return edge
 
 
-def _smoothed(height: Array) -> Array:
+def _smoothed(height: Floats64) -> Floats64:
     """The opening by column, ending softly: skin away from the margin must not crease there."""
     smooth_columns = 13  # a third of the opening's width
     wide = np.convolve(np.pad(height, smooth_columns), np.ones(smooth_columns) / smooth_columns)
     return np.asarray(wide[smooth_columns + smooth_columns // 2 :][:COLUMNS])
 
 
-def _share(distance: Array, plateau: float, reach: float) -> Array:
+def _share(distance: Floats64, plateau: float, reach: float) -> Floats64:
     """1 up to `plateau` mm from the margin, fading to 0 at `reach`."""
     return smoothstep(1.0 - (distance - plateau) / max(reach - plateau, 0.1))
 

@@ -22,11 +22,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Floats64, Integers32, Unsigned32
 from ..jit import njit
 from .fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, FibreBundle, Stack, move_lines, over_skin
-from .landmarks import Array
 from .muscle_stack import bottom_up, points_along, stack_muscles
 from .muscles import Line, PlacedMuscle
 from .rig import LinearMuscle, Rig
@@ -34,24 +33,21 @@ from .skull import RigidMotion
 from .state import State
 from .surface import Surface
 
-Indices = npt.NDArray[np.int32]
-Unsigned = npt.NDArray[np.uint32]  # saves the kernels a test per access
-
 
 class Attachments(NamedTuple):
     """Vertices attached to muscles or lines; owner m has rows[m] up to rows[m + 1]."""
 
-    rows: Unsigned  # (owners + 1,)
-    vertex: Unsigned  # (n,)
-    weight: Array  # (n,) k w A
-    value: Array  # (n, 3) steady displacement x k A, or (n,) place along the line
+    rows: Unsigned32  # (owners + 1,)
+    vertex: Unsigned32  # (n,)
+    weight: Floats64  # (n,) k w A
+    value: Floats64  # (n, 3) steady displacement x k A, or (n,) place along the line
 
 
 class SkinAttachments(NamedTuple):
     """How the skin hangs on M muscles and on their B lines."""
 
-    muscle: Indices  # (B,) number of each line's muscle
-    passive: Array  # (M,) share of the stiffness that is there at rest
+    muscle: Integers32  # (B,) number of each line's muscle
+    passive: Floats64  # (M,) share of the stiffness that is there at rest
     holds: Attachments  # by muscle
     pulls: Attachments  # by line, places in samples
     carries: Attachments  # by line, places in points
@@ -62,21 +58,23 @@ class MuscleForces:
     """All muscles of a face, ready to pull."""
 
     names: tuple[str, ...]  # M control names
-    opens_lips: Array  # (M,)
-    reaches_lips: Array  # (M,) greatest attachment to the edge of a lip, 0..1
+    opens_lips: Floats64  # (M,)
+    reaches_lips: Floats64  # (M,) greatest attachment to the edge of a lip, 0..1
     bundle: FibreBundle
     stack: Stack
     skin: SkinAttachments
-    rings: tuple[tuple[int, Indices], ...]  # muscle, skin vertices along its ring
+    rings: tuple[tuple[int, Integers32], ...]  # muscle, skin vertices along its ring
 
-    def hold_of(self, share: Array, vertex_count: int) -> Array:
+    def hold_of(self, share: Floats64, vertex_count: int) -> Floats64:
         """Stiffness per vertex, shape (V,), with each muscle's scaled by `share` (M,)."""
         holds = self.skin.holds
         weight = holds.weight * np.repeat(share, holds.rows[1:] - holds.rows[:-1])
         hold = np.bincount(holds.vertex, weight, minlength=vertex_count)
         return hold.astype(np.float64)
 
-    def add(self, activation: Array, mandible: RigidMotion, weight: Array, state: State) -> None:
+    def add(
+        self, activation: Floats64, mandible: RigidMotion, weight: Floats64, state: State
+    ) -> None:
         """Add the active muscles' stiffness to `state.hold` and their pull to `state.pull`.
 
         activation: of each muscle, shape (M,); weight: mandible's share of each vertex, shape (V,).
@@ -85,10 +83,10 @@ class MuscleForces:
         gather(state, activation, self.skin, mandible.rotation, weight)
 
     def lines(
-        self, activation: Array, mandible: RigidMotion, state: State
-    ) -> dict[str, list[Array]]:
+        self, activation: Floats64, mandible: RigidMotion, state: State
+    ) -> dict[str, list[Floats64]]:
         """Polylines [mm] to draw: contracted fibres of linear muscles, skin rows of rings."""
-        lines: dict[str, list[Array]] = {name: [] for name in self.names}
+        lines: dict[str, list[Floats64]] = {name: [] for name in self.names}
         move_lines(self.bundle, self.stack, activation, mandible, state.lines)
         rings = dict(self.rings)
         for b, muscle in enumerate(self.bundle.muscle):
@@ -114,10 +112,10 @@ def build_muscle_forces(
     placed: Sequence[PlacedMuscle],
     rig: Rig,
     surface: Surface,
-    mandible_weight: Array,
-    lips: Indices,
-    landmarks: Array,
-    lip_side: Array,
+    mandible_weight: Floats64,
+    lips: Integers32,
+    landmarks: Floats64,
+    lip_side: Floats64,
 ) -> MuscleForces:
     """Turn placed muscles into the flat arrays of the kernels; `lips`: vertices that can touch."""
     strength = rig.tissue.stiffness_scale * surface.areas
@@ -150,7 +148,10 @@ def build_muscle_forces(
 
 
 def _bundle(
-    placed: Sequence[PlacedMuscle], order: Sequence[int], surface: Surface, mandible_weight: Array
+    placed: Sequence[PlacedMuscle],
+    order: Sequence[int],
+    surface: Surface,
+    mandible_weight: Floats64,
 ) -> FibreBundle:
     """All lines, muscle by muscle in `order`.
 
@@ -183,10 +184,10 @@ def _gain(line: Line) -> float:
     return 0.0 if line.fibre is None else line.fibre.gain
 
 
-Part = tuple[Array, Array]  # weight k w A and value of each vertex of the skin
+Part = tuple[Floats64, Floats64]  # weight k w A and value of each vertex of the skin
 
 
-def _pulls(placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Array) -> list[Part]:
+def _pulls(placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Floats64) -> list[Part]:
     """How skin hangs on each line that pulls, gain included, places in samples."""
     return [
         (
@@ -199,7 +200,7 @@ def _pulls(placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Array
 
 
 def _carries(
-    placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Array, stack: Stack
+    placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Floats64, stack: Stack
 ) -> list[Part]:
     """How skin hangs on each line where it lies on others, places in points.
 
@@ -222,7 +223,9 @@ def _carries(
     return parts
 
 
-def _attachments(parts: list[tuple[Array, Array]], least: Array, empty: Array) -> Attachments:
+def _attachments(
+    parts: list[tuple[Floats64, Floats64]], least: Floats64, empty: Floats64
+) -> Attachments:
     """Lay the vertices that matter of each part (weight, value) end to end."""
     on = [np.flatnonzero(weight > least) for weight, _ in parts]
     nothing = np.zeros(0, dtype=np.int64)

@@ -26,12 +26,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..geometry.arrays import Floats64
 from .fibres import FIBRE_POINTS, SAMPLES, Stack, over_skin
-from .landmarks import Array
 from .muscles import AttachedPoints, Line, PlacedMuscle, attach
 from .surface import Surface
 
-Entry = tuple[int, int, float, float, float, Array]  # a row of Stack, in its order
+Entry = tuple[int, int, float, float, float, Floats64]  # a row of Stack, in its order
 
 
 def bottom_up(placed: Sequence[PlacedMuscle]) -> list[int]:
@@ -52,8 +52,8 @@ def stack_muscles(
     placed: Sequence[PlacedMuscle],
     order: Sequence[int],
     surface: Surface,
-    landmarks: Array,
-    lip_side: Array,
+    landmarks: Floats64,
+    lip_side: Floats64,
 ) -> Stack:
     """Find the lines under each point of each line; numbered muscle by muscle in `order`."""
     numbers = {}
@@ -86,7 +86,7 @@ def _is_under(below: PlacedMuscle, above: PlacedMuscle) -> bool:
 
 
 def _entries(
-    beneath: dict[int, PlacedMuscle], landmarks: Array, places: AttachedPoints
+    beneath: dict[int, PlacedMuscle], landmarks: Floats64, places: AttachedPoints
 ) -> list[Entry]:
     """The lines under the points of a line, with shares that sum to at most 1 for each point.
 
@@ -111,11 +111,11 @@ def _entries(
     return [row for row in shared if row[4] > least_share]
 
 
-def points_along(line: Line, arc: Array) -> Array:
+def points_along(line: Line, arc: Floats64) -> Floats64:
     """Places 0..1 along a line as places among its points, 0..FIBRE_POINTS - 1, shape (n,)."""
     lengths = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
     reached = np.concatenate([[0.0], np.cumsum(lengths)])
-    places: Array = np.interp(arc * reached[-1], reached, np.arange(FIBRE_POINTS))
+    places: Floats64 = np.interp(arc * reached[-1], reached, np.arange(FIBRE_POINTS))
     return places
 
 

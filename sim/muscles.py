@@ -16,10 +16,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Floats64, Integers32
 from .fibres import FIBRE_POINTS, bent_to_skin, build_fibre, fibre_coordinates
-from .landmarks import Array, Side, smoothstep
+from .landmarks import Side, smoothstep
 from .rig import MOUTH, Fibre, LinearMuscle, Muscle, Rig, RingMuscle
 from .skull import LATERAL, UP, rotation
 from .surface import Surface
@@ -28,24 +28,24 @@ from .surface import Surface
 class AttachedPoints(NamedTuple):
     """Points that may hang on a muscle: the skin, or control points of a muscle above it."""
 
-    positions: Array  # (n, 3) mm
-    normals: Array  # (n, 3) of the skin there
-    lip_side: Array  # (n,) of lip_lid_sides.lip_side
+    positions: Floats64  # (n, 3) mm
+    normals: Floats64  # (n, 3) of the skin there
+    lip_side: Floats64  # (n,) of lip_lid_sides.lip_side
 
 
 class Attachment(NamedTuple):
     """How places hang on one line of a muscle."""
 
-    weight: Array  # (n,)
-    arc: Array  # (n,) place along the line, 0..1
-    steady: Array  # (n, 3) mm x weight of displacement at full activation that is linear in it
+    weight: Floats64  # (n,)
+    arc: Floats64  # (n,) place along the line, 0..1
+    steady: Floats64  # (n, 3) mm x weight of displacement at full activation that is linear in it
 
 
 @dataclass(frozen=True)
 class Line:
     """A fibre in a face, or the line along a sphincter."""
 
-    points: Array  # (FIBRE_POINTS, 3) mm
+    points: Floats64  # (FIBRE_POINTS, 3) mm
     fibre: Fibre | None  # None: a sphincter
     skin: Attachment  # how the skin hangs on it
 
@@ -58,23 +58,23 @@ class PlacedMuscle:
     muscle: LinearMuscle | RingMuscle
     side: Side
     lines: tuple[Line, ...]
-    ring: npt.NDArray[np.int32] | None = None  # skin vertices along a sphincter
+    ring: Integers32 | None = None  # skin vertices along a sphincter
 
     @property
-    def weight(self) -> Array:
+    def weight(self) -> Floats64:
         """Strongest attachment of each vertex, shape (V,)."""
-        strongest: Array = np.max([line.skin.weight for line in self.lines], axis=0)
+        strongest: Floats64 = np.max([line.skin.weight for line in self.lines], axis=0)
         return strongest
 
     @property
-    def steady(self) -> Array:
+    def steady(self) -> Floats64:
         """Displacement at full activation that is linear in it [mm x weight], shape (V, 3)."""
-        total: Array = np.sum([line.skin.steady for line in self.lines], axis=0)
+        total: Floats64 = np.sum([line.skin.steady for line in self.lines], axis=0)
         return total
 
 
 def place_muscles(
-    rig: Rig, surface: Surface, landmarks: Array, lip_side: Array
+    rig: Rig, surface: Surface, landmarks: Floats64, lip_side: Floats64
 ) -> tuple[PlacedMuscle, ...]:
     """Lay all linear and ring muscles of a rig into a face, in rig order, left before right."""
     skin = AttachedPoints(surface.positions, surface.normals, lip_side)
@@ -105,7 +105,7 @@ def sides_of(muscle: Muscle) -> tuple[tuple[str, Side], ...]:
 
 
 def attach(
-    placed: PlacedMuscle, line: Line, landmarks: Array, places: AttachedPoints
+    placed: PlacedMuscle, line: Line, landmarks: Floats64, places: AttachedPoints
 ) -> Attachment:
     """Hang places on one line of a muscle in a face."""
     muscle = placed.muscle
@@ -116,7 +116,7 @@ def attach(
     return attach_to_fibre(muscle, line.fibre, line.points, side, places)
 
 
-def _gate(muscle: Muscle, side: Side, places: AttachedPoints) -> Array:
+def _gate(muscle: Muscle, side: Side, places: AttachedPoints) -> Floats64:
     """1 where a muscle of one side may act, 0 where it must leave the skin alone, shape (n,)."""
     gate = np.ones(len(places.positions))
     if muscle.pair and not muscle.crosses:  # fades to 0 across the midline; twins add up to 1
@@ -133,7 +133,7 @@ def _gate(muscle: Muscle, side: Side, places: AttachedPoints) -> Array:
 
 
 def attach_to_fibre(
-    muscle: LinearMuscle, fibre: Fibre, points: Array, side: Side, places: AttachedPoints
+    muscle: LinearMuscle, fibre: Fibre, points: Floats64, side: Side, places: AttachedPoints
 ) -> Attachment:
     """Hang places on a fibre of a linear muscle; the skin slides, converges and bulges."""
     factor = fibre.width_factor
@@ -151,7 +151,7 @@ def attach_to_fibre(
 
 
 def attach_to_ring(
-    muscle: RingMuscle, points: Array, landmarks: Array, side: Side, places: AttachedPoints
+    muscle: RingMuscle, points: Floats64, landmarks: Floats64, side: Side, places: AttachedPoints
 ) -> Attachment:
     """Hang places on a sphincter: an elliptic ring around `shape`, drawn to `centre`."""
     x = places.positions
@@ -191,7 +191,7 @@ def attach_to_ring(
     return Attachment(weight, arc, weight[:, None] * pull)
 
 
-def _round_mouth(muscle: RingMuscle, x: Array, landmarks: Array) -> Array:
+def _round_mouth(muscle: RingMuscle, x: Floats64, landmarks: Floats64) -> Floats64:
     """Where lips lie, seen from the front, around an oval opening, shape (n, 2) [mm].
 
     Skin at a share u of the way from the middle to the corner goes to (sin(u 90 deg),
@@ -211,12 +211,12 @@ def _round_mouth(muscle: RingMuscle, x: Array, landmarks: Array) -> Array:
     return np.stack([lateral, up], axis=1)
 
 
-def _middle(muscle: RingMuscle, landmarks: Array, side: Side) -> Array:
+def _middle(muscle: RingMuscle, landmarks: Floats64, side: Side) -> Floats64:
     """Middle of a sphincter's ellipse."""
     return (muscle.shape or muscle.centre).on(landmarks, side)
 
 
-def _outline(muscle: RingMuscle, side: Side, half_deg: float, count: int) -> Array:
+def _outline(muscle: RingMuscle, side: Side, half_deg: float, count: int) -> Floats64:
     """Points of a sphincter's ellipse about its middle, `half_deg` to both sides, (count, 3)."""
     lateral, up, down = muscle.radii
     around = np.radians(muscle.arc_deg[0] + np.linspace(-half_deg, half_deg, count))
@@ -225,7 +225,7 @@ def _outline(muscle: RingMuscle, side: Side, half_deg: float, count: int) -> Arr
     return np.stack([across, height * np.sin(around), np.zeros(count)], axis=1)
 
 
-def _ring_line(muscle: RingMuscle, surface: Surface, landmarks: Array, side: Side) -> Array:
+def _ring_line(muscle: RingMuscle, surface: Surface, landmarks: Floats64, side: Side) -> Floats64:
     """The line along a sphincter as far as it reaches, on the skin, shape (FIBRE_POINTS, 3)."""
     _, half, fade = muscle.arc_deg
     outline = _outline(muscle, side, min(half + fade, 180.0), FIBRE_POINTS)
@@ -233,8 +233,8 @@ def _ring_line(muscle: RingMuscle, surface: Surface, landmarks: Array, side: Sid
 
 
 def _ring_vertices(
-    muscle: RingMuscle, x: Array, landmarks: Array, weight: Array, side: Side
-) -> npt.NDArray[np.int32]:
+    muscle: RingMuscle, x: Floats64, landmarks: Floats64, weight: Floats64, side: Side
+) -> Integers32:
     """Skin vertices nearest to the ellipse of a sphincter, in order, for drawing it."""
     ring_points = 25  # corners of the line drawn for a sphincter
     outline = _outline(muscle, side, muscle.arc_deg[1], ring_points)[:, :2]
@@ -242,5 +242,5 @@ def _ring_vertices(
     attached = np.flatnonzero(weight >= 0.1 * weight.max())
     off = (x[attached, None, :2] - middle[:2] - outline) ** 2
     ring = attached[off.sum(axis=2).argmin(axis=0)].astype(np.int32)
-    once: npt.NDArray[np.int32] = ring[np.insert(np.diff(ring) != 0, 0, True)]
+    once: Integers32 = ring[np.insert(np.diff(ring) != 0, 0, True)]
     return once

@@ -36,8 +36,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Flags, Floats64
 from .face import Simulation
-from .landmarks import Array
 
 STEP = 1.0 / 60.0  # [s] of a clone
 Names = tuple[str, ...]
@@ -49,7 +49,7 @@ class Pull:
     MOST_CONTROLS = 3  # that are used; and so many strongest decide how far targets can be
     ROUND_TOLERANCE = 0.01  # a change that counts as none, between rounds
 
-    targets: Array  # where the finger draws each of its vertices [head units], shape (n, 3)
+    targets: Floats64  # where the finger draws each of its vertices [head units], shape (n, 3)
 
     def __init__(
         self,
@@ -132,7 +132,7 @@ class Pull:
         there = self._base.positions if self.mends else self._from
         return float(np.linalg.norm(self._left(self.targets, there)))
 
-    def _left(self, targets: Array, positions: Array) -> Array:
+    def _left(self, targets: Floats64, positions: Floats64) -> Floats64:
         """From vertices (V, 3) to targets (n, 3), in the finger's middle, as seen, shape (3,)."""
         return np.asarray(self._middle @ (targets - positions[self._vertices]) @ self._seen)
 
@@ -185,11 +185,11 @@ class Pull:
         least = 0.99 * sorted([0.0, *moved])[-most_candidates:][0]
         return [c for c, far in zip(candidates, moved, strict=True) if far > least]
 
-    def _square(self, by: Array) -> float:
+    def _square(self, by: Floats64) -> float:
         """Mean square of distances (n, 3) under the finger, as seen."""
         return float(self._share @ ((by @ self._seen) ** 2).sum(axis=1))
 
-    def _off(self, positions: Array) -> float:
+    def _off(self, positions: Floats64) -> float:
         """Mean square of how far vertices (V, 3) under the finger are from their aims."""
         return self._square(self._aims - positions[self._vertices])
 
@@ -211,7 +211,7 @@ class Pull:
             by = next(iter(moved.values())) - self._value[n]
             self._slope[n] = (self._probe.positions - self._base.positions) / by
 
-    def _more(self, needed: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    def _more(self, needed: Flags) -> Flags:
         """These controls and the one that mends most beside them, by slopes here."""
         if needed.sum() >= self.MOST_CONTROLS:
             return needed
@@ -262,14 +262,14 @@ def _rest(clone: Simulation, values: dict[str, float]) -> None:
 class _Lasso(NamedTuple):
     """Find x with low <= changed + x <= high and least x G x - 2 r x + 2 price |changed + x|."""
 
-    gram: Array  # (C, C)
-    right: Array  # (C,)
-    price: Array  # (C,)
-    changed: Array  # (C,) so far
-    low: Array  # (C,)
-    high: Array  # (C,)
+    gram: Floats64  # (C, C)
+    right: Floats64  # (C,)
+    price: Floats64  # (C,)
+    changed: Floats64  # (C,) so far
+    low: Floats64  # (C,)
+    high: Floats64  # (C,)
 
-    def least(self, usable: npt.NDArray[np.bool_]) -> Array:
+    def least(self, usable: Flags) -> Floats64:
         """One control after the other goes to its minimum, until none moves any more, (C,).
 
         usable: the others go back to where they were, shape (C,).
@@ -295,7 +295,7 @@ class _Lasso(NamedTuple):
                 break
         return total - self.changed
 
-    def cost(self, usable: npt.NDArray[np.bool_]) -> float:
+    def cost(self, usable: Flags) -> float:
         """The least value of the sum with these controls alone, but for a constant."""
         x = self.least(usable)
         spent = self.price @ np.abs(self.changed + x)

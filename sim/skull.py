@@ -18,10 +18,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.arrays import Floats64
 from ..geometry.read_only import read_only
 from ..jit import njit
 from .coordinates import FaceSpace
-from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Array, Side
+from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Side
 from .rig import Eyes, Head, Jaw
 from .surface import Surface
 
@@ -34,20 +35,20 @@ UP = (0.0, 1.0, 0.0)
 class RigidMotion(NamedTuple):
     """A rigid motion x -> rotation x + shift in the standard space [mm]."""
 
-    rotation: Array  # (3, 3)
-    shift: Array  # (3,)
+    rotation: Floats64  # (3, 3)
+    shift: Floats64  # (3,)
 
     @classmethod
-    def of(cls, rotation: Array, shift: Array) -> RigidMotion:
+    def of(cls, rotation: Floats64, shift: Floats64) -> RigidMotion:
         """A motion whose arrays cannot be written: several faces may share it."""
         return cls(read_only(rotation), read_only(shift))
 
     @classmethod
-    def about(cls, pivot: Array, rotation: Array) -> RigidMotion:
+    def about(cls, pivot: Floats64, rotation: Floats64) -> RigidMotion:
         """Turn about `pivot`."""
         return cls.of(rotation, pivot - rotation @ pivot)
 
-    def displacements(self, points: Array) -> Array:
+    def displacements(self, points: Floats64) -> Floats64:
         """How far points (..., 3) move."""
         return points @ self.rotation.T + self.shift - points
 
@@ -57,9 +58,9 @@ class RigidMotion(NamedTuple):
         shift = self.rotation @ first.shift + self.shift
         return RigidMotion.of(rotation, shift)
 
-    def matrix(self, space: FaceSpace) -> Array:
+    def matrix(self, space: FaceSpace) -> Floats64:
         """The motion in head coordinates as a (4, 4) matrix for column vectors."""
-        result: Array = in_head(self, space.axes, space.origin, space.scale)
+        result: Floats64 = in_head(self, space.axes, space.origin, space.scale)
         return result
 
 
@@ -71,7 +72,7 @@ class Eyeball:
     """One eyeball in the standard space [mm]."""
 
     side: Side
-    centre: Array  # (3,)
+    centre: Floats64  # (3,)
     radius: float
 
 
@@ -79,8 +80,8 @@ class Eyeball:
 class Skull:
     """Everything rigid under one face."""
 
-    condyles: Array  # (2, 3) mm: right, left
-    mandible_weight: Array  # (V,) 0 = cranium .. 1 = mandible
+    condyles: Floats64  # (2, 3) mm: right, left
+    mandible_weight: Floats64  # (V,) 0 = cranium .. 1 = mandible
     eyeballs: tuple[Eyeball, ...]
     jaw: Jaw
     eyes: Eyes
@@ -209,7 +210,7 @@ def in_head(pose, axes, origin, scale):  # type: ignore[no-untyped-def]
     return matrix
 
 
-def eyeballs_from_landmarks(landmarks: Array) -> tuple[Eyeball, ...]:
+def eyeballs_from_landmarks(landmarks: Floats64) -> tuple[Eyeball, ...]:
     """Eyeballs guessed from the eye corners of a head that brings none, landmarks (68, 3) [mm]."""
     eyeballs = []
     eye_radius = 12.5  # mm in the standard space, where a head brings no eyes (adult eyeball: 12)
@@ -222,7 +223,7 @@ def eyeballs_from_landmarks(landmarks: Array) -> tuple[Eyeball, ...]:
     return tuple(eyeballs)
 
 
-def condyles_from_landmarks(landmarks: Array, jaw: Jaw) -> Array:
+def condyles_from_landmarks(landmarks: Floats64, jaw: Jaw) -> Floats64:
     """Condyles guessed from the ear landmarks, offset by the rig's `condyle`, shape (2, 3) [mm]."""
     lateral, up, forward = jaw.condyle
     right = landmarks[0] + (-lateral, up, forward)
@@ -231,8 +232,8 @@ def condyles_from_landmarks(landmarks: Array, jaw: Jaw) -> Array:
 
 
 def mandible_weight_from_landmarks(
-    surface: Surface, landmarks: Array, jaw: Jaw, lip_side: Array
-) -> Array:
+    surface: Surface, landmarks: Floats64, jaw: Jaw, lip_side: Floats64
+) -> Floats64:
     """Mandible weight of each vertex, shape (V,): the smoothest field through the rig's seeds."""
     vertices: list[int] = []
     values: list[float] = []

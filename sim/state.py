@@ -12,26 +12,26 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.arrays import Floats64
 from .fibres import LineMotion
-from .landmarks import Array
 from .surface import Surface
 
 
 class State(NamedTuple):
     """Positions and velocities, where the springs pull to, and work space; per vertex, or edge."""
 
-    x: Array  # (V, 3) positions
-    v: Array  # (V, 3) velocities
-    carried: Array  # (V, 3) rest carried by bones and lids: far ends of the tissue springs
-    normals: Array  # (V, 3) tissue directions carried likewise
-    hold: Array  # (V,) stiffness of muscles and lids
-    pull: Array  # (V, 3) force of active muscles
-    offset: Array  # (V, 3) x - carried
-    force: Array  # (V, 3) sum of all forces
-    decay: Array  # (V,) share of the velocity that damping leaves in a substep
-    gain: Array  # (V,) velocity gained per force in a substep
-    work: Array  # (V, 3) work space; its content does not outlive a kernel
-    tension: Array  # (E,) of each edge spring, per its length
+    x: Floats64  # (V, 3) positions
+    v: Floats64  # (V, 3) velocities
+    carried: Floats64  # (V, 3) rest carried by bones and lids: far ends of the tissue springs
+    normals: Floats64  # (V, 3) tissue directions carried likewise
+    hold: Floats64  # (V,) stiffness of muscles and lids
+    pull: Floats64  # (V, 3) force of active muscles
+    offset: Floats64  # (V, 3) x - carried
+    force: Floats64  # (V, 3) sum of all forces
+    decay: Floats64  # (V,) share of the velocity that damping leaves in a substep
+    gain: Floats64  # (V,) velocity gained per force in a substep
+    work: Floats64  # (V, 3) work space; its content does not outlive a kernel
+    tension: Floats64  # (E,) of each edge spring, per its length
     lines: LineMotion  # of the muscles
 
     @classmethod

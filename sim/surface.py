@@ -20,23 +20,21 @@ from scipy import sparse
 from scipy.sparse import csgraph
 from scipy.sparse import linalg as sparse_linalg
 
+from ..geometry.arrays import Floats64, Integers32, Integers64
 from ..geometry.normals import cross_products, vertex_normals
-
-Array = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True)
 class Surface:
     """A triangle mesh at rest, with the lengths and areas that the springs need."""
 
-    positions: Array  # (V, 3) mm
-    faces: Indices  # (F, 3)
-    edges: Indices  # (E, 2), sorted, the lower vertex first
-    lengths: Array  # (E,) mm
-    edge_stiffness: Array  # (E,) sum of adjacent triangle areas / length2, dimensionless
-    areas: Array  # (V,) mm2
-    normals: Array  # (V, 3) unit, smoothed
+    positions: Floats64  # (V, 3) mm
+    faces: Integers32  # (F, 3)
+    edges: Integers32  # (E, 2), sorted, the lower vertex first
+    lengths: Floats64  # (E,) mm
+    edge_stiffness: Floats64  # (E,) sum of adjacent triangle areas / length2, dimensionless
+    areas: Floats64  # (V,) mm2
+    normals: Floats64  # (V, 3) unit, smoothed
     laplacian: sparse.csc_array  # (V, V) of edge_stiffness
 
     @property
@@ -49,20 +47,20 @@ class Surface:
         """For finding the vertices near a point."""
         return scipy.spatial.cKDTree(self.positions)
 
-    def nearest(self, points: Array) -> Indices:
+    def nearest(self, points: Floats64) -> Integers32:
         """Number of the vertex nearest to each point (n, 3)."""
         squared = ((self.positions[None] - points[:, None]) ** 2).sum(axis=2)
-        nearest: Indices = squared.argmin(axis=1).astype(np.int32)
+        nearest: Integers32 = squared.argmin(axis=1).astype(np.int32)
         return nearest
 
-    def distances_from(self, vertices: npt.NDArray[np.int64]) -> Array:
+    def distances_from(self, vertices: Integers64) -> Floats64:
         """Shortest way along edges [mm] from some vertices, shape (V,); inf on other components."""
         i, j = self.edges.T
         graph = sparse.csr_array((self.lengths, (i, j)), shape=(self.vertex_count,) * 2)
         distance = csgraph.dijkstra(graph, directed=False, indices=vertices, min_only=True)
         return np.asarray(distance, dtype=np.float64)
 
-    def way_through(self, vertices: npt.ArrayLike, hindrance: Array) -> Indices:
+    def way_through(self, vertices: npt.ArrayLike, hindrance: Floats64) -> Integers32:
         """Numbers of the vertices on the shortest way along edges from each vertex to the next.
 
         hindrance: of each vertex, shape (V,): an edge counts 1 + its mean times its length.
@@ -80,13 +78,13 @@ class Surface:
             way += back[-2::-1] if len(back) > 1 else []
         return np.array(way, dtype=np.int32)
 
-    def smoothed(self, field: Array, extent: float) -> Array:
+    def smoothed(self, field: Floats64, extent: float) -> Floats64:
         """A field (V,) without details smaller than about sqrt(`extent`) [mm2]."""
         return _smooth(field, extent, self.areas, self.laplacian)
 
     def harmonic(
         self, vertices: npt.ArrayLike, values: npt.ArrayLike, *, hold: float = 1e4
-    ) -> Array:
+    ) -> Floats64:
         """Smoothest field, shape (V,), that takes `values` at the seed `vertices`."""
         weight = np.zeros(self.vertex_count)
         right = np.zeros(self.vertex_count)
@@ -96,17 +94,17 @@ class Surface:
         # Pulls components without a seed to zero instead of leaving them undefined.
         seed_floor = 1e-6
         system = (self.laplacian + sparse.diags_array(weight + seed_floor * self.areas)).tocsc()
-        field: Array = sparse_linalg.spsolve(system, right)
+        field: Floats64 = sparse_linalg.spsolve(system, right)
         return field
 
 
-def build_surface(positions: Array, faces: Indices) -> Surface:
+def build_surface(positions: Floats64, faces: Integers32) -> Surface:
     """Edges, areas, stiffness and smoothed normals of a triangle mesh [mm]."""
     count = len(positions)
     face_areas = np.linalg.norm(cross_products(positions, faces), axis=1) / 2.0
     shares = np.bincount(faces.T.ravel(), np.tile(face_areas / 3.0, 3), count)
     least_area = 0.01  # mm2 per vertex: keeps isolated vertices and slivers from having no mass
-    areas: Array = np.maximum(shares, least_area)
+    areas: Floats64 = np.maximum(shares, least_area)
 
     half_edges = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     unique, inverse = np.unique(half_edges, axis=0, return_inverse=True)
@@ -131,9 +129,11 @@ def build_surface(positions: Array, faces: Indices) -> Surface:
     return Surface(positions, faces, edges, lengths, stiffness, areas, directions, laplacian)
 
 
-def _smooth(field: Array, extent: float, areas: Array, laplacian: sparse.csc_array) -> Array:
+def _smooth(
+    field: Floats64, extent: float, areas: Floats64, laplacian: sparse.csc_array
+) -> Floats64:
     """One implicit diffusion step: details much smaller than sqrt(`extent`) [mm2] vanish."""
     system = (sparse.diags_array(areas) + extent * laplacian).tocsc()
     right = areas.reshape(-1, *[1] * (field.ndim - 1)) * field
-    result: Array = sparse_linalg.splu(system).solve(right)
+    result: Floats64 = sparse_linalg.splu(system).solve(right)
     return result

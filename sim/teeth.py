@@ -14,11 +14,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
 from . import checked
 from .coordinates import FaceSpace
-from .landmarks import Array
 from .skull import RigidMotion
 from .surface import Surface
 
@@ -26,12 +25,12 @@ from .surface import Surface
 class Teeth(NamedTuple):
     """Skin vertices near an arch, one row for each vertex and arch."""
 
-    vertex: npt.NDArray[np.int32]  # (C,)
-    lower: npt.NDArray[np.bool_]  # (C,) moves with the mandible
-    arch: Array  # (C, 5) mm: half width, depth, z of the axis, lowest and highest tooth
-    least: Array  # (C,) how near to the axis it may come, 1 = the arch
+    vertex: Integers32  # (C,)
+    lower: Flags  # (C,) moves with the mandible
+    arch: Floats64  # (C, 5) mm: half width, depth, z of the axis, lowest and highest tooth
+    least: Floats64  # (C,) how near to the axis it may come, 1 = the arch
 
-    def deepest(self, x: Array, mandible: RigidMotion) -> float:
+    def deepest(self, x: Floats64, mandible: RigidMotion) -> float:
         """Greatest depth of skin at `x` (V, 3) in the teeth, less that at rest [mm]."""
         if not len(self.vertex):
             return 0.0
@@ -50,7 +49,7 @@ def watch_teeth(parts: Any, surface: Surface, space: FaceSpace) -> Teeth:
 
     Skin that starts inside an arch may not sink deeper.
     """
-    rows: list[tuple[npt.NDArray[np.int64], bool, Array, Array]] = []
+    rows: list[tuple[Integers64, bool, Floats64, Floats64]] = []
     given = () if parts is None else parts
     teeth_reach = 18.0  # mm around an arch in which skin is watched
     bones = ("cranium", "mandible")
@@ -78,7 +77,7 @@ def watch_teeth(parts: Any, surface: Surface, space: FaceSpace) -> Teeth:
     )
 
 
-def _arch(teeth: Array) -> Array:
+def _arch(teeth: Floats64) -> Floats64:
     """Half width, depth, z of the axis, lowest and highest y of some teeth (n, 3) [mm]."""
     half_width = np.abs(teeth[:, 0]).max()
     back = teeth[np.abs(teeth[:, 0]) > 0.9 * half_width, 2].mean()
@@ -89,7 +88,7 @@ def _arch(teeth: Array) -> Array:
     return np.array([half_width + lip_thickness, depth + lip_thickness, back, low, high])
 
 
-def _inside(points: Array, arch: Array) -> Array:
+def _inside(points: Floats64, arch: Floats64) -> Floats64:
     """Distance to the axis as a share of the arch's, shape (n,)."""
-    share: Array = np.hypot(points[:, 0] / arch[0], (points[:, 2] - arch[2]) / arch[1])
+    share: Floats64 = np.hypot(points[:, 0] / arch[0], (points[:, 2] - arch[2]) / arch[1])
     return share

@@ -28,10 +28,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..geometry.arrays import Floats64, Unsigned32
 from ..jit import njit
-from .landmarks import Array
 from .rig import Tissue
 from .surface import Surface
 
@@ -39,8 +38,8 @@ from .surface import Surface
 class TissueSprings(NamedTuple):
     """The anchors of all vertices, and the damping."""
 
-    tangential: Array  # (V,) stiffness along the skin
-    normal: Array  # (V,) stiffness across it
+    tangential: Floats64  # (V,) stiffness along the skin
+    normal: Floats64  # (V,) stiffness across it
     damping: float  # 1/s
     damping_ratio: float  # of critical
 
@@ -56,16 +55,16 @@ class TissueSprings(NamedTuple):
 class EdgeSprings(NamedTuple):
     """All edges of the skin as springs."""
 
-    edges: npt.NDArray[np.uint32]  # (E, 2); unsigned saves the kernel a test per access
-    rows: npt.NDArray[np.uint32]  # (V + 1,) edges that begin at vertex i: rows[i] up to rows[i + 1]
-    rest_length: Array  # (E,) mm
-    stiffness: Array  # (E,) of the membrane
-    shear: Array  # (E,)
+    edges: Unsigned32  # (E, 2); unsigned saves the kernel a test per access
+    rows: Unsigned32  # (V + 1,) edges that begin at vertex i: rows[i] up to rows[i + 1]
+    rest_length: Floats64  # (E,) mm
+    stiffness: Floats64  # (E,) of the membrane
+    shear: Floats64  # (E,)
     stiffening: float
     strain_limit: float
 
     @classmethod
-    def along(cls, surface: Surface, tissue: Tissue, knots: Array) -> EdgeSprings:
+    def along(cls, surface: Surface, tissue: Tissue, knots: Floats64) -> EdgeSprings:
         """Springs along all edges of a surface.
 
         knots: points (K, 3) [mm] around which skin is firm, the mouth corners: there many muscles
@@ -86,7 +85,7 @@ class EdgeSprings(NamedTuple):
             shear, tissue.stiffening, tissue.stiffening_strain,
         )  # fmt: skip
 
-    def row_bound(self, vertex_count: int) -> Array:
+    def row_bound(self, vertex_count: int) -> Floats64:
         """Gershgorin bound of the springs' stiffness per vertex, stiff slope, shape (V,)."""
         most = 2.0 * (self.stiffness * self.stiffening + self.shear)
         bound = np.zeros(vertex_count)
@@ -95,7 +94,7 @@ class EdgeSprings(NamedTuple):
         return bound
 
 
-def masses_for_step(areas: Array, stiffness: Array, step: float) -> Array:
+def masses_for_step(areas: Floats64, stiffness: Floats64, step: float) -> Floats64:
     """Mass of each vertex, shape (V,): its skin's, raised where the fixed step would be unstable.
 
     stiffness: bound on each row of the stiffness matrix (Gershgorin), shape (V,). An explicit step

@@ -20,12 +20,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from ..geometry.arrays import Floats64, Integers64
 from . import checked
 from .coordinates import FaceSpace
-from .landmarks import Array, smoothstep
+from .landmarks import smoothstep
 from .skull import RigidMotion
 
 SAMPLES = 65  # points of the spine
@@ -37,16 +37,16 @@ class Tongue:
 
     PATH_SETBACK = 10.0  # mm behind the lower incisors' edges, where the path over them begins
 
-    rest: Array  # (T, 3)
-    along: Array  # (T,) place along the spine: 0 the tip .. 1 the root
-    spine: Array  # (SAMPLES, 2) forward and up, from the tip
-    off: Array  # (T,) up from the spine
-    half: Array  # (SAMPLES,) half of the height
-    lower_edge: Array  # (3,) of the lower incisors
-    upper_edge: Array  # (3,) of the upper incisors, seen from the cranium
-    lips: npt.NDArray[np.int64]  # vertex numbers of LIPS
+    rest: Floats64  # (T, 3)
+    along: Floats64  # (T,) place along the spine: 0 the tip .. 1 the root
+    spine: Floats64  # (SAMPLES, 2) forward and up, from the tip
+    off: Floats64  # (T,) up from the spine
+    half: Floats64  # (SAMPLES,) half of the height
+    lower_edge: Floats64  # (3,) of the lower incisors
+    upper_edge: Floats64  # (3,) of the upper incisors, seen from the cranium
+    lips: Integers64  # vertex numbers of LIPS
 
-    def bent(self, out: float, up: float, x: Array, mandible: RigidMotion) -> Array:
+    def bent(self, out: float, up: float, x: Floats64, mandible: RigidMotion) -> Floats64:
         """The vertices for tongue_out and tongue_up, 0..1, shape (T, 3).
 
         x: the skin now, shape (V, 3), and where the mandible is.
@@ -91,7 +91,7 @@ class Tongue:
         rise = max(float(lips[3:, 1].mean()) - lips[1, 1], 0.0)
         hollow = risen * over_lip * rise / max(abs(lips[3, 0] - lips[4, 0]) / 2.0, 1.0) ** 2
 
-        def here(samples: Array) -> Array:
+        def here(samples: Floats64) -> Floats64:
             return np.interp(self.along, place, samples)
 
         beside = self.rest[:, 0] * slender
@@ -102,7 +102,7 @@ class Tongue:
         bent[:, 2] = here(spine[:, 0]) - off * np.sin(here(turn))
         return bent
 
-    def _on_path(self, out: float, lips: Array, thickness: float) -> Array:
+    def _on_path(self, out: float, lips: Floats64, thickness: float) -> Floats64:
         """The spine on its way out, shape (SAMPLES, 2)."""
         _, middle, low, *_ = lips
         clearance = 0.6  # mm above teeth and lip
@@ -127,13 +127,11 @@ class Tongue:
         place = np.linspace(0.0, 1.0, SAMPLES)
         rest = _length(self.spine)
         way = tip - rest * place - (tip - rest) * place**2
-        on_path: Array = scipy.interpolate.PchipInterpolator(lengths, path)(way)
+        on_path: Floats64 = scipy.interpolate.PchipInterpolator(lengths, path)(way)
         return on_path
 
 
-def place_tongue(
-    parts: Any, space: FaceSpace, landmarks: npt.NDArray[np.int64] | None
-) -> Tongue | None:
+def place_tongue(parts: Any, space: FaceSpace, landmarks: Integers64 | None) -> Tongue | None:
     """The tongue among a head's parts; None without one that could bend, teeth or landmarks.
 
     parts: objects with `name` and `vertices`; landmarks: vertex numbers, shape (68,).
@@ -169,20 +167,20 @@ def place_tongue(
     )  # fmt: skip
 
 
-def _edge(teeth: Array, *, up: float) -> Array:
+def _edge(teeth: Floats64, *, up: float) -> Floats64:
     """The edge of the incisors of one jaw, in the middle, shape (3,)."""
     incisor_width = 5.0  # mm beside the middle: the incisors' edges
     incisors = teeth[np.abs(teeth[:, 0]) < incisor_width]
     among = incisors if len(incisors) else teeth
-    edge: Array = among[(up * among[:, 1]).argmax()] * (0.0, 1.0, 1.0)
+    edge: Floats64 = among[(up * among[:, 1]).argmax()] * (0.0, 1.0, 1.0)
     return edge
 
 
-def _direction(spine: Array) -> Array:
+def _direction(spine: Floats64) -> Floats64:
     """Angle [rad] by which the spine points up, towards its tip, at each of its points."""
     forward, up = -np.gradient(spine, axis=0).T
     return np.unwrap(np.arctan2(up, forward))
 
 
-def _length(spine: Array) -> float:
+def _length(spine: Floats64) -> float:
     return float(np.linalg.norm(np.diff(spine, axis=0), axis=1).sum())

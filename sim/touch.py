@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Floats64
 from . import checked
 from .bones import Bones
 from .face_model import FaceModel
-from .landmarks import Array
 from .state import State
 
 
 class Touch:
     """Hands at the skin of one simulation."""
 
-    def __init__(self, model: FaceModel, state: State, positions: Array, bones: Bones) -> None:
+    def __init__(self, model: FaceModel, state: State, positions: Floats64, bones: Bones) -> None:
         """positions: of the skin now [head units], shape (V, 3)."""
         self._model = model
         self._state = state
@@ -71,7 +71,7 @@ class Touch:
             state.hold[self._vertices] += self._stiffness
             state.pull[self._vertices] += self._stiffness[:, None] * drawn
 
-    def _in_standard_space(self, vectors: Array) -> Array:
+    def _in_standard_space(self, vectors: Floats64) -> Floats64:
         """Vectors (n, 3) of the head, wherever that is turned now."""
         standard = self._model.space.vectors_to_standard(vectors)
         return np.asarray(standard @ self._bones.head.rotation)

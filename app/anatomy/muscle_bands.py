@@ -12,15 +12,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.sim import Simulation
 
 from ..scenes import Face
 
-Floats = npt.NDArray[np.float64]
 ROWS = 22  # places along a band
 AROUND = 16  # places around its cross section
 NEAR = 8  # vertices that say where the skin is
@@ -47,11 +46,11 @@ class Muscles:
     striation: place across and along of each vertex, (n, 2) [mm at rest]: where its striation is.
     """
 
-    vertices: npt.NDArray[np.float32]
-    normals: npt.NDArray[np.float32]
-    colours: npt.NDArray[np.float32]
-    faces: npt.NDArray[np.int32]
-    striation: npt.NDArray[np.float32]
+    vertices: Floats32
+    normals: Floats32
+    colours: Floats32
+    faces: Integers32
+    striation: Floats32
     name: str = "muscles"
     bone: str = "neck"  # stands still: vertices are where they are
     shine: float = 0.42
@@ -83,7 +82,7 @@ class Muscles:
                 width = 0.5 * row.get("width", 10.0) * fibre.get("width_factor", 1.0)
                 widths.append(np.clip(width, 4.0, 17.0))
         marks = face.simulation.rest_positions[face.head.landmarks]
-        rings = list[Floats]()
+        rings = list[Floats64]()
         self._controls: list[list[str]] = [[name] for name, _ in self.names]  # that move each band
         for start, end, numbers, bands in RINGS:
             edge = _resampled(marks[None, list(numbers)])[0]
@@ -102,7 +101,7 @@ class Muscles:
         self._length = _lengths(self._lines(simulation, face.simulation.rest_positions))
         self._lay_out()
 
-    def _bind(self, rings: Floats, simulation: Simulation) -> None:
+    def _bind(self, rings: Floats64, simulation: Simulation) -> None:
         """Let the skin carry the sphincters (b, ROWS, 3)."""
         rest = simulation.rest_positions
         skin = _Skin(rest, simulation.faces, self._bone_depth, self._middle)
@@ -114,7 +113,7 @@ class Muscles:
         self._share /= self._share.sum(axis=-1, keepdims=True)
         self._shift = rings - np.einsum("brk,brkc->brc", self._share, rest[self._carriers])
 
-    def _lines(self, simulation: Any, x: Floats) -> Floats:
+    def _lines(self, simulation: Any, x: Floats64) -> Floats64:
         """The middles of all bands, (b, ROWS, 3), those of the sphincters last."""
         found = simulation.anatomy.fibres()
         fibres = _resampled(np.array([found[name][number] for name, number in self.names]))
@@ -161,7 +160,7 @@ class Muscles:
         active = [max((sums[name] for name in own), default=0.0) for own in self._controls]
         self._set(grid, np.array(active), u)
 
-    def _set(self, grid: Floats, active: Floats, u: Floats) -> None:
+    def _set(self, grid: Floats64, active: Floats64, u: Floats64) -> None:
         """Show sections (b, ROWS, AROUND, 3) of bands that are so active, (b,)."""
         red = RELAXED + np.clip(active, 0.0, 1.0)[:, None] * (CONTRACTED - RELAXED)
         # This share of a band's length is tendon, at both ends.
@@ -201,7 +200,7 @@ class Muscles:
 class _Skin:
     """The skin as it is now, near places."""
 
-    def __init__(self, x: Floats, faces: Any, bone: Floats, middle: Floats) -> None:
+    def __init__(self, x: Floats64, faces: Any, bone: Floats64, middle: Floats64) -> None:
         """bone: how deep it is below each vertex of x; middle: from where a face looks outward."""
         self.x = x
         self._bone = bone
@@ -209,7 +208,7 @@ class _Skin:
         self.normals = vertex_normals(x, faces)
         self.tree = scipy.spatial.cKDTree(x)
 
-    def at(self, points: Floats) -> tuple[Floats, Floats, Floats]:
+    def at(self, points: Floats64) -> tuple[Floats64, Floats64, Floats64]:
         """How far outside points (..., 3) are, which way is out, and how deep the bone is there."""
         away, near = self.tree.query(points, k=NEAR)
         normals = self.normals[near]
@@ -225,17 +224,17 @@ class _Skin:
         return (weight * off).sum(axis=-1), normal, (weight * self._bone[near]).sum(axis=-1)
 
 
-def _resampled(lines: Floats) -> Floats:
+def _resampled(lines: Floats64) -> Floats64:
     """ROWS points along each polyline (b, n, 3), rounded where it bends."""
     at = np.linspace(0.0, lines.shape[1] - 1.0, ROWS)
     low = np.minimum(at.astype(int), lines.shape[1] - 2)
     share = (at - low)[:, None]
-    points: Floats = lines[:, low] * (1.0 - share) + lines[:, low + 1] * share
+    points: Floats64 = lines[:, low] * (1.0 - share) + lines[:, low + 1] * share
     for _ in range(3):
         points[:, 1:-1] = 0.25 * points[:, :-2] + 0.5 * points[:, 1:-1] + 0.25 * points[:, 2:]
     return points
 
 
-def _lengths(lines: Floats) -> Floats:
-    found: Floats = np.linalg.norm(np.diff(lines, axis=1), axis=2).sum(axis=1)
+def _lengths(lines: Floats64) -> Floats64:
+    found: Floats64 = np.linalg.norm(np.diff(lines, axis=1), axis=2).sum(axis=1)
     return found

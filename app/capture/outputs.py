@@ -23,8 +23,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import PIL.Image
+
+from risorius.geometry.arrays import Unsigned8
 
 from ..errors import UserError
 from ..files import (
@@ -140,7 +141,7 @@ class Encoder:
         assert self._process.stdin is not None
         self._frames = self._process.stdin
 
-    def add(self, image: npt.NDArray[np.uint8]) -> None:
+    def add(self, image: Unsigned8) -> None:
         """Hand over a frame, (H, W, 3); UserError where ffmpeg has given up."""
         left = np.ascontiguousarray(image).data.cast("B")
         try:

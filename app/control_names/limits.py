@@ -17,9 +17,10 @@ from collections.abc import ItemsView, Iterator, Mapping
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.arrays import Floats64
+
 from ..errors import UserError
 
-Floats = npt.NDArray[np.float64]
 Places = npt.NDArray[np.intp]  # of controls among all N of a scene
 
 
@@ -39,7 +40,7 @@ class Limits(dict[str, tuple[float, float]]):
                 raise UserError(f"there is no control called '{name}'")
         return np.array([self.place[name] for name in names], np.intp)
 
-    def cut_off(self, sums: Floats, places: Places) -> Floats:
+    def cut_off(self, sums: Floats64, places: Places) -> Floats64:
         """Values of controls that are set to these sums; both of shape (n,), or (T,) of one."""
         return np.asarray(np.minimum(np.maximum(sums, self._low[places]), self._high[places]))
 
@@ -51,7 +52,7 @@ class Limits(dict[str, tuple[float, float]]):
         return self.posed(self.places(tuple(sums)), np.array([*sums.values()], np.float64), over)
 
     def posed(
-        self, places: Places, sums: Floats, over: ControlValues | None = None
+        self, places: Places, sums: Floats64, over: ControlValues | None = None
     ) -> ControlValues:
         """The same of controls by their places; both of shape (n,)."""
         numbers = np.zeros(len(self)) if over is None else over.numbers.copy()
@@ -62,7 +63,7 @@ class Limits(dict[str, tuple[float, float]]):
 class ControlValues(Mapping[str, float]):
     """A value for each control of a scene, within its limits: by name, or as `numbers` (N,)."""
 
-    def __init__(self, limits: Limits, numbers: Floats) -> None:
+    def __init__(self, limits: Limits, numbers: Floats64) -> None:
         """Made by `Limits`, or of other values so that they stay within; nobody writes them."""
         numbers.flags.writeable = False
         self.limits = limits

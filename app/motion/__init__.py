@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
 from tqdm import tqdm
 
 from risorius.assets.fitting import FittedHead
+from risorius.geometry.arrays import Floats64
 
 from ..scenes import Scene, build_scene
 from ..script import Script
@@ -41,7 +40,7 @@ def play(
     frames_per_second: float,
     *,
     until: float | None = None,
-    viewer: npt.NDArray[np.float64] | None = None,
+    viewer: Floats64 | None = None,
     step: Callable[[float], None] | None = None,
     progress: bool = True,
 ) -> Iterator[float]:

@@ -13,16 +13,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from risorius.geometry.arrays import Floats64
 from risorius.sim.controls import Controls
 from risorius.sim.layers import LEAST_WHOLE, SIDES, Layers, share_of_whole
 
 from ..errors import UserError
 from ..scenes import Scene
-
-Floats = npt.NDArray[np.float64]
 
 ACTION_UNITS = "Action units"  # title of a layer
 ARKIT_SHAPES = "ARKit shapes"  # title of a layer
@@ -31,9 +29,9 @@ ARKIT_SHAPES = "ARKit shapes"  # title of a layer
 def solved(
     scene: Scene,
     layer: str,
-    activations: Mapping[str, Floats],
-    controls: Mapping[str, Floats] | None = None,
-) -> dict[str, Floats]:
+    activations: Mapping[str, Floats64],
+    controls: Mapping[str, Floats64] | None = None,
+) -> dict[str, Floats64]:
     """The values of a layer's controls that come nearest to these activations, by name.
 
     layer: its title. activations: the sum of each of the lowest controls in N frames, shape (N,),
@@ -75,10 +73,10 @@ def _muscles_of(scene: Scene, layer: str) -> Controls:
 def _known(
     names: Sequence[str],
     tables: Layers,
-    controls: Mapping[str, Floats],
+    controls: Mapping[str, Floats64],
     count: int,
-    highest: Floats,
-) -> Floats:
+    highest: Floats64,
+) -> Floats64:
     """The set values of the layer's own controls, as they count, shape (N, L)."""
     set_to = {
         name: controls.get(name, np.zeros(count)) + controls.get(_without_side(name), 0.0)
@@ -96,7 +94,7 @@ def _without_side(name: str) -> str:
     return name.removesuffix(SIDES[0]).removesuffix(SIDES[1]) if name.endswith(SIDES) else ""
 
 
-def _sums(values: Floats, shares: Floats, floors: Floats) -> Floats:
+def _sums(values: Floats64, shares: Floats64, floors: Floats64) -> Floats64:
     """The sums of the layer's values, shape (N, C), added up as in sim/controls.py."""
     least = np.zeros((len(values), floors.shape[1]))
     for value, floor in zip(values.T, floors, strict=True):
@@ -104,7 +102,7 @@ def _sums(values: Floats, shares: Floats, floors: Floats) -> Floats:
     return np.where(least > 0.0, np.maximum(values @ shares, least), values @ shares)
 
 
-def _fitted(shares: Floats, highest: Floats, frames: Floats) -> Floats:
+def _fitted(shares: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
     """Values (N, L) whose sums are nearest to the frames (N, C)."""
     rays = _rays(shares)
     reach = np.array([(np.linalg.norm(shares[ray], axis=1) * highest[ray]).sum() for ray in rays])
@@ -124,7 +122,7 @@ def _fitted(shares: Floats, highest: Floats, frames: Floats) -> Floats:
     return values
 
 
-def _rays(shares: Floats) -> list[list[int]]:
+def _rays(shares: Floats64) -> list[list[int]]:
     """The controls (L, C) in groups of those that do the same, from weak to strong in each."""
     strengths = np.linalg.norm(shares, axis=1)
     rays: list[list[int]] = []
@@ -141,7 +139,7 @@ def _rays(shares: Floats) -> list[list[int]]:
     return rays
 
 
-def _as_set(name: str, counted: Mapping[str, Floats], tables: Layers) -> Floats:
+def _as_set(name: str, counted: Mapping[str, Floats64], tables: Layers) -> Floats64:
     """A value as it is set; of a share of another control's (mouthClose) only so much of that."""
     whole = tables.share_of.get(name)
     if whole is None:

@@ -24,7 +24,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
+
+from risorius.geometry.arrays import Floats64
 
 from ..scenes import Face, Scene
 
@@ -150,7 +151,7 @@ class Idle:
     def beneath(
         self,
         moved: frozenset[str],
-        viewer: npt.NDArray[np.float64],
+        viewer: Floats64,
         time: float,
         *,
         is_still: bool = False,
@@ -177,7 +178,7 @@ class Idle:
         }
 
 
-def looking_at(face: Face, viewer: npt.NDArray[np.float64]) -> dict[str, Values]:
+def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
     """The gaze and the pose of the head with which a face looks at a point [mm], shape (3,).
 
     The eyes make up for how the head is turned now. By parts, as `Life.parts`.
@@ -207,7 +208,7 @@ def looking_at(face: Face, viewer: npt.NDArray[np.float64]) -> dict[str, Values]
     return {"eyes": eyes, "head": head}
 
 
-def _angles(way: npt.NDArray[np.float64]) -> tuple[float, float]:
+def _angles(way: Floats64) -> tuple[float, float]:
     """To the left and up from straight ahead [degrees]."""
     x, y, z = way
     return math.degrees(math.atan2(x, z)), math.degrees(math.atan2(y, math.hypot(x, z)))

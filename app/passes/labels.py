@@ -24,6 +24,7 @@ import numpy.typing as npt
 import PIL.Image
 
 from risorius import render
+from risorius.geometry.arrays import Flags, Floats32, Floats64
 
 from ..errors import UserError
 from ..extras import needed
@@ -32,7 +33,6 @@ from ..pictures import Image
 from ..scenes import Face, Scene
 from .passes import NAMES, OF_FACES, Passes
 
-Floats = npt.NDArray[np.float64]
 SIDES = ("right", "left")  # the subject's, in the order of landmarks
 DIGITS = 8  # behind the point: points projected anew are off by less than 1e-4 pixels
 
@@ -41,7 +41,7 @@ def labels_of(
     scene: Scene,
     camera: render.OrbitCamera,
     size: tuple[int, int],
-    depth: npt.NDArray[np.float32] | None = None,
+    depth: Floats32 | None = None,
 ) -> dict[str, Any]:
     """The labels of the picture that `camera` takes of `scene` now, `size` pixels large.
 
@@ -94,7 +94,7 @@ def labels_of(
     return labels
 
 
-def _plain(numbers: Floats) -> Any:
+def _plain(numbers: Floats64) -> Any:
     """Lists of rounded numbers; no negative zeros."""
     return (np.round(numbers, DIGITS) + 0.0).tolist()
 
@@ -107,12 +107,12 @@ class Landmarks:
     pixel is (0.5, 0.5), (70, 2). visible: neither hidden nor beside the picture, (70,).
     """
 
-    points: Floats
-    pixels: Floats
-    visible: npt.NDArray[np.bool_]
+    points: Floats64
+    pixels: Floats64
+    visible: Flags
 
 
-def points_of(face: Face) -> Floats:
+def points_of(face: Face) -> Floats64:
     """Where the landmarks and the pupils of a face are now [mm], shape (70, 3)."""
     bones = face.bone_transforms()
     pupils = []
@@ -124,7 +124,7 @@ def points_of(face: Face) -> Floats:
     return np.vstack([face.marked, pupils])
 
 
-def landmarks_in(face: Face, camera: CameraLabels, depth: npt.NDArray[np.float32]) -> Landmarks:
+def landmarks_in(face: Face, camera: CameraLabels, depth: Floats32) -> Landmarks:
     """The landmarks of a face in the picture of which `depth`, (H, W), is the depth map."""
     points = points_of(face)
     pixels = camera.project(points)
@@ -156,9 +156,9 @@ class CameraLabels:
     """
 
     size: tuple[float, float]
-    intrinsics: Floats
-    rotation: Floats
-    translation: Floats
+    intrinsics: Floats64
+    rotation: Floats64
+    translation: Floats64
 
     @classmethod
     def of(cls, camera: render.OrbitCamera, size: tuple[float, float]) -> CameraLabels:
@@ -170,22 +170,22 @@ class CameraLabels:
         intrinsics = np.array([[focal, 0, width / 2], [0, focal, height / 2], [0, 0, 1.0]])
         return cls(size, intrinsics, rotation, -rotation @ camera.eye)
 
-    def to_camera(self, points: Floats) -> Floats:
+    def to_camera(self, points: Floats64) -> Floats64:
         """Points of the scene, (n, 3), in the camera's coordinates [mm]."""
-        seen: Floats = points @ self.rotation.T + self.translation
+        seen: Floats64 = points @ self.rotation.T + self.translation
         return seen
 
-    def project(self, points: Floats) -> Floats:
+    def project(self, points: Floats64) -> Floats64:
         """Where points of the scene, (n, 3), are in the picture [pixels], (n, 2)."""
         seen = self.to_camera(points) @ self.intrinsics.T
-        pixels: Floats = seen[:, :2] / seen[:, 2:]
+        pixels: Floats64 = seen[:, :2] / seen[:, 2:]
         return pixels
 
 
-def gaze(face: Face, side: str) -> Floats:
+def gaze(face: Face, side: str) -> Floats64:
     """Where the eye of that side looks: a unit vector in the scene, shape (3,)."""
     forward = np.array([0.0, 0.0, 1.0])  # of a head and of an eye at rest
-    way: Floats = face.bone_transforms()[f"eye_{side}"][:3, :3] @ forward
+    way: Floats64 = face.bone_transforms()[f"eye_{side}"][:3, :3] @ forward
     return way
 
 

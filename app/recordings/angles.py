@@ -7,12 +7,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from .take import Array
+from risorius.geometry.arrays import Floats64
 
 
 def in_degrees(
-    angles: Mapping[str, Array], outward: Mapping[str, float], notes: list[str]
-) -> dict[str, Array]:
+    angles: Mapping[str, Floats64], outward: Mapping[str, float], notes: list[str]
+) -> dict[str, Floats64]:
     """Angles in degrees, + to the subject's left, up, to the left shoulder.
 
     angles: name of ours -> as the file has it, shape (T,), NaN where nothing is known. outward: by

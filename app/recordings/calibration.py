@@ -19,12 +19,14 @@ from typing import TypeVar
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats64
+
 from ..control_names import TURNED, twin_of
 from ..errors import UserError
 from .names import ANGLES, ARKIT, HEAD_ANGLES, VISEMES, angle_of, shape_of
-from .take import Array, Take
+from .take import Take
 
-Value = TypeVar("Value", float, Array)
+Value = TypeVar("Value", float, Floats64)
 
 HIGHEST_GAIN = 10.0
 FIRST_SECONDS = 1.0  # [s] of a take in which the head is held straight

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats64
+
 from ..control_names.limits import Limits
 from ..playback import LEAD, Playback
 from ..script import POSE_SECONDS, Channel, Pose, Script, rounded
@@ -21,7 +23,7 @@ from ..text import in_one_line
 from .calibration import calibration_for
 from .mapping import controls_of
 from .report import Report, report_of
-from .take import Array, Take
+from .take import Take
 
 
 def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, Report]:
@@ -41,7 +43,7 @@ def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, R
     return _script(take, curves, playback.lead), report_of(take, calibration)
 
 
-def _script(take: Take, curves: Mapping[str, Array], lead: float) -> Script:
+def _script(take: Take, curves: Mapping[str, Floats64], lead: float) -> Script:
     """Tracks of what moves; of a single frame a pose."""
     title = Path(take.source).stem
     preface = f"# Made of {in_one_line(Path(take.source).name)}, {take.kind}.\n"
@@ -74,7 +76,7 @@ def lead_of(control: str, lead: float) -> float:
     return lead * late / LEAD
 
 
-def _track(times: Array, values: Array, lead: float) -> Channel:
+def _track(times: Floats64, values: Floats64, lead: float) -> Channel:
     """The keys of one control, so much earlier [s]; what comes before the beginning is left out."""
     at_beginning = np.interp(lead, times, values)
     least_step = 1e-3  # [s] between the first two keys

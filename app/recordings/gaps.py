@@ -11,10 +11,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats64
+
 from ..errors import UserError
 from ..text import counted
 from .names import ANGLES, NONSENSE
-from .take import Array, Take
+from .take import Take
 
 SHORT_GAP = 0.3  # [s] that is bridged by a straight line
 
@@ -22,8 +24,8 @@ SHORT_GAP = 0.3  # [s] that is bridged by a straight line
 def whole_take(
     kind: str,
     source: str,
-    times: Array,
-    channels: Mapping[str, Array],
+    times: Floats64,
+    channels: Mapping[str, Floats64],
     *,
     notes: Sequence[str] = (),
     unknown: Sequence[str] = (),
@@ -86,7 +88,7 @@ def _left_out(count: int) -> str:
     return f"{counted(count, 'row')} without a time of their own {were} left out."
 
 
-def _missing(gaps: Array) -> str:
+def _missing(gaps: Floats64) -> str:
     """The sentence on holes that last so long [s]."""
     return (
         f"Rows are missing in {counted(len(gaps), 'place')}, {float(gaps.max()):.3g} s at most: "
@@ -94,7 +96,7 @@ def _missing(gaps: Array) -> str:
     )
 
 
-def _holes(times: Array) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+def _holes(times: Floats64) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     """The rows after which others are missing."""
     steps = np.diff(times)
     if len(steps) < 3:
@@ -104,7 +106,7 @@ def _holes(times: Array) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     return np.flatnonzero(steps > longest)
 
 
-def _filled(times: Array, values: Array) -> Array:
+def _filled(times: Floats64, values: Floats64) -> Floats64:
     """A channel without NaN: held over gaps, with a straight line at their end."""
     known = np.isfinite(values)
     if known.all():

@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from risorius.geometry.arrays import Floats64
+
 from .angles import in_degrees
 from .names import HEAD_ANGLES, angle_of
-from .take import Array
 
 MATRICES = ("facialtransformationmatrixes", "facialtransformationmatrices", "matrix")
 POSES = re.compile(
@@ -33,7 +34,7 @@ def is_pose(key: str) -> bool:
 
 def head_of(
     frames: Sequence[Mapping[str, Any]], notes: list[str]
-) -> tuple[dict[str, Array], set[str]]:
+) -> tuple[dict[str, Floats64], set[str]]:
     """Angles of head and eyes [degrees], each of shape (frames,), and the keys that hold them.
 
     frames: keys without capitals and underscores -> values.
@@ -55,9 +56,11 @@ def head_of(
     return {}, set()
 
 
-def _named_angles(frames: Sequence[Mapping[str, Any]]) -> tuple[dict[str, Array], set[str]] | None:
+def _named_angles(
+    frames: Sequence[Mapping[str, Any]],
+) -> tuple[dict[str, Floats64], set[str]] | None:
     """Angles as the file has them, beside shapes or in a table of their own; and their keys."""
-    found: dict[str, Array] = {}
+    found: dict[str, Floats64] = {}
     used: set[str] = set()
     for row, frame in enumerate(frames):
         for key, value in frame.items():
@@ -79,7 +82,7 @@ def _named_angles(frames: Sequence[Mapping[str, Any]]) -> tuple[dict[str, Array]
     return (found, used) if found else None
 
 
-def _turned(values: Sequence[Any], key: str, notes: list[str]) -> list[Array | None]:
+def _turned(values: Sequence[Any], key: str, notes: list[str]) -> list[Floats64 | None]:
     """The matrices of quaternions, None where there is none."""
     quaternions = [_quaternion(value) for value in values]
     known = np.array([each for each in quaternions if each is not None])
@@ -101,7 +104,7 @@ def _turned(values: Sequence[Any], key: str, notes: list[str]) -> list[Array | N
     ]
 
 
-def _quaternion(value: Any) -> Array | None:
+def _quaternion(value: Any) -> Floats64 | None:
     """The four numbers of a quaternion in their order, None for another value."""
     if isinstance(value, dict):
         parts = {_letters(each).removeprefix("q"): number for each, number in value.items()}
@@ -112,7 +115,7 @@ def _quaternion(value: Any) -> Array | None:
     return found if 0.9 < float(np.linalg.norm(found)) < 1.1 else None
 
 
-def _angles_of(matrix: Array | None) -> tuple[float, float, float]:
+def _angles_of(matrix: Floats64 | None) -> tuple[float, float, float]:
     """Yaw, pitch and roll [degrees] of a rotation, shape (3, 3); NaN for None."""
     if matrix is None:
         return math.nan, math.nan, math.nan
@@ -124,7 +127,7 @@ def _angles_of(matrix: Array | None) -> tuple[float, float, float]:
     )
 
 
-def _matrix(value: Any) -> Array | None:
+def _matrix(value: Any) -> Floats64 | None:
     """The rotation, shape (3, 3), in 3 or 4 rows, or in 16 numbers by columns, as pages have it."""
     while isinstance(value, list) and len(value) == 1:
         value = value[0]

@@ -12,10 +12,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from .names import ARKIT
-from .take import Array
+from risorius.geometry.arrays import Floats64
 
-Value = TypeVar("Value", float, Array)
+from .names import ARKIT
+
+Value = TypeVar("Value", float, Floats64)
 
 _ACTION_UNIT = re.compile(r"(AU[0-9]{1,2})(_left|_right)?")
 _SHAPE_OF_UNIT = {  # action unit -> beginning of the names of shapes that measure it, too

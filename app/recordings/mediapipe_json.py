@@ -16,11 +16,13 @@ from typing import Any
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats64
+
 from .gaps import whole_take
 from .head_pose import head_of
 from .names import angle_of, shape_of
 from .table import LARGEST, without_percent
-from .take import Array, Request, Take
+from .take import Request, Take
 from .timing import find_times, is_frame, stamp_of
 from .values import is_calibrated, is_flag, rows_without_face, shares, without_rows
 
@@ -238,11 +240,11 @@ def _category(item: Any) -> tuple[str, float] | None:
 
 def _shapes(
     frames: Sequence[list[dict[str, float]]], notes: list[str]
-) -> tuple[dict[str, Array], list[str]]:
+) -> tuple[dict[str, Floats64], list[str]]:
     """Shape -> values, shape (frames,), NaN where there is no face; and names that none has."""
     if (most := max(map(len, frames), default=0)) > 1:
         notes.append(f"Up to {most} faces are in a frame; the first was taken.")
-    values: dict[str, Array] = {}
+    values: dict[str, Floats64] = {}
     spellings: dict[str, str] = {}
     repeated: dict[str, None] = {}
     unknown: dict[str, None] = {}
@@ -265,10 +267,10 @@ def _shapes(
 def _times(
     frames: Sequence[Mapping[str, Any]], rate: float | None, written_rate: float | None,
     notes: list[str],
-) -> Array:  # fmt: skip
+) -> Floats64:  # fmt: skip
     """Times of the frames, by their keys, else by the rate that the document has."""
 
-    def numbers(name: str) -> Array:
+    def numbers(name: str) -> Floats64:
         return np.array([_number(frame.get(name)) for frame in frames])
 
     def texts(name: str) -> list[str]:

@@ -12,10 +12,12 @@ import re
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats64
+
 from .gaps import whole_take
 from .names import EYE_ANGLES
 from .table import Table, one_face
-from .take import Array, Request, Take
+from .take import Request, Take
 from .timing import times_of
 from .values import intensities, rows_without_face, without_rows
 
@@ -79,7 +81,9 @@ def read(table: Table, request: Request) -> Take:
     )
 
 
-def _eyes(numbers: dict[str, Array], head: dict[str, Array], notes: list[str]) -> dict[str, Array]:
+def _eyes(
+    numbers: dict[str, Floats64], head: dict[str, Floats64], notes: list[str]
+) -> dict[str, Floats64]:
     """Both eyes' angles in the head: the gaze that the camera sees, less the head's own turn.
 
     A camera stands above the screen that people look at, so that their gaze is never 0.

@@ -15,10 +15,12 @@ import re
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats64
+
 from .gaps import whole_take
 from .names import shape_of
 from .table import Table, one_face
-from .take import Array, Request, Take
+from .take import Request, Take
 from .timing import times_of
 from .values import intensities, rows_without_face, shares, without_rows
 
@@ -74,7 +76,7 @@ def read(table: Table, request: Request) -> Take:
     )
 
 
-def _head(numbers: dict[str, Array], is_second: bool, notes: list[str]) -> dict[str, Array]:
+def _head(numbers: dict[str, Floats64], is_second: bool, notes: list[str]) -> dict[str, Floats64]:
     """The head's angles in degrees, from the units and signs of any version."""
     pose = {n: numbers[n] for n in POSE if n in numbers and np.isfinite(numbers[n]).any()}
     if not pose:

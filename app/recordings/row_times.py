@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-from .take import Array
+from risorius.geometry.arrays import Flags, Floats64
 
 DAY = 86_400.0  # [s]
 
 
 def frame_times(
-    numbers: Array | None,
+    numbers: Floats64 | None,
     count: int,
     rate: float | None,
     notes: list[str],
     *,
     has_stamps: bool = False,
-) -> Array:
+) -> Floats64:
     """Times of frames by their numbers, or one row after the other where they have none.
 
     has_stamps: whether there are time stamps that are of no use, as an earlier note says.
@@ -36,7 +35,7 @@ def frame_times(
     return (numbers - np.nanmin(numbers)) / rate
 
 
-def spread(values: Array, notes: list[str]) -> Array:
+def spread(values: Floats64, notes: list[str]) -> Floats64:
     """Values of which several rows in a row have the same, so that each row has its own.
 
     A clock that counts seconds, or timecode of 30 for rows of 60 a second, says when a group of
@@ -59,7 +58,7 @@ def spread(values: Array, notes: list[str]) -> Array:
     return found
 
 
-def mostly_rises(values: Array) -> bool:
+def mostly_rises(values: Floats64) -> bool:
     """Whether more than half of the steps go up."""
-    steps: npt.NDArray[np.bool_] = np.diff(values) > 0.0
+    steps: Flags = np.diff(values) > 0.0
     return len(values) == 1 or 2 * int(steps.sum()) > len(steps)

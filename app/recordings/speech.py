@@ -17,13 +17,14 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats64
 from risorius.schema import OneOf, Record, Rest, Within, called
 from risorius.schema import read as read_table
 
 from ..errors import UserError
 from .gaps import whole_take
 from .names import viseme_of
-from .take import Array, Request, Take
+from .take import Request, Take
 
 SILENCE = "viseme_sil"
 MOUTHS = {  # of Rhubarb -> viseme and value
@@ -88,7 +89,7 @@ def recognises_tracks(document: Any) -> bool:
 def read_tracks(document: Any, source: str, request: Request) -> Take:
     """The take in `{"channels": [{"name": "PP", "keys": [[time, weight], ...]}, ...]}`."""
     request.refuse_face(source)
-    tracks: dict[str, Array] = {}
+    tracks: dict[str, Floats64] = {}
     unknown = []
     notes = list[str]()
     for channel in read_table(_Tracks, document, source, error=UserError).channels:
@@ -108,7 +109,7 @@ def read_tracks(document: Any, source: str, request: Request) -> Take:
     )  # fmt: skip
 
 
-def _made_clear(channels: dict[str, Array], notes: list[str]) -> dict[str, Array]:
+def _made_clear(channels: dict[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
     """Weights that shut the lips where they are to meet, and that rest in silence."""
     clear_peak = 0.8  # tracks whose peaks are higher are clear enough
     if max(float(values.max()) for values in channels.values()) > clear_peak:
@@ -126,7 +127,7 @@ def _made_clear(channels: dict[str, Array], notes: list[str]) -> dict[str, Array
     return found
 
 
-def _height(values: Array) -> float:
+def _height(values: Floats64) -> float:
     """How high the peaks of a track are, in the middle; 0 where it has none."""
     edged = np.concatenate([[-1.0], values, [-1.0]])
     least_peak = 0.1  # a lower one is a neighbour's shadow

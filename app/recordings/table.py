@@ -20,9 +20,11 @@ from typing import Any
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats64
+
 from ..errors import UserError
 from ..text import counted
-from .take import Array, Request
+from .take import Request
 
 LARGEST = 1e30  # a larger number is no measurement; nanoseconds since 1970 are 1.8e18
 FACE_COLUMNS = ("face_id", "identity", "face_idx", "faceid", "face")
@@ -134,11 +136,11 @@ class Table:
         """The text in the first column with this name, capitals aside."""
         return self.cells(self.places[name.casefold()])
 
-    def numbers_of(self, places: Mapping[str, int]) -> dict[str, Array]:
+    def numbers_of(self, places: Mapping[str, int]) -> dict[str, Floats64]:
         """Name -> the numbers in its column, shape (rows,); NaN where there is none."""
         return dict(zip(places, self.numbers([*places.values()]).T, strict=True))
 
-    def numbers(self, columns: Sequence[int]) -> Array:
+    def numbers(self, columns: Sequence[int]) -> Floats64:
         """The numbers in some columns, shape (rows, columns); NaN where there is none."""
         if not columns or not self.lines:
             return np.empty((len(self.lines), len(columns)))

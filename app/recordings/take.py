@@ -6,12 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-import numpy.typing as npt
+from risorius.geometry.arrays import Floats64
 
 from ..errors import UserError
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -44,8 +41,8 @@ class Take:
 
     kind: str
     source: str
-    times: Array
-    channels: Mapping[str, Array]
+    times: Floats64
+    channels: Mapping[str, Floats64]
     is_calibrated: bool = False
     notes: tuple[str, ...] = ()
     unknown: tuple[str, ...] = field(default=(), repr=False)

@@ -10,13 +10,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats64
+
 from .row_times import DAY, frame_times, mostly_rises, spread
-from .take import Array
 
 TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})([:;])(\d{1,6}(?:\.\d+)?)$")
 
 
-def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> Array:
+def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> Floats64:
     """Times [s] of timecode, HH:MM:SS:FF.fraction; NaN where a cell has none.
 
     rate: frames a second that the user knows; it counts where the timecode agrees.
@@ -64,7 +65,7 @@ def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -
     return numbers / pace
 
 
-def _base_of(seconds: Array, numbers: Array) -> tuple[float, bool]:
+def _base_of(seconds: Floats64, numbers: Floats64) -> tuple[float, bool]:
     """The frames that timecode counts in a second, and whether it turns over often enough to show.
 
     seconds: whole, shape (T,). numbers: of frames in their second, shape (T,). Where the frames of
@@ -90,7 +91,7 @@ def _base_of(seconds: Array, numbers: Array) -> tuple[float, bool]:
     return min(fitting, key=lambda rate: abs(rate - count), default=usual), True
 
 
-def _dropped(parts: Array, base: float) -> int:
+def _dropped(parts: Floats64, base: float) -> int:
     """How many numbers drop-frame timecode leaves out at minutes; 0 where those are in the file.
 
     parts: hours, minutes, seconds, frames, shape (T, 4). Every tenth minute has all numbers.
@@ -103,7 +104,7 @@ def _dropped(parts: Array, base: float) -> int:
     return 0 if is_there.any() else dropped
 
 
-def _jumps_at_minutes(seconds: Array, numbers: Array, base: float) -> bool:
+def _jumps_at_minutes(seconds: Floats64, numbers: Floats64, base: float) -> bool:
     """Whether as many frames as drop-frame timecode leaves out are missing at most minutes.
 
     seconds: whole, shape (T,). numbers: of frames in their second, shape (T,).

@@ -14,9 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats64
+
 from .row_times import DAY, frame_times, mostly_rises, spread
 from .table import Table
-from .take import Array
 from .timecode import TIMECODE, timecode_times, with_colons
 
 CLOCK = re.compile(
@@ -132,7 +133,7 @@ def _letters(name: str) -> str:
     return re.sub(r"[^a-z0-9]", "", name.casefold())
 
 
-def times_of(table: Table, rate: float | None, notes: list[str]) -> tuple[Array, set[str]]:
+def times_of(table: Table, rate: float | None, notes: list[str]) -> tuple[Floats64, set[str]]:
     """Seconds of each row, shape (rows,), NaN where none is known; and the columns of times.
 
     rate: frames a second, where the user knows better than the file.
@@ -142,7 +143,7 @@ def times_of(table: Table, rate: float | None, notes: list[str]) -> tuple[Array,
     def texts(name: str) -> list[str]:
         return table.cells(places[name])
 
-    def numbers(name: str) -> Array:
+    def numbers(name: str) -> Floats64:
         return table.numbers([places[name]])[:, 0]
 
     used = {name for name in places if is_frame(name) or stamp_of(name)}
@@ -153,12 +154,12 @@ def times_of(table: Table, rate: float | None, notes: list[str]) -> tuple[Array,
 def find_times(
     names: Sequence[str],
     texts: Callable[[str], list[str]],
-    numbers: Callable[[str], Array],
+    numbers: Callable[[str], Floats64],
     count: int,
     rate: float | None,
     notes: list[str],
     written_rate: float | None = None,
-) -> Array:
+) -> Floats64:
     """Seconds of each of `count` rows, shape (count,), NaN where none is known.
 
     names: of columns or keys. texts, numbers: their cells, and these as numbers, NaN for no number.
@@ -172,7 +173,7 @@ def find_times(
     ):
         cells = with_colons(texts(name))
         sample = [cell for cell in cells if cell][:sample_size]
-        times: Array | None = None
+        times: Floats64 | None = None
         if sum(bool(TIMECODE.match(cell)) for cell in sample) * 2 > len(sample):
             times = timecode_times(cells, rate, notes)
         elif rate is not None:
@@ -227,7 +228,9 @@ def _seconds_in(cell: str) -> float:
         return np.nan
 
 
-def stamp_times(stamps: Array, notes: list[str], unit_of_name: float | None = None) -> Array | None:
+def stamp_times(
+    stamps: Floats64, notes: list[str], unit_of_name: float | None = None
+) -> Floats64 | None:
     """Time stamps of any unit in seconds; None where they are of no use.
 
     unit_of_name: the unit that the column's name says [s]; it counts if frames are then 0.5 ms to
@@ -257,14 +260,14 @@ def stamp_times(stamps: Array, notes: list[str], unit_of_name: float | None = No
     return None
 
 
-def _in_seconds(stamps: Array, unit: float, name: str, notes: list[str]) -> Array:
+def _in_seconds(stamps: Floats64, unit: float, name: str, notes: list[str]) -> Floats64:
     """The stamps from 0, with the note that says in which unit they were read."""
     if unit != 1.0:
         notes.append(f"Time stamps were read as {name}.")
     return (stamps - np.nanmin(stamps)) * unit
 
 
-def clock_times(cells: Sequence[str], name: str, notes: list[str]) -> Array | None:
+def clock_times(cells: Sequence[str], name: str, notes: list[str]) -> Floats64 | None:
     """Times [s] of `2024-05-01T12:00:00.033Z`, `0 days 00:00:00.033`, `00:00:00,033`, `0:00.03`.
 
     NaN where a cell has none; None where none has one, or where they stand still. The zone and

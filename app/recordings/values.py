@@ -13,9 +13,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.arrays import Floats64
+
 from ..text import counted
 from .names import ARKIT, NONSENSE
-from .take import Array
 
 Rows = npt.NDArray[np.bool_]
 
@@ -76,7 +77,7 @@ def rows_without_face(
     return lost
 
 
-def shares(shapes: Mapping[str, Array], notes: list[str]) -> dict[str, Array]:
+def shares(shapes: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
     """ARKit's shapes, 0 to 1; NaN where the value is none. Trackers overshoot a little.
 
     Rows of zeros in a take whose face is never at 0 are rows without a face, NaN throughout.
@@ -107,7 +108,7 @@ def shares(shapes: Mapping[str, Array], notes: list[str]) -> dict[str, Array]:
     return found
 
 
-def intensities(units: Mapping[str, Array], notes: list[str]) -> dict[str, Array]:
+def intensities(units: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
     """Action units as intensities 0 to 1; FACS' 0 to 5 (A to E) and percent are divided."""
     highest_unit = 6.0  # an intensity of 0 to 5 beyond is none
     found = of_percent(units, highest_unit, "Action units", notes)
@@ -120,12 +121,12 @@ def intensities(units: Mapping[str, Array], notes: list[str]) -> dict[str, Array
     return found
 
 
-def without_rows(channels: Mapping[str, Array], lost: Rows) -> dict[str, Array]:
+def without_rows(channels: Mapping[str, Floats64], lost: Rows) -> dict[str, Floats64]:
     """The channels with NaN in rows without a face."""
     return {name: np.where(lost, np.nan, values) for name, values in channels.items()}
 
 
-def is_calibrated(shapes: Mapping[str, Array], notes: list[str]) -> bool:
+def is_calibrated(shapes: Mapping[str, Floats64], notes: list[str]) -> bool:
     """Whether the neutral face was taken away: then shapes that never rest are often at 0.
 
     Rows without a face, which are NaN, do not count.
@@ -139,8 +140,8 @@ def is_calibrated(shapes: Mapping[str, Array], notes: list[str]) -> bool:
 
 
 def of_percent(
-    channels: Mapping[str, Array], most: float, kind: str, notes: list[str]
-) -> dict[str, Array]:
+    channels: Mapping[str, Floats64], most: float, kind: str, notes: list[str]
+) -> dict[str, Floats64]:
     """The channels, divided by 100 where rows of them have values that only percent have.
 
     most: the highest value in another unit.
@@ -158,7 +159,7 @@ def of_percent(
     return {name: each / 100.0 for name, each in channels.items()}
 
 
-def _rows_of_zeros(shapes: Mapping[str, Array]) -> Rows:
+def _rows_of_zeros(shapes: Mapping[str, Floats64]) -> Rows:
     """The rows in which all shapes are 0 although those that never rest are not, elsewhere."""
     if not shapes:
         return np.zeros(0, dtype=bool)

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import refine, render
+from risorius.geometry.arrays import Floats64, Unsigned8
 
 from ..scenes import Drawable
 from .plug_ins import PlugIn, plug_ins_of, reported
@@ -32,10 +32,10 @@ class DrawnMesh:
     refiner: refine.Refiner
     stream: render.Stream | render.GpuStream
     mesh: refine.RefinedMesh | None = None  # the last result, refined from:
-    positions: npt.NDArray[np.float64] | None = None
+    positions: Floats64 | None = None
     plug_ins: tuple[PlugIn, ...] = ()  # somebody else's code that refines it
 
-    def refine(self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera) -> None:
+    def refine(self, positions: Floats64, camera: render.OrbitCamera) -> None:
         """Fill the lent buffers with refined triangles, as the camera sees them.
 
         Raises PlugInError where somebody else's code fails.
@@ -60,7 +60,7 @@ class DrawnMesh:
             else:
                 self.stream.upload(self.mesh.vertex_count, self.mesh.triangle_count, rows)
 
-    def splits(self) -> npt.NDArray[np.uint8]:
+    def splits(self) -> Unsigned8:
         """For each triangle drawn, how many splits its source triangle's edges have."""
         assert self.mesh is not None
         with reported(self.plug_ins):
@@ -111,9 +111,7 @@ def _stream_for(
     return renderer.lend_gpu_stream(*room, margin=float(longest))
 
 
-def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.NDArray[np.uint8]:
+def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> Unsigned8:
     """For each drawn triangle, how many splits its source triangle's edges have."""
-    splits: npt.NDArray[np.uint8] = refiner.splits[refiner.triangle_edges].sum(
-        axis=1, dtype=np.uint8
-    )
+    splits: Unsigned8 = refiner.splits[refiner.triangle_edges].sum(axis=1, dtype=np.uint8)
     return np.take(splits, mesh.source)

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, refine
+from risorius.geometry.arrays import Floats64, Integers32
 
 from ..errors import UserError
 from ..scenes import Drawable
@@ -135,7 +136,7 @@ def can_detail(scene: Drawable) -> bool:
     return scene.face is not None and isinstance(scene.face.head, assets.Head)
 
 
-def finer_mesh(scene: Drawable) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]] | None:
+def finer_mesh(scene: Drawable) -> tuple[Floats64, Integers32] | None:
     """Vertices and triangles of the scene's head with four times its triangles, if it has them."""
     face = scene.face
     if face is None or not isinstance(face.head, assets.Head):

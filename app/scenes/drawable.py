@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead
+from risorius.geometry.arrays import Floats32, Integers32
 
 Points = npt.NDArray[np.float64]
 Pixels = npt.NDArray[np.uint8]
@@ -30,8 +31,8 @@ class SkinImages:
     fade: a x + b y + c z + d, from 0 to 1, is the share of the mesh that shows at (x, y, z).
     """
 
-    uv: npt.NDArray[np.float32] | None = None
-    face_uv: npt.NDArray[np.int32] | None = None
+    uv: Floats32 | None = None
+    face_uv: Integers32 | None = None
     albedo: Pixels | None = None
     in_tone: Callable[[float], Pixels] | None = None
     ambient_occlusion: Pixels | None = None
@@ -86,7 +87,7 @@ class Drawable:
     def __init__(
         self,
         name: str,
-        faces: npt.NDArray[np.int32],
+        faces: Integers32,
         rest_positions: Points,
         *,
         skin: SkinImages = BARE,

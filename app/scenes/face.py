@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead
 from risorius.assets.identities import Person, built_in_hair, recoloured
+from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.read_only import read_only
 
 from ..control_names import parted
@@ -106,7 +106,7 @@ class FaceScene(Scene):
                     part.stretch(self.simulation.bones.jaw, to_cranium @ bones["mandible"])
         return self._parts
 
-    def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
+    def bone_transforms(self) -> Mapping[str, Floats64]:
         return self.simulation.bones.transforms()
 
     def moved_by(self, name: str) -> Mapping[str, float]:
@@ -138,8 +138,8 @@ def _images_of(head: assets.Head | FittedHead) -> SkinImages:
 
 def _parts_of(
     head: assets.Head | FittedHead,
-    rest_positions: npt.NDArray[np.float64],
-    faces: npt.NDArray[np.int32],
+    rest_positions: Floats64,
+    faces: Integers32,
 ) -> tuple[Any, ...]:
     """The parts of a head, some of which can bend, and the hair of the built-in one."""
     parts = tuple(

@@ -12,12 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.assets.fitting.mouth_walls import stretched_walls
+from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.read_only import read_only
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
-
-Floats = npt.NDArray[np.float32]
 
 
 class Gloom(NamedTuple):
@@ -43,10 +42,10 @@ class BentPart:
     """A part that changes its shape; drawn as any other (render/parts.py)."""
 
     name: str
-    vertices: Floats
-    normals: Floats
-    faces: npt.NDArray[np.int32]
-    colours: Floats
+    vertices: Floats32
+    normals: Floats32
+    faces: Integers32
+    colours: Floats32
     bone: str
     shine: float
     is_enclosed: bool = True
@@ -54,7 +53,7 @@ class BentPart:
     striation: None = None
     roots: None = None
 
-    def take_shape(self, vertices: npt.NDArray[np.float64]) -> None:
+    def take_shape(self, vertices: Floats64) -> None:
         """Have these vertices, shape (n, 3), and the normals that follow from them."""
         self.vertices = read_only(vertices.astype(np.float32))
         self.normals = read_only(vertex_normals(vertices, self.faces).astype(np.float32))
@@ -64,11 +63,11 @@ class BentPart:
 class Tongue(BentPart):
     """The tongue, which is darker the farther back it is."""
 
-    unlit: Floats  # its colours in full light
+    unlit: Floats32  # its colours in full light
     front: float  # z of the front teeth [mm]
-    shape: npt.NDArray[np.float64] | None = None  # taken last
+    shape: Floats64 | None = None  # taken last
 
-    def bend(self, vertices: npt.NDArray[np.float64]) -> None:
+    def bend(self, vertices: Floats64) -> None:
         """Take another shape (n, 3), lit as it is in its place; nothing for the same array."""
         if vertices is self.shape:
             return
@@ -81,12 +80,12 @@ class Tongue(BentPart):
 class MouthWalls(BentPart):
     """The walls of the mouth, which stretch between both jaws."""
 
-    shares: Floats  # how far each vertex goes with the mandible, shape (n,)
-    rest: Floats
-    resting_normals: Floats
+    shares: Floats32  # how far each vertex goes with the mandible, shape (n,)
+    rest: Floats32
+    resting_normals: Floats32
     jaw: tuple[float, ...] = ()  # its values when the walls were stretched last
 
-    def stretch(self, jaw: tuple[float, ...], mandible: npt.NDArray[np.float64]) -> None:
+    def stretch(self, jaw: tuple[float, ...], mandible: Floats64) -> None:
         """Go with the mandible; nothing for the same values of the jaw.
 
         mandible: how it has moved, seen from the cranium, a matrix (4, 4).
@@ -133,10 +132,10 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
 
 def _shaded(
     points: npt.NDArray[Any], colours: npt.NDArray[Any], front: float, gloom: Gloom
-) -> Floats:
+) -> Floats32:
     """Colours (n, 3) as they are seen behind the front teeth."""
     behind = (front - points[:, 2] - gloom.begins) / (gloom.ends - gloom.begins)
     share = np.clip(behind, 0.0, 1.0)
     light = 1.0 - gloom.lost * share * share * (3.0 - 2.0 * share)
-    seen: Floats = (colours * light[:, None] ** np.array(gloom.powers)).astype(np.float32)
+    seen: Floats32 = (colours * light[:, None] ** np.array(gloom.powers)).astype(np.float32)
     return seen

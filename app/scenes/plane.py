@@ -5,9 +5,9 @@ from __future__ import annotations
 from types import MappingProxyType
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import assets
+from risorius.geometry.arrays import Floats64
 from risorius.geometry.read_only import read_only
 
 from ..control_names.limits import Limits
@@ -43,9 +43,7 @@ class PlaneScene(Scene):
     def step(self, seconds: float) -> None:
         self._positions[:] = self.waved(self.rest_positions)[0]
 
-    def waved(
-        self, points: npt.NDArray[np.float64]
-    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    def waved(self, points: Floats64) -> tuple[Floats64, Floats64]:
         """Where points of the flat plane z = 0 lie now, and the wave's normals there, (n, 3)."""
         height = self.values["amplitude"] * self.HEIGHT * self._length
         frequency = 2.0 * np.pi * self.WAVES / self._length

@@ -11,15 +11,11 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius.assets.fitting.warp import nearest_on
+from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.read_only import read_only
-
-Floats = npt.NDArray[np.float64]
-Singles = npt.NDArray[np.float32]
-Indices = npt.NDArray[np.int32]
 
 
 class SurfaceAttachment:
@@ -27,10 +23,10 @@ class SurfaceAttachment:
 
     is_enclosed = True
     striation = None
-    vertices: Singles
-    normals: Singles
+    vertices: Floats32
+    normals: Floats32
 
-    def __init__(self, part: Any, skin: Floats, faces: Indices) -> None:
+    def __init__(self, part: Any, skin: Floats64, faces: Integers32) -> None:
         """A part with `roots`, as it stands on the skin at rest, (V, 3) with triangles (F, 3)."""
         self.name = part.name
         self.bone = part.bone
@@ -59,7 +55,7 @@ class SurfaceAttachment:
         self.vertices = part.vertices
         self.normals = part.normals
 
-    def follow(self, skin: Floats, bone: Floats) -> None:
+    def follow(self, skin: Floats64, bone: Floats64) -> None:
         """Stand on the skin as it is now, (V, 3), seen from the part's bone, a matrix (4, 4)."""
         there = (skin[self._near] - bone[:3, 3]) @ np.linalg.inv(bone[:3, :3]).T
         places, frames = self._frames(there)
@@ -68,7 +64,7 @@ class SurfaceAttachment:
         normals = np.einsum("nij,nj->ni", frames[self._row], self._local_normals)
         self.normals = read_only(normals.astype(np.float32))
 
-    def _frames(self, skin: Floats) -> tuple[Floats, Floats]:
+    def _frames(self, skin: Floats64) -> tuple[Floats64, Floats64]:
         """Feet of the roots, (R, 3), and right-handed unit axes there, (R, 3, 3), in columns."""
         normal = self._feet.interpolate(vertex_normals(skin, self._around))
         along = np.einsum("rc,rci->ri", self._across, skin[self._feet.corners])
@@ -77,7 +73,7 @@ class SurfaceAttachment:
         return self._feet.interpolate(skin), axes
 
 
-def _along_x(corners: Floats) -> Floats:
+def _along_x(corners: Floats64) -> Floats64:
     """The weights of triangles' corners (R, 3, 3) in the x axis of their frames, (R, 3)."""
     first = corners[:, 1] - corners[:, 0]
     second = corners[:, 2] - corners[:, 0]
@@ -86,6 +82,6 @@ def _along_x(corners: Floats) -> Floats:
     return np.column_stack([-shares.sum(axis=1), shares])
 
 
-def _unit(vectors: Floats) -> Floats:
+def _unit(vectors: Floats64) -> Floats64:
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.asarray(vectors / np.maximum(lengths, 1e-12))

@@ -20,13 +20,13 @@ from typing import Annotated
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.arrays import Flags, Floats64
 from risorius.schema import REST, OneOf, Record, Within, called
 
 from ..control_names.limits import ControlValues, Limits
 from ..errors import UserError
 from .easings import ALLOWED, Easing, easing_named, easing_names, hermite, shares_of
 
-Floats = npt.NDArray[np.float64]
 Easings = npt.NDArray[np.uint8]  # rows of easings.Easing
 
 DECIMALS = 6  # of numbers that come from sliders and clocks
@@ -57,8 +57,8 @@ class Channel:
     approached, a row of `Easing` each, shape (K, 3), or the name of one easing for all.
     """
 
-    times: Floats
-    values: Floats
+    times: Floats64
+    values: Floats64
     easings: Easings
 
     def __init__(
@@ -135,14 +135,12 @@ class Channel:
         """The lowest and the highest value of all."""
         return float(self.values.min()), float(self.values.max())
 
-    def raised(
-        self, chosen: npt.NDArray[np.bool_], amount: float, low: float, high: float
-    ) -> Channel:
+    def raised(self, chosen: Flags, amount: float, low: float, high: float) -> Channel:
         """The channel with the chosen keys higher, as far as the limits let them; shape (K,)."""
         higher = within(self.values, amount, low, high)
         return Channel(self.times, np.where(chosen, higher, self.values), self.easings)
 
-    def values_at(self, times: Floats) -> Floats:
+    def values_at(self, times: Floats64) -> Floats64:
         """The same at each of many times [s]; both of shape (N,)."""
         after = np.searchsorted(self.times, times, "right")
         before = np.maximum(after - 1, 0)
@@ -151,10 +149,10 @@ class Channel:
         shares = np.where(before < following, (times - self.times[before]) / seconds, 0.0)
         start = self.values[before]
         ways = shares_of(shares, self.easings[following])
-        values: Floats = start + (self.values[following] - start) * ways
+        values: Floats64 = start + (self.values[following] - start) * ways
         return values
 
-    def outline(self, start: float, end: float, count: int) -> tuple[Floats, Floats]:
+    def outline(self, start: float, end: float, count: int) -> tuple[Floats64, Floats64]:
         """Times [s] and values of points that draw the curve between two times.
 
         As true as `count` columns can show it: with every key and every jump where these are
@@ -221,7 +219,7 @@ class Script:
         return tuple(pose.time for pose in self.poses)
 
     @functools.cached_property
-    def _pose_rows(self) -> Floats:
+    def _pose_rows(self) -> Floats64:
         """The values of the `posed_names`, a row for each pose."""
         return np.array([[p.values.get(n, 0.0) for n in self.posed_names] for p in self.poses])
 
@@ -234,14 +232,14 @@ class Script:
         """The value by poses alone of each control that they name, at `time` [s]."""
         return dict(zip(self.posed_names, self._posed(time).tolist(), strict=True))
 
-    def _posed(self, time: float) -> Floats:
+    def _posed(self, time: float) -> Floats64:
         """The same in the order of the `posed_names`."""
         if not self.posed_names:
             return np.zeros(0)
         before, after, share = _between(self._pose_times, time)
         start = self._pose_rows[before]
         end = self._pose_rows[after]
-        posed: Floats = start + (end - start) * easing_named(self.poses[after].easing).of(share)
+        posed: Floats64 = start + (end - start) * easing_named(self.poses[after].easing).of(share)
         return posed
 
     def posed_channel(self, name: str) -> Channel:
@@ -262,7 +260,7 @@ class Script:
         """The values of all controls of a scene at `time` [s], within their limits."""
         return limits.posed(limits.places(self.names), self._sums(time))
 
-    def _sums(self, time: float) -> Floats:
+    def _sums(self, time: float) -> Floats64:
         """The sums of poses and tracks, in the order of the `names`."""
         sums = np.zeros(len(self.names))
         sums[: len(self.posed_names)] = self._posed(time)
@@ -312,7 +310,7 @@ def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
     return after - 1, after, (time - previous) / (following - previous)
 
 
-def within(values: npt.ArrayLike, amount: float, low: float, high: float) -> Floats:
+def within(values: npt.ArrayLike, amount: float, low: float, high: float) -> Floats64:
     """Values higher by an amount, within limits; values beyond these already may stay there."""
     now = np.asarray(values, np.float64)
     higher = np.clip(now + amount, np.minimum(now, low), np.maximum(now, high))

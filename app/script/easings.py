@@ -13,10 +13,10 @@ from collections.abc import Iterator
 from typing import NamedTuple, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Value = TypeVar("Value", float, Floats)
+from risorius.geometry.arrays import Floats64, Unsigned8
+
+Value = TypeVar("Value", float, Floats64)
 
 STEEPEST_TENTHS = 30  # of a slope
 
@@ -64,7 +64,7 @@ def hermite(fraction: Value, start: Value, end: Value) -> Value:
     )
 
 
-def shares_of(fractions: Floats, rows: npt.NDArray[np.uint8]) -> Floats:
+def shares_of(fractions: Floats64, rows: Unsigned8) -> Floats64:
     """The shares of many ways, shape (N,), at fractions of their times; rows: easings, (N, 3)."""
     start = rows[:, 0] / 10
     end = rows[:, 1] / 10

@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.arrays import Flags
+
 Times = npt.NDArray[np.float64]  # [s], shape (K,), rising
 NOTHING: Times = np.empty(0)
 
@@ -111,10 +113,10 @@ class Places(Set[KeyPlace]):
 NOWHERE = Places({})
 
 
-def among(times: Times, others: Times, reach: float = 0.0) -> npt.NDArray[np.bool_]:
+def among(times: Times, others: Times, reach: float = 0.0) -> Flags:
     """Which of the times are one of the others, or no further from one than `reach` [s]."""
     if not len(others):
         return np.zeros(len(times), np.bool_)
     after = np.minimum(np.searchsorted(others, times - reach), len(others) - 1)
-    is_among: npt.NDArray[np.bool_] = np.abs(others[after] - times) <= reach
+    is_among: Flags = np.abs(others[after] - times) <= reach
     return is_among

@@ -7,9 +7,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.arrays import Flags, Floats64
 from risorius.jit import njit
 
-from . import DECIMALS, Channel, Floats
+from . import DECIMALS, Channel
 
 TOLERANCE = 2e-3  # of a value: the largest error of a line between keys; it is invisible
 
@@ -37,9 +38,7 @@ def thinned(times: npt.ArrayLike, values: npt.ArrayLike, tolerance: float = TOLE
 
 
 @njit
-def _corners(
-    times: Floats, values: Floats, ends: Floats, tolerance: float
-) -> npt.NDArray[np.bool_]:
+def _corners(times: Floats64, values: Floats64, ends: Floats64, tolerance: float) -> Flags:
     """Which samples are keys, shape (T,); a key has the value in `ends`."""
     count = len(times)
     is_corner = np.zeros(count, np.bool_)

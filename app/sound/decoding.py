@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.arrays import Floats64
+
 from ..errors import UserError
 from ..extras import needed
 from ..files import read_bytes
@@ -55,9 +57,7 @@ class Peaks:
         self._levels = {self.BLOCK: blocks, 1: swings}
         self._loudest = max(-int(blocks[0].min()), int(blocks[1].max()), 1)
 
-    def between(
-        self, start: float, end: float, count: int
-    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    def between(self, start: float, end: float, count: int) -> tuple[Floats64, Floats64]:
         """The lowest and highest value in each of `count` equal stretches of a time [s].
 
         Each (count,), from -1 to 1, which is as far as the sound ever swings: a quiet recording is

@@ -20,10 +20,11 @@ import scipy
 
 from risorius.geometry.normals import cross_products, vertex_normals
 
+from ...geometry.arrays import Floats64, Integers32
 from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh
-from ..model import FloatArray, Head, IndexArray
+from ..model import Head
 from .mesh_validation import pieces_of
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
@@ -34,7 +35,7 @@ FIRST = (36, 45, 30, 48, 54)
 Known = Mapping[int, npt.ArrayLike]  # points (3,) [unit of the mesh] by the landmark's number
 
 
-def guess(mesh: Mesh, known: Known) -> FloatArray:
+def guess(mesh: Mesh, known: Known) -> Floats64:
     """Where all 68 landmarks lie on a mesh [its unit], shape (68, 3).
 
     known: those of `FIRST` at least; they stay where they are. Raises AssetError where they are
@@ -91,7 +92,7 @@ def placing(known: Known) -> Similarity:
     return similarity
 
 
-def _laid(known: Known) -> tuple[Similarity, FloatArray]:
+def _laid(known: Known) -> tuple[Similarity, Floats64]:
     """What brings known landmarks nearest to the built-in ones, and how far off each is [mm]."""
     head = load("head")
     numbers = sorted(known)
@@ -103,7 +104,7 @@ def _laid(known: Known) -> tuple[Similarity, FloatArray]:
     return similarity, np.linalg.norm(similarity.points(given) - own, axis=1)
 
 
-def skin_around(vertices: FloatArray, faces: IndexArray, given: FloatArray) -> IndexArray:
+def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integers32:
     """The triangles of the skin around some points of a face, facing outward; all in face space.
 
     The skin is what most of the points lie on: eyeballs, teeth and hair are left away.
@@ -121,7 +122,7 @@ def skin_around(vertices: FloatArray, faces: IndexArray, given: FloatArray) -> I
     return np.ascontiguousarray(faces[is_skin & is_near])
 
 
-def _around_landmarks(head: Head) -> IndexArray:
+def _around_landmarks(head: Head) -> Integers32:
     """Some vertices near the landmarks of a head, but those themselves."""
     reach = 30.0  # [mm] around landmarks: the part of the built-in face that is laid on the mesh
     near = scipy.spatial.cKDTree(head.vertices[head.landmarks]).query(head.vertices)[0] < reach
@@ -132,21 +133,21 @@ def _around_landmarks(head: Head) -> IndexArray:
 
 
 def _feet(
-    laid: FloatArray, head: Head, chosen: IndexArray, vertices: FloatArray, faces: IndexArray
-) -> FloatArray:
+    laid: Floats64, head: Head, chosen: Integers32, vertices: Floats64, faces: Integers32
+) -> Floats64:
     """Where some vertices of the laid head come to lie on a mesh that faces as they do."""
     normals = vertex_normals(laid, head.faces)[chosen]
     return nearest_on(laid[chosen], normals, vertices, faces).interpolate(vertices)
 
 
-def centred(vertices: FloatArray, radius: float) -> Similarity:
+def centred(vertices: Floats64, radius: float) -> Similarity:
     """What brings a mesh (V, 3) into the middle, `radius` large, as its file has it."""
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     scale = radius / max(float(np.linalg.norm(vertices - middle, axis=1).max()), 1e-12)
     return Similarity(scale, np.eye(3), -scale * middle)
 
 
-def axes_turned() -> list[FloatArray]:
+def axes_turned() -> list[Floats64]:
     """The 24 rotations that take axes to axes, the one that leaves them alone first."""
     turns = np.rint(scipy.spatial.transform.Rotation.create_group("O").as_matrix())
     return sorted(turns, key=lambda turn: -float(np.trace(turn)))

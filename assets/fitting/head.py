@@ -25,11 +25,12 @@ import scipy
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.read_only import make_read_only
 
+from ...geometry.arrays import Floats32, Floats64, Integers32
 from ..data_files import Image
 from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh, read_mesh
-from ..model import Eye, FineShape, FloatArray, Head, IndexArray, Layer, Part, SingleArray, Wrinkles
+from ..model import Eye, FineShape, Head, Layer, Part, Wrinkles
 from ..topology import boundary_loops, decimated
 from ..user_files import named
 from .landmark_file import COUNT, check_lips, groups_in_disorder, nearest_vertices, read_landmarks
@@ -66,14 +67,14 @@ class FittedHead:
     called: its name or number, "" where it has none.
     """
 
-    vertices: FloatArray
-    faces: IndexArray
-    landmarks: IndexArray
-    bone_depth: FloatArray
+    vertices: Floats64
+    faces: Integers32
+    landmarks: Integers32
+    bone_depth: Floats64
     eyes: tuple[Eye, ...]
     parts: tuple[Part, ...]
-    uv: SingleArray
-    face_uv: IndexArray
+    uv: Floats32
+    face_uv: Integers32
     albedo: Image
     wrinkles: Wrinkles
     segments: Image
@@ -81,7 +82,7 @@ class FittedHead:
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
     to_millimetres: Similarity
-    file_vertices: IndexArray
+    file_vertices: Integers32
     notes: tuple[str, ...] = field(default=(), kw_only=True)
     fine_shape: FineShape | None = field(default=None, kw_only=True)
     called: str = field(default="", kw_only=True)
@@ -139,7 +140,7 @@ def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
         raise AssetError(f"{named(mesh)}: {reason}") from None
 
 
-def lips_parted(mesh: Mesh, landmarks: FloatArray) -> Mesh | None:
+def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
     """The mesh with those vertices apart that its file doubles where the lips touch.
 
     A file doubles vertices along seams of its texture, and the reader makes them one; between lips
@@ -166,7 +167,7 @@ def lips_parted(mesh: Mesh, landmarks: FloatArray) -> Mesh | None:
     return replace(mesh, faces=same[mesh.corners].astype(np.int32), same=same)
 
 
-def fit(mesh: Mesh, landmarks: IndexArray, *, points: FloatArray | None = None) -> FittedHead:
+def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) -> FittedHead:
     """Fit the built-in head to a mesh with 68 landmarks.
 
     landmarks: vertex numbers, shape (68,); points: where they lie exactly [unit of the mesh], shape
@@ -267,7 +268,7 @@ def _painted(
     return built_in, picture, (known.wrinkles, known.segments, light)
 
 
-def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:
+def _simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
     """The same form with as many triangles as can be moved in time."""
     most_attempts = 8  # to simplify a mesh so that it stays a surface
     for attempt in range(most_attempts):
@@ -285,7 +286,7 @@ def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:
     return SkinPiece(vertices, faces, numbers, skin.file_vertices[nearest], np.arange(0))
 
 
-def _placed(points: FloatArray, known: Head) -> Similarity:
+def _placed(points: Floats64, known: Head) -> Similarity:
     """The similarity to millimetres and the face space; AssetError if this is no face."""
     template = known.vertices[known.landmarks]
     extent = np.ptp(points[ORIENTING], axis=0).max()
@@ -318,7 +319,7 @@ def _placed(points: FloatArray, known: Head) -> Similarity:
     return similarity
 
 
-def _is_face(points: FloatArray) -> bool:
+def _is_face(points: Floats64) -> bool:
     """Whether landmarks [unit of the mesh] are those of a face, in their order."""
     with contextlib.suppress(AssetError):
         return bool(_placed(points, load("head")))
@@ -338,7 +339,7 @@ def _check_size(skin: SkinPiece) -> None:
         )
 
 
-def _check_different(points: FloatArray, template: FloatArray) -> None:
+def _check_different(points: Floats64, template: Floats64) -> None:
     """AssetError where landmarks [mm] that are far apart on any face are one place."""
     ways, known = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (points, template))
     # Landmarks so far apart on the built-in head cannot be one place: no muscle spans no way.

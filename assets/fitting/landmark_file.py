@@ -31,9 +31,9 @@ import scipy
 
 from risorius.schema import Within, parsed_json, read
 
+from ...geometry.arrays import Floats64, Integers32
 from ..errors import AssetError
 from ..meshes import FARTHEST, Mesh
-from ..model import FloatArray, IndexArray
 from ..user_files import named, read_file
 from .mesh_validation import SkinPiece, path_lengths, pieces_of, with_seams_joined
 from .warp import nearest_on
@@ -46,7 +46,7 @@ INNER_LIPS = ((61, 62, 63), (65, 66, 67))  # upper, lower
 OUTER_LIPS = ((50, 51, 52), (56, 57, 58))
 
 
-def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray | None]:
+def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]:
     """The 68 landmarks of a mesh: vertex numbers (68,), int32, and points (68, 3) [its unit].
 
     Where the file holds points, the numbers are the nearest vertices; else there are no points.
@@ -71,7 +71,7 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray | Non
         raise type(error)(f"{named(path)}: {error}") from None
 
 
-def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, FloatArray], frozenset[int]]:
+def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, Floats64], frozenset[int]]:
     """Points (3,) [unit of the mesh] of those landmarks that are marked, and which were guessed.
 
     Raises AssetError as `read_landmarks` does, but for those that are missing.
@@ -132,7 +132,7 @@ def _are_numbers(found: list[Any]) -> bool:
     return all(isinstance(entry, int) and not isinstance(entry, bool) for entry in found)
 
 
-def _numbers(found: list[Any], count: int) -> IndexArray:
+def _numbers(found: list[Any], count: int) -> Integers32:
     vertex: Any = Annotated[int, Within(0, count - 1)]
     try:
         return np.array(_read_each(vertex, found), dtype=np.int32)
@@ -140,7 +140,7 @@ def _numbers(found: list[Any], count: int) -> IndexArray:
         raise AssetError(f"{error}: count from 0, in the mesh that is given") from None
 
 
-def _points(found: list[Any]) -> FloatArray:
+def _points(found: list[Any]) -> Floats64:
     try:
         return np.array(_read_each(Point, found))
     except ValueError as error:
@@ -156,7 +156,7 @@ def _read_each(kind: Any, found: list[Any]) -> list[Any]:
     return list(read(dict[str, kind], named_entries, "").values())
 
 
-def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
+def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
     """The vertices nearest to points; each point must be near the mesh."""
     triangles, distance = _triangles_at(points, mesh, mesh.faces)
     most_share = 0.05  # of the way between the outer eye corners: farther off the mesh is a mistake
@@ -180,20 +180,20 @@ def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
     return nearest_vertices(points, mesh.vertices, joined)  # along the skin, across seams
 
 
-def _triangles_at(points: FloatArray, mesh: Mesh, faces: IndexArray) -> tuple[Any, FloatArray]:
+def _triangles_at(points: Floats64, mesh: Mesh, faces: Integers32) -> tuple[Any, Floats64]:
     """The triangles nearest to points, and how far off they are, shapes (n,)."""
     found = nearest_on(points, np.zeros_like(points), mesh.vertices, faces)
     return found.triangles, np.linalg.norm(found.interpolate(mesh.vertices) - points, axis=1)
 
 
-def nearest_vertices(points: FloatArray, vertices: FloatArray, faces: IndexArray) -> IndexArray:
+def nearest_vertices(points: Floats64, vertices: Floats64, faces: Integers32) -> Integers32:
     """The vertices nearest to the points of landmarks, shape (68,).
 
     Where lips touch, the nearest vertex may be on the other lip. So a point inside of the lips goes
     to the nearest vertex that is nearer, along the skin, to the outside of its own lip.
     """
     used = np.unique(faces)
-    numbers: IndexArray = used[scipy.spatial.cKDTree(vertices[used]).query(points)[1]].astype(
+    numbers: Integers32 = used[scipy.spatial.cKDTree(vertices[used]).query(points)[1]].astype(
         np.int32
     )
     to_upper, to_lower = (
@@ -241,7 +241,7 @@ GROUPS = (
 )
 
 
-def groups_in_disorder(points: FloatArray, template: FloatArray) -> list[Group]:
+def groups_in_disorder(points: Floats64, template: Floats64) -> list[Group]:
     """Groups that would fit better in another order; both (68, 3), in the face space [mm].
 
     The order of inner lips in a closed mouth follows from the skin alone: `check_lips`.
@@ -249,7 +249,7 @@ def groups_in_disorder(points: FloatArray, template: FloatArray) -> list[Group]:
     return [group for group in GROUPS if _is_disordered(group, points, template)]
 
 
-def _is_disordered(group: Group, points: FloatArray, template: FloatArray) -> bool:
+def _is_disordered(group: Group, points: Floats64, template: Floats64) -> bool:
     own = slice(group.first, group.first + group.count)
     given, known = (each[own] - each[own].mean(axis=0) for each in (points, template))
     best = scipy.optimize.linear_sum_assignment(given @ known.T, maximize=True)[1]

@@ -17,8 +17,8 @@ import scipy
 from scipy import sparse
 from scipy.sparse import csgraph
 
+from ...geometry.arrays import Floats64, Integers32, Integers64
 from ..errors import AssetError
-from ..model import FloatArray, IndexArray
 from ..topology import unique_points
 
 MOST_TRIANGLES = 250_000
@@ -33,15 +33,15 @@ class ShutMouthError(AssetError):
 class SkinPiece:
     """The piece of a mesh that the landmarks lie on, and where its vertices were."""
 
-    vertices: FloatArray  # (V, 3)
-    faces: IndexArray  # (F, 3)
-    landmarks: IndexArray  # (68,) in this piece
-    file_vertices: IndexArray  # (V,) numbers in the whole mesh
-    file_faces: npt.NDArray[np.int64]  # (F,) likewise
+    vertices: Floats64  # (V, 3)
+    faces: Integers32  # (F, 3)
+    landmarks: Integers32  # (68,) in this piece
+    file_vertices: Integers32  # (V,) numbers in the whole mesh
+    file_faces: Integers64  # (F,) likewise
     is_turned: bool = False  # whether triangles were turned inside out
 
 
-def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> SkinPiece:
+def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> SkinPiece:
     """Leave away what hangs together with no landmark: eyeballs, teeth, vertices of no triangle.
 
     Raises AssetError if landmarks lie on two pieces or on none, or there are too many triangles,
@@ -65,8 +65,8 @@ def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> S
 
 
 def with_seams_joined(
-    vertices: FloatArray, faces: IndexArray, landmarks: IndexArray
-) -> tuple[IndexArray, IndexArray]:
+    vertices: Floats64, faces: Integers32, landmarks: Integers32
+) -> tuple[Integers32, Integers32]:
     """Triangles and landmarks of one piece, where a file has cut it along seams.
 
     Programs double vertices where texture or material change, or give each triangle its own. Where
@@ -93,7 +93,7 @@ def with_seams_joined(
     return (joined, marked) if (piece[marked] == piece[marked[0]]).all() else (faces, landmarks)
 
 
-def _check_count(faces: IndexArray, fewest: float, most: float) -> None:
+def _check_count(faces: Integers32, fewest: float, most: float) -> None:
     if not fewest <= len(faces) <= most:
         cure = "reduce" if len(faces) > most else "subdivide"
         raise AssetError(
@@ -102,14 +102,14 @@ def _check_count(faces: IndexArray, fewest: float, most: float) -> None:
         )
 
 
-def pieces_of(faces: IndexArray, count: int) -> IndexArray:
+def pieces_of(faces: Integers32, count: int) -> Integers32:
     """Which piece of a mesh each of its `count` vertices belongs to, shape (count,)."""
     links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
     graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(count, count))
     return np.asarray(csgraph.connected_components(graph, directed=False)[1], np.int32)
 
 
-def check_manifold(faces: IndexArray, numbers: npt.NDArray[np.int64] | None = None) -> None:
+def check_manifold(faces: Integers32, numbers: Integers64 | None = None) -> None:
     """Raise AssetError unless each edge has one or two triangles, which agree on the outside.
 
     numbers: of the triangles in their file, for messages, shape (F,); None: these are all of it.
@@ -140,7 +140,7 @@ def check_manifold(faces: IndexArray, numbers: npt.NDArray[np.int64] | None = No
         )
 
 
-def check_pieces(faces: IndexArray, count: int) -> None:
+def check_pieces(faces: Integers32, count: int) -> None:
     """Raise AssetError where no piece of a mesh with `count` vertices could be a skin.
 
     The error is that of the largest piece.
@@ -224,7 +224,7 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
     )
 
 
-def _is_covered(corners: FloatArray, point: FloatArray) -> bool:
+def _is_covered(corners: Floats64, point: Floats64) -> bool:
     """Whether one who looks at a point from the front sees a triangle there, or a little behind."""
     edges = np.roll(corners, -1, axis=1) - corners
     to = point - corners
@@ -236,14 +236,14 @@ def _is_covered(corners: FloatArray, point: FloatArray) -> bool:
 
 
 def path_lengths(
-    vertices: FloatArray, faces: IndexArray, starts: npt.NDArray[np.integer[Any]]
-) -> FloatArray:
+    vertices: Floats64, faces: Integers32, starts: npt.NDArray[np.integer[Any]]
+) -> Floats64:
     """Lengths of the shortest paths along edges from each start to all vertices, shape (n, V)."""
     edges = _edges(vertices, faces)
     return np.asarray(csgraph.dijkstra(edges, directed=False, indices=starts))
 
 
-def _edges(vertices: FloatArray, faces: IndexArray) -> Any:
+def _edges(vertices: Floats64, faces: Integers32) -> Any:
     """The lengths of edges, as a graph of vertices."""
     links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     links = np.unique(np.sort(links, axis=1), axis=0)

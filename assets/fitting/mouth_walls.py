@@ -17,10 +17,11 @@ import scipy
 
 from risorius.geometry.rays import exits
 
-from ..model import FloatArray, Head, IndexArray, Part, SingleArray
+from ...geometry.arrays import Floats32, Floats64, Integers32
+from ..model import Head, Part
 from .warp import Similarity, ThinPlateSpline
 
-ShareArray = FloatArray | SingleArray
+ShareArray = Floats64 | Floats32
 WALLS = "oral_cavity"  # how the names of these parts begin
 
 
@@ -34,14 +35,14 @@ class FittedSkin:
     mandible_weight: carried over from the built-in head, shape (V,).
     """
 
-    vertices: FloatArray
-    normals: FloatArray
-    faces: IndexArray
-    landmarks: FloatArray
-    mandible_weight: FloatArray
+    vertices: Floats64
+    normals: Floats64
+    faces: Integers32
+    landmarks: Floats64
+    mandible_weight: Floats64
 
 
-def stretched_walls(walls: FloatArray, shares: ShareArray, mandible: FloatArray) -> FloatArray:
+def stretched_walls(walls: Floats64, shares: ShareArray, mandible: Floats64) -> Floats64:
     """Points [mm], shape (n, 3), between the skull and a jaw that has moved.
 
     shares: how far each goes with the mandible, 0 to 1, shape (n,). mandible: how that has moved,
@@ -51,7 +52,7 @@ def stretched_walls(walls: FloatArray, shares: ShareArray, mandible: FloatArray)
     return np.asarray(walls + shares[:, None] * (moved - walls))
 
 
-def opened_jaws(known: Head, warp: ThinPlateSpline) -> list[FloatArray]:
+def opened_jaws(known: Head, warp: ThinPlateSpline) -> list[Floats64]:
     """How the mandible of another head moves while it opens, half and wholly: matrices (4, 4).
 
     known: the built-in head, whose condyles `warp` takes to the other one.
@@ -71,7 +72,7 @@ def opened_jaws(known: Head, warp: ThinPlateSpline) -> list[FloatArray]:
 
 
 def within_skin(
-    part: Part, fitted: FittedSkin, mouth: Similarity, jaws: Sequence[FloatArray]
+    part: Part, fitted: FittedSkin, mouth: Similarity, jaws: Sequence[Floats64]
 ) -> Part:
     """A part drawn toward the middle of the mouth, until it lies WALL_DEPTH behind all skin.
 
@@ -101,7 +102,7 @@ def within_skin(
     return replace(part, vertices=walls.astype(np.float32))
 
 
-def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[FloatArray, IndexArray]:
+def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integers32]:
     """Vertices and faces of a skin whose border is closed by fans; lids and lips stay open.
 
     The tip of a fan is the middle of the border, as in the plane of a cut neck. The border of a
@@ -118,8 +119,8 @@ def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[FloatArray, IndexArr
     group = scipy.sparse.csgraph.connected_components(links, directed=False)[1][border[:, 0]]
     throat = mouth.points((0.0, -71.0, -10.0))  # behind it by 28 mm
     widest = 1.5 * np.linalg.norm(fitted.landmarks[54] - fitted.landmarks[48])  # of the mouth
-    tips: list[FloatArray] = []
-    fans: list[IndexArray] = []
+    tips: list[Floats64] = []
+    fans: list[Integers32] = []
     for number in np.unique(group):
         edge = border[group == number]
         points = skin[edge[:, 0]]

@@ -16,7 +16,8 @@ import scipy
 
 from risorius.geometry.normals import vertex_normals
 
-from ..model import Eye, FloatArray, Head, IndexArray, Part
+from ...geometry.arrays import Floats64, Integers32
+from ..model import Eye, Head, Part
 from ..topology import boundary_loops, grid_faces
 from .mouth_walls import WALLS, FittedSkin, opened_jaws, within_skin
 from .warp import Similarity, ThinPlateSpline
@@ -49,14 +50,14 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
     return tuple(eyes)
 
 
-def _extent(points: FloatArray) -> float:
+def _extent(points: Floats64) -> float:
     """From corner to corner of an eye [mm]."""
     return float(np.linalg.norm(points[3] - points[0]))
 
 
 def _behind_lids(
-    centre: FloatArray, radius: float, middle: FloatArray, skin: FloatArray
-) -> tuple[FloatArray, float]:
+    centre: Floats64, radius: float, middle: Floats64, skin: Floats64
+) -> tuple[Floats64, float]:
     """Centre and radius [mm] of the sphere that lies behind the lids all around.
 
     centre, radius: about where and how large it is; middle: of the opening; skin: of the lids.
@@ -66,7 +67,7 @@ def _behind_lids(
     sector = np.floor((around / np.pi + 1.0) / 2.0 * sector_count).astype(int) % sector_count
     parts = [skin[sector == k] for k in np.unique(sector)]
 
-    def off(values: FloatArray) -> FloatArray:
+    def off(values: Floats64) -> Floats64:
         """How far the sphere is from the lids in each sector, and from its size."""
         size = radius * np.exp(values[3])
         gaps = np.array([np.linalg.norm(part - values[:3], axis=1).min() for part in parts])
@@ -87,7 +88,7 @@ def _behind_lids(
     return found[:3], radius * float(np.exp(found[3]))
 
 
-def _way_forward(centre: FloatArray, radius: float, skin: FloatArray) -> float:
+def _way_forward(centre: Floats64, radius: float, skin: Floats64) -> float:
     """How far [mm] a sphere may move forward until it touches one of the points in front of it."""
     away = skin - centre
     across = np.linalg.norm(away[:, :2], axis=1)
@@ -99,8 +100,8 @@ def _way_forward(centre: FloatArray, radius: float, skin: FloatArray) -> float:
 
 
 def lids_on_eyes(
-    known: Head, vertices: FloatArray, eyes: Sequence[Eye], shares: Sequence[float]
-) -> FloatArray:
+    known: Head, vertices: Floats64, eyes: Sequence[Eye], shares: Sequence[float]
+) -> Floats64:
     """Vertices moved so that lids lie as far from eyes as the built-in head's.
 
     eyes: in the order of `known.eyes`. shares: for each row of vertices around the eye, from its
@@ -180,7 +181,7 @@ def _bent(part: Part, warp: ThinPlateSpline) -> Part:
 
 
 def with_eyelid_rims(
-    parts: Sequence[Part], vertices: FloatArray, faces: IndexArray, eyes: Sequence[Eye]
+    parts: Sequence[Part], vertices: Floats64, faces: Integers32, eyes: Sequence[Eye]
 ) -> tuple[Part, ...]:
     """The parts of a head, its flesh with a rim for each eye whose skin ends around it.
 
@@ -199,7 +200,7 @@ def with_eyelid_rims(
     )
 
 
-def _edge_around(eye: Eye, vertices: FloatArray, faces: IndexArray) -> list[int]:
+def _edge_around(eye: Eye, vertices: Floats64, faces: Integers32) -> list[int]:
     """The edge of the skin around an eye, in the direction of its faces; [] in a closed socket."""
     most_radii = 1.6  # from the ball's centre: the edge around an eye is nearer
     reach = most_radii * eye.radius
@@ -209,7 +210,7 @@ def _edge_around(eye: Eye, vertices: FloatArray, faces: IndexArray) -> list[int]
     return next((loop for loop in loops if away[loop].max() < reach), [])
 
 
-def _rim_of(eye: Eye, edge: FloatArray) -> tuple[FloatArray, IndexArray]:
+def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
     """Vertices (RIM_ROWS n, 3), row by row, and faces that are seen from the front.
 
     edge: where the skin ends, shape (n, 3), in the direction of its faces. From each of its points
@@ -232,7 +233,7 @@ def _rim_of(eye: Eye, edge: FloatArray) -> tuple[FloatArray, IndexArray]:
     return points, grid_faces(np.arange(len(points)).reshape(RIM_ROWS, -1), closed=True)
 
 
-def _joined(part: Part, rims: Sequence[tuple[FloatArray, IndexArray]]) -> Part:
+def _joined(part: Part, rims: Sequence[tuple[Floats64, Integers32]]) -> Part:
     """A part with rims of its colour, which darken backward."""
     colour = part.colours.mean(axis=0)
     least_light = 0.6  # share at its end, which lies in the shade

@@ -16,7 +16,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 from scipy import sparse
 from scipy.sparse.linalg import cg
@@ -25,22 +24,21 @@ from risorius.geometry.closest import SurfacePoints
 from risorius.geometry.normals import cross_products
 from risorius.geometry.texels import Texels, rates
 
+from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Integers64, Unsigned8
 from ..data_files import Image, read_arrays
 from ..errors import AssetError
-from ..model import FloatArray, Head, IndexArray, Segment, SingleArray, Wrinkles
+from ..model import Head, Segment, Wrinkles
 from ..pictures import LARGEST, Texture
-
-BoolArray = npt.NDArray[np.bool_]
 
 SIZE = 1024  # [texels] each way of maps that are drawn anew
 
 
 def spread_uv(
     known: Head,
-    warped: FloatArray,
+    warped: Floats64,
     nearest: SurfacePoints,
-    skin: tuple[FloatArray, FloatArray, IndexArray],
-) -> SingleArray:
+    skin: tuple[Floats64, Floats64, Integers32],
+) -> Floats32:
     """Texture coordinates in the built-in picture for another head's vertices, shape (V, 2).
 
     warped: the built-in skin, where it was brought; nearest: feet on it.
@@ -92,9 +90,7 @@ def spread_uv(
     return np.stack(columns, axis=1).astype(np.float32)
 
 
-def is_behind_others(
-    feet: FloatArray, vertices: FloatArray, links: npt.NDArray[np.int64]
-) -> BoolArray:
+def is_behind_others(feet: Floats64, vertices: Floats64, links: Integers64) -> Flags:
     """Whether another part of the skin lies over the same place, and nearer to it, shape (V,).
 
     links: edges, shape (E, 2). The middles of long ones count as vertices do: the vertices of a
@@ -114,7 +110,7 @@ def is_behind_others(
         np.linalg.norm(places[beside] - vertices[:, None], axis=2) > distance + competing_distance
     )
     is_nearer = away[beside] < away[: len(feet), None] - 0.5 * competing_distance
-    is_behind: BoolArray = (is_other & (distance < competing_distance) & is_nearer).any(axis=1)
+    is_behind: Flags = (is_other & (distance < competing_distance) & is_nearer).any(axis=1)
     return is_behind
 
 
@@ -136,11 +132,11 @@ def plain_skin(known: Head) -> tuple[Image, Image]:
 class Layout:
     """Where the corners of triangles lie in a picture: texture coordinates and their numbers."""
 
-    uv: SingleArray
-    face_uv: IndexArray
+    uv: Floats32
+    face_uv: Integers32
 
     @property
-    def corners(self) -> FloatArray:
+    def corners(self) -> Floats64:
         """Texture coordinates of each triangle's corners, shape (F, 3, 2)."""
         return self.uv.astype(np.float64)[self.face_uv]
 
@@ -159,15 +155,15 @@ def texels_within(layout: Layout, size: tuple[int, int]) -> Texels:
         ) from None
 
 
-def sampled(picture: npt.NDArray[np.uint8], uv: FloatArray) -> npt.NDArray[np.uint8]:
+def sampled(picture: Unsigned8, uv: Floats64) -> Unsigned8:
     """The texels of a picture at texture coordinates (n, 2)."""
     height, width = picture.shape[:2]
     columns, rows = np.floor(uv * [width, -height] + [0.0, height]).astype(np.int64).T
-    found: npt.NDArray[np.uint8] = picture[rows.clip(0, height - 1), columns.clip(0, width - 1)]
+    found: Unsigned8 = picture[rows.clip(0, height - 1), columns.clip(0, width - 1)]
     return found
 
 
-def drawn_over(picture: Image, layout: Layout, colours: FloatArray | tuple[Image, Layout]) -> Image:
+def drawn_over(picture: Image, layout: Layout, colours: Floats64 | tuple[Image, Layout]) -> Image:
     """A picture with triangles of `layout` drawn over it.
 
     colours: of each corner, shape (F, 3, 3), or another picture and where they lie in it.
@@ -213,9 +209,7 @@ def maps_in(
     return replace(known.wrinkles, map=wrinkles, steepest=steepest), segments, light
 
 
-def own_picture(
-    texture: Texture, faces: npt.NDArray[np.int64], turned: bool
-) -> tuple[Image, Layout] | None:
+def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Image, Layout] | None:
     """The picture of some triangles and where they lie in it; None where they have none.
 
     Several pictures become one, side by side; triangles without one take the others' mean colour.

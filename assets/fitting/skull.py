@@ -17,9 +17,10 @@ import scipy
 
 from risorius.geometry.normals import vertex_normals
 
+from ...geometry.arrays import Floats64
 from ..data_files import read_arrays
 from ..loading import load
-from ..model import FloatArray, Part
+from ..model import Part
 from ..topology import boundary_loops, grid_faces
 from .warp import ThinPlateSpline
 
@@ -29,7 +30,7 @@ FLESH = np.array([0.50, 0.17, 0.15])
 
 def build_skull(
     head: Any,
-    pivots: Mapping[str, FloatArray],
+    pivots: Mapping[str, Floats64],
     names: Collection[str] = ("cranium", "mandible", "spine", "nose", "throat"),
 ) -> dict[str, Part]:
     """Parts under the skin at rest, which move with their bones; all unless names says which.
@@ -86,7 +87,7 @@ def build_skull(
     return parts
 
 
-def _same_directions(ways: FloatArray, seen: FloatArray) -> tuple[Any, Any]:
+def _same_directions(ways: Floats64, seen: Floats64) -> tuple[Any, Any]:
     """Find vertices in the same directions from within the cranium.
 
     ways: (n, 3), seen: (m, 3), places from the condyles [mm]. Returns whether each way has a
@@ -97,9 +98,7 @@ def _same_directions(ways: FloatArray, seen: FloatArray) -> tuple[Any, Any]:
     return apart.min(axis=1) < 0.01, apart.argmin(axis=1)
 
 
-def _under_skin(
-    points: FloatArray, free: FloatArray, skin: FloatArray, normals: FloatArray
-) -> FloatArray:
+def _under_skin(points: Floats64, free: Floats64, skin: Floats64, normals: Floats64) -> Floats64:
     """Push points of bone in where they would leave the skin.
 
     points: (n, 3) [mm]. free: (n,) how far each lies in the part that is pushed [mm]. skin,
@@ -135,7 +134,7 @@ def neck_sections(head: Any) -> list[Part]:
     return parts
 
 
-def _part(name: str, points: FloatArray, faces: Any, colours: FloatArray, bone: str) -> Part:
+def _part(name: str, points: Floats64, faces: Any, colours: Floats64, bone: str) -> Part:
     places, normals, inks = (
         each.astype(np.float32) for each in (points, vertex_normals(points, faces), colours)
     )

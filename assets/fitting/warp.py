@@ -20,7 +20,7 @@ import scipy
 from risorius.geometry.closest import SurfacePoints, closest_points
 from risorius.geometry.read_only import make_read_only
 
-from ..model import FloatArray, IndexArray
+from ...geometry.arrays import Floats64, Integers32
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,14 +28,14 @@ class Similarity:
     """x -> scale * rotation x + shift."""
 
     scale: float
-    rotation: FloatArray  # (3, 3)
-    shift: FloatArray  # (3,)
+    rotation: Floats64  # (3, 3)
+    shift: Floats64  # (3,)
 
     def __post_init__(self) -> None:
         make_read_only(self)
 
     @classmethod
-    def between(cls, source: FloatArray, target: FloatArray) -> Similarity:
+    def between(cls, source: Floats64, target: Floats64) -> Similarity:
         """The one that brings points (n, 3) nearest to others; its determinant may be negative.
 
         That happens where `target` is the mirror image of `source`.
@@ -60,11 +60,11 @@ class Similarity:
         back = self.rotation.T / self.scale
         return Similarity(1.0 / self.scale, self.rotation.T, -back @ self.shift)
 
-    def points(self, points: npt.ArrayLike) -> FloatArray:
+    def points(self, points: npt.ArrayLike) -> Floats64:
         """Points moved, shape (..., 3)."""
         return self.vectors(points) + self.shift
 
-    def vectors(self, vectors: npt.ArrayLike) -> FloatArray:
+    def vectors(self, vectors: npt.ArrayLike) -> Floats64:
         """Displacements turned and scaled, shape (..., 3)."""
         return self.scale * (np.asarray(vectors, dtype=np.float64) @ self.rotation.T)
 
@@ -72,9 +72,7 @@ class Similarity:
 class ThinPlateSpline:
     """The smoothest deformation of space that takes some points to others, or near them."""
 
-    def __init__(
-        self, source: FloatArray, target: FloatArray, give: float | FloatArray = 0.0
-    ) -> None:
+    def __init__(self, source: Floats64, target: Floats64, give: float | Floats64 = 0.0) -> None:
         """Both (n, 3), in no plane; of equal points of `source` the first one counts.
 
         give: how readily points miss their targets where the deformation is less smooth, of all or
@@ -86,13 +84,13 @@ class ThinPlateSpline:
             source[first], target[first], smoothing=give, kernel="linear", degree=1
         )
 
-    def points(self, points: npt.ArrayLike) -> FloatArray:
+    def points(self, points: npt.ArrayLike) -> Floats64:
         """Where points (n, 3) come to lie."""
         return np.asarray(self._spline(np.asarray(points, dtype=np.float64)), np.float64)
 
 
 def nearest_on(
-    points: FloatArray, normals: FloatArray, vertices: FloatArray, faces: IndexArray
+    points: Floats64, normals: Floats64, vertices: Floats64, faces: Integers32
 ) -> SurfacePoints:
     """Feet of points (n, 3) on a mesh; a surface that faces away from a point's normal is farther.
 

@@ -13,11 +13,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from ...geometry.arrays import Floats32, Floats64
 from ..loading import load
-from ..model import FloatArray, SingleArray
 from ..smooth import smooth_step
 
 PARTS = 5  # of each hair, and [mm]
@@ -62,7 +61,7 @@ def drawn_brows(is_man: bool, years: float, random: np.random.Generator) -> Brow
     return Brows(thickness, inner, rise, fall, peak, density, unruly, seed)
 
 
-def painted(brows: Brows, size: int) -> SingleArray:
+def painted(brows: Brows, size: int) -> Floats32:
     """How much of each texel is covered by hairs of brows, 0 to 1, shape (size, size)."""
     random = np.random.default_rng(brows.seed)
     cover = np.zeros((size, size), np.float32)
@@ -72,7 +71,7 @@ def painted(brows: Brows, size: int) -> SingleArray:
     return cover
 
 
-def _hairs(brows: Brows, random: np.random.Generator) -> FloatArray:
+def _hairs(brows: Brows, random: np.random.Generator) -> Floats64:
     """Places along each hair root to tip, seen from the front [mm], shape (n, PARTS + 1, 2)."""
     head = load("head")  # where they begin and end
     inner, outer = head.vertices[head.landmarks[[22, 26]]]
@@ -108,7 +107,7 @@ def _hairs(brows: Brows, random: np.random.Generator) -> FloatArray:
     return np.concatenate([start, start + np.cumsum(steps, axis=1)], axis=1)
 
 
-def _paint(cover: SingleArray, hairs: FloatArray, side: float, tones: FloatArray) -> None:
+def _paint(cover: Floats32, hairs: Floats64, side: float, tones: Floats64) -> None:
     """Paint hairs, which get thin and faint to their tips, on one side, 1 the subject's left."""
     from PIL import Image, ImageDraw
 
@@ -133,7 +132,7 @@ def _paint(cover: SingleArray, hairs: FloatArray, side: float, tones: FloatArray
     np.maximum(covered, np.clip(fine + share_between * soft, 0.0, 0.92), out=covered)
 
 
-def _on_texture(places: FloatArray, side: float) -> npt.NDArray[np.float64]:
+def _on_texture(places: Floats64, side: float) -> Floats64:
     """Column and row on the texture, 0 to 1, of places (x, y) [mm] seen from the front, (n, 2)."""
     across, down = _map()(places).T
     return np.stack([0.5 + side * (across - 0.5), 1.0 - down], axis=-1)
@@ -152,7 +151,7 @@ def _map() -> scipy.interpolate.RBFInterpolator:
 
 
 @lru_cache(maxsize=1)
-def stubble(size: int) -> SingleArray:
+def stubble(size: int) -> Floats32:
     """How much short hairs of a beard cover where one grows, 0 to 1, shape (size, size)."""
     random = np.random.default_rng(0).random((size, size), np.float32)
     hairs = scipy.ndimage.gaussian_filter(random, (1.4, 0.55))

@@ -24,9 +24,10 @@ import scipy
 
 from risorius.geometry.colour import to_linear, to_screen
 
+from ...geometry.arrays import Floats32, Floats64
 from ..data_files import Image, read_arrays, read_image
 from ..loading import load
-from ..model import FloatArray, Head, Part, Segment, SingleArray
+from ..model import Head, Part, Segment
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
 from ..smooth import smooth_step
 from .brows import Brows, drawn_brows, painted, stubble
@@ -75,26 +76,26 @@ PLAIN = Features()
 class _Tints:
     """The maps that recolour the picture, from `data/head_tints.npz`."""
 
-    light: SingleArray  # the picture, linear, without hair (H, W, 3)
-    melanin: SingleArray  # (H, W)
-    blood: SingleArray  # (H, W)
-    hair: SingleArray  # (H, W)
-    lips: SingleArray  # (H, W)
-    beard: SingleArray  # (H, W)
-    brow: SingleArray  # (H, W)
-    scalp: SingleArray  # (H, W)
-    lids: SingleArray  # their edges, where lashes root (H, W)
-    detail: SingleArray  # what of the picture's lightness is relief, in powers of e (H, W)
-    skin: FloatArray  # (5,)
-    melanins: FloatArray  # of the tones in `angles`
-    angles: FloatArray  # ITA, rising
+    light: Floats32  # the picture, linear, without hair (H, W, 3)
+    melanin: Floats32  # (H, W)
+    blood: Floats32  # (H, W)
+    hair: Floats32  # (H, W)
+    lips: Floats32  # (H, W)
+    beard: Floats32  # (H, W)
+    brow: Floats32  # (H, W)
+    scalp: Floats32  # (H, W)
+    lids: Floats32  # their edges, where lashes root (H, W)
+    detail: Floats32  # what of the picture's lightness is relief, in powers of e (H, W)
+    skin: Floats64  # (5,)
+    melanins: Floats64  # of the tones in `angles`
+    angles: Floats64  # ITA, rising
 
     def melanin_of(self, angle: float) -> float:
         """The amount of melanin in a tone (ITA)."""
         return float(np.interp(angle, self.angles, self.melanins))
 
 
-def typology_angle(light: npt.ArrayLike) -> FloatArray:
+def typology_angle(light: npt.ArrayLike) -> Floats64:
     """ITA [deg] of linear light 0..1, shape (..., 3), by L* and b* of CIE 1976."""
     # CIE, of linear sRGB (D65).
     to_yz = np.array([[0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
@@ -148,14 +149,14 @@ def recoloured(
     return _screen_bytes()[steps]
 
 
-def _hair_light(angle: float, features: Features) -> FloatArray:
+def _hair_light(angle: float, features: Features) -> Floats64:
     """Linear light of somebody's hair that is not grey, shape (3,); angle: ITA [deg]."""
     hair = _changes(_tints().melanin_of(angle), 1.0)[2]
     fair_hair = (0.58, 0.44, 0.29)  # sRGB
     return np.asarray(hair + features.fair * (to_linear(np.array(fair_hair)) - hair))
 
 
-def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
+def _kept_hair(tints: _Tints, features: Features) -> Floats32:
     """How much of hair's colour is on each texel, with a person's brows and lids."""
     kept = tints.hair
     if features.brows is not None:
@@ -168,7 +169,7 @@ def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
     return kept
 
 
-def _grown_over(tints: _Tints, features: Features) -> SingleArray:
+def _grown_over(tints: _Tints, features: Features) -> Floats32:
     """The share of each texel that is covered by the hair standing on the scalp, (size, size)."""
     behind = _behind(tints, features).astype(np.float64)
     most_cover = 0.99  # share that dense hair covers
@@ -251,7 +252,7 @@ def built_in_hair(head: Head) -> tuple[Part, ...]:
     return hair_of(OWN_CUT, scalp, to_screen(LOCKS_LIGHTER * to_linear(np.array(OWN.hair))), 1.0)
 
 
-def _behind(tints: _Tints, features: Features) -> SingleArray:
+def _behind(tints: _Tints, features: Features) -> Floats32:
     """How far texels lie behind somebody's hairline [mm]; half as far if the top is bald."""
     lies = BEHIND * tints.scalp - IN_FRONT
     line = features.hairline
@@ -323,7 +324,7 @@ def in_own_colours(
     return coloured(person, angle=angle, blood=blood, irises=irises or drawn, features=features)
 
 
-def _changes(melanin: float, blood: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _changes(melanin: float, blood: float) -> tuple[Floats64, Floats64, Floats64]:
     """Density of melanin and blood that comes to the picture's, and light of hair; (3,) each."""
     amounts = [complexion.melanin for complexion in COMPLEXIONS]
     usual = np.interp(melanin, amounts, [complexion.blood for complexion in COMPLEXIONS])

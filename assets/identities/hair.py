@@ -18,8 +18,9 @@ from scipy.ndimage import map_coordinates
 
 from risorius.geometry.normals import vertex_normals
 
-from ..model import FloatArray, IndexArray, Part, SingleArray
-from ..smooth import Points, Values, smooth_step, unit
+from ...geometry.arrays import Floats32, Floats64, Integers32
+from ..model import Part
+from ..smooth import Points, smooth_step, unit
 from ..topology import grid_faces, quarter
 
 HAIR = "hair"  # the name of the part
@@ -91,7 +92,7 @@ class Hairline:
     temples: float = 0.0
     crown: float = 0.0
 
-    def shift(self, size: int) -> SingleArray:
+    def shift(self, size: int) -> Floats32:
         """How far it lies behind the built-in head's [mm], (size, size)."""
         across = np.linspace(-0.5, 0.5, size)
         up = np.linspace(1.0, 0.0, size)[:, None]
@@ -128,11 +129,11 @@ class Scalp(NamedTuple):
 
     points: Points
     normals: Points
-    faces: IndexArray
-    behind: Values
+    faces: Integers32
+    behind: Floats64
 
 
-def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[Part, ...]:
+def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Part, ...]:
     """The parts drawn as hair; colour: sRGB, shape (3,); length: beside that of the cut."""
     points, normals, faces, behind = scalp
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
@@ -193,7 +194,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[
     return from_within(hair, faces[hangs[faces].all(axis=1)]), loose, hair
 
 
-def from_within(hair: Part, faces: IndexArray) -> Part:
+def from_within(hair: Part, faces: Integers32) -> Part:
     """Some faces of hair as they are seen from the head: below what hangs over, and at tips."""
     used, number = np.unique(faces[:, ::-1], return_inverse=True)
     rows = {n: getattr(hair, n)[used] for n in ("vertices", "normals", "colours", "striation")}
@@ -244,7 +245,7 @@ def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
     )
 
 
-def scalp_of(vertices: Points, faces: IndexArray, uv: Points, behind: SingleArray) -> Scalp:
+def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) -> Scalp:
     """The scalp of a head, finer than its mesh and round between its corners.
 
     uv: of vertices, shape (V, 2). behind: how far texels lie behind the hairline [mm], (H, W).
@@ -252,7 +253,7 @@ def scalp_of(vertices: Points, faces: IndexArray, uv: Points, behind: SingleArra
     """
     height, width = behind.shape
 
-    def far(places: Points) -> Values:
+    def far(places: Points) -> Floats64:
         """How far places on the texture lie behind the hairline [mm]."""
         at = [(1.0 - places[:, 1]) * height - 0.5, places[:, 0] * width - 0.5]
         return np.asarray(map_coordinates(behind, at, order=1, mode="nearest"), np.float64)

@@ -14,7 +14,8 @@ import scipy
 
 from risorius.geometry.normals import vertex_normals
 
-from ..model import FloatArray, Part
+from ...geometry.arrays import Floats64
+from ..model import Part
 from ..smooth import smooth_step, unit
 from ..topology import grid_faces
 from . import hair as short
@@ -25,11 +26,11 @@ HEM = 28.0  # [mm] over which tips thin out, are uneven, rise in front
 FULL = 2.0  # density where no layer is thin; [mm] that hair stands off the head
 VOLUME = 9.0
 DOWN, RIGHT = np.array([(0.0, -1.0, -0.12), (1.0, 0.0, 0.0)])  # it hangs, clear of the back
-Even = FloatArray | float  # a number may stand for all
+Even = Floats64 | float  # a number may stand for all
 
 
 def falling_hair(
-    cut: Fall, scalp: Scalp, head: Any, colour: FloatArray, length: float
+    cut: Fall, scalp: Scalp, head: Any, colour: Floats64, length: float
 ) -> tuple[Part, ...]:
     """The parts that are drawn as hair, the inner side first.
 
@@ -88,7 +89,7 @@ def falling_hair(
     return from_within(hair, hair.faces), short.loose_hairs(hair), hair
 
 
-def _reach(ways: FloatArray, solid: FloatArray) -> FloatArray:
+def _reach(ways: Floats64, solid: Floats64) -> Floats64:
     """How far the skin is in some directions [mm]: a soft maximum of its points nearby.
 
     ways: (n, m, 3) unit. solid: (k, 3) points of the skin, from the middle of the head [mm].
@@ -101,7 +102,7 @@ def _reach(ways: FloatArray, solid: FloatArray) -> FloatArray:
     return np.asarray(mean ** (1.0 / power))
 
 
-def tied_hair(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[Part, ...]:
+def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Part, ...]:
     """The parts that are drawn as hair of a cut with a knot, or a tail; see `falling_hair`."""
     points = scalp.points
     out = -unit(np.array([cut.whorl]))[0]
@@ -156,7 +157,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tupl
 
 
 def _layers(
-    name: str, places: FloatArray, across: FloatArray, thick: Even, dense: Even, colour: FloatArray
+    name: str, places: Floats64, across: Floats64, thick: Even, dense: Even, colour: Floats64
 ) -> Part:
     """Strands side by side, in layers.
 
@@ -189,7 +190,7 @@ def _layers(
     )
 
 
-def _along(places: FloatArray) -> FloatArray:
+def _along(places: Floats64) -> Floats64:
     """How far along strands their places lie [mm], (n, m, 3) -> (n, m)."""
     steps = np.linalg.norm(np.diff(places, axis=1, prepend=places[:, :1]), axis=2)
     return np.asarray(steps.cumsum(axis=1))

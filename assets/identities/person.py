@@ -17,6 +17,7 @@ import scipy
 
 from risorius.geometry.normals import cross_products, vertex_normals
 
+from ...geometry.arrays import Floats32, Floats64, Integers32
 from ..data_files import Image
 from ..errors import AssetError
 from ..fitting.head import FittedHead
@@ -25,7 +26,7 @@ from ..fitting.organs import EYE_LANDMARKS, lids_on_eyes, place_parts
 from ..fitting.warp import Similarity, ThinPlateSpline
 from ..intersections import self_intersections
 from ..loading import load
-from ..model import Eye, FloatArray, Head, IndexArray, SingleArray
+from ..model import Eye, Head
 from ..norms import measures_of
 from ..smooth import smooth_step
 from .space import Identity, Sex, person_space, scores_of
@@ -41,10 +42,10 @@ class Person(FittedHead):
     in_tone: makes the texture in another tone, from the angle of `recoloured` [deg].
     """
 
-    mandible_weight: FloatArray
-    jaw_axis: FloatArray
+    mandible_weight: Floats64
+    jaw_axis: Floats64
     anatomy: Mapping[str, int]
-    mirror: IndexArray
+    mirror: Integers32
     identity: Identity
     in_tone: Callable[[float], Image] | None = field(default=None, kw_only=True)
 
@@ -132,7 +133,7 @@ def _made(identity: Identity) -> Person:
     )
 
 
-def _on_neck(points: FloatArray, chin: FloatArray, sex: Sex) -> FloatArray:
+def _on_neck(points: Floats64, chin: Floats64, sex: Sex) -> Floats64:
     """Points of a skin or a shirt, of which those below the jaw lie on the neck of that sex."""
     jaw_slope = 0.35  # of the jaw's line, up to the back
     jaw_depth = 20.0  # [mm] where it ends
@@ -145,8 +146,8 @@ def _on_neck(points: FloatArray, chin: FloatArray, sex: Sex) -> FloatArray:
 
 
 def _resting_face(
-    known: Head, vertices: FloatArray, eyes: tuple[Eye, ...], identity: Identity
-) -> FloatArray:
+    known: Head, vertices: Floats64, eyes: tuple[Eye, ...], identity: Identity
+) -> Floats64:
     """Vertices with the lids, the corners of the mouth, and the brows of an identity at rest."""
     x = vertices.copy()
     lower_lid_height = -0.96  # share of the iris' radius
@@ -180,7 +181,7 @@ def _resting_face(
     return x
 
 
-def _resting(known: Head, identity: Identity) -> SingleArray:
+def _resting(known: Head, identity: Identity) -> Floats32:
     """How far furrows show in a face at rest, 0 to 1, shape (V,): between the brows they frown."""
     past = float(np.clip((identity.age - 30.0) / 45.0, 0.0, 1.0))
     off = known.vertices - known.vertices[known.anatomy["glabella"]]
@@ -191,13 +192,13 @@ def _resting(known: Head, identity: Identity) -> SingleArray:
     return np.asarray(most_resting[identity.sex] * past * past * (1.0 - frowned), np.float32)
 
 
-def _named(known: Head) -> IndexArray:
+def _named(known: Head) -> Integers32:
     """Vertices that lead what lies in the head: landmarks, named points, rows of lips and lids."""
     rows = [row for name, row in known.rings.items() if name.startswith(("mouth_", "eye_1"))]
     return np.unique(np.concatenate([known.landmarks, list(known.anatomy.values()), *rows]))
 
 
-def _eye(known: Head, eye: Eye, vertices: FloatArray) -> Eye:
+def _eye(known: Head, eye: Eye, vertices: Floats64) -> Eye:
     """An eyeball behind its lids; eyeballs differ less than their openings."""
     corners = known.landmarks[EYE_LANDMARKS[eye.name]][[0, 3]]
     before, now = (np.linalg.norm(np.diff(x[corners], axis=0)) for x in (known.vertices, vertices))

@@ -27,9 +27,9 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ...geometry.arrays import Floats64
 from ..data_files import read_arrays
 from ..loading import load
-from ..model import FloatArray
 from ..norms import NORMS, Sample, measures_of
 
 MOST = 2.5  # deviations
@@ -102,21 +102,21 @@ def scores_of(measures: Mapping[str, float], sex: Sex) -> dict[str, float]:
 class PersonSpace:
     """mean + weights @ modes [mm]."""
 
-    mean: FloatArray
+    mean: Floats64
     """Vertices, shape (V, 3)."""
-    modes: FloatArray
+    modes: Floats64
     """Shape (k, V, 3)."""
-    slopes: FloatArray
+    slopes: Floats64
     """How the measures of NORMS change with each weight [mm], shape (m, k)."""
-    pushed: FloatArray
+    pushed: Floats64
     """How POINTS go their way with each weight [mm], shape (n, k)."""
     anatomy: Mapping[str, int]
 
-    def moved(self, weights: FloatArray) -> FloatArray:
+    def moved(self, weights: Floats64) -> Floats64:
         """Displacements from the mean, shape (V, 3)."""
         return np.asarray(np.tensordot(weights, self.modes, 1), dtype=np.float64)
 
-    def draw(self, sex: Sex, age: float, random: np.random.Generator) -> FloatArray:
+    def draw(self, sex: Sex, age: float, random: np.random.Generator) -> Floats64:
         """The weights of somebody of that sex and age [years], shape (k,)."""
         rows, off = self._measured(sex)
         measured = rows.T @ rows
@@ -159,7 +159,7 @@ class PersonSpace:
         most_deviations = 4.0  # of any weight that is drawn
         return np.clip(mean + spread @ chance, -most_deviations, most_deviations)
 
-    def _measured(self, sex: Sex) -> tuple[FloatArray, FloatArray]:
+    def _measured(self, sex: Sex) -> tuple[Floats64, Floats64]:
         """The norms as equations for weights: rows (m, k), right side (m,), in deviations."""
         found = measures_of(self.mean, self.anatomy)
         norms = norms_of(sex)

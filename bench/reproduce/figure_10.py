@@ -15,7 +15,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import PIL.Image
 
 from risorius import assets, refine, render
@@ -23,6 +22,7 @@ from risorius.app.capture.captions import LANCZOS
 from risorius.app.capture.drawing import camera_for
 from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene
+from risorius.geometry.arrays import Flags, Unsigned8
 
 from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table, parts_without_hair
 from ..subjects import SETTLE, Points, fine_simulation, settled_positions
@@ -69,7 +69,7 @@ class Cell:
     title: str
     triangles: int
     smooth: Image
-    kinds: npt.NDArray[np.uint8]  # skin, mouth, background, FINER times as fine, (H, W)
+    kinds: Unsigned8  # skin, mouth, background, FINER times as fine, (H, W)
 
     def off(self, truth: Cell) -> Points:
         """How far each pixel of the smooth picture is from the truth [levels of 255], (H, W)."""
@@ -80,7 +80,7 @@ class Cell:
         """Root mean square of that."""
         return float(np.sqrt((self.off(truth) ** 2).mean()))
 
-    def wrong(self, truth: Cell) -> npt.NDArray[np.bool_]:
+    def wrong(self, truth: Cell) -> Flags:
         """Fine pixels that are the opening of the mouth here, or there, but not in both."""
         return np.asarray((self.kinds == MOUTH) != (truth.kinds == MOUTH))
 

@@ -20,6 +20,7 @@ import numpy.typing as npt
 from risorius import refine, render
 from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import Scene, build_scene
+from risorius.geometry.arrays import Flags
 
 from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table, parts_without_hair
 from .experiments import Outcome
@@ -102,7 +103,7 @@ def measure(refiner: refine.Refiner, faces: Faces, positions: Points) -> tuple[S
     return before, _shapes(corners[is_part], directions[mesh.source[is_part]])
 
 
-def find_folds(faces: Faces, positions: Points) -> tuple[Points, npt.NDArray[np.bool_]]:
+def find_folds(faces: Faces, positions: Points) -> tuple[Points, Flags]:
     """The direction of least curvature in each triangle (F, 3), and whether it lies in a fold."""
     static = refine.create("none", faces, positions).refine(positions)
     x, normals = (each.astype(np.float64)[static.triangles] for each in static[:2])

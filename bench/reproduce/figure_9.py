@@ -10,7 +10,6 @@ Kähler, Haber, Seidel 2003, section 5.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import refine, render
 from risorius.app.capture.drawing import camera_for
@@ -18,6 +17,7 @@ from risorius.app.pictures import Image
 from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
 from risorius.assets.sheets import CELL, COLUMNS, ROWS, make_grid
+from risorius.geometry.arrays import Floats64
 
 from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table
 from .experiments import Outcome
@@ -117,6 +117,6 @@ def outline_apart(image: Image, truth: Image) -> float:
     return float((shows != true_shows).sum() / true_shows.sum())
 
 
-def _grey(image: Image) -> npt.NDArray[np.float64]:
-    grey: npt.NDArray[np.float64] = image.mean(axis=2)
+def _grey(image: Image) -> Floats64:
+    grey: Floats64 = image.mean(axis=2)
     return grey

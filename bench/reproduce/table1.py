@@ -27,6 +27,7 @@ from risorius.app.capture.drawing import camera_for
 from risorius.app.performances import script_for
 from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import FaceScene, PlaneScene, Scene
+from risorius.geometry.arrays import Floats64
 
 from ..canvas import GOURAUD, Canvas, Drawing
 from ..refine import interleaved
@@ -58,7 +59,7 @@ class Row:
     """Half of the rounds lie between these."""
 
     @classmethod
-    def of(cls, title: str, static: int, dynamic: int, seconds: npt.NDArray[np.float64]) -> Row:
+    def of(cls, title: str, static: int, dynamic: int, seconds: Floats64) -> Row:
         """A row of ours. seconds: of static and refined in each round, shape (rounds, 2)."""
         ratios = static / dynamic * seconds[:, 1] / seconds[:, 0]
         low, ratio, high = np.percentile(ratios, (25, 50, 75)).tolist()
@@ -84,7 +85,7 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
         canvas.draw(refiner, positions, drawing)
         canvas.surface.gl.finish()
 
-    def timed(work: Callable[[refine.Refiner], object], rounds: int) -> npt.NDArray[np.float64]:
+    def timed(work: Callable[[refine.Refiner], object], rounds: int) -> Floats64:
         return interleaved([partial(work, static), partial(work, dynamic)], rounds)
 
     seconds = {}

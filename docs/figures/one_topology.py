@@ -15,6 +15,7 @@ from refinement import INK, NEW, PAPER, SECOND, Colour, Diagram
 from risorius import assets, refine, sim
 from risorius.app.pictures import Image
 from risorius.bench.subjects import SETTLE, settled_positions
+from risorius.geometry.arrays import Flags
 
 Points = npt.NDArray[np.float64]
 
@@ -29,9 +30,7 @@ def shaded(colour: Colour, light: float) -> Colour:
     return red, green, blue
 
 
-def draw_frame(
-    diagram: Diagram, mesh: refine.RefinedMesh, is_split: npt.NDArray[np.bool_], left: float
-) -> Points:
+def draw_frame(diagram: Diagram, mesh: refine.RefinedMesh, is_split: Flags, left: float) -> Points:
     """Draw the triangles that look at the reader; return where all vertices are, (N, 2)."""
     centre = np.array([left + PANEL[0] / 2.0, CAPTION + PANEL[1] / 2.0])
     pixels = 2.45  # of a millimetre
@@ -63,7 +62,7 @@ def one_topology() -> Image:
     frames = [settled_positions(simulation, head.expressions[each], SETTLE) for each in expressions]
     splits = refine.splits_of_clip(refine.create("kahler", head.faces, head.vertices), frames)
     refiner = refine.create("kahler", head.faces, head.vertices, splits=splits)
-    is_split: npt.NDArray[np.bool_] = np.any(splits[refiner.triangle_edges], axis=1)
+    is_split: Flags = np.any(splits[refiner.triangle_edges], axis=1)
     diagram = Diagram(2 * PANEL[0], PANEL[1] + CAPTION)
     for panel, (expression, frame) in enumerate(zip(expressions, frames, strict=True)):
         mesh = refiner.refine(frame)

@@ -20,6 +20,7 @@ from risorius.app.passes.passes import NAMES, Passes
 from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
+from risorius.geometry.arrays import Flags
 
 
 def passes(size: tuple[int, int] = (440, 500)) -> Image:
@@ -87,13 +88,13 @@ def _palette() -> dict[int, Any]:
     return {count: 255.0 * tint for count, tint in enumerate(tints)}
 
 
-def _grey(depth: npt.NDArray[Any], on: npt.NDArray[np.bool_]) -> npt.NDArray[Any]:
+def _grey(depth: npt.NDArray[Any], on: Flags) -> npt.NDArray[Any]:
     near = depth[on].min()
     far = depth[on].max()
     return np.repeat(((60.0 + 195.0 * (far - depth) / (far - near)) * on)[..., None], 3, axis=2)
 
 
-def _directions(normal: npt.NDArray[Any], on: npt.NDArray[np.bool_]) -> npt.NDArray[Any]:
+def _directions(normal: npt.NDArray[Any], on: Flags) -> npt.NDArray[Any]:
     shown: npt.NDArray[Any] = 127.5 * (1.0 + normal * [1.0, -1.0, -1.0]) * on[..., None]
     return shown
 

@@ -19,6 +19,7 @@ from PIL import ImageDraw
 
 from risorius.app.capture.captions import font
 from risorius.app.pictures import Image
+from risorius.geometry.arrays import Floats64
 from risorius.refine.kahler.table import POINTS, splits_of, subdivide
 
 Places = npt.NDArray[np.float64]
@@ -73,7 +74,7 @@ class Diagram:
         return float(x * self.SCALE), float((self.size[1] - y) * self.SCALE)
 
 
-def equilateral(centre: Place, side: float) -> npt.NDArray[np.float64]:
+def equilateral(centre: Place, side: float) -> Floats64:
     """Corners 0, 1, 2 of an upright triangle, counter-clockwise from the lower left, (3, 2)."""
     height = side * np.sqrt(3.0) / 2.0
     offsets = np.array([[-side / 2, -height / 2], [side / 2, -height / 2], [0.0, height / 2]])

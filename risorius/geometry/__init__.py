@@ -1,5 +1,6 @@
 """Computations on triangles and colours that several rooms share; numpy and numba only.
 
+arrays.py       types of arrays
 closest.py      the closest points of a triangle mesh
 normals.py      cross products of triangles, normals of vertices
 texels.py       the texels of a picture that triangles lie over

@@ -14,10 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..jit import njit
+from .arrays import Floats64, Integers64
 from .normals import cross_products
-
-Doubles = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 """Cosine between two normals above which they look the same way: 73 degrees."""
 LEAF_SIZE = 4
@@ -29,19 +27,19 @@ LEAF_SIZE = 4
 class SurfacePoints:
     """For each of n points, the place on a triangle mesh that is closest to it."""
 
-    distances: Doubles
+    distances: Floats64
     """Shape (n,)."""
-    triangles: Integers
+    triangles: Integers64
     """Shape (n,)."""
     corners: npt.NDArray[np.integer]
     """Vertices of the triangle, shape (n, 3)."""
-    weights: Doubles
+    weights: Floats64
     """Barycentric coordinates in it, shape (n, 3)."""
 
-    def interpolate(self, values: npt.NDArray[np.floating]) -> Doubles:
+    def interpolate(self, values: npt.NDArray[np.floating]) -> Floats64:
         """Values of the mesh's vertices, (V,) or (V, k), at these places."""
         wide = np.asarray(values, dtype=np.float64)[self.corners]
-        carried: Doubles = np.einsum("nc,nc...->n...", self.weights, wide)
+        carried: Floats64 = np.einsum("nc,nc...->n...", self.weights, wide)
         return carried
 
 
@@ -74,7 +72,7 @@ def closest_points(
     return SurfacePoints(distances, triangles, faces[triangles], weights)
 
 
-def places_on_curve(positions: Doubles) -> Integers:
+def places_on_curve(positions: Floats64) -> Integers64:
     """How far along a curve that fills space each position lies, shape (V,)."""
     if len(positions) == 0:
         return np.zeros(0, dtype=np.int64)
@@ -90,7 +88,7 @@ def places_on_curve(positions: Doubles) -> Integers:
     return places
 
 
-def _boxes(corners: Doubles) -> Doubles:
+def _boxes(corners: Floats64) -> Floats64:
     """Boxes in heap order (children of k: 2 k and 2 k + 1), low and high, shape (2 n, 6)."""
     leaf_count = 1 << max(0, int(np.ceil(np.log2(len(corners) / LEAF_SIZE))))
     boxes = np.full((2 * leaf_count, 6), np.inf)

@@ -7,21 +7,21 @@ Refiners find normals in every frame by a kernel of their own, in single precisi
 import numpy as np
 import numpy.typing as npt
 
-Doubles = npt.NDArray[np.float64]
+from .arrays import Floats64
 
 
-def cross_products(vertices: Doubles, faces: npt.NDArray[np.integer]) -> Doubles:
+def cross_products(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats64:
     """Face normals times twice the area, shape (F, 3)."""
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
     return np.cross(b - a, c - a)
 
 
-def vertex_normals(vertices: Doubles, faces: npt.NDArray[np.integer]) -> Doubles:
+def vertex_normals(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats64:
     """Unit normals of the vertices, faces weighted by area, shape (V, 3); zero where none is."""
     cross = cross_products(vertices, faces)
     corners = faces.T.ravel()
     total = np.stack(
         [np.bincount(corners, np.tile(each, 3), len(vertices)) for each in cross.T], axis=1
     )
-    normals: Doubles = total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
+    normals: Floats64 = total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
     return normals

@@ -7,12 +7,13 @@ Graphics Tools 2:21-28.
 import numpy as np
 import numpy.typing as npt
 
-from .normals import Doubles, cross_products
+from .arrays import Floats64
+from .normals import cross_products
 
 PARALLEL = 1e-12  # below it a triangle is seen from its edge, and nothing is met
 
 
-def crossings(origins: Doubles, directions: Doubles, corners: Doubles) -> tuple[Doubles, ...]:
+def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tuple[Floats64, ...]:
     """Of each line `origin + t direction` and its triangle: volume, weights u and v, and t.
 
     origins, directions: (n, 3) or (3,). corners: (n, 3, 3). volume: six times that of direction
@@ -34,8 +35,8 @@ def crossings(origins: Doubles, directions: Doubles, corners: Doubles) -> tuple[
 
 
 def exits(
-    origin: Doubles, directions: Doubles, vertices: Doubles, faces: npt.NDArray[np.integer]
-) -> tuple[npt.NDArray[np.intp], Doubles, Doubles]:
+    origin: Floats64, directions: Floats64, vertices: Floats64, faces: npt.NDArray[np.integer]
+) -> tuple[npt.NDArray[np.intp], Floats64, Floats64]:
     """Where rays from one point within a surface pass through it from inside to outside.
 
     directions: unit vectors, shape (n, 3). vertices: shape (V, 3). faces: counter-clockwise seen

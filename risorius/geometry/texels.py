@@ -8,9 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..jit import njit
-
-Doubles = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
+from .arrays import Floats64, Integers64
 
 """Texels tried for all triangles: a fair layout needs two for each that it has."""
 
@@ -19,17 +17,17 @@ Integers = npt.NDArray[np.int64]
 class Texels:
     """Texels within triangles; one that several triangles have is there several times."""
 
-    rows: Integers
+    rows: Integers64
     """From the top, shape (n,)."""
-    columns: Integers
+    columns: Integers64
     """From the left, shape (n,)."""
-    faces: Integers
+    faces: Integers64
     """The triangle, shape (n,)."""
-    weights: Doubles
+    weights: Floats64
     """Barycentric coordinates in it, shape (n, 3); beside it those of a place on its border."""
 
     @classmethod
-    def within(cls, corners: Doubles, size: tuple[int, int], margin: float = 0.0) -> Texels:
+    def within(cls, corners: Floats64, size: tuple[int, int], margin: float = 0.0) -> Texels:
         """Those in triangles with `corners` (F, 3, 2), or within a margin [texels] beside them.
 
         corners: texture coordinates, from the left and from below, 0..1. size: height and width.
@@ -55,13 +53,13 @@ class Texels:
         rows, columns, faces = found[order].T
         return cls(rows, columns, faces, inside / inside.sum(axis=1, keepdims=True))
 
-    def interpolate(self, values: npt.NDArray[np.floating]) -> Doubles:
+    def interpolate(self, values: npt.NDArray[np.floating]) -> Floats64:
         """Values of corners, (F, 3, ...), at the texels, shape (n, ...)."""
-        found: Doubles = np.einsum("nc,nc...->n...", self.weights, values[self.faces])
+        found: Floats64 = np.einsum("nc,nc...->n...", self.weights, values[self.faces])
         return found
 
 
-def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -> Doubles:
+def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -> Floats64:
     """How fast `values` (F, 3, k) change along u and along v in triangles, shape (F, 2, k).
 
     corners: their texture coordinates, (F, 3, 2); triangles without area have no rates, 0.
@@ -75,7 +73,7 @@ def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -
 
 @njit
 def _walk(
-    places: Doubles, boxes: Integers, margin: float, found: Integers, weights: Doubles
+    places: Floats64, boxes: Integers64, margin: float, found: Integers64, weights: Floats64
 ) -> int:
     """Write row, column and triangle of texels, and weights, as far as there is room; count all."""
     count = 0

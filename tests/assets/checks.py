@@ -1,17 +1,14 @@
 """Questions that every head mesh must answer well: is it one clean, symmetric surface?"""
 
 import numpy as np
-import numpy.typing as npt
 from numpy.linalg import norm
 from scipy import sparse
 from scipy.sparse import csgraph
 
 from risorius.assets.model import Head, Part
 from risorius.assets.topology import Edge, Faces
+from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.normals import cross_products
-
-FloatArray = npt.NDArray[np.float64]
-IndexArray = npt.NDArray[np.int32]
 
 
 def edge_faces(faces: Faces) -> dict[Edge, list[int]]:
@@ -23,14 +20,14 @@ def edge_faces(faces: Faces) -> dict[Edge, list[int]]:
     return result
 
 
-def is_manifold(faces: IndexArray) -> bool:
+def is_manifold(faces: Integers32) -> bool:
     """Whether every edge has one or two faces and its two faces run along it in opposite ways."""
     directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     has_no_repeat = len(np.unique(directed, axis=0)) == len(directed)
     return has_no_repeat and all(len(beside) <= 2 for beside in edge_faces(faces).values())
 
 
-def component_count(faces: IndexArray) -> int:
+def component_count(faces: Integers32) -> int:
     """Number of pieces that hang together by shared vertices."""
     used, corners = np.unique(faces, return_inverse=True)
     links = corners.reshape(-1, 3)[:, [0, 1, 1, 2]].reshape(-1, 2)
@@ -38,20 +35,20 @@ def component_count(faces: IndexArray) -> int:
     return int(csgraph.connected_components(graph, directed=False)[0])
 
 
-def euler_characteristic(vertices: FloatArray, faces: IndexArray) -> int:
+def euler_characteristic(vertices: Floats64, faces: Integers32) -> int:
     """Vertices - edges + faces: 2 - boundary loops for a sphere with holes."""
     return len(vertices) - len(edge_faces(faces)) + len(faces)
 
 
-def mirror_error(vertices: FloatArray, mirror: IndexArray) -> float:
+def mirror_error(vertices: Floats64, mirror: Integers32) -> float:
     """Largest distance between a vertex' mirror image and the vertex that should lie there [mm]."""
     return float(np.abs(vertices * [-1.0, 1.0, 1.0] - vertices[mirror]).max())
 
 
-def is_mirrored(faces: IndexArray, mirror: IndexArray) -> bool:
+def is_mirrored(faces: Integers32, mirror: Integers32) -> bool:
     """Whether the mirror image of every face is a face, turned over."""
 
-    def normalised(triangles: IndexArray) -> set[tuple[int, ...]]:
+    def normalised(triangles: Integers32) -> set[tuple[int, ...]]:
         """Each triangle from its lowest vertex on."""
         start = triangles.argmin(axis=1)
         order = (start[:, None] + np.arange(3)) % 3
@@ -82,7 +79,7 @@ def part(head: Head, name: str) -> Part:
     return next(found for found in head.parts if found.name == name)
 
 
-def winding_numbers(vertices: FloatArray, faces: IndexArray, points: FloatArray) -> FloatArray:
+def winding_numbers(vertices: Floats64, faces: Integers32, points: Floats64) -> Floats64:
     """How often a surface goes around points, shape (n,): 1 deep inside, 0 outside.
 
     Less than 1 where it is open. Source: Jacobson et al. 2013, "Robust inside-outside

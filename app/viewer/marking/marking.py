@@ -22,6 +22,7 @@ from risorius.assets.fitting.landmark_file import landmarks_text, read_marks
 from risorius.assets.fitting.mesh_validation import check_pieces
 from risorius.assets.fitting.warp import Similarity
 from risorius.assets.meshes import read_mesh
+from risorius.geometry.arrays import Floats64
 from risorius.geometry.normals import vertex_normals
 from risorius.sim.landmarks import LANDMARK_COUNT
 
@@ -34,7 +35,6 @@ from ..session.document import History
 
 INNER_LIPS = range(60, 68)
 
-FloatArray = npt.NDArray[np.float64]
 Place = tuple[float, float, float]  # in the mesh's own coordinates
 Colour = tuple[float, float, float]  # sRGB
 
@@ -84,7 +84,7 @@ class Marks:
         x, y, z = np.asarray(place, np.float64).tolist()
         return Marks({**self.places, number: (x, y, z)}, self.guessed - {number})
 
-    def with_guessed(self, found: FloatArray) -> Marks:
+    def with_guessed(self, found: Floats64) -> Marks:
         """These marks with guessed places, shape (68, 3), except for those placed by hand."""
         guessed = {n: (x, y, z) for n, (x, y, z) in enumerate(found.tolist())}
         return Marks({**guessed, **self.by_hand}, frozenset(guessed.keys() - self.by_hand.keys()))
@@ -141,11 +141,11 @@ class Marking:
         self._nearest = scipy.spatial.cKDTree(self.positions)
 
     @property
-    def positions(self) -> FloatArray:
+    def positions(self) -> Floats64:
         """The vertices as they are seen, shape (V, 3)."""
         return self.seen_mesh.positions
 
-    def turn(self, rotation: FloatArray) -> None:
+    def turn(self, rotation: Floats64) -> None:
         """Turn the mesh by a matrix (3, 3), as long as the marks do not show which way is up."""
         now = self.placing
         self._place(Similarity(now.scale, rotation @ now.rotation, rotation @ now.shift))
@@ -164,7 +164,7 @@ class Marking:
             self._place(upright)
             self.current = ORDER[0]
 
-    def seen(self, numbers: Iterable[int]) -> tuple[FloatArray, FloatArray]:
+    def seen(self, numbers: Iterable[int]) -> tuple[Floats64, Floats64]:
         """Where marks are seen, shape (n, 3), and normals of the skin around, shape (n, k, 3)."""
         chosen = list(numbers)
         places = [self.marks.places[number] for number in chosen]
@@ -179,7 +179,7 @@ class Marking:
 
     # Changes of the marks
 
-    def put(self, number: int, point: FloatArray) -> None:
+    def put(self, number: int, point: Floats64) -> None:
         """Place a landmark at a point of the mesh as it is seen; `note` completes the change."""
         self.marks = self.marks.placed(number, self.placing.inverse.points(point))
 

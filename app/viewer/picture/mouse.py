@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 from imgui_bundle import imgui
 
+from risorius.geometry.arrays import Floats64
+
 from ..interface.gui import LEFT, MIDDLE, RIGHT, em
 from ..messages import Messages
-from .skin import Array, Ray, SkinDrag, skin_under
+from .skin import Ray, SkinDrag, skin_under
 from .stage import Stage, View
 
 Grab = Callable[..., SkinDrag]
@@ -98,7 +100,7 @@ class CameraMouse:
         under = [each for each in viewports if x >= each.seen[0]] or viewports[:1]
         return Ray.through(self._view.camera, under[-1].area, (x, y))
 
-    def _skin_under(self, io: Any) -> Array | None:
+    def _skin_under(self, io: Any) -> Floats64 | None:
         """The point of the mesh that the mouse is on."""
         scene = self._stage.scene
         return skin_under(self._ray(io), scene.positions, scene.faces)

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import render, sim
+from risorius.geometry.arrays import Floats64
 from risorius.geometry.rays import PARALLEL, crossings
 
 from ...control_names import OPPOSITE, TURNED, called, parted, twin_of
@@ -21,15 +22,13 @@ from ..messages import Message
 from ..session.session import Session
 from ..settings import Settings
 
-Array = npt.NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class Ray:
     """A ray from the camera through one pixel."""
 
-    origin: Array
-    direction: Array
+    origin: Floats64
+    direction: Floats64
 
     @classmethod
     def through(
@@ -44,14 +43,14 @@ class Ray:
         near, far = ends[:, :3] / ends[:, 3:]
         return cls(near, (far - near) / np.linalg.norm(far - near))
 
-    def at_depth_of(self, point: Array, axis: Array) -> Array:
+    def at_depth_of(self, point: Floats64, axis: Floats64) -> Floats64:
         """Where the ray meets the plane through `point` across `axis` (the line of sight)."""
         along = float((point - self.origin) @ axis) / float(self.direction @ axis)
-        met: Array = self.origin + along * self.direction
+        met: Floats64 = self.origin + along * self.direction
         return met
 
 
-def skin_under(ray: Ray, positions: Array, faces: npt.NDArray[Any]) -> Array | None:
+def skin_under(ray: Ray, positions: Floats64, faces: npt.NDArray[Any]) -> Floats64 | None:
     """The nearest point of the mesh that the ray meets from outside, or None.
 
     Only triangles whose corners lie around the ray are asked.
@@ -67,7 +66,7 @@ def skin_under(ray: Ray, positions: Array, faces: npt.NDArray[Any]) -> Array | N
     hit = (volume > PARALLEL) & inside & (distance > 0.0)
     if not hit.any():
         return None
-    point: Array = ray.origin + distance[hit].min() * ray.direction
+    point: Floats64 = ray.origin + distance[hit].min() * ray.direction
     return point
 
 
@@ -75,7 +74,7 @@ class SkinDrag:
     """A finger that drags the skin."""
 
     def __init__(
-        self, session: Session, settings: Settings, point: Array, sight: Array, poses: bool
+        self, session: Session, settings: Settings, point: Floats64, sight: Floats64, poses: bool
     ) -> None:
         """sight: direction in which the point is seen. poses: whether muscles shall hold it."""
         self._session = session
@@ -103,7 +102,7 @@ class SkinDrag:
         self._own: dict[str, float] = {}  # values of solved controls before
         self._pull: sim.Pull | None = None  # from the first motion on: a click need not wait
 
-    def to(self, point: Array) -> Message:
+    def to(self, point: Floats64) -> Message:
         """Drag to a point, or toward it if that is too far; once in each frame."""
         self.offset = offset = point - self.point
         if not self._candidates:

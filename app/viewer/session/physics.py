@@ -14,9 +14,9 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import sim
+from risorius.geometry.arrays import Floats64
 
 from ...control_names.limits import ControlValues
 from ...errors import UserError
@@ -192,7 +192,7 @@ class IdleLife:
         self,
         session: Session,
         is_wanted: Callable[[], bool],
-        eye: Callable[[], npt.NDArray[np.float64]],
+        eye: Callable[[], Floats64],
     ) -> None:
         """is_wanted: whether the user wants it. eye: where the viewer's is, shape (3,) [mm]."""
         self._session = session

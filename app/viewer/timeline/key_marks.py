@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from imgui_bundle import imgui
 
-from ...script import Floats
+from risorius.geometry.arrays import Floats64
+
 from ...script.places import Places
 from ...sound.decoding import Peaks
 from ..interface.gui import Gui, Theme, em, ink_of
@@ -160,7 +161,7 @@ class TrackPainter:
                     self._lines.add_text((x, top), ink, shortened(name, room))
 
 
-def draw_line(xs: Floats, ys: Floats, ink: int, width: float = 1.0) -> None:
+def draw_line(xs: Floats64, ys: Floats64, ink: int, width: float = 1.0) -> None:
     """Draw a line through points."""
     points: Any = np.stack([xs, ys], axis=1).tolist()
     imgui.get_window_draw_list().add_polyline(points, ink, width, 0)

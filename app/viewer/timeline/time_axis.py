@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from ...script import Floats
+from risorius.geometry.arrays import Floats64
+
 from ...script.keyframes import FRAME
 
 TICK_STEPS = (FRAME, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0, 3600.0, 86_400.0)
 
-Number = TypeVar("Number", float, Floats)
+Number = TypeVar("Number", float, Floats64)
 
 
 class TimeAxis:
