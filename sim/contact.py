@@ -22,11 +22,11 @@ import numpy as np
 from ..geometry.arrays import Floats64, Integers32, Integers64
 from .landmarks import mouth_line, polyline_distance
 from .skull import Eyeball
-from .substep import SLIDE_DISTANCE
 from .surface import Surface
 
 PAIR_GAP = 2.2  # mm: lips further apart at rest are no pair; their red must not fold on the line
 PRESSED_OVERLAP = 1.8  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
+SLIDE_DISTANCE = 3.0  # mm the lower lip comes forward, or rolls in, before it passes the upper one
 EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the eyeball
 
 

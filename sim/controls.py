@@ -263,7 +263,9 @@ def _limits(controls: tuple[Control, ...], layers: Layers) -> dict[str, tuple[fl
 
 
 @njit
-def follow(wanted, activation, speed, rate, dt):  # type: ignore[no-untyped-def]
+def follow(
+    wanted: Floats64, activation: Floats64, speed: Floats64, rate: Floats64, dt: float
+) -> None:
     """Advance critically damped oscillators of angular frequency `rate` [rad/s] by `dt` [s]."""
     settled_distance = 1e-6  # a distance from the wanted value that counts as none
     settled_speed = 1e-4  # per second: a speed that counts as rest

@@ -83,7 +83,15 @@ class FaceSpace:
 
 
 @njit
-def to_posed_head(x, rest, axes, head_rest, turn, share, out):  # type: ignore[no-untyped-def]
+def to_posed_head(
+    x: Floats64,
+    rest: Floats64,
+    axes: Floats64,
+    head_rest: Floats64,
+    turn: Floats64,
+    share: Floats64,
+    out: Floats64,
+) -> int:
     """Fill `out` (V, 3) [head units]; return how many vertices are not finite and left out.
 
     x, rest: positions now and at rest [mm]; axes (3, 3): of the standard space in head coordinates,

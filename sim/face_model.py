@@ -8,12 +8,12 @@ Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landm
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..geometry.arrays import Floats64, Integers64
-from .contact import PAIR_GAP, EyeContact, Grip, LipPairs, pair_lips, watch_eyeballs
+from .contact import PAIR_GAP, Grip, pair_lips, watch_eyeballs
 from .controls import Control
 from .coordinates import FaceSpace
 from .foundation import Foundation, foundation_of
@@ -30,10 +30,11 @@ from .lids import Lids, place_lids
 from .muscle_forces import MuscleForces, build_muscle_forces
 from .muscles import place_muscles
 from .rig import Rig
-from .skull import RigidMotion, Skull
+from .skin_model import SkinModel
+from .skull import Skull
 from .substep import LONGEST_SUBSTEP, ROUNDING
 from .surface import Surface
-from .teeth import Teeth, watch_teeth
+from .teeth import watch_teeth
 from .tissue import EdgeSprings, TissueSprings, masses_for_step
 from .tongue import Tongue, place_tongue
 
@@ -44,27 +45,6 @@ MEETING_SHARE = 0.2  # share of the jaw's motion at which both lips meet over an
 WHOLE_LIP_REACH = 7.0  # mm from the mouth line, up to which skin goes along in full
 LIP_END_REACH = 32.0  # mm from the mouth line, from which on skin stays
 STEP_MARGIN = 1.0 + ROUNDING  # a substep may be this much longer than LONGEST_SUBSTEP
-
-
-class SkinModel(NamedTuple):
-    """Point masses, springs and contacts of one face; none of it changes while it is simulated."""
-
-    rest: Floats64  # (V, 3) mm, positions of the undeformed mesh
-    mass: Floats64  # (V,)
-    tissue: TissueSprings
-    edges: EdgeSprings
-    lips: LipPairs
-    eyes: EyeContact
-    teeth: Teeth
-
-
-class Tick(NamedTuple):
-    """Values that stay constant during one tick."""
-
-    substeps: int
-    h: float  # s, length of each
-    grip: Grip  # how firmly the lips hold each other
-    mandible: RigidMotion
 
 
 @dataclass(frozen=True)

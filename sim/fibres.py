@@ -28,6 +28,7 @@ from ..geometry.arrays import Flags, Floats64, Integers32, Unsigned32
 from ..jit import njit
 from .landmarks import Side
 from .rig import Fibre, LinearMuscle
+from .skull import RigidMotion
 from .surface import Surface
 
 FIBRE_POINTS = 9  # segments of 4-10 mm: as fine as the built-in face's triangles
@@ -152,7 +153,13 @@ def fibre_coordinates(
 
 
 @njit
-def move_lines(bundle, stack, activation, mandible, motion):  # type: ignore[no-untyped-def]
+def move_lines(
+    bundle: FibreBundle,
+    stack: Stack,
+    activation: Floats64,
+    mandible: RigidMotion,
+    motion: LineMotion,
+) -> None:
     """Move all lines for one tick, each after those it lies on, and contract the active ones.
 
     activation: of each muscle, (M,); mandible: its RigidMotion. Fills `motion`.
@@ -183,7 +190,14 @@ def move_lines(bundle, stack, activation, mandible, motion):  # type: ignore[no-
 
 
 @njit
-def carry_line(bundle, stack, activation, turn, motion, b):  # type: ignore[no-untyped-def]
+def carry_line(
+    bundle: FibreBundle,
+    stack: Stack,
+    activation: Floats64,
+    turn: Floats64,
+    motion: LineMotion,
+    b: int,
+) -> None:
     """Fill `motion.carried[b]` with the displacement of line b by the lines beneath it."""
     muscle = bundle.muscle
     contraction = bundle.contraction
@@ -226,7 +240,7 @@ def carry_line(bundle, stack, activation, turn, motion, b):  # type: ignore[no-u
 
 
 @njit
-def follow_bones(points, share, mandible, moved):  # type: ignore[no-untyped-def]
+def follow_bones(points: Floats64, share: Floats64, mandible: RigidMotion, moved: Floats64) -> None:
     """Carry the points of a line by its bones; `share`: of the mandible's motion, by point."""
     turn = mandible.rotation
     shift = mandible.shift
@@ -240,7 +254,7 @@ def follow_bones(points, share, mandible, moved):  # type: ignore[no-untyped-def
 
 
 @njit
-def contract(moved, lost, fixed_at, displacement):  # type: ignore[no-untyped-def]
+def contract(moved: Floats64, lost: float, fixed_at: float, displacement: Floats64) -> None:
     """Fill `displacement` (SAMPLES, 3) along a fibre that loses a share of itself."""
     samples = len(displacement)
     count = len(moved)

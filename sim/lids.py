@@ -327,7 +327,9 @@ def _lid_muscles(
 
 
 @njit
-def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
+def turn_lids(
+    state: State, rest: Floats64, lids: LidVertices, drive: Floats64, gaze: Floats64
+) -> None:
     """Turn the far ends of the tissue springs of all lid vertices, and their normals.
 
     Adds the stiffness that holds moved folds to `state.hold`. drive: see Lids.drive; gaze: angles
@@ -388,7 +390,7 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
 
 
 @njit
-def slide_lid(carried, lids, row, inward):  # type: ignore[no-untyped-def]
+def slide_lid(carried: Floats64, lids: LidVertices, row: int, inward: float) -> None:
     """Slide the far end of a lid vertex around its eyeball, `inward` mm toward the nose."""
     i = lids.vertex[row]
     e = lids.eye[row]

@@ -25,7 +25,16 @@ import numpy as np
 
 from ..geometry.arrays import Floats64, Integers32, Unsigned32
 from ..jit import njit
-from .fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, FibreBundle, Stack, move_lines, over_skin
+from .fibres import (
+    FIBRE_POINTS,
+    LEAST_ARC,
+    SAMPLES,
+    FibreBundle,
+    LineMotion,
+    Stack,
+    move_lines,
+    over_skin,
+)
 from .muscle_stack import bottom_up, points_along, stack_muscles
 from .muscles import Line, PlacedMuscle
 from .rig import LinearMuscle, Rig
@@ -240,14 +249,18 @@ def _attachments(
 
 
 @njit
-def gather(state, activation, skin, turn, weight):  # type: ignore[no-untyped-def]
+def gather(
+    state: State, activation: Floats64, skin: SkinAttachments, turn: Floats64, weight: Floats64
+) -> None:
     """Add stiffness and pull of all active muscles to `state.hold` and `state.pull`."""
     gather_holds(state, activation, skin, turn, weight)
     gather_lines(state.pull, activation, skin, state.lines)
 
 
 @njit(fastmath={"contract"})
-def gather_holds(state, activation, skin, turn, weight):  # type: ignore[no-untyped-def]
+def gather_holds(
+    state: State, activation: Floats64, skin: SkinAttachments, turn: Floats64, weight: Floats64
+) -> None:
     """Sum the terms linear in the activation into one stiffness and one force per vertex."""
     passive = skin.passive
     holds = skin.holds
@@ -277,7 +290,9 @@ def gather_holds(state, activation, skin, turn, weight):  # type: ignore[no-unty
 
 
 @njit
-def gather_lines(force, activation, skin, motion):  # type: ignore[no-untyped-def]
+def gather_lines(
+    force: Floats64, activation: Floats64, skin: SkinAttachments, motion: LineMotion
+) -> None:
     """Add the pull of all lines that contract, and of all that others carry, to `force` (V, 3)."""
     muscle = skin.muscle
     passive = skin.passive
@@ -296,7 +311,7 @@ def gather_lines(force, activation, skin, motion):  # type: ignore[no-untyped-de
 
 
 @njit(fastmath={"contract"})
-def add_pull(attached, b, scale, along, force):  # type: ignore[no-untyped-def]
+def add_pull(attached: Attachments, b: int, scale: float, along: Floats64, force: Floats64) -> None:
     """Add the displacement `along` a line, between two of its rows, times each attachment."""
     last = along.shape[0] - 2
     for row in range(attached.rows[b], attached.rows[b + 1]):

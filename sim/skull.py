@@ -31,6 +31,8 @@ HEAD_RATE = 30.0  # rad/s: chosen so that nods of 2 Hz keep 85 % of their size, 
 LATERAL = (1.0, 0.0, 0.0)
 UP = (0.0, 1.0, 0.0)
 
+Triple = tuple[float, float, float]
+
 
 class RigidMotion(NamedTuple):
     """A rigid motion x -> rotation x + shift in the standard space [mm]."""
@@ -121,7 +123,7 @@ class Skull:
 
 
 @njit
-def rotation(axis, angle):  # type: ignore[no-untyped-def]
+def rotation(axis: Triple | Floats64, angle: float) -> Floats64:
     """Rotation matrix (3, 3) by `angle` [rad] about `axis` (Rodrigues)."""
     length = math.sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2])
     x = axis[0] / length
@@ -144,7 +146,7 @@ def rotation(axis, angle):  # type: ignore[no-untyped-def]
 
 
 @njit
-def times(a, b):  # type: ignore[no-untyped-def]
+def times(a: Floats64, b: Floats64) -> Floats64:
     """Product of two matrices (3, 3)."""
     product = np.zeros((3, 3))
     for i in range(3):
@@ -155,7 +157,7 @@ def times(a, b):  # type: ignore[no-untyped-def]
 
 
 @njit
-def turned(turn, point):  # type: ignore[no-untyped-def]
+def turned(turn: Floats64, point: Floats64) -> Floats64:
     """A point (3,) turned."""
     to = np.zeros(3)
     for i in range(3):
@@ -165,7 +167,7 @@ def turned(turn, point):  # type: ignore[no-untyped-def]
 
 
 @njit
-def turn_head(condyles, joint, angles):  # type: ignore[no-untyped-def]
+def turn_head(condyles: Floats64, joint: Triple, angles: Triple) -> tuple[Floats64, Floats64]:
     """Rotation and shift of the head; `joint`: off the middle of the condyles; see head_motion."""
     turn = times(rotation(UP, angles[0]), rotation(LATERAL, angles[1]))
     forward = (0.0, 0.0, 1.0)
@@ -177,7 +179,12 @@ def turn_head(condyles, joint, angles):  # type: ignore[no-untyped-def]
 
 
 @njit
-def move_mandible(condyles, ways, angles, values):  # type: ignore[no-untyped-def]
+def move_mandible(
+    condyles: Floats64,
+    ways: tuple[Triple, Triple, Triple],
+    angles: tuple[float, float],
+    values: Triple,
+) -> tuple[Floats64, Floats64]:
     """Rotation and shift of the mandible; `ways`: glides [mm] of its `values`; see mandible_motion.
 
     angles: of full opening and of full sideways motion [rad].
@@ -198,7 +205,7 @@ def move_mandible(condyles, ways, angles, values):  # type: ignore[no-untyped-de
 
 
 @njit
-def in_head(pose, axes, origin, scale):  # type: ignore[no-untyped-def]
+def in_head(pose: RigidMotion, axes: Floats64, origin: Floats64, scale: float) -> Floats64:
     """A motion of the standard space in head coordinates, as a (4, 4) matrix."""
     there = times(times(axes.T, pose.rotation), axes)
     to = origin + scale * turned(axes.T, pose.shift) - turned(there, origin)

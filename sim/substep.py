@@ -1,7 +1,7 @@
 """One substep of the face, compiled: all forces on the skin, Euler's step, all contacts.
 
 The physics is explained where its data is made: tissue.py, contact.py, teeth.py. The arguments are
-the named tuples of state.py and face_model.py. All kernels stand here, so that a substep is read
+the named tuples of state.py and skin_model.py. All kernels stand here, so that a substep is read
 from top to bottom.
 
 A frame is cut into ticks, a tick into substeps:
@@ -27,13 +27,18 @@ import math
 import numpy as np
 
 from ..jit import njit
+from .contact import SLIDE_DISTANCE, EyeContact
+from .skin_model import SkinModel, Tick
+from .skull import RigidMotion
+from .state import State
+from .teeth import Teeth
+from .tissue import EdgeSprings, TissueSprings
 
 LONGEST_FRAME = 1.0 / 20.0  # s, the longest `dt` a caller may ask for
 # s: skin is 24 % heavier in sum than its own mass; 14 % at 1/360, a fifth dearer
 LONGEST_SUBSTEP = 1.0 / 300.0
 ROUNDING = 0.02  # parts: 1/60 s given as 0.0167 is still one tick, not two
 SEAL_AXES = (0.5, 1.0, 0.5)  # the seal's stiffness sideways, up and down, forward (last fitted)
-SLIDE_DISTANCE = 3.0  # mm the lower lip comes forward, or rolls in, before it passes the upper one
 
 
 def ticks_in(dt: float) -> int:
@@ -53,7 +58,7 @@ def parts(whole: float, longest: float) -> int:
 
 
 @njit
-def advance(state, skin, tick):  # type: ignore[no-untyped-def]
+def advance(state: State, skin: SkinModel, tick: Tick) -> None:
     """Advance a face by one tick in substeps: the list of all forces and constraints."""
     damp(state, skin, tick.h)
     lip_passes = 7  # averaged projections need several where lips are pressed hard
@@ -70,7 +75,7 @@ def advance(state, skin, tick):  # type: ignore[no-untyped-def]
 
 
 @njit
-def damp(state, skin, h):  # type: ignore[no-untyped-def]
+def damp(state: State, skin: SkinModel, h: float) -> None:
     """Prepare the decay of velocities by damping, and their gain by a force, for this tick."""
     mass = skin.mass
     tissue = skin.tissue
@@ -82,7 +87,7 @@ def damp(state, skin, h):  # type: ignore[no-untyped-def]
 
 
 @njit
-def tissue_forces(state, springs):  # type: ignore[no-untyped-def]
+def tissue_forces(state: State, springs: TissueSprings) -> None:
     """Set `state.force` to the pull of bone and of muscles, and `state.offset` on the way."""
     x = state.x
     carried = state.carried
@@ -111,7 +116,7 @@ def tissue_forces(state, springs):  # type: ignore[no-untyped-def]
 
 
 @njit(fastmath={"contract"})
-def edge_forces(state, springs):  # type: ignore[no-untyped-def]
+def edge_forces(state: State, springs: EdgeSprings) -> None:
     """Add the pull of all edges to `state.force`; `state.offset` must be up to date.
 
     In three passes: the roots and quotients of the second are taken several at a time by the
@@ -171,7 +176,7 @@ def edge_forces(state, springs):  # type: ignore[no-untyped-def]
 
 
 @njit
-def accelerate(state):  # type: ignore[no-untyped-def]
+def accelerate(state: State) -> None:
     """First half of semi-implicit Euler: velocities from forces and damping."""
     v = state.v
     force = state.force
@@ -183,7 +188,7 @@ def accelerate(state):  # type: ignore[no-untyped-def]
 
 
 @njit
-def hold_lips(state, skin, tick):  # type: ignore[no-untyped-def]
+def hold_lips(state: State, skin: SkinModel, tick: Tick) -> None:
     """Change velocities by the seal's pull over a substep, as if it had already acted.
 
     An implicit spring on the distance c of a pair, growing at speed s, with inverse mass w:
@@ -228,7 +233,7 @@ def hold_lips(state, skin, tick):  # type: ignore[no-untyped-def]
 
 
 @njit
-def move(state, h):  # type: ignore[no-untyped-def]
+def move(state: State, h: float) -> None:
     """Second half: positions from the new velocities."""
     x = state.x
     v = state.v
@@ -241,7 +246,7 @@ def move(state, h):  # type: ignore[no-untyped-def]
 
 
 @njit
-def keep_lips_apart(state, skin, overlap):  # type: ignore[no-untyped-def]
+def keep_lips_apart(state: State, skin: SkinModel, overlap: float) -> None:
     """Project lips that cross by more than `overlap` [mm] back and stop their approach."""
     rest = skin.rest
     mass = skin.mass
@@ -287,7 +292,7 @@ def keep_lips_apart(state, skin, overlap):  # type: ignore[no-untyped-def]
 
 
 @njit
-def keep_out_of_teeth(state, teeth, mandible):  # type: ignore[no-untyped-def]
+def keep_out_of_teeth(state: State, teeth: Teeth, mandible: RigidMotion) -> None:
     """Project skin out of the dental arches, away from their axes, and stop its approach.
 
     The lower arch is where the mandible is.
@@ -347,7 +352,7 @@ def keep_out_of_teeth(state, teeth, mandible):  # type: ignore[no-untyped-def]
 
 
 @njit
-def keep_out_of_eyeballs(state, eyes):  # type: ignore[no-untyped-def]
+def keep_out_of_eyeballs(state: State, eyes: EyeContact) -> None:
     """Project skin out of the eyeballs and stop its approach."""
     x = state.x
     v = state.v

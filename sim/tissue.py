@@ -32,6 +32,8 @@ import numpy as np
 from ..geometry.arrays import Floats64, Unsigned32
 from ..jit import njit
 from .rig import Tissue
+from .skull import RigidMotion
+from .state import State
 from .surface import Surface
 
 
@@ -109,7 +111,9 @@ def masses_for_step(areas: Floats64, stiffness: Floats64, step: float) -> Floats
 
 
 @njit
-def carry(state, rest, normals, weight, mandible):  # type: ignore[no-untyped-def]
+def carry(
+    state: State, rest: Floats64, normals: Floats64, weight: Floats64, mandible: RigidMotion
+) -> None:
     """Move the far ends of the tissue springs with the mandible, each vertex by its share."""
     carried = state.carried
     carried_normals = state.normals

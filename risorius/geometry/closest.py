@@ -107,17 +107,27 @@ def _boxes(corners: Floats64) -> Floats64:
 
 
 @njit
-def _box_distance(box, point):  # type: ignore[no-untyped-def]
+def _box_distance(box: Floats64, point: Floats64) -> float:
     """Distance to a box; infinite for an empty one."""
     squared = 0.0
     for i in range(3):
         beside = max(box[i] - point[i], 0.0, point[i] - box[3 + i])
         squared += beside * beside
-    return np.sqrt(squared)
+    return math.sqrt(squared)
 
 
 @njit
-def _search(queries, wanted, corners, ways, boxes, wrong_side, distances, triangles, weights):  # type: ignore[no-untyped-def]
+def _search(
+    queries: Floats64,
+    wanted: Floats64,
+    corners: Floats64,
+    ways: Floats64,
+    boxes: Floats64,
+    wrong_side: float,
+    distances: Floats64,
+    triangles: Integers64,
+    weights: Floats64,
+) -> None:
     """Write the closest place to each query: distance, triangle, barycentric coordinates."""
     leaf_count = boxes.shape[0] // 2
     stack_size = 64
@@ -167,7 +177,9 @@ def _search(queries, wanted, corners, ways, boxes, wrong_side, distances, triang
 
 
 @njit
-def closest_on_triangle(point, a, b, c):  # type: ignore[no-untyped-def]
+def closest_on_triangle(
+    point: Floats64, a: Floats64, b: Floats64, c: Floats64
+) -> tuple[float, float, float]:
     """Barycentric coordinates of the place on triangle a, b, c that is closest to a point."""
     ux = b[0] - a[0]
     uy = b[1] - a[1]

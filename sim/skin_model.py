@@ -1,0 +1,35 @@
+"""The skin as the kernels of a substep take it, and the values that hold for one tick.
+
+Source: Kähler et al. 2001, section 3: point masses at the vertices, joined by springs.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..geometry.arrays import Floats64
+from .contact import EyeContact, Grip, LipPairs
+from .skull import RigidMotion
+from .teeth import Teeth
+from .tissue import EdgeSprings, TissueSprings
+
+
+class SkinModel(NamedTuple):
+    """Point masses, springs and contacts of one face; none of it changes while it is simulated."""
+
+    rest: Floats64  # (V, 3) mm, positions of the undeformed mesh
+    mass: Floats64  # (V,)
+    tissue: TissueSprings
+    edges: EdgeSprings
+    lips: LipPairs
+    eyes: EyeContact
+    teeth: Teeth
+
+
+class Tick(NamedTuple):
+    """Values that stay constant during one tick."""
+
+    substeps: int
+    h: float  # s, length of each
+    grip: Grip  # how firmly the lips hold each other
+    mandible: RigidMotion
