@@ -10,7 +10,6 @@ import numpy as np
 from risorius.refine import GpuStream, RefinedMesh
 from risorius.refine.mesh.arrays import Floats, Indices, Unsigned, Wide
 
-"""Bytes."""
 COMMAND_WORDS = 7
 """Of a command buffer: DrawElementsIndirectCommand (5), numbers of vertices and of triangles."""
 

@@ -48,7 +48,6 @@ THREADS: Mapping[str, tuple[str, ...]] = {
     "place_centres": ("face_count",),
 }
 """The elements that each pass has threads for. Passes are dispatches, named as their shaders."""
-"""Passes of cubic edges alone."""
 
 
 class Settings(NamedTuple):

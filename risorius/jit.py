@@ -38,9 +38,6 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 """Of all kernels: other threads may run meanwhile, and 1 / 0 is infinite as it is in numpy."""
-"""Folders of other digests that stay at any age."""
-"""Without use, after which other folders may leave."""
-"""Bytes that must be free: numba fails where the disk is full, and all our kernels need a tenth."""
 
 log = logging.getLogger(__name__)
 _lock = threading.Lock()
@@ -87,6 +84,7 @@ def cache_folder() -> Path | None:
         status = folder.lstat()
         if hasattr(os, "geteuid") and (status.st_uid != os.geteuid() or status.st_mode & 0o022):
             raise OSError("others may write into it")
+        # Numba fails where the disk is full; all our kernels need a tenth of this.
         free_bytes = 1 << 26
         if shutil.disk_usage(folder).free < free_bytes:
             raise OSError("the disk is full")
@@ -118,8 +116,8 @@ def _remove_old(above: Path) -> None:
     """Remove folders of other digests, but for some that were used last."""
     with suppress(OSError):
         used = {folder: folder.stat().st_mtime for folder in above.glob("compiled-*")}
-        most_folders = 8
-        unused_seconds = 24 * 3600.0
+        most_folders = 8  # of other digests, which stay at any age
+        unused_seconds = 24 * 3600.0  # after which other folders may leave
         for folder in sorted(used, key=used.__getitem__, reverse=True)[most_folders:]:
             if used[folder] < time.time() - unused_seconds:
                 shutil.rmtree(folder, ignore_errors=True)

@@ -8,6 +8,7 @@ Source: Morton 1966 for the curve; Ericson 2005, "Real-time collision detection"
 one triangle.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,10 +18,8 @@ from ..jit import njit
 from .arrays import Floats64, Integers64
 from .normals import cross_products
 
-"""Cosine between two normals above which they look the same way: 73 degrees."""
 LEAF_SIZE = 4
 """Triangles in a box of the lowest level (chosen by timing)."""
-"""Of the grid along one axis that the curve runs through; 3 x 20 fit a number of 64."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +77,7 @@ def places_on_curve(positions: Floats64) -> Integers64:
         return np.zeros(0, dtype=np.int64)
     low = positions.min(axis=0)
     size = float((positions.max(axis=0) - low).max())
-    curve_bits = 20
+    curve_bits = 20  # of the grid along one axis; 3 x 20 fit a number of 64
     scale = (2**curve_bits - 1) / size if size > 0.0 else 0.0
     cells = ((positions - low) * scale).astype(np.int64)
     places = np.zeros(len(positions), dtype=np.int64)
@@ -133,7 +132,7 @@ def _search(
     stack_size = 64
     stack = np.empty(stack_size, np.int64)
     reach = np.empty(stack_size)
-    least_cosine = 0.3
+    least_cosine = 0.3  # between two normals that look the same way: 73 degrees
     for q in range(queries.shape[0]):
         point = queries[q]
         way = wanted[q]

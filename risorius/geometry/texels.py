@@ -10,8 +10,6 @@ import numpy.typing as npt
 from ..jit import njit
 from .arrays import Floats64, Integers64
 
-"""Texels tried for all triangles: a fair layout needs two for each that it has."""
-
 
 @dataclass(frozen=True)
 class Texels:
@@ -39,7 +37,7 @@ class Texels:
         low = np.ceil(places.min(axis=1) - margin).clip(0, [width, height]).astype(np.int64)
         high = np.floor(places.max(axis=1) + margin).clip(-1, [width - 1, height - 1])
         boxes = np.concatenate([low, high.astype(np.int64)], axis=1)
-        most_tries = 60_000_000
+        most_tries = 60_000_000  # a fair layout needs two for each texel that it has
         if np.maximum(boxes[:, 2:] - boxes[:, :2] + 1, 0).prod(axis=1).sum() > most_tries:
             raise ValueError("texture coordinates cover the picture many times over")
         found = np.empty((0, 3), np.int64)
