@@ -118,7 +118,7 @@ class IdentitySpace:
 
 
 @dataclass(frozen=True)
-class Surface:
+class HeadMesh:
     """One mesh of a head [mm], with its unit normals and the points of its 68 landmarks."""
 
     vertices: Points
@@ -151,13 +151,13 @@ def measure(folder: Path, head_file: Path | None = None) -> dict[str, Rest]:
     normals = vertex_normals(head.vertices, head.faces)
     labels = space.regions()
     surfaces = {
-        "coarse": Surface(head.vertices, head.faces, normals, marks),
-        "finer": Surface(fine.vertices, fine.faces, fine.normals, marks),
+        "coarse": HeadMesh(head.vertices, head.faces, normals, marks),
+        "finer": HeadMesh(fine.vertices, fine.faces, fine.normals, marks),
     }
     return {name: unexplained(space, labels, each) for name, each in surfaces.items()}
 
 
-def unexplained(space: IdentitySpace, labels: Labels, surface: Surface) -> Rest:
+def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest:
     """The rest of a surface beside the nearest person of the space.
 
     labels: the region of each of the space's vertices, "" where it does not count.
@@ -218,7 +218,7 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: Surface) -> Rest:
 
 
 def _feet(
-    points: Points, triangles: Faces, asked: Faces, surface: Surface
+    points: Points, triangles: Faces, asked: Faces, surface: HeadMesh
 ) -> tuple[Points, Points, Points]:
     """Nearest points of the surface to the asked ones, their normals, cosines of both normals."""
     own = vertex_normals(points, triangles)[asked]

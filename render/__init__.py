@@ -18,7 +18,7 @@ Source: Kähler et al. 2003, Fig. 1, the rendering stage.
 from .camera import VIEWS, CameraView, OrbitCamera
 from .compositor import Detail
 from .errors import GLError
-from .frame import NO_MAPS, Frame, Part, PlacedPart, Plane, Skin, SkinMaps
+from .frame import NO_MAPS, DrawnPart, Frame, PlacedPart, Plane, Skin, SkinMaps
 from .geometry_buffer import Geometry
 from .lines import Lines
 from .probe import Finding, probe
@@ -62,6 +62,7 @@ __all__ = [
     "Colour",
     "ColourBy",
     "Detail",
+    "DrawnPart",
     "Finding",
     "Frame",
     "GLError",
@@ -72,7 +73,6 @@ __all__ = [
     "Lines",
     "OffscreenSurface",
     "OrbitCamera",
-    "Part",
     "PlacedPart",
     "Plane",
     "Rectangle",

@@ -19,7 +19,7 @@ from .texture import BumpMap, Texture
 Plane = tuple[float, float, float, float]  # (a, b, c, d): in front is a x + b y + c z + d > 0
 
 
-class Part(Protocol):
+class DrawnPart(Protocol):
     """The attributes that are read of a part.
 
     name: for messages. vertices, normals: shape (n, 3), float32. A part that is not rigid hands out
@@ -65,7 +65,7 @@ class PlacedPart:
     vertices, normals, colours: those of the part.
     """
 
-    part: Part
+    part: DrawnPart
     transform: Floats64
     lies_beneath: bool = False
     throws_shadow: bool = False
@@ -80,7 +80,7 @@ class PlacedPart:
     @classmethod
     def of(
         cls,
-        part: Part,
+        part: DrawnPart,
         transforms: Mapping[str, Floats64],
         *,
         lies_beneath: bool = False,

@@ -11,7 +11,7 @@ from risorius.geometry.colour import to_linear
 
 from ..geometry.arrays import Flags, Floats32, Floats64
 from .camera import PlacedView, box_corners
-from .frame import Part, PlacedPart
+from .frame import DrawnPart, PlacedPart
 from .translucency import blending
 
 OF_SHELLS = "in_strand", "in_way", "in_dense"
@@ -30,7 +30,7 @@ class PartBuffers:
     It keeps no part alive: `PartStore` gives it up with its part.
     """
 
-    def __init__(self, gl: moderngl.Context, part: Part) -> None:
+    def __init__(self, gl: moderngl.Context, part: DrawnPart) -> None:
         """Reserve what the part takes; `upload` fills it."""
         self._gl = gl
         self.faces = part.faces
@@ -139,7 +139,7 @@ class PartStore:
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
         # By the id of the part, which another part may have as soon as this one is gone.
-        self._known: dict[int, tuple[Callable[[], Part | None], PartBuffers]] = {}
+        self._known: dict[int, tuple[Callable[[], DrawnPart | None], PartBuffers]] = {}
 
     def uploaded(self, parts: Iterable[PlacedPart]) -> list[PlacedBuffers]:
         """Each part, uploaded when it is first seen or has another shape than at last."""
@@ -163,7 +163,7 @@ class PartStore:
             del self._known[key]
 
 
-def _reference_to(part: Part) -> Callable[[], Part | None]:
+def _reference_to(part: DrawnPart) -> Callable[[], DrawnPart | None]:
     """Returns the part while somebody holds it; a part without weak references is kept."""
     try:
         return weakref.ref(part)

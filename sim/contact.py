@@ -22,7 +22,7 @@ import numpy as np
 from ..geometry.arrays import Floats64, Integers32, Integers64
 from .landmarks import mouth_line, polyline_distance
 from .skull import Eyeball
-from .surface import Surface
+from .surface import SkinSurface
 
 PAIR_GAP = 2.2  # mm: lips further apart at rest are no pair; their red must not fold on the line
 PRESSED_OVERLAP = 1.8  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
@@ -80,7 +80,9 @@ class Grip(NamedTuple):
 SEALED = Grip.of(1.0, 0.0)
 
 
-def pair_lips(surface: Surface, landmarks: Floats64, lip_side: Floats64, seal: float) -> LipPairs:
+def pair_lips(
+    surface: SkinSurface, landmarks: Floats64, lip_side: Floats64, seal: float
+) -> LipPairs:
     """Pair the edges of the lips; no pairs if the mouth is open at rest or has no slit."""
     x = surface.positions
     line = mouth_line(landmarks)
@@ -126,7 +128,7 @@ def _point_beside(
     return ((a, b), share) if apart[1] < PAIR_GAP and apart[2] < overhang else None
 
 
-def _lip_pairs(surface: Surface, pairs: list[_LipPair], seal: float) -> LipPairs:
+def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipPairs:
     """Arrays of found pairs."""
     vertex = np.array([pair.vertex for pair in pairs], dtype=np.int32)
     beside = np.array([pair.beside for pair in pairs], dtype=np.int32).reshape(-1, 2)
@@ -156,7 +158,7 @@ class EyeContact(NamedTuple):
         return float((self.least_distance - distance).max(initial=0.0))
 
 
-def watch_eyeballs(surface: Surface, eyeballs: tuple[Eyeball, ...]) -> EyeContact:
+def watch_eyeballs(surface: SkinSurface, eyeballs: tuple[Eyeball, ...]) -> EyeContact:
     """Find the vertices that could touch an eyeball; one that starts inside may not sink deeper."""
     vertices = []
     centres = []

@@ -33,7 +33,7 @@ from .contact import SEALED
 from .controls import Controls, MuscleDrive
 from .coordinates import to_posed_head
 from .face_model import FaceModel
-from .lids import turn_lids
+from .lid_motion import turn_lids
 from .skin_model import Tick
 from .state import State
 from .substep import LONGEST_FRAME, advance, substeps_in, ticks_in

@@ -33,7 +33,7 @@ from .rig import Rig
 from .skin_model import SkinModel
 from .skull import Skull
 from .substep import LONGEST_SUBSTEP, ROUNDING
-from .surface import Surface
+from .surface import SkinSurface
 from .teeth import watch_teeth
 from .tissue import EdgeSprings, TissueSprings, masses_for_step
 from .tongue import Tongue, place_tongue
@@ -54,7 +54,7 @@ class FaceModel:
     vertices: Floats64  # (V, 3) as given [head units]
     space: FaceSpace
     rig: Rig
-    surface: Surface
+    surface: SkinSurface
     landmarks: Floats64  # (68, 3) mm; zeros without
     lip_side: Floats64  # (V,) of lip_lid_sides.lip_side
     skull: Skull
@@ -176,7 +176,7 @@ def _assembled(
 
 
 def _masses(
-    surface: Surface, springs: TissueSprings, edges: EdgeSprings, greatest: Floats64
+    surface: SkinSurface, springs: TissueSprings, edges: EdgeSprings, greatest: Floats64
 ) -> Floats64:
     """Mass of each vertex; `greatest`: stiffness of fully active muscles there, shape (V,)."""
     bound = edges.row_bound(surface.vertex_count)
@@ -196,14 +196,14 @@ def _holds(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[Floats
     return passive, greatest
 
 
-def _turning_share(surface: Surface, landmarks: Floats64) -> Floats64:
+def _turning_share(surface: SkinSurface, landmarks: Floats64) -> Floats64:
     """How far skin follows the pose of the head, shape (V, 1): the foot of the neck stays."""
     below = landmarks[8, 1] - surface.positions[:, 1]
     share: Floats64 = np.clip(1.0 - below / NECK_LENGTH, 0.0, 1.0)[:, None]
     return share
 
 
-def _closed_weight(surface: Surface, landmarks: Floats64, weight: Floats64) -> Floats64:
+def _closed_weight(surface: SkinSurface, landmarks: Floats64, weight: Floats64) -> Floats64:
     """The mandible's weight where lips stay as at rest although the jaw is open, shape (V,)."""
     distance = polyline_distance(surface.positions, mouth_line(landmarks))
     upper, lower = (landmarks[list(lip)] for lip in (UPPER_INNER, LOWER_INNER))

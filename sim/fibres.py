@@ -29,7 +29,7 @@ from ..jit import njit
 from .landmarks import Side
 from .rig import Fibre, LinearMuscle
 from .skull import RigidMotion
-from .surface import Surface
+from .surface import SkinSurface
 
 FIBRE_POINTS = 9  # segments of 4-10 mm: as fine as the built-in face's triangles
 SAMPLES = 17  # places along a fibre where its displacement is known, to 0.2 mm
@@ -80,7 +80,7 @@ class LineMotion(NamedTuple):
 
 
 def build_fibre(
-    fibre: Fibre, muscle: LinearMuscle, surface: Surface, landmarks: Floats64, side: Side
+    fibre: Fibre, muscle: LinearMuscle, surface: SkinSurface, landmarks: Floats64, side: Side
 ) -> Floats64:
     """Points of one fibre [mm], shape (FIBRE_POINTS, 3), bent to the skin by the muscle's wrap."""
     along = np.linspace(0.0, 1.0, FIBRE_POINTS)[:, None]
@@ -90,7 +90,7 @@ def build_fibre(
     return points if muscle.wrap == 0.0 else bent_to_skin(points, surface, muscle.wrap)
 
 
-def bent_to_skin(points: Floats64, surface: Surface, share: float) -> Floats64:
+def bent_to_skin(points: Floats64, surface: SkinSurface, share: float) -> Floats64:
     """Points (n, 3) of a line moved by a share of the way to the skin near them."""
     if surface.vertex_count < WRAP_NEIGHBOURS:
         return points
@@ -105,7 +105,7 @@ def bent_to_skin(points: Floats64, surface: Surface, share: float) -> Floats64:
     return bent
 
 
-def over_skin(points: Floats64, surface: Surface, field: Floats64) -> Floats64:
+def over_skin(points: Floats64, surface: SkinSurface, field: Floats64) -> Floats64:
     """A field of the skin, shape (V, ...), at points (n, 3) near it: a mean of the nearest."""
     count = min(WRAP_NEIGHBOURS, surface.vertex_count)
     distance, vertices = surface.tree.query(points, k=range(1, count + 1))

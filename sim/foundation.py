@@ -32,7 +32,7 @@ from .skull import (
     eyeballs_from_landmarks,
     mandible_weight_from_landmarks,
 )
-from .surface import Surface, build_surface
+from .surface import SkinSurface, build_surface
 
 Faces = npt.NDArray[np.int32]
 
@@ -55,7 +55,7 @@ class Foundation(NamedTuple):
     vertices: Floats64  # (V, 3) as given [head units]
     space: FaceSpace
     rig: Rig
-    surface: Surface
+    surface: SkinSurface
     landmarks: Floats64  # (68, 3); zeros without
     lip_side: Floats64  # (V,) of lip_lid_sides.lip_side; zeros without landmarks
     skull: Skull
@@ -196,7 +196,7 @@ def _skull(
     weight: Floats64 | None,
     balls: tuple[Eyeball, ...],
     rig: Rig,
-    surface: Surface,
+    surface: SkinSurface,
 ) -> Skull:
     """The bones; without condyles (2, 3) [mm] or the mandible's weight (V,) there is no jaw."""
     if condyles is None or weight is None:

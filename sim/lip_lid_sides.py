@@ -13,10 +13,10 @@ import numpy as np
 
 from ..geometry.arrays import Floats64
 from .landmarks import EYE_LANDMARKS, INNER_CORNERS, LOWER_LIP, UPPER_LIP, Side, smoothstep
-from .surface import Surface
+from .surface import SkinSurface
 
 
-def lip_side(surface: Surface, landmarks: Floats64) -> Floats64:
+def lip_side(surface: SkinSurface, landmarks: Floats64) -> Floats64:
     """+1 on the upper lip .. -1 on the lower lip, smooth around the corners, shape (V,)."""
     upper = _distance(surface, landmarks, UPPER_LIP)
     lower = _distance(surface, landmarks, LOWER_LIP)
@@ -34,7 +34,7 @@ def lip_side(surface: Surface, landmarks: Floats64) -> Floats64:
     return np.clip(surface.harmonic(vertices, values), -1.0, 1.0)
 
 
-def lid_side(surface: Surface, landmarks: Floats64, side: Side) -> Floats64:
+def lid_side(surface: SkinSurface, landmarks: Floats64, side: Side) -> Floats64:
     """+1 on the upper lid .. -1 on the lower lid of one eye, 0 at its corners, shape (V,)."""
     outer, upper_outer, upper_inner, inner, lower_inner, lower_outer = EYE_LANDMARKS[side]
     upper = _distance(surface, landmarks, (upper_outer, upper_inner))
@@ -51,7 +51,7 @@ def lid_side(surface: Surface, landmarks: Floats64, side: Side) -> Floats64:
     return np.clip(surface.harmonic(vertices, values), -1.0, 1.0)
 
 
-def _distance(surface: Surface, landmarks: Floats64, numbers: tuple[int, ...]) -> Floats64:
+def _distance(surface: SkinSurface, landmarks: Floats64, numbers: tuple[int, ...]) -> Floats64:
     """Way along the skin [mm] to the nearest of some landmarks; far where there is none."""
     start = surface.nearest(landmarks[list(numbers)]).astype(np.int64)
     return np.minimum(surface.distances_from(start), 1e3)

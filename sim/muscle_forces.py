@@ -40,7 +40,7 @@ from .muscles import Line, PlacedMuscle
 from .rig import LinearMuscle, Rig
 from .skull import RigidMotion
 from .state import State
-from .surface import Surface
+from .surface import SkinSurface
 
 
 class Attachments(NamedTuple):
@@ -120,7 +120,7 @@ class MuscleForces:
 def build_muscle_forces(
     placed: Sequence[PlacedMuscle],
     rig: Rig,
-    surface: Surface,
+    surface: SkinSurface,
     mandible_weight: Floats64,
     lips: Integers32,
     landmarks: Floats64,
@@ -159,7 +159,7 @@ def build_muscle_forces(
 def _bundle(
     placed: Sequence[PlacedMuscle],
     order: Sequence[int],
-    surface: Surface,
+    surface: SkinSurface,
     mandible_weight: Floats64,
 ) -> FibreBundle:
     """All lines, muscle by muscle in `order`.

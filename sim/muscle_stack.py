@@ -29,7 +29,7 @@ import numpy as np
 from ..geometry.arrays import Floats64
 from .fibres import FIBRE_POINTS, SAMPLES, Stack, over_skin
 from .muscles import AttachedPoints, Line, PlacedMuscle, attach
-from .surface import Surface
+from .surface import SkinSurface
 
 Entry = tuple[int, int, float, float, float, Floats64]  # a row of Stack, in its order
 
@@ -51,7 +51,7 @@ def bottom_up(placed: Sequence[PlacedMuscle]) -> list[int]:
 def stack_muscles(
     placed: Sequence[PlacedMuscle],
     order: Sequence[int],
-    surface: Surface,
+    surface: SkinSurface,
     landmarks: Floats64,
     lip_side: Floats64,
 ) -> Stack:

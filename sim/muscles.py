@@ -22,7 +22,7 @@ from .fibres import FIBRE_POINTS, bent_to_skin, build_fibre, fibre_coordinates
 from .landmarks import Side, smoothstep
 from .rig import MOUTH, Fibre, LinearMuscle, Muscle, Rig, RingMuscle
 from .skull import LATERAL, UP, rotation
-from .surface import Surface
+from .surface import SkinSurface
 
 
 class AttachedPoints(NamedTuple):
@@ -74,7 +74,7 @@ class PlacedMuscle:
 
 
 def place_muscles(
-    rig: Rig, surface: Surface, landmarks: Floats64, lip_side: Floats64
+    rig: Rig, surface: SkinSurface, landmarks: Floats64, lip_side: Floats64
 ) -> tuple[PlacedMuscle, ...]:
     """Lay all linear and ring muscles of a rig into a face, in rig order, left before right."""
     skin = AttachedPoints(surface.positions, surface.normals, lip_side)
@@ -225,7 +225,9 @@ def _outline(muscle: RingMuscle, side: Side, half_deg: float, count: int) -> Flo
     return np.stack([across, height * np.sin(around), np.zeros(count)], axis=1)
 
 
-def _ring_line(muscle: RingMuscle, surface: Surface, landmarks: Floats64, side: Side) -> Floats64:
+def _ring_line(
+    muscle: RingMuscle, surface: SkinSurface, landmarks: Floats64, side: Side
+) -> Floats64:
     """The line along a sphincter as far as it reaches, on the skin, shape (FIBRE_POINTS, 3)."""
     _, half, fade = muscle.arc_deg
     outline = _outline(muscle, side, min(half + fade, 180.0), FIBRE_POINTS)

@@ -152,7 +152,7 @@ class Eyes(Record):
 
 
 @dataclass(frozen=True)
-class Head(Record):
+class HeadJoint(Record):
     """The head turns as a whole about the joint between skull and spine."""
 
     pitch_deg: Annotated[float, Within(0.0, 90.0)] = 30.0  # at head_pitch = 1, up
@@ -289,7 +289,7 @@ class Rig(Record):
     tissue: Tissue = Tissue()
     jaw: Jaw = Jaw()
     eyes: Eyes = Eyes()
-    head: Head = Head()
+    head: HeadJoint = HeadJoint()
     muscles: Annotated[
         tuple[Muscle, ...],
         called("muscle"),

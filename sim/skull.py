@@ -23,8 +23,8 @@ from ..geometry.read_only import read_only
 from ..jit import njit
 from .coordinates import FaceSpace
 from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Side
-from .rig import Eyes, Head, Jaw
-from .surface import Surface
+from .rig import Eyes, HeadJoint, Jaw
+from .surface import SkinSurface
 
 HEAD_CONTROLS = ("head_pitch", "head_yaw", "head_roll")
 HEAD_RATE = 30.0  # rad/s: chosen so that nods of 2 Hz keep 85 % of their size, 63 ms late
@@ -87,7 +87,7 @@ class Skull:
     eyeballs: tuple[Eyeball, ...]
     jaw: Jaw
     eyes: Eyes
-    head: Head
+    head: HeadJoint
 
     def head_motion(self, pitch: float, yaw: float, roll: float) -> RigidMotion:
         """The whole head for head_pitch (up), head_yaw (left), head_roll (to the left shoulder)."""
@@ -239,7 +239,7 @@ def condyles_from_landmarks(landmarks: Floats64, jaw: Jaw) -> Floats64:
 
 
 def mandible_weight_from_landmarks(
-    surface: Surface, landmarks: Floats64, jaw: Jaw, lip_side: Floats64
+    surface: SkinSurface, landmarks: Floats64, jaw: Jaw, lip_side: Floats64
 ) -> Floats64:
     """Mandible weight of each vertex, shape (V,): the smoothest field through the rig's seeds."""
     vertices: list[int] = []

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..geometry.arrays import Floats64
 from .fibres import LineMotion
-from .surface import Surface
+from .surface import SkinSurface
 
 
 class State(NamedTuple):
@@ -35,7 +35,7 @@ class State(NamedTuple):
     lines: LineMotion  # of the muscles
 
     @classmethod
-    def at_rest(cls, surface: Surface, line_count: int = 0) -> State:
+    def at_rest(cls, surface: SkinSurface, line_count: int = 0) -> State:
         """A face that lies still, and whose muscles have so many lines."""
         scalar = surface.vertex_count
         vector = (surface.vertex_count, 3)

@@ -25,7 +25,7 @@ from ..geometry.normals import cross_products, vertex_normals
 
 
 @dataclass(frozen=True)
-class Surface:
+class SkinSurface:
     """A triangle mesh at rest, with the lengths and areas that the springs need."""
 
     positions: Floats64  # (V, 3) mm
@@ -98,7 +98,7 @@ class Surface:
         return field
 
 
-def build_surface(positions: Floats64, faces: Integers32) -> Surface:
+def build_surface(positions: Floats64, faces: Integers32) -> SkinSurface:
     """Edges, areas, stiffness and smoothed normals of a triangle mesh [mm]."""
     count = len(positions)
     face_areas = np.linalg.norm(cross_products(positions, faces), axis=1) / 2.0
@@ -126,7 +126,7 @@ def build_surface(positions: Floats64, faces: Integers32) -> Surface:
     smooth = _smooth(vertex_normals(positions, faces), normal_smoothing, areas, laplacian)
     length = np.linalg.norm(smooth, axis=1, keepdims=True)
     directions = np.where(length > 1e-9, smooth / np.maximum(length, 1e-9), [0.0, 0.0, 1.0])
-    return Surface(positions, faces, edges, lengths, stiffness, areas, directions, laplacian)
+    return SkinSurface(positions, faces, edges, lengths, stiffness, areas, directions, laplacian)
 
 
 def _smooth(

@@ -19,7 +19,7 @@ from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
 from . import checked
 from .coordinates import FaceSpace
 from .skull import RigidMotion
-from .surface import Surface
+from .surface import SkinSurface
 
 
 class Teeth(NamedTuple):
@@ -44,7 +44,7 @@ class Teeth(NamedTuple):
         return float(max(sunk.max(), 0.0))
 
 
-def watch_teeth(parts: Any, surface: Surface, space: FaceSpace) -> Teeth:
+def watch_teeth(parts: Any, surface: SkinSurface, space: FaceSpace) -> Teeth:
     """Find the skin that could touch the teeth: the parts whose name starts with "teeth_".
 
     Skin that starts inside an arch may not sink deeper.

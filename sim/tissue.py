@@ -34,7 +34,7 @@ from ..jit import njit
 from .rig import Tissue
 from .skull import RigidMotion
 from .state import State
-from .surface import Surface
+from .surface import SkinSurface
 
 
 class TissueSprings(NamedTuple):
@@ -46,7 +46,7 @@ class TissueSprings(NamedTuple):
     damping_ratio: float  # of critical
 
     @classmethod
-    def under(cls, surface: Surface, tissue: Tissue) -> TissueSprings:
+    def under(cls, surface: SkinSurface, tissue: Tissue) -> TissueSprings:
         """Uniform tissue under a whole surface."""
         scale = tissue.stiffness_scale * surface.areas
         return cls(
@@ -66,7 +66,7 @@ class EdgeSprings(NamedTuple):
     strain_limit: float
 
     @classmethod
-    def along(cls, surface: Surface, tissue: Tissue, knots: Floats64) -> EdgeSprings:
+    def along(cls, surface: SkinSurface, tissue: Tissue, knots: Floats64) -> EdgeSprings:
         """Springs along all edges of a surface.
 
         knots: points (K, 3) [mm] around which skin is firm, the mouth corners: there many muscles

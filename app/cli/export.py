@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from ..export.formats import FORMATS, Request, check_request, format_for
+from ..export.formats import FORMATS, ExportRequest, check_request, format_for
 from ..export.formats import export as write
 from ..text import in_one_line
 from .help import GroupedCommand
@@ -74,7 +74,7 @@ def export(
 
     chosen = format_for(output, exporting.name)
     check_apart(chosen.outputs(output), (script, *subject.files))
-    request = Request(
+    request = ExportRequest(
         subject.refinement() if exporting.refined else None,
         exporting.changing,
         exporting.overwrite,

@@ -12,7 +12,7 @@ from ..files import save_text, written_atomically
 from ..stopping import cleaned_up_if_stopped
 from ..workers import Send, run_all
 from .folder import SetFolder
-from .request import Request
+from .request import SetRequest
 from .sampling import draw
 from .studio import Studio
 from .summary import card_of, write_index
@@ -22,7 +22,7 @@ from .summary import card_of, write_index
 class Share:
     """The samples that one process makes, by their numbers, person after person."""
 
-    request: Request
+    request: SetRequest
     indices: tuple[int, ...]
 
 
@@ -36,7 +36,7 @@ class Made:
 
 
 def make_set(
-    request: Request,
+    request: SetRequest,
     count: int,
     *,
     jobs: int,
@@ -82,7 +82,7 @@ def make_samples(share: Share, send: Send) -> None:
             send(folder.write_sample(index, studio.shoot(index).save))
 
 
-def _shares(request: Request, missing: Sequence[int], jobs: int) -> list[Share]:
+def _shares(request: SetRequest, missing: Sequence[int], jobs: int) -> list[Share]:
     """As many shares as processes, about equally large.
 
     The samples of one person are together, for a head takes seconds to build.
@@ -95,7 +95,7 @@ def _shares(request: Request, missing: Sequence[int], jobs: int) -> list[Share]:
     ]
 
 
-def _finish(folder: SetFolder, request: Request, count: int) -> None:
+def _finish(folder: SetFolder, request: SetRequest, count: int) -> None:
     """Write index and card from the samples' files."""
     index = folder.path / "index.csv"
     with written_atomically(index) as part:

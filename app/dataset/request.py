@@ -19,7 +19,7 @@ from .table import SampleTable, load_table
 
 
 @dataclass(frozen=True)
-class Request:
+class SetRequest:
     """A data set that is asked for; fit to be pickled.
 
     output: the folder of the set. size: of the pictures [pixels]. passes: some of the images of
@@ -62,7 +62,7 @@ def request_of(
     sample: Path | None = None,
     background: str | None = None,
     refiner: str | None = None,
-) -> Request:
+) -> SetRequest:
     """The request of a command line; UserError for options that cannot be."""
     check_wanted(passes, "face")
     parse_options(refiner, ())
@@ -76,7 +76,7 @@ def request_of(
         "refiner": refiner,
     }
     words = [(f"--{name}", as_text(value)) for name, value in settings.items() if value is not None]
-    return Request(
+    return SetRequest(
         output.absolute(),
         seed,
         size,

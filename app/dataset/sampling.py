@@ -23,7 +23,7 @@ MOST_UNITS = 7  # of a mixture
 
 
 @dataclass(frozen=True)
-class View:
+class SampleCamera:
     """A camera round the head: degrees, at zoom 1 the head fits, shift in shares of the picture."""
 
     yaw: float
@@ -50,7 +50,7 @@ class Sample:
     name: str
     controls: Mapping[str, float]
     gaze: tuple[float, float] | None
-    view: View
+    view: SampleCamera
     person: int
     light: str
     surroundings: int
@@ -82,7 +82,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
         name,
         {key: round(float(value), 4) for key, value in controls.items()},
         None if is_at_camera else (aside[0], aside[1]),
-        View(yaw, pitch, zoom, field_of_view, (across, along)),
+        SampleCamera(yaw, pitch, zoom, field_of_view, (across, along)),
         int(looks.integers(table.persons.count)),
         chosen(looks, table.lights),
         int(looks.integers(2**63)),

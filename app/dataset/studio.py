@@ -34,8 +34,8 @@ from ..refining.presets import Refinement
 from ..scenes import FaceScene
 from .folder import name_of
 from .labels import labels_of_face
-from .request import Request
-from .sampling import Sample, View, draw
+from .request import SetRequest
+from .sampling import Sample, SampleCamera, draw
 from .surroundings import laid_over, light_of
 
 
@@ -65,7 +65,7 @@ class _Model:
 class Studio:
     """A frame without a window, and the heads of some persons before it."""
 
-    def __init__(self, request: Request) -> None:
+    def __init__(self, request: SetRequest) -> None:
         self._request = request
         # of each pixel
         self._surface = render.open_offscreen(request.size, samples=8)
@@ -164,7 +164,7 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
     return camera
 
 
-def _camera_of(scene: FaceScene, view: View, size: tuple[int, int]) -> render.OrbitCamera:
+def _camera_of(scene: FaceScene, view: SampleCamera, size: tuple[int, int]) -> render.OrbitCamera:
     """A camera that has the head of the scene, as it is now, in the middle, but for the shift.
 
     It is moved on where landmarks would be beside the picture, of `size` pixels.

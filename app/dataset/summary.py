@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from .labels import by_number
-from .request import Request
+from .request import SetRequest
 
 THERE = 0.05  # from which value on a unit counts as there: a quarter of A
 
@@ -56,7 +56,7 @@ def _row(sample: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def card_of(request: Request, counts: Counts) -> str:
+def card_of(request: SetRequest, counts: Counts) -> str:
     """The card of a requested set: how it was made, and how often each kind and unit occurs."""
     samples = counts.kinds.total()
     persons = len(counts.persons)

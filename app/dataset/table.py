@@ -120,7 +120,7 @@ class Eyes(Record):
 
 
 @dataclass(frozen=True)
-class Head(Record):
+class HeadTurn(Record):
     """How far the head turns [degrees], up to half of the neck's range."""
 
     yaw: Annotated[float, Within(0.0, 20.0)]
@@ -160,7 +160,7 @@ class SampleTable(Record):
     speech: Annotated[Shares, _drawn_from(lambda: _layer("Visemes"))]
     sides: Sides
     eyes: Eyes
-    head: Head
+    head: HeadTurn
     camera: Camera
     persons: Persons
     irises: Annotated[Shares, _drawn_from(IRIS_SHARES)]

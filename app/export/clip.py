@@ -19,7 +19,7 @@ from ..motion import play, scene_of
 from ..refining.plug_ins import plug_ins_of, reported
 from ..refining.presets import Refinement
 from ..refining.refiners import Splits, refiner_for
-from ..rig.surface import Floats, Indices, Singles, Surface
+from ..rig.surface import Floats, Indices, MovingSurface, Singles
 from ..scenes import Scene
 from ..script import Script
 
@@ -37,13 +37,13 @@ class Clip:
     scene: Scene
     script: Script
     frames_per_second: float
-    surfaces: tuple[Surface, ...]
+    surfaces: tuple[MovingSurface, ...]
     bones: Mapping[str, Floats]
     controls: Mapping[str, Floats]
     activations: Mapping[str, Floats]
 
     @property
-    def skin(self) -> Surface:
+    def skin(self) -> MovingSurface:
         """The mesh that is simulated."""
         return self.surfaces[0]
 
@@ -112,7 +112,7 @@ def record(
         controls.append(scene.values.numbers)
         activations.append(np.array([] if moved is None else moved.wanted))
     matrices = {name: np.stack([each[name] for each in bones]) for name in bones[0]}
-    skin = Surface(
+    skin = MovingSurface(
         "skin" if moved else scene.name,
         scene.rest_positions,
         scene.faces,
@@ -131,10 +131,10 @@ def record(
     )
 
 
-def _surface_of(part: Any, shapes: list[Singles], matrices: Mapping[str, Floats]) -> Surface:
+def _surface_of(part: Any, shapes: list[Singles], matrices: Mapping[str, Floats]) -> MovingSurface:
     """A part of a scene whose vertices were these, a new array where it was bent in another way."""
     is_rigid = all(each is shapes[0] for each in shapes)
-    return Surface(
+    return MovingSurface(
         part.name,
         shapes[0].astype(np.float64),
         part.faces,
@@ -149,9 +149,9 @@ def _surface_of(part: Any, shapes: list[Singles], matrices: Mapping[str, Floats]
 class FrameSurface:
     """One surface in one frame [mm], as mesh files hold it.
 
-    points, normals: of vertices, shape (V, 3). faces: shape (F, 3). uv, face_uv: as in `Surface`,
-    None without a texture. source: the triangle of the surface that each triangle is part of,
-    shape (F,).
+    points, normals: of vertices, shape (V, 3). faces: shape (F, 3). uv, face_uv: as in
+    `MovingSurface`, None without a texture. source: the triangle of the surface that each triangle
+    is part of, shape (F,).
     """
 
     points: Floats
@@ -174,7 +174,7 @@ def frame_surfaces(
         yield rest if skin is None else [skin, *rest]
 
 
-def _plain(surface: Surface, frame: int) -> FrameSurface:
+def _plain(surface: MovingSurface, frame: int) -> FrameSurface:
     """A surface as it is."""
     points = surface.at(frame)
     return FrameSurface(

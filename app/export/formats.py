@@ -36,7 +36,7 @@ OWN = re.compile(r"frame_\d{5,}\.obj|frame\.mtl|frame_skin\.png")  # files in su
 
 
 @dataclass(frozen=True)
-class Request:
+class ExportRequest:
     """Options of an export, beside the clip.
 
     refinement: the refined skin is to be written, and not the mesh that is simulated.
@@ -61,7 +61,7 @@ class Request:
 
 
 # Writes the whole file, or raises UserError; returns a remark for the user, if any.
-Writer = Callable[["Clip", Path, Request], str | None]
+Writer = Callable[["Clip", Path, ExportRequest], str | None]
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ def _check_suffix(output: Path, chosen: Format, known: Container[str]) -> None:
         )
 
 
-def check_request(output: Path, chosen: Format, request: Request) -> None:
+def check_request(output: Path, chosen: Format, request: ExportRequest) -> None:
     """UserError, before any work is done, where the output cannot be as it is asked for."""
     if request.refinement is not None and not chosen.refines:
         names = ", ".join(each.name for each in FORMATS if each.refines)
@@ -157,7 +157,7 @@ def check_request(output: Path, chosen: Format, request: Request) -> None:
                 )
 
 
-def write(clip: Clip, output: Path, chosen: Format, request: Request) -> str | None:
+def write(clip: Clip, output: Path, chosen: Format, request: ExportRequest) -> str | None:
     """Write a clip, whole or not at all; return a remark on the file for the user, if any.
 
     Sums of many numbers are rounded otherwise by two threads than by one. One writes the same bytes
@@ -179,7 +179,7 @@ def export(
     script: Script,
     output: Path,
     chosen: Format,
-    request: Request,
+    request: ExportRequest,
     *,
     head: FittedHead | None = None,
     frames_per_second: float = 30.0,

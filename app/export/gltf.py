@@ -20,11 +20,11 @@ from ..rig.skeleton import Skeleton
 from ..rig.surface import Floats, RefinedSurface
 from ..text import as_text
 from .clip import Clip
-from .formats import Request
+from .formats import ExportRequest
 from .morphs import TOLERANCE, decompose, follow
 
 
-def write_gltf(clip: Clip, part: Path, request: Request) -> str | None:
+def write_gltf(clip: Clip, part: Path, request: ExportRequest) -> str | None:
     """Write the file; return a remark where it differs visibly from the clip."""
     pieces, error = moving_pieces(clip)
     part.write_bytes(_packed(clip, pieces))

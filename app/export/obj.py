@@ -17,10 +17,10 @@ import PIL.Image
 
 from ..rig.surface import METRES, Indices
 from .clip import Clip, FrameSurface, frame_surfaces
-from .formats import FRAME, Request
+from .formats import FRAME, ExportRequest
 
 
-def write_obj(clip: Clip, folder: Path, request: Request) -> None:
+def write_obj(clip: Clip, folder: Path, request: ExportRequest) -> None:
     """Write an OBJ of each frame, in metres, and the skin's texture beside them.
 
     The mesh that is simulated keeps its V vertices, in their order.
@@ -32,7 +32,7 @@ def write_obj(clip: Clip, folder: Path, request: Request) -> None:
         _write(path, _obj_text(clip, frame, material))
 
 
-def write_pc2(clip: Clip, part: Path, request: Request) -> None:
+def write_pc2(clip: Clip, part: Path, request: ExportRequest) -> None:
     """Write metres, little-endian; a sample is a frame, the first is frame 0."""
     points = []
     for number, frame in enumerate(request.counted(frame_surfaces(clip), clip.frame_count)):

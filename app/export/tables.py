@@ -21,10 +21,10 @@ from ..recordings.named_columns import OUTWARD
 from ..recordings.names import ARKIT
 from ..rig.surface import Floats, RefinedSurface
 from .clip import Clip
-from .formats import Request
+from .formats import ExportRequest
 
 
-def write_npz(clip: Clip, part: Path, _: Request) -> None:
+def write_npz(clip: Clip, part: Path, _: ExportRequest) -> None:
     """Write the arrays of a clip; docs/export.md lists their names."""
     arrays: dict[str, Any] = {"times": clip.times, "frames_per_second": clip.frames_per_second}
     for surface in clip.surfaces:
@@ -43,7 +43,7 @@ def write_npz(clip: Clip, part: Path, _: Request) -> None:
         np.savez_compressed(file, **arrays)
 
 
-def write_arkit(clip: Clip, part: Path, _: Request) -> None:
+def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     """Write the 52 shapes and the angles of head and eyes, in Live Link Face's columns."""
     shapes = _as_seen(clip, solved(clip.scene, ARKIT_SHAPES, clip.activations, clip.controls))
     lowest = _as_seen(clip, clip.activations)

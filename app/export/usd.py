@@ -19,10 +19,10 @@ import PIL.Image
 from risorius.geometry.colour import to_linear
 
 from ..extras import needed
-from ..rig.surface import METRES, Surface
+from ..rig.surface import METRES, MovingSurface
 from ..text import as_text
 from .clip import Clip
-from .formats import Request
+from .formats import ExportRequest
 
 Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
     needed(f"pxr.{name}", "USD", "export", package="usd-core")
@@ -33,7 +33,7 @@ PICTURE = "skin.png"
 ALWAYS = Usd.TimeCode.Default()
 
 
-def write_usd(clip: Clip, part: Path, request: Request) -> None:
+def write_usd(clip: Clip, part: Path, request: ExportRequest) -> None:
     """Write the package; OSError where the disk is full."""
     is_text = as_text(part) == str(part)  # USD takes names in UTF-8 alone
     with tempfile.TemporaryDirectory(dir=part.parent if is_text else None) as folder:
@@ -55,7 +55,7 @@ def write_usd(clip: Clip, part: Path, request: Request) -> None:
         raise OSError("USD did not get to its end; the disk may be full")
 
 
-def _fill(stage: Any, clip: Clip, request: Request) -> None:
+def _fill(stage: Any, clip: Clip, request: ExportRequest) -> None:
     """Put the clip on the stage: a time code for each frame."""
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
     UsdGeom.SetStageMetersPerUnit(stage, METRES)
@@ -77,7 +77,7 @@ def _fill(stage: Any, clip: Clip, request: Request) -> None:
         _add_material(stage, mesh, surface, has_picture=has_picture)
 
 
-def _add_surface(mesh: Any, surface: Surface, request: Request) -> None:
+def _add_surface(mesh: Any, surface: MovingSurface, request: ExportRequest) -> None:
     """A mesh whose triangles stay: its points move, or all of it does."""
     _set_faces(mesh, surface.faces, ALWAYS)
     if surface.shapes is None:
@@ -101,7 +101,7 @@ def _add_surface(mesh: Any, surface: Surface, request: Request) -> None:
         colours.Set(Vt.Vec3fArray.FromNumpy(to_linear(surface.colours).astype(np.float32)))
 
 
-def _add_refined(mesh: Any, clip: Clip, request: Request) -> None:
+def _add_refined(mesh: Any, clip: Clip, request: ExportRequest) -> None:
     """The refined skin, which has other triangles in each frame."""
     assert request.refinement is not None
     kind = Sdf.ValueTypeNames.TexCoord2fArray
@@ -139,7 +139,7 @@ def _primvar(mesh: Any, name: str, kind: Any, interpolation: Any) -> Any:
     return UsdGeom.PrimvarsAPI(mesh).CreatePrimvar(name, kind, interpolation)
 
 
-def _add_material(stage: Any, mesh: Any, surface: Surface, *, has_picture: bool) -> None:
+def _add_material(stage: Any, mesh: Any, surface: MovingSurface, *, has_picture: bool) -> None:
     """Add the material of a surface: its picture, or the colours of its vertices."""
     path = mesh.GetPath().GetParentPath().AppendChild(f"{mesh.GetPrim().GetName()}_material")
     material = UsdShade.Material.Define(stage, path)

@@ -16,12 +16,12 @@ import numpy as np
 
 from ..extras import needed
 from .clip import Clip, FrameSurface, frame_surfaces
-from .formats import Request
+from .formats import ExportRequest
 
 h5py = needed("h5py", "VTKHDF", "export")
 
 
-def write_vtkhdf(clip: Clip, part: Path, request: Request) -> None:
+def write_vtkhdf(clip: Clip, part: Path, request: ExportRequest) -> None:
     """Write all surfaces as one PolyData, the skin's triangles first.
 
     Vertices have `Normals`, and `displacement` from rest where the mesh stays. Triangles have

@@ -22,7 +22,7 @@ from .gaps import whole_take
 from .head_pose import head_of
 from .names import angle_of, shape_of
 from .table import LARGEST, without_percent
-from .take import Request, Take
+from .take import Take, TakeRequest
 from .timing import find_times, is_frame, stamp_of
 from .values import is_calibrated, is_flag, rows_without_face, shares, without_rows
 
@@ -38,7 +38,7 @@ def recognises(document: Any) -> bool:
     return any(_faces(frame) for frame in _frames(document)[:1000])
 
 
-def read(document: Any, source: str, request: Request) -> Take:
+def read(document: Any, source: str, request: TakeRequest) -> Take:
     """The take in the document."""
     request.refuse_face(source)
     return _take_of(_frames(document), "MediaPipe JSON", document, source, request)
@@ -49,7 +49,7 @@ def recognises_weights(document: Any) -> bool:
     return bool(_named_rows(document))
 
 
-def read_weights(document: Any, source: str, request: Request) -> Take:
+def read_weights(document: Any, source: str, request: TakeRequest) -> Take:
     """The take in `{"facsNames": ["jawOpen", ...], "weightMat": [[0.2, ...], ...]}`.
 
     Frames may have times and more beside their weights: `{"weights": [0.2, ...], "time": 0.0}`.
@@ -60,7 +60,7 @@ def read_weights(document: Any, source: str, request: Request) -> Take:
 
 
 def _take_of(
-    frames: Sequence[Any], kind: str, document: Any, source: str, request: Request
+    frames: Sequence[Any], kind: str, document: Any, source: str, request: TakeRequest
 ) -> Take:
     """The take in frames, each a table with a face, or a list of faces."""
     notes: list[str] = []

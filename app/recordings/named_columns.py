@@ -12,7 +12,7 @@ from .angles import in_degrees
 from .gaps import whole_take
 from .names import NONSENSE, angle_of, shape_of, unit_of, viseme_of
 from .table import FACE_COLUMNS, Table, one_face
-from .take import Request, Take
+from .take import Take, TakeRequest
 from .timing import times_of
 from .values import (
     intensities,
@@ -107,7 +107,7 @@ def is_live_link(names: tuple[str, ...]) -> bool:
     return bool(folded & {"timecode", "blendshapecount"}) and recognises(names)
 
 
-def read(table: Table, request: Request) -> Take:
+def read(table: Table, request: TakeRequest) -> Take:
     """The take in the table."""
     table = one_face(table, request)
     notes: list[str] = []

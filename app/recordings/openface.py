@@ -17,7 +17,7 @@ from risorius.geometry.arrays import Floats64
 from .gaps import whole_take
 from .names import EYE_ANGLES
 from .table import Table, one_face
-from .take import Request, Take
+from .take import Take, TakeRequest
 from .timing import times_of
 from .values import intensities, rows_without_face, without_rows
 
@@ -36,7 +36,7 @@ def recognises(names: tuple[str, ...]) -> bool:
     return bool(units) and not has_sides and (bool(own) or len(units) > 1)
 
 
-def read(table: Table, request: Request) -> Take:
+def read(table: Table, request: TakeRequest) -> Take:
     """The take in the table."""
     table = one_face(table, request)
     notes: list[str] = []

@@ -20,7 +20,7 @@ from risorius.geometry.arrays import Floats64
 from .gaps import whole_take
 from .names import shape_of
 from .table import Table, one_face
-from .take import Request, Take
+from .take import Take, TakeRequest
 from .timing import times_of
 from .values import intensities, rows_without_face, shares, without_rows
 
@@ -35,7 +35,7 @@ def recognises(names: tuple[str, ...]) -> bool:
     return bool(folded & box_columns) and any(UNIT.match(name) for name in folded)
 
 
-def read(table: Table, request: Request) -> Take:
+def read(table: Table, request: TakeRequest) -> Take:
     """The take in the table."""
     table = one_face(table, request)
     notes: list[str] = []

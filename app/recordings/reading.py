@@ -19,17 +19,17 @@ from ..errors import UserError
 from ..files import read_bytes
 from . import mediapipe_json, named_columns, openface, pyfeat, speech
 from .table import Table, header_of, table_in
-from .take import Request, Take
+from .take import Take, TakeRequest
 
 # Of each kind of table: whether the names of columns are its own, and how it is read.
-TABLES: Sequence[tuple[Callable[[tuple[str, ...]], bool], Callable[[Table, Request], Take]]] = (
+TABLES: Sequence[tuple[Callable[[tuple[str, ...]], bool], Callable[[Table, TakeRequest], Take]]] = (
     (named_columns.is_live_link, named_columns.read),
     (pyfeat.recognises, pyfeat.read),
     (openface.recognises, openface.read),
     (named_columns.recognises, named_columns.read),
 )
 # Of each kind of JSON: whether the document is of it, and how it is read from which file.
-DOCUMENTS: Sequence[tuple[Callable[[Any], bool], Callable[[Any, str, Request], Take]]] = (
+DOCUMENTS: Sequence[tuple[Callable[[Any], bool], Callable[[Any, str, TakeRequest], Take]]] = (
     (speech.recognises_tracks, speech.read_tracks),
     (speech.recognises_cues, speech.read_cues),
     (mediapipe_json.recognises_weights, mediapipe_json.read_weights),
@@ -57,13 +57,13 @@ def read_take(path: Path, *, face: str | None = None, rate: float | None = None)
     if rate is not None and not 1.0 <= rate <= 1000.0:
         raise UserError(f"rate {rate:g}: must lie within 1 and 1000 frames a second")
     text, encoding = read_recording(path)
-    take = _take_in(text, path, Request(face, rate))
+    take = _take_in(text, path, TakeRequest(face, rate))
     if encoding == "UTF-8":
         return take
     return replace(take, notes=(f"The text was read as {encoding}.", *take.notes))
 
 
-def _take_in(text: str, path: Path, request: Request) -> Take:
+def _take_in(text: str, path: Path, request: TakeRequest) -> Take:
     """The take in a text. UserError as `read_take` has it."""
     known_kinds = (
         "Live Link Face, OpenFace and py-feat tables, tables with ARKit or AU names above columns, "

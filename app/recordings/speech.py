@@ -24,7 +24,7 @@ from risorius.schema import read as read_table
 from ..errors import UserError
 from .gaps import whole_take
 from .names import viseme_of
-from .take import Request, Take
+from .take import Take, TakeRequest
 
 SILENCE = "viseme_sil"
 MOUTHS = {  # of Rhubarb -> viseme and value
@@ -86,7 +86,7 @@ def recognises_tracks(document: Any) -> bool:
     return any(isinstance(name, str) and viseme_of(name) for name in names)
 
 
-def read_tracks(document: Any, source: str, request: Request) -> Take:
+def read_tracks(document: Any, source: str, request: TakeRequest) -> Take:
     """The take in `{"channels": [{"name": "PP", "keys": [[time, weight], ...]}, ...]}`."""
     request.refuse_face(source)
     tracks: dict[str, Floats64] = {}
@@ -140,7 +140,7 @@ def recognises_cues(document: Any) -> bool:
     return isinstance(document, dict) and isinstance(document.get("mouthCues"), list)
 
 
-def read_cues(document: Any, source: str, request: Request) -> Take:
+def read_cues(document: Any, source: str, request: TakeRequest) -> Take:
     """The take in `{"mouthCues": [{"start": 0.0, "end": 0.2, "value": "A"}]}`.
 
     Mouth shapes hold, and go over into each other around the moments of change.

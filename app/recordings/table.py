@@ -24,7 +24,7 @@ from risorius.geometry.arrays import Floats64
 
 from ..errors import UserError
 from ..text import counted
-from .take import Request
+from .take import TakeRequest
 
 LARGEST = 1e30  # a larger number is no measurement; nanoseconds since 1970 are 1.8e18
 FACE_COLUMNS = ("face_id", "identity", "face_idx", "faceid", "face")
@@ -339,7 +339,7 @@ def _rows_in(
     return rows if is_closed else None
 
 
-def one_face(table: Table, request: Request) -> Table:
+def one_face(table: Table, request: TakeRequest) -> Table:
     """The rows of the face that is asked for, or of the one that most rows show.
 
     UserError for a face that is not there. Faces are called as the file calls them.

@@ -12,7 +12,7 @@ from ..errors import UserError
 
 
 @dataclass(frozen=True)
-class Request:
+class TakeRequest:
     """face: which one, where a file has several. rate: frames a second, known better."""
 
     face: str | None = None

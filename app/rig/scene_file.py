@@ -11,16 +11,20 @@ from .bodies import PartBody, Shaped
 from .glb import Glb
 from .scene_meshes import Piece, add_mesh
 from .skeleton import Skeleton
-from .surface import Surface
+from .surface import MovingSurface
 
 
-def surface_of(scene: FaceScene, shaped: Shaped) -> Surface:
+def surface_of(scene: FaceScene, shaped: Shaped) -> MovingSurface:
     """The surface of a body of a scene."""
     body = shaped.body
     if isinstance(body, PartBody):
         part = body.part
-        return Surface(body.name, body.rest, body.faces, colours=part.colours, shine=part.shine)
-    return Surface(body.name, body.rest, body.faces, uv=scene.skin.uv, face_uv=scene.skin.face_uv)
+        return MovingSurface(
+            body.name, body.rest, body.faces, colours=part.colours, shine=part.shine
+        )
+    return MovingSurface(
+        body.name, body.rest, body.faces, uv=scene.skin.uv, face_uv=scene.skin.face_uv
+    )
 
 
 def add_pieces(glb: Glb, scene: FaceScene, pieces: list[Piece], skeleton: Skeleton) -> list[int]:

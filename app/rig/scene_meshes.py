@@ -14,7 +14,7 @@ from risorius.geometry.texels import Texels, rates
 
 from ..scenes import Scene
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
-from .surface import METRES, Floats, Surface
+from .surface import METRES, Floats, MovingSurface
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Piece:
     weights: of each target in each frame, shape (N, K).
     """
 
-    surface: Surface
+    surface: MovingSurface
     bone: str | None
     normals: Floats
     names: tuple[str, ...]
@@ -91,7 +91,7 @@ def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats, share: Floats
     return glb.add("meshes", mesh)
 
 
-def _add_material(glb: Glb, scene: Scene, surface: Surface) -> int:
+def _add_material(glb: Glb, scene: Scene, surface: MovingSurface) -> int:
     """Add the material of a surface; return its number."""
     rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.55}  # by eye
     material: dict[str, Any] = {"name": surface.name, "pbrMetallicRoughness": rough}
@@ -114,7 +114,7 @@ def _add_material(glb: Glb, scene: Scene, surface: Surface) -> int:
     return glb.add("materials", material)
 
 
-def _normal_map(surface: Surface, fine: assets.FineShape) -> npt.NDArray[np.uint8]:
+def _normal_map(surface: MovingSurface, fine: assets.FineShape) -> npt.NDArray[np.uint8]:
     """Normals of the fine shape (H, W, 3): along u, across it in the surface, and out of that."""
     assert surface.uv is not None and surface.face_uv is not None
     places = surface.uv[surface.face_uv]

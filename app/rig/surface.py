@@ -17,7 +17,7 @@ METRES = 0.001  # a millimetre; programs for animation take bare numbers for met
 
 
 @dataclass(frozen=True)
-class Surface:
+class MovingSurface:
     """One triangle mesh of a clip over all of its N frames; vertices and triangles never change.
 
     name: unique within the clip: "skin", or that of the part.
@@ -67,7 +67,7 @@ class Surface:
 
 
 @dataclass(frozen=True)
-class RefinedSurface(Surface):
+class RefinedSurface(MovingSurface):
     """A surface that was refined, with the normals of its refiner.
 
     rest_normals: where nothing moves, shape (V, 3). normals: in each frame, shape (N, V, 3).

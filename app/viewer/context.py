@@ -12,7 +12,7 @@ from .documents.file_dialogs import FileDialogs
 from .documents.scripts import Question, ScriptCommands
 from .interface.gui import Gui, wake_up
 from .messages import Messages
-from .picture.stage import Stage, View
+from .picture.stage import SceneView, Stage
 from .session.live_commands import LiveCommands
 from .session.physics import FrameTimes
 from .session.session import Session
@@ -35,7 +35,7 @@ class ApplicationContext:
             stack.callback(self.gui.close)
             self.stage = Stage(surface, session.scene, settings.display, self.times)
             self.close = stack.pop_all().close  # called with the window's end
-        self.view = View(session, settings, surface)
+        self.view = SceneView(session, settings, surface)
         self.wanted_tab = ""  # of the panel, to be brought to the front, by its title
         self.question = Question(session)
         self.scripts = ScriptCommands(session, self.files, self.question, settings.note_recent)

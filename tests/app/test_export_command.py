@@ -24,7 +24,7 @@ import resource, sys
 from pathlib import Path
 from risorius.app.errors import report_user_errors
 from risorius.app.export.clip import record
-from risorius.app.export.formats import Request, format_for, write
+from risorius.app.export.formats import ExportRequest, format_for, write
 from risorius.app.script.script_file import load_script
 
 output = Path(sys.argv[1])
@@ -33,7 +33,7 @@ chosen = format_for(output, sys.argv[2])
 chosen.load()
 resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))  # [bytes] of any file
 with report_user_errors():
-    write(clip, output, chosen, Request(progress=False))
+    write(clip, output, chosen, ExportRequest(progress=False))
 """
 
 

@@ -14,7 +14,7 @@ from numpy.linalg import norm
 
 from risorius.app.export import gltf
 from risorius.app.export.clip import Clip, record
-from risorius.app.export.formats import Request, format_for, write
+from risorius.app.export.formats import ExportRequest, format_for, write
 from risorius.app.export.morphs import decompose
 from risorius.app.script.script_file import parse_script
 from risorius.assets.fitting import fit_head
@@ -54,7 +54,7 @@ def clip() -> Clip:
 
 def written(clip, path):
     """Write the clip; what there is to say of it."""
-    return write(clip, path, format_for(path, None), Request())
+    return write(clip, path, format_for(path, None), ExportRequest())
 
 
 @pytest.fixture(scope="module")

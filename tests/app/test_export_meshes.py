@@ -17,7 +17,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
 from risorius.app.export.clip import Clip, record
-from risorius.app.export.formats import Request, format_for, write
+from risorius.app.export.formats import ExportRequest, format_for, write
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 from risorius.app.script.script_file import parse_script
@@ -53,7 +53,7 @@ def clip() -> Clip:
 
 def written(clip, path, name=None, refinement=None):
     """The file that a clip was written to."""
-    write(clip, path, format_for(path, name), Request(refinement, progress=False))
+    write(clip, path, format_for(path, name), ExportRequest(refinement, progress=False))
     return path
 
 

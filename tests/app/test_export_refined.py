@@ -9,7 +9,7 @@ from pxr import Usd, UsdGeom
 from risorius import refine
 from risorius.app.errors import UserError
 from risorius.app.export.clip import Clip, record
-from risorius.app.export.formats import Request, check_request, format_for, write
+from risorius.app.export.formats import ExportRequest, check_request, format_for, write
 from risorius.app.export.refined import RefinedClip, with_refined_skin
 from risorius.app.refining.presets import Refinement
 from risorius.app.rig.surface import RefinedSurface
@@ -82,7 +82,7 @@ def test_frames_are_those_of_a_refiner_with_the_same_splits(clip, refined):
 def test_gltf_plays_the_refined_skin(refined, tmp_path):
     """Morph targets and the bone of the head put the refined vertices within a tenth of a mm."""
     path = tmp_path / "face.glb"
-    assert write(refined.clip, path, format_for(path, None), Request(progress=False)) is None
+    assert write(refined.clip, path, format_for(path, None), ExportRequest(progress=False)) is None
     player = Player(path)
     skin = refined.clip.skin
     indices = player.values(player.primitive("skin").indices).reshape(-1, 3)
@@ -105,7 +105,7 @@ def test_gltf_plays_the_refined_skin(refined, tmp_path):
 def test_usd_stores_the_triangles_once(refined, tmp_path):
     """Triangles are the same at all times, points move."""
     path = tmp_path / "face.usdz"
-    write(refined.clip, path, format_for(path, None), Request(progress=False))
+    write(refined.clip, path, format_for(path, None), ExportRequest(progress=False))
     stage = Usd.Stage.Open(str(path))
     mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/face/skin"))
     assert mesh.GetFaceVertexIndicesAttr().GetNumTimeSamples() == 0
@@ -117,12 +117,12 @@ def test_usd_stores_the_triangles_once(refined, tmp_path):
 def test_arrays_and_point_caches_have_the_refined_vertices(refined, tmp_path):
     """`positions` of npz has all refined vertices; a point cache has them first."""
     path = tmp_path / "face.npz"
-    write(refined.clip, path, format_for(path, None), Request(progress=False))
+    write(refined.clip, path, format_for(path, None), ExportRequest(progress=False))
     with np.load(path) as arrays:
         np.testing.assert_array_equal(arrays["positions"], refined.clip.skin.shapes)
         np.testing.assert_array_equal(arrays["source"], refined.clip.skin.source)
     cache = tmp_path / "face.pc2"
-    write(refined.clip, cache, format_for(cache, None), Request(progress=False))
+    write(refined.clip, cache, format_for(cache, None), ExportRequest(progress=False))
     count = sum(len(each.rest) for each in refined.clip.surfaces)
     assert cache.stat().st_size == 32 + 12 * count * refined.clip.frame_count
 
@@ -137,9 +137,13 @@ def test_a_refiner_that_never_changes_needs_no_splits(clip):
 @pytest.mark.parametrize(
     ("name", "request_", "error"),
     [
-        ("face.glb", Request(changes=True), "--changing goes with --refined"),
-        ("face.glb", Request(Refinement(), changes=True), "not go with glTF.*usd, obj, vtkhdf"),
-        ("face.csv", Request(Refinement()), "--refined does not go with ARKit"),
+        ("face.glb", ExportRequest(changes=True), "--changing goes with --refined"),
+        (
+            "face.glb",
+            ExportRequest(Refinement(), changes=True),
+            "not go with glTF.*usd, obj, vtkhdf",
+        ),
+        ("face.csv", ExportRequest(Refinement()), "--refined does not go with ARKit"),
     ],
 )
 def test_mistakes_are_reported(name, request_, error, tmp_path: Path):

@@ -6,7 +6,7 @@ import numpy as np
 from pytest import approx
 
 from risorius.app.export.clip import record
-from risorius.app.export.formats import Request, format_for, write
+from risorius.app.export.formats import ExportRequest, format_for, write
 from risorius.app.performances import read_performance
 from risorius.app.playback import LEAD, Playback
 from risorius.app.recordings.reading import read_take
@@ -44,7 +44,7 @@ def script_of(text):
 
 def table(clip, path):
     """The columns of the CSV that a clip was written to; a timecode as seconds."""
-    write(clip, path, format_for(path, None), Request(progress=False))
+    write(clip, path, format_for(path, None), ExportRequest(progress=False))
     with path.open(newline="") as file:
         names, *rows = csv.reader(file)
     found = {}

@@ -7,9 +7,9 @@ from risorius import assets
 from risorius.app.errors import UserError
 from risorius.bench.human import (
     MOST_DISTANCES,
+    HeadMesh,
     IdentitySpace,
     Rest,
-    Surface,
     report,
     targets,
     unexplained,
@@ -37,7 +37,7 @@ def rest_of(space, vertices):
     s = np.sin(TURN)
     moved = vertices @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]).T + [3.0, -2.0, 4.0]
     normals = vertex_normals(moved, space.triangles)
-    surface = Surface(moved, space.triangles, normals, moved[space.landmarks])
+    surface = HeadMesh(moved, space.triangles, normals, moved[space.landmarks])
     return unexplained(space, space.regions(), surface)
 
 

@@ -9,7 +9,7 @@ from numpy.linalg import norm
 from risorius import sim
 from risorius.sim.contact import Grip, watch_eyeballs
 from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
-from risorius.sim.lids import turn_lids
+from risorius.sim.lid_motion import turn_lids
 from risorius.sim.skin_model import Tick
 from risorius.sim.skull import REST
 from risorius.sim.state import State

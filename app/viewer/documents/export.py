@@ -17,7 +17,7 @@ from imgui_bundle import imgui
 from risorius.assets.fitting import FittedHead
 
 from ...capture import CaptureOptions, capture
-from ...export.formats import Request, check_request, export, format_for
+from ...export.formats import ExportRequest, check_request, export, format_for
 from ...files import check_file
 from ...pictures import save_png
 from ...refining.presets import STATIC, Refinement
@@ -25,7 +25,7 @@ from ...workers import Task
 from ..interface.gui import NOTE_FLAGS, Gui, em, wake_up
 from ..interface.widgets import LabelledRows, button, dialog, muted, shortened
 from ..messages import Message
-from ..picture.stage import Stage, View, style_of
+from ..picture.stage import SceneView, Stage, style_of
 from ..session.session import Session
 from ..settings import FRAMES_KIND, KINDS, TONES, ExportChoices, Kind, Settings
 from .file_dialogs import FileDialogs
@@ -43,7 +43,7 @@ class ExportJob:
 class Exporter:
     """Screenshots of a stage; films and files of a session, one at a time."""
 
-    def __init__(self, session: Session, settings: Settings, stage: Stage, view: View) -> None:
+    def __init__(self, session: Session, settings: Settings, stage: Stage, view: SceneView) -> None:
         self.session = session
         self._settings = settings
         self._stage = stage
@@ -114,7 +114,7 @@ class Exporter:
             work = partial(draw, progress=False, output=target)
         else:
             chosen = format_for(target, choices.kind)
-            request = Request(overwrite=target.exists(), progress=False)
+            request = ExportRequest(overwrite=target.exists(), progress=False)
             check_request(target, chosen, request)
             write = partial(export, head=head, frames_per_second=choices.rate)
             work = partial(write, script, target, chosen, request)
@@ -161,7 +161,7 @@ class ExportDialog:
     DIALOG_WIDTH = 31.0  # [em] of the dialog
     BUTTON_WIDTH = 6.5  # [em] of a button
 
-    def __init__(self, gui: Gui, exporter: Exporter, files: FileDialogs, view: View) -> None:
+    def __init__(self, gui: Gui, exporter: Exporter, files: FileDialogs, view: SceneView) -> None:
         self._gui = gui
         self._exporter = exporter
         self._files = files

@@ -16,14 +16,14 @@ from ...refining.presets import STATIC
 from ..interface.gui import LEFT, em
 from ..messages import Messages
 from ..picture.mouse import CameraMouse
-from ..picture.stage import Stage, View
+from ..picture.stage import SceneView, Stage
 from ..settings import Display, Settings
 from .marking import Marking
 
 Spot = tuple[float, float]  # [window units]
 
 
-class MarkingView(View):
+class MarkingView(SceneView):
     """How the mesh is seen: as clay, by a camera that frames all of it."""
 
     def __init__(self, marking: Marking, settings: Settings, surface: render.WindowSurface) -> None:

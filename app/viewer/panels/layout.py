@@ -13,11 +13,11 @@ from ..context import ApplicationContext
 from ..interface.commands import MenuBar
 from ..interface.gui import LEFT, NOTE_FLAGS, Gui, colour, em, fixed_panel
 from ..messages import Messages
-from ..picture.stage import View
+from ..picture.stage import SceneView
 from ..timeline.timeline import Timeline
 
 
-def draw_message(gui: Gui, messages: Messages, view: View) -> None:
+def draw_message(gui: Gui, messages: Messages, view: SceneView) -> None:
     """Draw the line, if there is one; a click or Escape takes it away."""
     if not messages.text:
         return
@@ -59,7 +59,7 @@ class Layout:
         self._tabs = tabs
         self._timeline = timeline
 
-    def draw(self, view: View) -> None:
+    def draw(self, view: SceneView) -> None:
         """Draw everything, and give the view its place."""
         view.pointed = {}
         display = imgui.get_io().display_size

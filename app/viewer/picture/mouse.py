@@ -18,7 +18,7 @@ from risorius.geometry.arrays import Floats64
 from ..interface.gui import LEFT, MIDDLE, RIGHT, em
 from ..messages import Messages
 from .skin import Ray, SkinDrag, skin_under
-from .stage import Stage, View
+from .stage import SceneView, Stage
 
 Grab = Callable[..., SkinDrag]
 Select = Callable[[str], None]
@@ -27,7 +27,7 @@ Select = Callable[[str], None]
 class CameraMouse:
     """Turns and moves a camera by the mouse, from press to release; the left button may do more."""
 
-    def __init__(self, view: View, stage: Stage) -> None:
+    def __init__(self, view: SceneView, stage: Stage) -> None:
         self._view = view
         self._stage = stage
         self.forget()
@@ -125,7 +125,7 @@ class Mouse(CameraMouse):
     skin_drag: SkinDrag | None = None
 
     def __init__(
-        self, view: View, stage: Stage, messages: Messages, grab: Grab, select_muscle: Select
+        self, view: SceneView, stage: Stage, messages: Messages, grab: Grab, select_muscle: Select
     ) -> None:
         """grab: makes a finger. select_muscle: called with the name of one that was clicked."""
         super().__init__(view, stage)

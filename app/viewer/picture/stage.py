@@ -31,7 +31,7 @@ from ..session.session import Session
 from ..settings import BACKGROUNDS, SKINS, TONES, Display, Settings
 
 
-class View:
+class SceneView:
     """One view of a session's scene.
 
     area: the scene's part of the window: left, top, width, height [window units].
@@ -168,7 +168,7 @@ class Stage:
             return [Viewport(self.static, area, first), Viewport(self.refined, area, second)]
         return [Viewport(self.static, first), Viewport(self.refined, second)]
 
-    def draw(self, view: View, *, is_photo: bool = False) -> None:
+    def draw(self, view: SceneView, *, is_photo: bool = False) -> None:
         """Draw the scene as finely as the surface's `detail` says; a photo without the mouse's."""
         display = view.display
         timed = self._times.timed
@@ -183,7 +183,7 @@ class Stage:
         self.surface.labels = self._labels(view, viewports, style)
 
     def _labels(
-        self, view: View, viewports: Sequence[Viewport], style: render.Style
+        self, view: SceneView, viewports: Sequence[Viewport], style: render.Style
     ) -> list[Label]:
         """The labels of each side of a comparison, and the meaning of colours."""
         texts = [each.drawn.caption for each in viewports if len(viewports) > 1]
@@ -192,7 +192,7 @@ class Stage:
         has_bar = view.display.splits and has_splits
         return labels(texts, places, has_bar=has_bar, least=view.letter)
 
-    def draw_image(self, view: View) -> Image:
+    def draw_image(self, view: SceneView) -> Image:
         """The picture without panels, in full detail, with captions and a colour bar."""
         self.surface.detail = FULL_DETAIL
         self.draw(view, is_photo=True)
@@ -295,7 +295,7 @@ class LevelOfDetail:
 class Painter:
     """Keeps the picture of the scene up to date, as finely as the machine can."""
 
-    def __init__(self, stage: Stage, view: View, messages: Messages) -> None:
+    def __init__(self, stage: Stage, view: SceneView, messages: Messages) -> None:
         self._stage = stage
         self._view = view
         self._messages = messages

@@ -24,7 +24,7 @@ from ..documents.file_drop import FileDrop
 from ..documents.scripts import ScriptCommands
 from ..interface.commands import Command
 from ..messages import Message, Task
-from ..picture.stage import View
+from ..picture.stage import SceneView
 from ..session.live_commands import LiveCommands
 from ..session.session import Session
 from ..settings import Settings, switch
@@ -163,7 +163,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
     )
 
 
-def view_menu(settings: Settings, view: View) -> Menu:
+def view_menu(settings: Settings, view: SceneView) -> Menu:
     """How the scene is drawn, and the panels around it."""
     command = partial(Command, "View")
     display_switch = partial(switch_of, lambda: settings.display, "View")

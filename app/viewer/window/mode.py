@@ -8,7 +8,7 @@ from typing import Protocol
 from ..interface.commands import Command
 from ..messages import Message, Task
 from ..picture.mouse import CameraMouse
-from ..picture.stage import Painter, View
+from ..picture.stage import Painter, SceneView
 
 
 class Mode(Protocol):
@@ -23,7 +23,7 @@ class Mode(Protocol):
         """The work that no file has, in words; "" for none."""
 
     @property
-    def view(self) -> View:
+    def view(self) -> SceneView:
         """The camera, and the picture's place in the window."""
 
     @property
