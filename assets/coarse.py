@@ -14,11 +14,12 @@ from pathlib import Path
 
 import numpy as np
 
+from ..geometry.arrays import Floats64, Integers32
 from .data_files import read_toml
 from .fitting.head import FittedHead
 from .fitting.warp import Similarity
 from .loading import load
-from .model import FloatArray, Head, IndexArray, Part
+from .model import Head, Part
 
 COARSE = "coarse"  # how a user calls it
 LAYOUT_FILE = Path(__file__).parent / "coarse.toml"
@@ -32,10 +33,10 @@ class CoarseHead(FittedHead):
     anatomy: the anatomical points that are among its vertices, name -> vertex number.
     """
 
-    mandible_weight: FloatArray
-    jaw_axis: FloatArray
+    mandible_weight: Floats64
+    jaw_axis: Floats64
     anatomy: Mapping[str, int]
-    mirror: IndexArray
+    mirror: Integers32
 
     def fade(self) -> None:
         """A shirt covers the edge of its neck."""
@@ -88,7 +89,7 @@ def _behind_lids(known: Head, part: Part) -> Part:
     return part
 
 
-def _layout(known: Head) -> tuple[IndexArray, IndexArray]:
+def _layout(known: Head) -> tuple[Integers32, Integers32]:
     """The vertices of the built-in head that are kept, (V,), and triangles among them, (F, 3)."""
     table = read_toml(LAYOUT_FILE)["triangles"]
     left = np.vstack([*table.values()]).astype(np.int32)
