@@ -1,6 +1,6 @@
 # Risorius: two commands on a fresh Debian or Ubuntu.
 #
-#   make demo     set up everything and render the built-in head to out/demo.mp4 and out/demo.png
+#   make demo     set up everything and film what refinement does: out/demo.mp4 and out/demo.png
 #   make test     set up everything, check the code and pass the first lane of tests, in four minutes
 #   make setup    only make .venv with everything in it
 #   make check    ruff, mypy and the import rules alone

@@ -88,8 +88,11 @@ class Pipeline:
         drawn, area, clip = viewport
         seen = self.anatomy.dissect(SKIN_ALONE) if seen is None else seen
         maps = self.maps if drawn.has_uv else render.NO_MAPS
-        has_values = style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None
-        values = drawn.splits() if has_values else None
+        values = None
+        if drawn.mesh is not None and style.colour_by is render.ColourBy.SPLITS:
+            values = drawn.splits()
+        elif drawn.mesh is not None and style.colour_by is render.ColourBy.SPLIT_WIRES:
+            values = drawn.splits_beyond_rest()
         skin = render.Skin(drawn.stream, maps, self.scene.skin.fade, values)
         style = replace(style, opacity=style.opacity * seen.opacity)
         view = render.CameraView(camera, area, clip)

@@ -25,8 +25,8 @@ def mesh_shader(style: Style, has_texture: bool, maps: Iterable[BumpMap], fades:
     return [
         "surface.glsl",
         style.shading.name,
-        *(["WIREFRAME"] if style.wireframe else []),
-        *(["SPLITS"] if style.colour_by is ColourBy.SPLITS else []),
+        *(["WIREFRAME"] if style.has_wires else []),
+        *([] if style.colour_by is ColourBy.NONE else [style.colour_by.name]),
         *(["TEXTURED"] if has_texture else []),
         *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
         *(["SHADOWS"] if style.shadows else []),
@@ -53,11 +53,11 @@ def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_sca
     program["subsurface"] = style.scattering
     program["gloss"] = 0.26 * style.gloss
     program["sharpness"] = SKIN_SHARPNESS
-    if style.wireframe:
+    if style.has_wires:
         program["viewport_size"] = view.viewport[2:]
         program["wire_half_width"] = 0.5 * style.wire_width * line_scale
-        program["wire_colour"] = *style.wire_colour, style.wire_opacity
-    if style.colour_by is ColourBy.SPLITS:
+        program["wire_colour"] = *style.wire_colour, style.wire_opacity * style.wireframe
+    if style.colour_by is not ColourBy.NONE:
         write_uniform(program, "split_palette", _PALETTE)
 
 

@@ -31,6 +31,7 @@ class ColourBy(Enum):
 
     NONE = "none"  # the texture, or the albedo of the style
     SPLITS = "splits"  # how many splits the edges of its source triangle have: 0..6
+    SPLIT_WIRES = "split wires"  # the same, of its outline alone, which others do not have
 
 
 # Albedos, chosen by eye under this package's light.
@@ -127,6 +128,11 @@ class Style:
             for flesh, front in zip(FLESH, self.albedo, strict=True)
         )
         return red, green, blue
+
+    @property
+    def has_wires(self) -> bool:
+        """Whether outlines of triangles are drawn, of all or of those that are split."""
+        return self.wireframe or self.colour_by is ColourBy.SPLIT_WIRES
 
     @property
     def shows_bumps(self) -> bool:

@@ -157,7 +157,7 @@ class Capture:
         style = self.options.style
         self.pipeline.draw(self.camera, style, self.viewports, anatomy=options.anatomy)
         image = self.surface.read_scene(4 if self.options.is_transparent else 3)
-        has_bar = style.colour_by is render.ColourBy.SPLITS
+        has_bar = style.colour_by is not render.ColourBy.NONE
         if options.captions and (options.beside or has_bar):
             areas = [viewport.area for viewport in self.viewports]
             texts = [drawn.caption for drawn, *_ in self.viewports if options.beside]

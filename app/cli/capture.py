@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import UserError
-from ..refining.presets import STATIC, Refinement
+from ..refining.presets import PAPERS_PRESET, STATIC, Refinement
 from ..text import in_one_line
 from .help import GroupedCommand
 from .options import (
@@ -175,17 +175,27 @@ def capture(
 
 @click.command()
 def demo() -> None:
-    """Draw the built-in head in its expressions.
+    """Film the coarse head while it speaks: as it is, by the paper's rule, and smooth.
 
-    Writes out/demo.mp4 and out/demo.png.
+    Writes out/demo.mp4, and the expressions of the same head to out/demo.png. Wires show where
+    muscles have edges split.
     """
+    from risorius import render
+
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
-    from ..performances import script_for
+    from ..performances import examples, script_for
+    from ..scenes import COARSE, called_head
 
-    script = script_for(None, "face")
-    options = CaptureOptions(beside=(Refinement(refiner=STATIC),), camera=script.camera)
+    clay = render.Style(textured=False, albedo=render.CLAY)
+    beside = Refinement(refiner=STATIC), Refinement(PAPERS_PRESET)
+    camera = "-32,3,1.6"  # near, at three quarters
+    still = CaptureOptions(beside=beside, camera=camera, style=clay, head=called_head(COARSE))
+    wired = replace(clay, colour_by=render.ColourBy.SPLIT_WIRES)
+    speech = next(path for path in examples("face") if path.stem == "speech")
+    script = script_for(speech, None)
     film = Path("out/demo.mp4")
     sheet = Path("out/demo.png")
-    most = film_of(script, options, output=film, sheet=sheet)
+    most = film_of(script, replace(still, style=wired, is_alive=True), output=film)
+    film_of(script_for(None, "face"), still, sheet=sheet)
     click.echo(f"{film} ({script.duration:g} s) and {sheet}: {most} triangles at most")

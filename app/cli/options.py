@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from importlib.resources import files
 from pathlib import Path
@@ -271,7 +271,8 @@ class Drawing(Subject):
         "--style",
         multiple=True,
         metavar="NAME[=VALUE],...",
-        help="wireframe, splits (colours by number of splits), skin=textured, plain or clay, "
+        help="wireframe, splits (colours by number of splits), wires (outlines of what is split "
+        "beyond rest), skin=textured, plain or clay, "
         f"light={', '.join(LIGHT_NAMES[:-1])} or {LIGHT_NAMES[-1]}, wrinkles=0..1.",
     )
 
@@ -295,7 +296,7 @@ class Drawing(Subject):
         skin = wanted["skin"]
         return render.Style(
             wireframe=wanted["wireframe"],
-            colour_by=render.ColourBy.SPLITS if wanted["splits"] else render.ColourBy.NONE,
+            colour_by=_colour_by(wanted),
             textured=skin == "textured",
             albedo=render.CLAY if skin == "clay" else render.SKIN,
             bumps=wanted["wrinkles"],
@@ -310,6 +311,15 @@ class Drawing(Subject):
             return SKIN_ALONE
         structures, opacity, side = anatomy_in(self.anatomy)
         return AnatomyView(structures, OPACITY if opacity is None else opacity, side)
+
+
+def _colour_by(wanted: Mapping[str, Any]) -> render.ColourBy:
+    """What colours triangles, by the words of a style."""
+    from risorius import render
+
+    if wanted["splits"]:
+        return render.ColourBy.SPLITS
+    return render.ColourBy.SPLIT_WIRES if wanted["wires"] else render.ColourBy.NONE
 
 
 GAIN = click.option(

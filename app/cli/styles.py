@@ -67,7 +67,10 @@ class Words:
 
 
 STYLE_WORDS = Words(
-    "--style", ("wireframe", "splits"), {"skin": SKINS, "light": LIGHT_NAMES}, ("wrinkles",)
+    "--style",
+    ("wireframe", "splits", "wires"),
+    {"skin": SKINS, "light": LIGHT_NAMES},
+    ("wrinkles",),
 )
 ANATOMY_WORDS = Words("--anatomy", STRUCTURES, {"dissect": SIDES}, ("opacity",))
 
@@ -80,6 +83,7 @@ def style_in(settings: Sequence[str]) -> dict[str, Any]:
         "wrinkles": 1.0,
         "wireframe": False,
         "splits": False,
+        "wires": False,
     }
     return usual | STYLE_WORDS.read(settings)
 

@@ -7,6 +7,7 @@ card, nothing else knows.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -34,6 +35,8 @@ class DrawnMesh:
     mesh: refine.RefinedMesh | None = None  # the last result, refined from:
     positions: Floats64 | None = None
     plug_ins: tuple[PlugIn, ...] = ()  # somebody else's code that refines it
+    resting: Callable[[], refine.Refiner] | None = None  # makes its twin, refined at rest
+    _splits_at_rest: npt.NDArray[np.uint8] | None = None  # of each edge, (E,)
 
     def refine(self, positions: Floats64, camera: render.OrbitCamera) -> None:
         """Fill the lent buffers with refined triangles, as the camera sees them.
@@ -66,6 +69,16 @@ class DrawnMesh:
         with reported(self.plug_ins):
             return splits_of_source(self.refiner, self.mesh)
 
+    def splits_beyond_rest(self) -> npt.NDArray[np.uint8]:
+        """The same, without the splits that these edges have at rest."""
+        assert self.mesh is not None and self.resting is not None
+        with reported(self.plug_ins):
+            if self._splits_at_rest is None:
+                self._splits_at_rest = self.resting().splits.copy()
+            added = np.maximum(self.refiner.splits, self._splits_at_rest) - self._splits_at_rest
+            of_triangles = added[self.refiner.triangle_edges].sum(axis=1, dtype=np.uint8)
+            return np.take(of_triangles, self.mesh.source)
+
     @property
     def has_uv(self) -> bool:
         """Whether rows carry texture coordinates, which a refiner from outside may leave out."""
@@ -96,7 +109,14 @@ def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> 
     plug_ins = plug_ins_of(*asked.on(scene.name))
     with reported(plug_ins):
         stream = _stream_for(scene, renderer, refiner)
-    return DrawnMesh(refinement.label, refiner, stream, plug_ins=plug_ins)
+
+    def resting() -> refine.Refiner:
+        """A refiner of its own: some remember the frame before."""
+        twin = refiner_for(scene, asked)
+        twin.refine(scene.rest_positions)
+        return twin
+
+    return DrawnMesh(refinement.label, refiner, stream, plug_ins=plug_ins, resting=resting)
 
 
 def _stream_for(

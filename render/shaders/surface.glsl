@@ -1,6 +1,6 @@
 // Skin and rigid parts.
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
-// stage), SPLITS (colour by a count per triangle), COLOURED (vertex colours), TEXTURED (skin's albedo
+// stage), SPLITS (colour by a count per triangle), SPLIT_WIRES (of its outline), COLOURED (vertex colours), TEXTURED (skin's albedo
 // from a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), STRANDS (thin cones,
 // never drawn thinner than a pixel: they fade instead), FIBRES (striation), TRANSLUCENT (skin that
 // shows the parts under it), SUNK (those parts, hidden where skin is opaque), FADED (skin that fades
@@ -224,9 +224,15 @@ uniform float occlusion;  // how much the ambient_occlusion in the picture's alp
 #elif !defined(COLOURED)
 uniform vec3 albedo;
 #endif
-#if defined(SPLITS)
+#if defined(SPLITS) || defined(SPLIT_WIRES)
 uniform usampler2D triangle_values;
 uniform vec3 split_palette[6];
+
+// How many splits the triangle has.
+int split_count() {
+    ivec2 texel = ivec2(gl_PrimitiveID & 1023, gl_PrimitiveID >> 10);
+    return int(texelFetch(triangle_values, texel, 0).r);
+}
 #endif
 #if defined(SHADOWS)
 #include "shadowed.glsl"
@@ -263,8 +269,7 @@ vec3 front_albedo() {
     vec3 front = albedo;
 #endif
 #if defined(SPLITS)
-    ivec2 texel = ivec2(gl_PrimitiveID & 1023, gl_PrimitiveID >> 10);
-    int value = int(texelFetch(triangle_values, texel, 0).r);
+    int value = split_count();
 #if defined(TEXTURED)
     const float STRENGTH = 0.8;  // brows and lips still show through the tint
 #else
@@ -361,7 +366,12 @@ void main() {
     vec3 edge = surface.edge_distance;
     float nearest = min(min(edge.x, edge.y), edge.z);
     float coverage = clamp(wire_half_width + 0.5 - nearest, 0.0, 1.0);
-    shown = mix(shown, wire_colour.rgb, wire_colour.a * surface.wire_strength * coverage);
+    vec4 wire = wire_colour;
+#if defined(SPLIT_WIRES)
+    int split = split_count();
+    if (split > 0) wire = vec4(sqrt(split_palette[min(split, 6) - 1]), 1.0);
+#endif
+    shown = mix(shown, wire.rgb, wire.a * surface.wire_strength * coverage);
 #endif
 #if defined(STRANDS)
     pixel_colour = vec4(shown, solid * surface.coverage);

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from risorius import refine
+from risorius import refine, render
+from risorius.app.capture.drawing import camera_for
+from risorius.app.refining.drawn_mesh import bind
 from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import FaceScene, called_head
@@ -108,3 +110,22 @@ def test_command_draws_the_coarse_head(tmp_path):
     assert Image.open(picture).size == (64, 48)
     refused = refusal(risorius("capture", "--head", "coarse", "--landmarks", "a.json", *pose))
     assert "its landmarks are known" in refused
+
+
+def test_splits_beyond_rest_are_where_muscles_pull(scene):
+    """The look smooth splits at rest, which does not count; what a kiss adds is at the mouth."""
+    with render.open_offscreen((64, 64)) as surface:
+        renderer = render.Renderer(surface)
+        camera = camera_for(scene, None)
+        smooth = bind(scene, renderer, Refinement())
+        smooth.refine(held(scene), camera)
+        assert smooth.splits().max() > 0
+        assert smooth.splits_beyond_rest().max() == 0
+        drawn = bind(scene, renderer, Refinement("paper"))
+        drawn.refine(held(scene, mouthPucker=1.0), camera)
+        added = drawn.splits_beyond_rest()
+        sources = np.unique(drawn.mesh.source[added > 0])
+        middles = scene.rest_positions[scene.faces[sources]].mean(axis=1)
+        mouth = scene.rest_positions[scene.landmarks[48:68]].mean(axis=0)
+        assert len(middles) > 3
+        assert np.median(np.linalg.norm(middles - mouth, axis=1)) < 40.0

@@ -37,6 +37,20 @@ def test_split_colours_are_where_the_values_say(surface, shading, wireframe):
     assert at(swapped, 20.0, -20.0)[2] > at(swapped, 20.0, -20.0)[0] + 60
 
 
+def test_split_wires_outline_split_triangles_alone(surface):
+    """They have the palette's hue; insides, and outlines of whole triangles, stay as they were."""
+    wires = replace(PLAIN, colour_by=render.ColourBy.SPLIT_WIRES, wire_width=3.0)
+    plain = draw_image(surface, square())
+    whole = draw_image(surface, square(), wires, values=np.array([0, 0], np.uint8))
+    split = draw_image(surface, square(), wires, values=np.array([0, 4], np.uint8))
+    assert np.abs(whole - plain).max() < 2
+    assert (at(split, -20.0, 20.0) == at(plain, -20.0, 20.0)).all()
+    changed = (np.abs(split - plain) > 8).any(axis=2)
+    assert 0.02 < changed.mean() < 0.15
+    assert split[changed][:, 2].mean() > split[changed][:, 0].mean() + 20
+    assert not changed[60:, 70:].any()  # the whole triangle's corner
+
+
 def test_split_colours_of_many_triangles(surface):
     """Beyond one row of the look-up texture the numbers still belong to their triangles."""
     shape = sphere(5)
