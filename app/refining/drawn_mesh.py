@@ -36,7 +36,7 @@ class DrawnMesh:
     positions: Floats64 | None = None
     plug_ins: tuple[PlugIn, ...] = ()  # somebody else's code that refines it
     resting: Callable[[], refine.Refiner] | None = None  # makes its twin, refined at rest
-    _splits_at_rest: npt.NDArray[np.uint8] | None = None  # of each edge, (E,)
+    _splits_at_rest: Unsigned8 | None = None  # of each edge, (E,)
 
     def refine(self, positions: Floats64, camera: render.OrbitCamera) -> None:
         """Fill the lent buffers with refined triangles, as the camera sees them.
@@ -69,7 +69,7 @@ class DrawnMesh:
         with reported(self.plug_ins):
             return splits_of_source(self.refiner, self.mesh)
 
-    def splits_beyond_rest(self) -> npt.NDArray[np.uint8]:
+    def splits_beyond_rest(self) -> Unsigned8:
         """The same, without the splits that these edges have at rest."""
         assert self.mesh is not None and self.resting is not None
         with reported(self.plug_ins):
