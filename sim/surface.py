@@ -21,7 +21,7 @@ from scipy.sparse import csgraph
 from scipy.sparse import linalg as sparse_linalg
 
 from ..geometry.arrays import Floats64, Integers32, Integers64
-from ..geometry.normals import cross_products, vertex_normals
+from ..geometry.normals import cross_products, vertex_areas, vertex_normals
 
 
 @dataclass(frozen=True)
@@ -102,9 +102,8 @@ def build_surface(positions: Floats64, faces: Integers32) -> SkinSurface:
     """Edges, areas, stiffness and smoothed normals of a triangle mesh [mm]."""
     count = len(positions)
     face_areas = np.linalg.norm(cross_products(positions, faces), axis=1) / 2.0
-    shares = np.bincount(faces.T.ravel(), np.tile(face_areas / 3.0, 3), count)
     least_area = 0.01  # mm2 per vertex: keeps isolated vertices and slivers from having no mass
-    areas: Floats64 = np.maximum(shares, least_area)
+    areas: Floats64 = np.maximum(vertex_areas(positions, faces), least_area)
 
     half_edges = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     unique, inverse = np.unique(half_edges, axis=0, return_inverse=True)

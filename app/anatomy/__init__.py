@@ -94,7 +94,9 @@ class Anatomy:
             names += ["cranium", "mandible", "spine"]
         if "muscles" in view.structures:
             names.append("nose")
-        self._skull = self._skull or build_skull(face.head, face.simulation.bones.pivots())
+        self._skull = self._skull or build_skull(
+            face.simulated_head, face.simulation.bones.pivots()
+        )
         self._necks = self._necks or neck_sections(face.head)
         muscles = [self._muscles_now(face)] if "muscles" in view.structures else []
         return [*self._necks, *(self._skull[name] for name in names), *muscles]
@@ -136,7 +138,7 @@ class Anatomy:
 
 def _middle(face: Face) -> Any:
     """Where the midline is at rest, shape (3,)."""
-    return face.simulation.rest_positions[face.head.landmarks[27]]
+    return face.rest_positions[face.head.landmarks[27]]
 
 
 def _cut(face: Face, view: AnatomyView) -> render.Plane | None:

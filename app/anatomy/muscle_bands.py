@@ -81,7 +81,7 @@ class Muscles:
                 # Half of the rig's width is flesh. Bands are 4 to 17 mm wide.
                 width = 0.5 * row.get("width", 10.0) * fibre.get("width_factor", 1.0)
                 widths.append(np.clip(width, 4.0, 17.0))
-        marks = face.simulation.rest_positions[face.head.landmarks]
+        marks = face.rest_positions[face.head.landmarks]
         rings = list[Floats64]()
         self._controls: list[list[str]] = [[name] for name, _ in self.names]  # that move each band
         for start, end, numbers, bands in RINGS:
@@ -96,7 +96,7 @@ class Muscles:
                 self._controls.append(own)
         self._width = np.array(widths)[:, None]
         self._middle = np.array([marks[27, 0], *simulation.bones.pivots()["mandible"][1:]])
-        self._bone_depth = np.asarray(face.head.bone_depth)
+        self._bone_depth = np.asarray(face.simulated_head.bone_depth)
         self._bind(np.array(rings), face.simulation)
         self._length = _lengths(self._lines(simulation, face.simulation.rest_positions))
         self._lay_out()

@@ -32,7 +32,7 @@ def labels_of_face(
     return {
         "action_units": action_units(scene),
         "arkit": {name: round(float(value[0]), DIGITS) for name, value in arkit.items()},
-        "apertures": apertures(positions, scene.simulation.faces, positions[scene.landmarks]),
+        "apertures": apertures(positions, scene.faces, positions[scene.landmarks]),
         "face_box": np.concatenate([low, high - low]).round(3).tolist(),
         **labels,
     }

@@ -68,7 +68,7 @@ def _take_pose_out(clip: Clip, shapes: Floats, *, are_places: bool = True) -> No
     face = clip.scene.face
     if face is None:
         return
-    share = clip.skin.carried(face.simulation.bones.head_weight)
+    share = clip.skin.carried(face.head_weight)
     for shape, bone in zip(shapes, clip.bones[CRANIUM], strict=True):
         matrix = bone.copy()
         if not are_places:
@@ -87,7 +87,7 @@ def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
         share = None
         if piece.bone is None and clip.scene.face is not None:
             node["skin"] = skeleton.skin
-            share = clip.skin.carried(clip.scene.face.simulation.bones.head_weight)
+            share = clip.skin.carried(clip.scene.face.head_weight)
         node["mesh"] = add_mesh(glb, clip.scene, piece, skeleton.pivot(piece.bone), share)
         number = glb.add("nodes", node)
         if piece.bone is None:

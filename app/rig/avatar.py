@@ -139,9 +139,10 @@ def read_file_head(path: Path, landmarks: Path, request: RigRequest, say: Say) -
     tongues = [piece.vertices for piece in pieces if piece.role == "tongue"]
     if tongues:
         parts = with_own_tongue(head, rest, np.concatenate(tongues), faces)
-        head = replace(head, parts=parts)
+        simplified = head.simplified and replace(head.simplified, parts=parts)
+        head = replace(head, parts=parts, simplified=simplified)
     body = FileBody(mesh, head, pieces, eyes_are_nodes=request.has_eye_nodes(is_gltf=is_gltf))
-    how = "simulated" if body.is_exact else "simulated on a coarser mesh, which the file's follows"
+    how = "simulated" if head.simplified is None else "following a simplified mesh"
     say(f"skin: {len(head.vertices)} of {len(rest)} vertices, {how}")
     if len(body.in_bag):
         say(f"skin behind the lips: {len(body.in_bag)} vertices, stretches between both jaws")

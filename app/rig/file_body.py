@@ -1,9 +1,8 @@
 """The mesh of a file as one body: every vertex follows the simulated skin, a bone, or stands still.
 
-The skin is simulated on the file's own vertices, where it has not too many, so these have exactly
-the places of the simulation. The vertices of a finer skin follow a coarser one. A bag behind the
-lips, which is not simulated, is stretched between their edge and both jaws: it is harmonic, as a
-soap film.
+The skin of a scene has the file's own vertices, so these have exactly the places of the scene. A
+bag behind the lips, which is not simulated, is stretched between their edge and both jaws: it is
+harmonic, as a soap film.
 
 Source: for the bag, the Laplace equation with uniform weights on the mesh's edges.
 """
@@ -17,7 +16,6 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from risorius import refine
 from risorius.assets import Part
 from risorius.assets.fitting import FittedHead
 from risorius.assets.fitting.mesh_validation import pieces_of, with_seams_joined
@@ -32,8 +30,6 @@ from .poses import CRANIUM, Pose
 from .surface import Floats, Indices
 
 Numbers = npt.NDArray[np.integer[Any]]
-FAR_OFF = 5.0  # [mm] from the simulated skin: vertices that are farther off lie behind the lips
-EXACT = 1e-6  # [mm] between a simulated vertex and that of the file
 LIP_HEIGHT = (
     10.0  # [mm] of the mouth in which what lies between the jaws goes from one to the other
 )
@@ -81,11 +77,7 @@ class FileBody:
         piece = pieces_of(self.faces, len(self.rest))
         own = piece == piece[same[head.file_vertices[head.landmarks[0]]]]
         own &= np.isin(np.arange(len(own)), self.faces)
-        self.is_exact = is_exact(mesh, head)
         self._skin = self._place >= 0
-        self._embedding: refine.Embedding | None = None
-        if not self.is_exact:
-            self._skin = self._embedded(head, own)
         self.in_bag = np.flatnonzero(own & ~self._skin)
         lips = head.vertices[head.landmarks[60:68]].mean(axis=0)
         self._lip_height = float(lips[1])
@@ -95,10 +87,7 @@ class FileBody:
     def at(self, pose: Pose) -> Floats:
         """Where the vertices are in a pose, shape (V, 3)."""
         moved = self.rest.copy()
-        if self._embedding is None:
-            moved[self._skin] = pose.skin[self._place[self._skin]]
-        else:
-            moved[self._skin] = self._embedding.evaluate(pose.skin).positions
+        moved[self._skin] = pose.skin[self._place[self._skin]]
         mandible = pose.matrices["mandible"]
         for role, numbers in self._pieces.items():
             if role in EYES and not self._eyes_are_nodes:
@@ -125,20 +114,6 @@ class FileBody:
         """Unit normals where the vertices are at `points` (V, 3)."""
         normals: Floats = vertex_normals(points, self.faces)[self._same]
         return normals
-
-    def _embedded(self, head: FittedHead, own: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-        """Bind vertices of the skin's piece, `own` (V,), to a coarser skin that is simulated.
-
-        Returns which are bound: not those that are far from it, since they lie behind the lips.
-        """
-        normals = vertex_normals(self.rest, self.faces)
-        numbers = np.flatnonzero(own)
-        distance = closest_points(self.rest[numbers], head.vertices, head.faces).distances
-        numbers = numbers[distance < FAR_OFF]
-        self._embedding = refine.Embedding(
-            head.faces, head.vertices, self.rest[numbers], normals=normals[numbers]
-        )
-        return np.isin(np.arange(len(own)), numbers)
 
     def _between_jaws(self, numbers: Numbers, mandible: Floats) -> Floats:
         """Where vertices are that go with the jaw the more, the lower they lie in the mouth, and
@@ -211,12 +186,6 @@ def places_in_skin(head: FittedHead, same: Numbers) -> Numbers:
     place = np.full(len(same), -1, np.int64)
     place[head.file_vertices] = np.arange(len(head.file_vertices))
     return np.where(place >= 0, place, place[same])
-
-
-def is_exact(mesh: Mesh, head: FittedHead) -> bool:
-    """Whether the skin is simulated on the file's own vertices."""
-    points = head.to_millimetres.points(mesh.vertices[head.file_vertices])
-    return bool(np.abs(points - head.vertices).max() < EXACT)
 
 
 def with_own_tongue(

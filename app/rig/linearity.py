@@ -17,6 +17,8 @@ from itertools import combinations
 import numpy as np
 from tqdm import tqdm
 
+from risorius.geometry.normals import vertex_areas
+
 from ..control_names import twin_of
 from ..scenes import FaceScene
 from ..stopping import cleaned_up_if_stopped
@@ -55,7 +57,7 @@ class Sums:
 
     def __init__(self, scene: FaceScene, poses: Mapping[str, tuple[Pose, Pose]]) -> None:
         self._scene = scene
-        self._areas = np.asarray(scene.simulation.areas)
+        self._areas = vertex_areas(scene.rest_positions, scene.faces)
         self._ways = {name: pose.skin - base.skin for name, (pose, base) in poses.items()}
 
     def difference(self, names: Sequence[str]) -> Difference:

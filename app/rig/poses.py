@@ -37,7 +37,7 @@ def pose_of(scene: FaceScene) -> Pose:
     """The pose that a scene has now."""
     bones = scene.bone_transforms()
     to_cranium = np.linalg.inv(bones[CRANIUM])
-    share = scene.simulation.bones.head_weight
+    share = scene.face.head_weight
     return Pose(
         without_head_pose(np.array(scene.positions), bones[CRANIUM], share),
         {name: to_cranium @ matrix for name, matrix in bones.items()},

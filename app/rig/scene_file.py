@@ -35,7 +35,7 @@ def add_pieces(glb: Glb, scene: FaceScene, pieces: list[Piece], skeleton: Skelet
         share = None
         if piece.bone is None:
             node["skin"] = skeleton.skin
-            share = scene.simulation.bones.head_weight
+            share = scene.face.head_weight
         node["mesh"] = add_mesh(glb, scene, piece, skeleton.pivot(piece.bone), share)
         number = glb.add("nodes", node)
         if piece.bone is None:

@@ -19,8 +19,9 @@ from risorius.assets.identities import person_called, person_in_words
 
 from ..control_names.limits import Limits
 from ..errors import UserError
-from .drawable import BARE, Drawable, Face, Framing, SkinImages
+from .drawable import BARE, Drawable, Framing, SkinImages
 from .face import BUILT_IN, OWN, FaceScene
+from .face_under_skin import Face
 from .plane import PlaneScene
 from .scene import Scene
 

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from risorius import assets, sim
-from risorius.assets.fitting import FittedHead
+from risorius import assets
 from risorius.geometry.arrays import Floats32, Integers32
+
+from .face_under_skin import Face
 
 Points = npt.NDArray[np.float64]
 Pixels = npt.NDArray[np.uint8]
@@ -55,23 +56,6 @@ class Framing:
     extent: Points
     framed: Points
     focus: Points
-
-
-@dataclass(frozen=True, eq=False)
-class Face:
-    """The head under a skin that muscles move, and its simulation."""
-
-    head: assets.Head | FittedHead
-    simulation: sim.Simulation
-
-    @property
-    def marked(self) -> Points:
-        """Where the 68 landmarks are now [mm], shape (68, 3)."""
-        return np.asarray(self.simulation.positions[self.head.landmarks])
-
-    def bone_transforms(self) -> Mapping[str, Points]:
-        """Where its bones are now: a (4, 4) matrix for each."""
-        return self.simulation.bones.transforms()
 
 
 class Drawable:

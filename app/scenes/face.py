@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from risorius import assets, sim
+from risorius import assets
 from risorius.assets.fitting import FittedHead
 from risorius.assets.identities import Person, built_in_hair, recoloured
 from risorius.geometry.arrays import Floats64, Integers32
@@ -16,7 +16,8 @@ from risorius.geometry.read_only import read_only
 
 from ..control_names import parted
 from ..control_names.limits import ControlValues, Limits
-from .drawable import Face, Framing, SkinImages
+from .drawable import Framing, SkinImages
+from .face_under_skin import Face
 from .mouth import MouthWalls, Tongue, shaded_mouth
 from .scene import Scene
 from .surface_attachment import SurfaceAttachment
@@ -35,16 +36,16 @@ class FaceScene(Scene):
     def __init__(
         self,
         head: assets.Head | FittedHead | None = None,
-        simulation: sim.Simulation | None = None,
+        face: Face | None = None,
     ) -> None:
-        """Simulate `head`, the built-in one by default; simulation: of it, if there is one."""
+        """Simulate `head`, the built-in one by default; face: of it, if there is one."""
         self.head = assets.load("head") if head is None else head
-        self.simulation = simulation or sim.create(self.head)
-        faces = self.simulation.faces
-        rest = self.simulation.rest_positions
-        face = Face(self.head, self.simulation)
+        face = face or Face.of(self.head)
+        self.simulation = face.simulation
+        faces = self.head.faces
+        rest = face.rest_positions
         super().__init__(self.name, faces, rest, skin=_images_of(self.head), face=face)
-        self.positions = self.simulation.positions
+        self.positions = face.positions
         self.landmarks = self.head.landmarks
         self.called = _name_of(self.head)
         self._parts = _parts_of(self.head, rest, faces)
@@ -70,9 +71,7 @@ class FaceScene(Scene):
 
     def clone(self) -> FaceScene:
         """The same head once more, at rest, which moves by itself; that takes no time."""
-        simulation = self.simulation.clone()
-        simulation.reset()
-        return FaceScene(self.head, simulation)
+        return FaceScene(self.head, self.face.clone())
 
     def take(self, values: ControlValues) -> None:
         super().take(values)
@@ -82,11 +81,16 @@ class FaceScene(Scene):
         count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
         for _ in range(count):
             self.simulation.step(seconds / count)
-        self._are_bent = False
+        self._follow()
 
     def reset(self) -> None:
         super().reset()
         self.simulation.reset()
+        self._follow()
+
+    def _follow(self) -> None:
+        """Take note that the simulation has moved."""
+        self.face.follow()
         self._are_bent = False
 
     @property

@@ -8,5 +8,6 @@ Start reading at head.py.
 """
 
 from .head import FittedHead, fit, fit_head
+from .simplifying import SimplifiedHead
 
-__all__ = ["FittedHead", "fit", "fit_head"]
+__all__ = ["FittedHead", "SimplifiedHead", "fit", "fit_head"]

@@ -17,7 +17,7 @@ from __future__ import annotations
 import contextlib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
@@ -31,9 +31,10 @@ from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh, read_mesh
 from ..model import Eye, FineShape, Head, Layer, Part, Wrinkles
-from ..topology import boundary_loops, decimated
+from ..topology import boundary_loops
 from ..user_files import named
-from .landmark_file import COUNT, check_lips, groups_in_disorder, nearest_vertices, read_landmarks
+from . import simplifying
+from .landmark_file import COUNT, check_lips, groups_in_disorder, read_landmarks
 from .mesh_validation import (
     ShutMouthError,
     SkinPiece,
@@ -49,8 +50,6 @@ from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spre
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
 ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
-MOST_SIMULATED = 50_000  # triangles: a step of these takes a good half of a frame of 1/60 s
-SIMPLIFIED = 25_000  # triangles are left: these play at 20 frames a second on two cores
 
 
 @dataclass(frozen=True)
@@ -65,6 +64,7 @@ class FittedHead:
     file_vertices: numbers in the file of the vertices, or of the nearest, shape (V,), int32.
     notes: changes of the mesh that its owner should know, a line each.
     called: its name or number, "" where it has none.
+    simplified: the mesh to simulate instead, where this one has too many triangles; else None.
     """
 
     vertices: Floats64
@@ -86,6 +86,7 @@ class FittedHead:
     notes: tuple[str, ...] = field(default=(), kw_only=True)
     fine_shape: FineShape | None = field(default=None, kw_only=True)
     called: str = field(default="", kw_only=True)
+    simplified: simplifying.SimplifiedHead | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         make_read_only(self)
@@ -185,10 +186,61 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
         own = own_picture(mesh.texture, skin.file_faces, skin.is_turned)
     target = similarity.points(points)
     notes = mesh.notes
-    whole = skin
-    if len(skin.faces) > MOST_SIMULATED:
-        notes += (f"its {len(skin.faces)} triangles are too many; simplified to {SIMPLIFIED}",)
-        skin = _simplified(skin, target)
+    simplified = None
+    if len(skin.faces) > simplifying.MOST_SIMULATED:
+        coarse = simplifying.simplified(skin, target)
+        count = len(coarse.faces)
+        notes += (f"its {len(skin.faces)} triangles follow a simplified mesh of {count}",)
+        carried = _carried_over(known, coarse, target)
+        simplified = simplifying.SimplifiedHead(
+            vertices=coarse.vertices,
+            faces=coarse.faces,
+            landmarks=coarse.landmarks,
+            bone_depth=carried.bone_depth,
+            eyes=carried.eyes,
+            parts=carried.parts,
+            rig=known.rig,
+            layers=known.layers,
+        )
+        carried = _on_finer(carried, coarse, skin)
+    else:
+        carried = _carried_over(known, skin, target)
+    layout, albedo, maps = _painted(mesh, own, skin, Layout(carried.uv, skin.faces))
+    wrinkles, segments, light = maps
+    return FittedHead(
+        vertices=skin.vertices,
+        faces=skin.faces,
+        landmarks=skin.landmarks,
+        bone_depth=carried.bone_depth,
+        eyes=carried.eyes,
+        parts=with_eyelid_rims(carried.parts, skin.vertices, skin.faces, carried.eyes),
+        uv=layout.uv,
+        face_uv=layout.face_uv,
+        albedo=albedo,
+        wrinkles=replace(wrinkles, across=carried.across),
+        segments=segments,
+        ambient_occlusion=light,
+        rig=known.rig,
+        layers=known.layers,
+        to_millimetres=similarity,
+        file_vertices=skin.file_vertices,
+        notes=notes,
+        simplified=simplified,
+    )
+
+
+class _Carried(NamedTuple):
+    """All that is carried over from the built-in head to a skin of V vertices."""
+
+    eyes: tuple[Eye, ...]
+    parts: tuple[Part, ...]
+    uv: Floats32  # (V, 2) in the built-in picture
+    across: Floats32  # (V, 3) of wrinkles
+    bone_depth: Floats64  # (V,) [mm]
+
+
+def _carried_over(known: Head, skin: SkinPiece, target: Floats64) -> _Carried:
+    """Warp the built-in head to a skin [mm] whose 68 landmarks lie at `target`, and read it off."""
     normals = vertex_normals(skin.vertices, skin.faces)
     warp = ThinPlateSpline(known.vertices[known.landmarks], target)
     warped = warp.points(known.vertices)
@@ -198,30 +250,24 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
     eyes = place_eyes(known, fitted)
     parts = place_parts(known, fitted, warp, eyes)
     neck_part = "neck"  # the shirt of the built-in head, which has its shoulders
-    # Landmarks do not say exactly enough where a lid ends for lashes and tears.
-    parts = tuple(part for part in parts if part.bone != neck_part and part.roots is None)
-    uv = spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces))
-    across = nearest.interpolate(known.wrinkles.across).astype(np.float32)
-    layout, albedo, maps = _painted(mesh, own, (whole, skin), Layout(uv, skin.faces))
-    wrinkles, segments, light = maps
-    return FittedHead(
-        vertices=skin.vertices,
-        faces=skin.faces,
-        landmarks=skin.landmarks,
-        bone_depth=nearest.interpolate(known.bone_depth),
+    return _Carried(
         eyes=eyes,
-        parts=with_eyelid_rims(parts, skin.vertices, skin.faces, eyes),
-        uv=layout.uv,
-        face_uv=layout.face_uv,
-        albedo=albedo,
-        wrinkles=replace(wrinkles, across=across),
-        segments=segments,
-        ambient_occlusion=light,
-        rig=known.rig,
-        layers=known.layers,
-        to_millimetres=similarity,
-        file_vertices=skin.file_vertices,
-        notes=notes,
+        # Landmarks do not say exactly enough where a lid ends for lashes and tears.
+        parts=tuple(part for part in parts if part.bone != neck_part and part.roots is None),
+        uv=spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces)),
+        across=nearest.interpolate(known.wrinkles.across).astype(np.float32),
+        bone_depth=nearest.interpolate(known.bone_depth),
+    )
+
+
+def _on_finer(carried: _Carried, coarse: SkinPiece, fine: SkinPiece) -> _Carried:
+    """The same for the skin of which `coarse` is the simplified mesh."""
+    normals = vertex_normals(fine.vertices, fine.faces)
+    nearest = nearest_on(fine.vertices, normals, coarse.vertices, coarse.faces)
+    return carried._replace(
+        uv=nearest.interpolate(carried.uv).astype(np.float32),
+        across=nearest.interpolate(carried.across).astype(np.float32),
+        bone_depth=nearest.interpolate(carried.bone_depth),
     )
 
 
@@ -237,53 +283,26 @@ def _sound(skin: SkinPiece) -> SkinPiece:
 def _painted(
     mesh: Mesh,
     own: tuple[Image, Layout] | None,
-    skins: tuple[SkinPiece, SkinPiece],
+    skin: SkinPiece,
     built_in: Layout,
 ) -> tuple[Layout, Image, tuple[Wrinkles, Image, Image]]:
     """The picture of the skin, its layout, and maps in this layout (see `maps_in`).
 
-    own: the file's picture of the skin, None where it has none. skins: the whole skin of the file,
-    and the part that is kept. built_in: layout of that part in the built-in picture. A simplified
-    skin has only this layout, so the picture of the whole skin is drawn into it.
+    own: the file's picture of the skin, None where it has none. built_in: layout of the skin in
+    the built-in picture.
     """
     known = load("head")
-    whole, skin = skins
-    if own is not None and skin is whole:
+    if own is not None:
         height, width = own[0].shape[:2]
         return own[1], own[0], maps_in(known, built_in, own[1], (height, width))
-    (picture, light) = plain_skin(known)
-    layout = built_in
+    picture, light = plain_skin(known)
     has_colours = mesh.colours is not None
     if mesh.has_colour is not None:
-        has_colours = bool(mesh.has_colour[whole.file_vertices].all())
-    if skin is not whole and (own is not None or has_colours):
-        normals = vertex_normals(whole.vertices, whole.faces)
-        nearest = nearest_on(whole.vertices, normals, skin.vertices, skin.faces)
-        layout = Layout(nearest.interpolate(built_in.uv).astype(np.float32), whole.faces)
-    if own is not None:
-        picture = drawn_over(picture, layout, own)
-    elif has_colours and mesh.colours is not None:
-        colours = mesh.colours[whole.file_vertices].astype(np.float64)
-        picture = drawn_over(picture, layout, colours[whole.faces])
+        has_colours = bool(mesh.has_colour[skin.file_vertices].all())
+    if has_colours and mesh.colours is not None:
+        colours = mesh.colours[skin.file_vertices].astype(np.float64)
+        picture = drawn_over(picture, built_in, colours[skin.faces])
     return built_in, picture, (known.wrinkles, known.segments, light)
-
-
-def _simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
-    """The same form with as many triangles as can be moved in time."""
-    most_attempts = 8  # to simplify a mesh so that it stays a surface
-    for attempt in range(most_attempts):
-        vertices, faces = decimated(skin.vertices, skin.faces, SIMPLIFIED, attempt)
-        with contextlib.suppress(AssetError):
-            check_manifold(faces)
-            break
-    else:
-        raise AssetError(
-            f"its {len(skin.faces)} triangles cannot be simplified; reduce it to {MOST_SIMULATED} "
-            "in a modelling program"
-        )
-    nearest = scipy.spatial.cKDTree(skin.vertices).query(vertices)[1]
-    numbers = nearest_vertices(landmarks, vertices, faces)
-    return SkinPiece(vertices, faces, numbers, skin.file_vertices[nearest], np.arange(0))
 
 
 def _placed(points: Floats64, known: Head) -> Similarity:

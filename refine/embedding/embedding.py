@@ -37,7 +37,7 @@ class EmbeddedPoints(NamedTuple):
     positions: Doubles
     """Shape (N, 3)."""
     normals: Floats | None
-    """Those that were given, turned with the surface, of length one, shape (N, 3)."""
+    """Those that were given, turned with the surface, of length one, shape (N, 3), or None."""
 
 
 class Embedding:
@@ -108,16 +108,19 @@ class Embedding:
         self.weights = read_only(self.weights)
         self.offsets = read_only(self.offsets)
 
-    def evaluate(self, positions: npt.NDArray[np.floating]) -> EmbeddedPoints:
+    def evaluate(
+        self, positions: npt.NDArray[np.floating], *, with_normals: bool = True
+    ) -> EmbeddedPoints:
         """Where the fine mesh is when the coarse one is at `positions`, shape (V, 3).
 
+        `with_normals`: whether those that were given are turned, too, which takes as long again.
         Raises ValueError for another shape and for positions that are not finite.
         """
         take_positions_like_rest(positions, self._is_used, self._positions, self._points)
         self._surface.move(self._positions)
         moved = np.empty_like(self.offsets)
         self._place(self.offsets, moved)
-        if self._normals is None:
+        if self._normals is None or not with_normals:
             return EmbeddedPoints(moved, None)
         turned = np.empty_like(self._normals)
         given_places = self._surface.rows, self._numbers, self.weights

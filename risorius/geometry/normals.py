@@ -1,4 +1,4 @@
-"""Cross products of triangles, and normals of vertices, in double precision.
+"""Cross products of triangles, and normals and areas of vertices, in double precision.
 
 Refiners find normals in every frame by a kernel of their own, in single precision
 (refine/mesh/normals.py).
@@ -25,3 +25,10 @@ def vertex_normals(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats
     )
     normals: Floats64 = total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
     return normals
+
+
+def vertex_areas(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats64:
+    """A third of the triangles around each vertex, shape (V,)."""
+    face_areas = np.linalg.norm(cross_products(vertices, faces), axis=1) / 2.0
+    shares = np.tile(face_areas / 3.0, 3)
+    return np.asarray(np.bincount(faces.T.ravel(), shares, len(vertices)), np.float64)

@@ -14,7 +14,7 @@ from risorius.app.recordings.names import ARKIT
 from risorius.app.rig.pieces import sphere_of
 from risorius.app.rig.poses import rest_in
 from risorius.app.scenes import FaceScene
-from risorius.assets.fitting import head as fitting_head
+from risorius.assets.fitting import simplifying
 from risorius.assets.meshes import read_mesh
 
 from ..heads import TURN, stranger
@@ -211,15 +211,15 @@ def test_correctives_make_sums_come_true(tmp_path, face):
 @pytest.mark.slow
 def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
     """A mesh with more triangles than can be simulated has shapes on all of its own vertices."""
-    monkeypatch.setattr(fitting_head, "MOST_SIMULATED", 5000)
-    monkeypatch.setattr(fitting_head, "SIMPLIFIED", 4000)
+    monkeypatch.setattr(simplifying, "MOST_SIMULATED", 5000)
+    monkeypatch.setattr(simplifying, "SIMPLIFIED", 4000)
     fine = stranger(1)
     assert len(fine.mesh.faces) > 5000
     mesh, landmarks = fine.write(tmp_path)
     path = tmp_path / "fine.glb"
     result = risorius("rig", mesh, "--landmarks", landmarks, "-o", path)
     assert result.exit_code == 0, result.output
-    assert "simulated on a coarser mesh" in result.output
+    assert "following a simplified mesh" in result.output
     player = Player(path)
     points = player.attribute("head", "POSITION")
     assert np.abs(points[: len(fine.mesh.vertices)] - fine.mesh.vertices).max() < 1e-6

@@ -1,0 +1,48 @@
+"""A skin of more triangles than can be simulated in time: it follows a simplified mesh.
+
+Its vertices are bound to that mesh at rest (refine.Embedding). No triangle is split for it: the
+embedding evaluates the smooth surface at each vertex.
+"""
+
+from __future__ import annotations
+
+import copy
+
+from risorius import sim
+from risorius.geometry.arrays import Floats64, Integers32
+from risorius.geometry.normals import vertex_normals
+from risorius.geometry.read_only import read_only
+from risorius.refine import Embedding
+
+
+class DenseSkin:
+    """The vertices of a skin as a simulation of fewer carries them.
+
+    rest_positions, positions: at rest and now [mm], shape (V, 3), read only for others.
+    """
+
+    def __init__(self, vertices: Floats64, faces: Integers32, simulation: sim.Simulation) -> None:
+        """Bind vertices (V, 3) of triangles (F, 3), at rest, to the mesh of `simulation`."""
+        self.rest_positions = vertices
+        normals = vertex_normals(vertices, faces)  # an upper lip's stay with the upper lip
+        self._embedding = Embedding(
+            simulation.faces, simulation.rest_positions, vertices, normals=normals
+        )
+        self._positions = vertices.copy()
+        self.positions = read_only(self._positions)
+
+    def follow(self, simulated: Floats64) -> None:
+        """Go where the simulated vertices are now, shape (K, 3)."""
+        self._positions[:] = self._embedding.evaluate(simulated, with_normals=False).positions
+
+    def carry(self, values: Floats64) -> Floats64:
+        """Values of simulated vertices, shape (K,), at those of the skin, shape (V,)."""
+        return self._embedding.carry(values)
+
+    def clone(self) -> DenseSkin:
+        """The same skin, which moves by itself."""
+        twin = copy.copy(self)
+        twin._embedding = copy.deepcopy(self._embedding)
+        twin._positions = self._positions.copy()
+        twin.positions = read_only(twin._positions)
+        return twin

@@ -1,0 +1,86 @@
+"""The head under a skin: its simulation, and the skin that muscles move.
+
+A head of more triangles than can be moved in time has a simplified mesh, which is simulated. Its
+own vertices follow that one (dense_skin.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from risorius import assets, sim
+from risorius.assets.fitting import FittedHead, SimplifiedHead
+from risorius.geometry.arrays import Floats64
+
+from .dense_skin import DenseSkin
+
+
+@dataclass(frozen=True, eq=False)
+class Face:
+    """A head, its simulation, and its skin where that is denser than the simulated mesh."""
+
+    head: assets.Head | FittedHead
+    simulation: sim.Simulation
+    dense_skin: DenseSkin | None = None
+
+    @classmethod
+    def of(cls, head: assets.Head | FittedHead) -> Face:
+        """A face of this head, at rest. Raises ValueError for one that cannot be simulated."""
+        simplified = head.simplified if isinstance(head, FittedHead) else None
+        simulation = sim.create(simplified or head)
+        if simplified is None:
+            return cls(head, simulation)
+        return cls(head, simulation, DenseSkin(head.vertices, head.faces, simulation))
+
+    def clone(self) -> Face:
+        """The same head once more, at rest, which moves by itself."""
+        simulation = self.simulation.clone()
+        simulation.reset()
+        twin = replace(
+            self,
+            simulation=simulation,
+            dense_skin=None if self.dense_skin is None else self.dense_skin.clone(),
+        )
+        twin.follow()
+        return twin
+
+    @property
+    def simulated_head(self) -> assets.Head | FittedHead | SimplifiedHead:
+        """The head on whose vertices the simulation runs."""
+        simplified = self.head.simplified if isinstance(self.head, FittedHead) else None
+        return simplified or self.head
+
+    @property
+    def rest_positions(self) -> Floats64:
+        """The vertices of the skin at rest [mm], shape (V, 3)."""
+        simulated: Floats64 = self.simulation.rest_positions
+        return simulated if self.dense_skin is None else self.dense_skin.rest_positions
+
+    @property
+    def positions(self) -> Floats64:
+        """The vertices of the skin now [mm], shape (V, 3); a view that stays the same."""
+        simulated: Floats64 = self.simulation.positions
+        return simulated if self.dense_skin is None else self.dense_skin.positions
+
+    @property
+    def head_weight(self) -> Floats64:
+        """How far each vertex turns with the head, 0 to 1, shape (V,)."""
+        weight: Floats64 = self.simulation.bones.head_weight
+        return weight if self.dense_skin is None else self.dense_skin.carry(weight)
+
+    @property
+    def marked(self) -> Floats64:
+        """Where the 68 landmarks are now [mm], shape (68, 3)."""
+        return np.asarray(self.positions[self.head.landmarks])
+
+    def follow(self) -> None:
+        """Bring the skin to where the simulated mesh is now."""
+        if self.dense_skin is not None:
+            self.dense_skin.follow(self.simulation.positions)
+
+    def bone_transforms(self) -> Mapping[str, Floats64]:
+        """Where its bones are now: a (4, 4) matrix for each."""
+        return self.simulation.bones.transforms()

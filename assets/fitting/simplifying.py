@@ -1,0 +1,60 @@
+"""A mesh of fewer triangles to simulate, where a head has more than can be moved in time."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy
+
+from risorius.geometry.arrays import Floats64, Integers32
+from risorius.geometry.read_only import make_read_only
+
+from ..errors import AssetError
+from ..model import Eye, Layer, Part
+from ..topology import decimated
+from .landmark_file import nearest_vertices
+from .mesh_validation import SkinPiece, check_manifold
+
+MOST_SIMULATED = 50_000  # triangles: a step of these takes a good half of a frame of 1/60 s
+SIMPLIFIED = 25_000  # triangles are left: these play at 20 frames a second on two cores
+
+
+@dataclass(frozen=True)
+class SimplifiedHead:
+    """A mesh of fewer triangles with all that `sim.create` asks for.
+
+    Its attributes are those of `FittedHead`.
+    """
+
+    vertices: Floats64
+    faces: Integers32
+    landmarks: Integers32
+    bone_depth: Floats64
+    eyes: tuple[Eye, ...]
+    parts: tuple[Part, ...]
+    rig: dict[str, Any]
+    layers: tuple[Layer, ...]
+
+    def __post_init__(self) -> None:
+        make_read_only(self)
+
+
+def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
+    """The same form with as many triangles as can be moved in time."""
+    most_attempts = 8  # to simplify a mesh so that it stays a surface
+    for attempt in range(most_attempts):
+        vertices, faces = decimated(skin.vertices, skin.faces, SIMPLIFIED, attempt)
+        with contextlib.suppress(AssetError):
+            check_manifold(faces)
+            break
+    else:
+        raise AssetError(
+            f"its {len(skin.faces)} triangles cannot be simplified; reduce it to {MOST_SIMULATED} "
+            "in a modelling program"
+        )
+    nearest = scipy.spatial.cKDTree(skin.vertices).query(vertices)[1]
+    numbers = nearest_vertices(landmarks, vertices, faces)
+    return SkinPiece(vertices, faces, numbers, skin.file_vertices[nearest], np.arange(0))

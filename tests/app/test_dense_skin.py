@@ -1,0 +1,75 @@
+"""Heads of too many triangles: a simplified mesh is simulated, their own triangles follow it."""
+
+import numpy as np
+import pytest
+
+from risorius.app.scenes import FaceScene
+from risorius.assets.fitting import fit, simplifying
+from risorius.assets.meshes import Mesh
+from tests.heads import stranger
+
+
+@pytest.fixture(scope="module")
+def dense() -> FaceScene:
+    """A head above the limit, which is lower here than it is."""
+    other = stranger()
+    colours = np.tile(np.array([180, 140, 120], np.uint8), (len(other.mesh.vertices), 1))
+    mesh = Mesh(other.mesh.vertices, other.mesh.faces, colours=colours)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(simplifying, "MOST_SIMULATED", 4000)
+        patch.setattr(simplifying, "SIMPLIFIED", 2500)
+        return FaceScene(fit(mesh, other.landmarks))
+
+
+def test_its_own_triangles_are_drawn(dense):
+    """All triangles of the file are there, where the file has them, and few are simulated."""
+    other = stranger()
+    assert np.array_equal(dense.faces, other.mesh.faces)
+    rest = dense.head.to_millimetres.points(other.mesh.vertices)
+    np.testing.assert_allclose(dense.rest_positions, rest, atol=1e-9)
+    assert len(dense.simulation.faces) <= 2500 < 4000 < len(dense.faces)
+    assert dense.skin.uv is not None
+    assert dense.skin.face_uv.shape == dense.faces.shape
+    assert dense.face.head_weight.shape == (len(rest),)
+    assert any("simplified" in note for note in dense.head.notes)
+
+
+def test_it_follows_and_comes_back(dense):
+    """It smiles as the simulated mesh does, a twin stays where it was, and rest is rest."""
+    dense.reset()
+    twin = dense.clone()
+    dense.pose({"joy": 1.0, "jaw_open": 0.5})
+    for _ in range(20):
+        dense.step(1.0 / 60.0)
+    moved = np.linalg.norm(dense.positions - dense.rest_positions, axis=1)
+    simulated = dense.simulation.positions - dense.simulation.rest_positions
+    farthest = np.linalg.norm(simulated, axis=1).max()
+    assert farthest > 5.0
+    assert 0.8 * farthest < moved.max() < 1.2 * farthest
+    np.testing.assert_allclose(twin.positions, twin.rest_positions, atol=1e-3)
+    dense.reset()
+    np.testing.assert_allclose(dense.positions, dense.rest_positions, atol=1e-3)
+
+
+def test_lips_keep_their_own_vertices(dense):
+    """An opened mouth parts the lips: no vertex of one goes with the other."""
+    dense.reset()
+    dense.pose({"jaw_open": 1.0})
+    for _ in range(30):
+        dense.step(1.0 / 60.0)
+    marks = dense.landmarks
+    upper = dense.positions[marks[62]] - dense.rest_positions[marks[62]]
+    lower = dense.positions[marks[66]] - dense.rest_positions[marks[66]]
+    assert upper[1] - lower[1] > 8.0
+    simulated = dense.simulation
+    among = growth(simulated.faces, simulated.positions, simulated.rest_positions)
+    assert growth(dense.faces, dense.positions, dense.rest_positions) < among
+
+
+def growth(faces, positions, rest):
+    """How much longer than at rest the edge is that grew most [mm]."""
+    lengths = [
+        np.linalg.norm(points[faces] - points[np.roll(faces, 1, axis=1)], axis=2)
+        for points in (positions, rest)
+    ]
+    return (lengths[0] - lengths[1]).max()
