@@ -143,7 +143,9 @@ def _assembled(
     muscles = build_muscle_forces(
         placed, rig, surface, skull.mandible_weight, lips.members, landmarks, side
     )
-    springs = TissueSprings.under(surface, rig.tissue)
+    nose = [30, 33]  # its tip and its base
+    septum = np.zeros((0, 3)) if landmarks is None else landmarks[nose]
+    springs = TissueSprings.under(surface, rig.tissue, septum)
     edges = EdgeSprings.along(surface, rig.tissue, corners)
     passive, greatest = _holds(muscles, lids, surface.vertex_count)
     skin = SkinModel(

@@ -101,6 +101,7 @@ class Tissue(Record):
     stiffening: Annotated[float, Within(1.0, 20.0)] = 4.0
     # strain where it starts (biphasic)
     stiffening_strain: Annotated[float, Within(0.0, 2.0)] = 0.25
+    septum: Annotated[float, Within(0.0, 1000.0)] = 0.0  # resistance on the nose's cartilage
     modiolus: Annotated[float, Within(0.0, 50.0)] = 0.0  # how much firmer skin is at mouth corners
     modiolus_shear: Annotated[float, Within(0.0, 50.0)] = 0.0  # the same, against turning
     passive: Annotated[float, Within(0.0, 1.0)] = 0.2  # share of a muscle's stiffness when relaxed

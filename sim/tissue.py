@@ -31,6 +31,7 @@ import numpy as np
 
 from ..geometry.arrays import Floats64, Unsigned32
 from ..jit import njit
+from .landmarks import polyline_distance
 from .rig import Tissue
 from .skull import RigidMotion
 from .state import State
@@ -46,11 +47,24 @@ class TissueSprings(NamedTuple):
     damping_ratio: float  # of critical
 
     @classmethod
-    def under(cls, surface: SkinSurface, tissue: Tissue) -> TissueSprings:
-        """Uniform tissue under a whole surface."""
+    def under(cls, surface: SkinSurface, tissue: Tissue, septum: Floats64) -> TissueSprings:
+        """Uniform tissue under a whole surface, but for the nose.
+
+        septum: from the base of the nose to its tip, points (K, 3) [mm]; none without landmarks.
+        There skin lies on cartilage that stands on the bone, and lifts little with the lip.
+        """
         scale = tissue.stiffness_scale * surface.areas
+        firm = np.zeros(surface.vertex_count)
+        if len(septum):
+            away = polyline_distance(surface.positions, septum)
+            half_width = 5.0  # mm, of the columella: wings and lip are as free as other skin
+            near = np.maximum(0.0, 1.0 - (away / half_width) ** 2)
+            firm = tissue.septum * near**2
         return cls(
-            tissue.tangential * scale, tissue.normal * scale, tissue.damping, tissue.damping_ratio
+            (tissue.tangential + firm) * scale,
+            (tissue.normal + firm) * scale,
+            tissue.damping,
+            tissue.damping_ratio,
         )
 
 

@@ -70,6 +70,27 @@ def test_expressions_move_their_landmarks(simulation, head, name):
         assert moved_landmarks(head, moved, *landmarks) @ way > least, landmarks
 
 
+def test_the_base_of_the_nose_hardly_lifts(simulation, head):
+    """Cartilage holds it in a sneer and where the lip is raised; wings and lip go up beside it."""
+    for shape, most, wings in (("noseSneer", 2.5, 7.0), ("mouthUpperUp", 1.6, 4.5)):
+        values = {f"{shape}Left": 1.0, f"{shape}Right": 1.0}
+        moved = settled_displacement(simulation, values)
+        assert 0.0 < moved_landmarks(head, moved, 33)[1] < most, shape
+        assert 0.0 < moved_landmarks(head, moved, 30)[1] < most, shape
+        assert moved_landmarks(head, moved, 31, 35)[1] > wings, shape
+        assert moved_landmarks(head, moved, 51)[1] > 4.5, shape
+
+
+def test_an_upper_lip_is_shrugged_up_and_rolled_back(simulation, head):
+    """A shrug goes up more than forward; a roll goes back and leaves the chin where it is."""
+    moved = settled_displacement(simulation, {"mouthShrugUpper": 1.0})
+    _, up, forward = moved_landmarks(head, moved, 51)
+    assert max(2.0, forward) < up < 7.0
+    moved = settled_displacement(simulation, {"mouthRollUpper": 1.0})
+    assert -13.0 < moved_landmarks(head, moved, 51)[2] < -5.0
+    assert norm(moved_landmarks(head, moved, 8)) < 0.5
+
+
 def test_joy_bares_the_teeth(simulation, head):
     """The upper lip bares the lower part of the teeth, along whose edge the lower one lies."""
     moved = settled_displacement(simulation, head.expressions["joy"])
