@@ -9,6 +9,8 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
+from .names import measured
+
 
 def in_degrees(
     angles: Mapping[str, Floats64], outward: Mapping[str, float], notes: list[str]
@@ -19,11 +21,10 @@ def in_degrees(
     how much the axes of eyeballs are off [degrees].
     """
     moving = {}
-    largest_degrees = 360.0  # a larger one is no angle in any unit
     for name, values in angles.items():
-        values = np.where(np.abs(values) > largest_degrees, np.nan, values)
-        if np.nan_to_num(values).any():
-            moving[name] = values
+        kept = measured(name, values)
+        if np.nan_to_num(kept).any():
+            moving[name] = kept
     if len(moving) < len(angles):
         still = ", ".join(name for name in angles if name not in moving)
         notes.append(f"Always 0, as if switched off, and left out: {still}.")

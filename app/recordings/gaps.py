@@ -15,7 +15,7 @@ from risorius.geometry.arrays import Floats64
 
 from ..errors import UserError
 from ..text import counted
-from .names import ANGLES, NONSENSE
+from .names import measured
 from .take import Take
 
 SHORT_GAP = 0.3  # [s] that is bridged by a straight line
@@ -38,11 +38,7 @@ def whole_take(
     be far apart. UserError where no face is in it.
     """
     all_notes = list(notes)
-    largest_angle = 360.0  # [degrees]; a larger one is no measurement
-    channels = {
-        name: np.where(np.abs(v) > (largest_angle if name in ANGLES else NONSENSE), np.nan, v)
-        for name, v in channels.items()
-    }
+    channels = {name: measured(name, values) for name, values in channels.items()}
     channels = {name: values for name, values in channels.items() if np.isfinite(values).any()}
     if not channels:
         raise UserError(

@@ -21,6 +21,10 @@ import functools
 import re
 from dataclasses import dataclass
 
+import numpy as np
+
+from risorius.geometry.arrays import Floats64
+
 ARKIT = (
     "eyeBlinkLeft", "eyeLookDownLeft", "eyeLookInLeft", "eyeLookOutLeft", "eyeLookUpLeft",
     "eyeSquintLeft", "eyeWideLeft", "eyeBlinkRight", "eyeLookDownRight", "eyeLookInRight",
@@ -37,6 +41,7 @@ ARKIT = (
 """The 52 shapes in the order in which ARKit counts them, as packets without names do."""
 
 NONSENSE = 3.0  # a shape beyond is no measurement
+LARGEST_ANGLE = 360.0  # [degrees]; a larger one is no measurement
 HEAD_ANGLES = ("head_yaw", "head_pitch", "head_roll")
 EYE_ANGLES = ("eye_yaw_left", "eye_pitch_left", "eye_yaw_right", "eye_pitch_right")
 ANGLES = frozenset((*HEAD_ANGLES, *EYE_ANGLES))
@@ -50,6 +55,12 @@ ACTION_UNIT = re.compile(
 )
 OCULUS_VOWELS = {"i": "ih", "o": "oh", "u": "ou", "e": "E"}  # of its visemes -> ours
 _SOUND = {name.removeprefix("viseme_").casefold(): name for name in VISEMES}
+
+
+def measured(name: str, values: Floats64) -> Floats64:
+    """The values of a channel, NaN where they are too large for a measurement."""
+    largest = LARGEST_ANGLE if name in ANGLES else NONSENSE
+    return np.where(np.abs(values) > largest, np.nan, values)
 
 
 def _letters(name: str) -> str:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from risorius.geometry.arrays import Floats64
 
 from ..text import counted
-from .names import ARKIT, NONSENSE
+from .names import ARKIT, NONSENSE, measured
 
 Rows = npt.NDArray[np.bool_]
 
@@ -86,9 +86,8 @@ def shares(shapes: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats
     far = 0
     beyond = 0
     for name, values in found.items():
-        is_far = np.abs(values) > NONSENSE
-        far += int(is_far.sum())
-        kept = np.where(is_far, np.nan, values)
+        kept = measured(name, values)
+        far += int(np.isnan(kept).sum() - np.isnan(values).sum())
         found[name] = kept
         beyond += int(np.sum((kept < -0.001) | (kept > 1.001)))
     if far:
