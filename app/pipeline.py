@@ -19,7 +19,7 @@ from risorius import render
 from .anatomy import SKIN_ALONE, Anatomy, AnatomyView, Dissection
 from .refining.drawn_mesh import DrawnMesh, bind
 from .refining.presets import Refinement
-from .refining.wrinkling import Compression
+from .refining.wrinkling import Amounts, Compression
 from .scenes import Drawable
 
 Timer = Callable[[str], AbstractContextManager[Any]]
@@ -70,11 +70,16 @@ class Pipeline:
         """The upper half of the figure: time passes, and the triangle mesh follows."""
         self.scene.step(seconds)
 
-    def refine(self, camera: render.OrbitCamera, viewports: Sequence[Viewport]) -> None:
+    def refine(
+        self,
+        camera: render.OrbitCamera,
+        viewports: Sequence[Viewport],
+        wrinkling: Amounts | None = None,
+    ) -> None:
         """Refine each mesh; a frame that nobody draws, too: the next one may remember it."""
         self.renderer.surface.make_current()  # where streams of the graphics card are
         for viewport in viewports:
-            viewport.drawn.refine(self.scene.positions, camera)
+            viewport.drawn.refine(self.scene.positions, camera, wrinkling)
 
     def frame_of(
         self,
@@ -113,12 +118,12 @@ class Pipeline:
         overlays: over every viewport. timer: measures "refinement", "upload" and "draw".
         """
         with timer("refinement"):
-            wrinkling = self._compression if style.shows_bumps else None
-            amounts = None if wrinkling is None else wrinkling.amounts(self.scene.positions)
-            self.refine(camera, viewports)
+            compression = self._compression if style.shows_bumps else None
+            wrinkling = None if compression is None else compression.amounts(self.scene.positions)
+            self.refine(camera, viewports, wrinkling)
         with timer("upload"):
             for viewport in viewports:
-                viewport.drawn.upload(amounts)
+                viewport.drawn.upload()
         with timer("draw"):
             seen = self.anatomy.dissect(anatomy, has_hair=style.textured)  # else form is seen
             self.renderer.draw(

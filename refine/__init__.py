@@ -46,7 +46,7 @@ from .border.base import BaseRefiner
 from .border.checker import BrokenMeshError, check
 from .border.corner_values import Values
 from .border.plugin import GpuRefiner, GpuStream, Origins, RefinedMesh, Refiner, Stream, View
-from .border.registry import Registry, create, parameters, refiners
+from .border.registry import Registry, create, parameters, refiners, takes_attributes
 from .border.stream import StreamArrays
 from .embedding.embedding import EmbeddedPoints, Embedding
 from .hosts import WeldedRefiner
@@ -110,6 +110,7 @@ __all__ = [
     "refiners",
     "schemes",
     "splits_of_clip",
+    "takes_attributes",
     "weld",
 ]
 

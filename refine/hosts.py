@@ -1,5 +1,6 @@
 """Meshes as other programs keep them: vertices doubled along seams, any data at them."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -21,8 +22,8 @@ class WeldedRefiner:
     """The refiner `kahler` for a mesh as VTK, trimesh, glTF and OBJ have it.
 
         refiner = WeldedRefiner(points, triangles)
-        mesh = refiner.refine(moved)      # every frame
-        heat = refiner.carry(heat)        # from points of the input to those of the frame
+        mesh = refiner.refine(moved, values={"heat": heat})      # every frame
+        draw(mesh.positions, mesh.triangles, mesh.attributes["heat"])
 
     Such a mesh has a vertex twice where two sides of it look different. These are welded for
     refinement, so that no crack opens between them, and part again in the refined mesh. By
@@ -46,9 +47,9 @@ class WeldedRefiner:
         part later, as lips do. `weld_tolerance`: how far apart they may lie, in sizes of the mesh;
         None for 1e-9, or the last bits of the points' type where that is more. `seams`: whether
         welded vertices part again in the output, which they need only if they carry data.
-        `options`: those of `create_kahler`, but for texture coordinates and attributes: `carry`
-        does that. With `splits`, of the welded `edges`, all frames have the same triangles.
-        Raises ValueError as `create` does.
+        `options`: those of `create_kahler`, but for texture coordinates and attributes, which
+        frames bring as values. With `splits`, of the welded `edges`, all frames have the same
+        triangles. Raises ValueError as `create` does.
         """
         rest, given = checked_mesh(points, triangles, ("points", "triangles"))
         self.triangles = read_only(given)
@@ -59,8 +60,8 @@ class WeldedRefiner:
             kept, faces = weld_vertices(points, self.triangles, tolerance=weld_tolerance)
             self._kept = kept.astype(np.int64)
             self._faces = faces.astype(np.int64)
-        self._is_proper = (self._faces != np.roll(self._faces, 1, axis=1)).all(axis=1)
         self._parts = seams and len(self._kept) < len(rest)
+        self._used = np.unique(self.triangles)  # in the order of values of corners
         # The number of a doubled vertex stands for its texture coordinate.
         numbers = {"uv": np.zeros((len(rest), 2)), "face_uv": self.triangles}
         chosen = {**SMOOTH, **options}
@@ -84,10 +85,17 @@ class WeldedRefiner:
         """How often each edge was split in the last frame, shape (E,), read only."""
         return self._refiner.splits
 
-    def refine(self, points: npt.ArrayLike, view: View | None = None) -> RefinedMesh:
+    def refine(
+        self,
+        points: npt.ArrayLike,
+        view: View | None = None,
+        values: Mapping[str, npt.ArrayLike] | None = None,
+    ) -> RefinedMesh:
         """Turn a frame of all points, shape (V, 3), into triangles, as `Refiner.refine` does.
 
-        Raises ValueError for another number of points, or points that are not finite.
+        `values`: of the points in this frame, by name, shape (V, ...), of any type. They are the
+        attributes of the refined mesh, as `carry` hands them on. Raises ValueError for another
+        number of points or values, or points that are not finite.
         """
         frame = np.asarray(points)
         if frame.shape != (self.point_count, 3):
@@ -99,6 +107,9 @@ class WeldedRefiner:
         self._mesh = self._refiner.refine(frame[self._kept], view=view)
         if self._refiner.topology is None:
             self._origins = None
+        if values:
+            carried = {name: self.carry(each) for name, each in values.items()}
+            self._mesh = self._mesh._replace(attributes=carried)
         return self._mesh
 
     def carry(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
@@ -126,16 +137,9 @@ class WeldedRefiner:
             raise ValueError("nothing is refined yet; call refine(points) before carry(values)")
         vertices, weights = self._refiner.origins()
         rows = self._kept[vertices]
-        if self._parts:  # of the doubled vertices the one that the triangle at this point has
-            triangle = np.zeros(len(rows), dtype=np.int64)
-            triangles = self._mesh.triangles
-            source = self._mesh.source
-            triangle[triangles] = source[:, None]
-            proper = self._is_proper[source]  # where others name a vertex twice, these count
-            triangle[triangles[proper]] = source[proper, None]
-            is_corner = self._faces[triangle][:, None, :] == vertices[:, :, None]
-            own = self.triangles[triangle[:, None], is_corner.argmax(axis=2)]
-            rows = np.where(is_corner.any(axis=2), own, rows)
+        if self._parts:  # each side of a seam has its own of the doubled vertices
+            own = self._refiner.origins_of_values().vertices
+            rows = np.where(own >= 0, self._used[own], rows)
         wide = weights.astype(np.float64)
         return rows, wide / wide.sum(axis=1, keepdims=True)  # as single they add up to 1.00000003
 

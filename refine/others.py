@@ -30,7 +30,12 @@ import numpy.typing as npt
 from .border.base import BaseRefiner
 from .border.corner_values import Values
 from .border.plugin import Origins, Stream, View
-from .border.rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
+from .border.rows import (
+    GEOMETRY_COLUMNS,
+    spread_over_wedges,
+    wedge_values,
+    write_wedges,
+)
 from .kahler.frame import buffers_for, split_everywhere
 from .kahler.smoothing import place_middles, place_vertices
 from .mesh.arrays import Floats, Indices
@@ -92,9 +97,11 @@ class Loop(BaseRefiner):
         finest = _Refined.of(
             self.connectivity, None if self._values is None else self._values.values
         )
+        self._split = [finest.connectivity]
         self._levels = [Level(finest.connectivity, self.points, self.normals)]
         for _ in range(levels - 1):
             finest = finest.subdivided()
+            self._split.append(finest.connectivity)
             rest = np.zeros((finest.connectivity.vertex_count, 3), dtype=np.float32)
             self._levels.append(Level(finest.connectivity, rest, rest.copy()))
         self._rows = np.zeros((len(self._levels[-1].points), GEOMETRY_COLUMNS), np.float32)
@@ -131,6 +138,15 @@ class Loop(BaseRefiner):
         triangles[:triangle_count] = self._triangles
         source[:triangle_count] = self._finest.source
         return vertex_count, triangle_count
+
+    def follow_values(self) -> None:
+        """Take values of every level, each halfway along the edges of the level before."""
+        assert self._values is not None
+        values = self._values.values
+        for mesh in self._split:
+            values = _with_middles(values, mesh)
+        finest = self._finest.connectivity
+        spread_over_wedges(values, finest.wedge_uv, self._wedge_values)
 
     def origins(self) -> Origins:
         """Say for every output vertex where it lies on the input mesh."""
@@ -185,9 +201,7 @@ class _Refined:
             rows = mesh.wedge_uv[mesh.corners].astype(np.int64)
             middles = len(values) + (mesh.triangle_attribute_edges[split] >> 1).astype(np.int64)
             corner_rows = np.concatenate([_children(rows[split], middles), rows[whole]])[order]
-            values = np.concatenate(
-                [values, values[mesh.attribute_edge_uv].mean(axis=1, dtype=np.float32)]
-            )
+            values = _with_middles(values, mesh)
 
         corners = self.barycentric[split]
         children = _children(corners, (corners + np.roll(corners, -1, axis=1)) / 2)
@@ -206,6 +220,12 @@ class _Refined:
             self.source[parents[order]],
             barycentric,
         )
+
+
+def _with_middles(values: Floats, mesh: Connectivity) -> Floats:
+    """Values of a mesh, (A, k), and after them those in the middle of each attribute edge."""
+    middles = values[mesh.attribute_edge_uv].mean(axis=1, dtype=np.float32)
+    return np.concatenate([values, middles])
 
 
 def _children(corners: npt.NDArray[Any], middles: npt.NDArray[Any]) -> npt.NDArray[Any]:

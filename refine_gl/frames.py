@@ -80,6 +80,16 @@ class Frames:
         for name in self._programs:
             self._dispatch(name)
 
+    def write_values(self, of_wedges: Floats, of_edge_ends: Floats) -> None:
+        """Hand over texture coordinates and attributes in place of those of binding.
+
+        `of_wedges`: shape (W, k); `of_edge_ends`: at both ends of attribute edges, shape (R, 2, k).
+        """
+        for name, values in (("wedge_values", of_wedges), ("edge_values", of_edge_ends)):
+            if values.size:
+                offset = NUMBER_BYTES * self._tables.sizes[f"{name}_at"]
+                self._mesh.write(np.ascontiguousarray(values, np.float32), offset=offset)
+
     def fetch(self, name: str, count: int, size: int = NUMBER_BYTES) -> Unsigned:
         """The first numbers, or vectors, that passes have handed on under a name, as numbers.
 

@@ -8,7 +8,7 @@ context, and fetches nothing. Handed arrays, or nothing, it uses a context of it
 import functools
 import logging
 import operator
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal, Unpack, cast
 
 import numpy as np
@@ -128,6 +128,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         self._own_buffers: GpuBuffers | None = None
         self._frames: Frames | None = None  # of the context of the last frame
         self._run: Run = operator.call
+        self._has_new_values = False  # that the card has not
         self._fetched_splits: Small | None = self.edge_splits
 
     @property
@@ -160,7 +161,9 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         """Say for every vertex of the last frame where it lies on the input mesh; fetched."""
         mesh = self.connectivity
         splits = self.splits
-        origins = super().origins().followed_by(*points_on_edges(mesh, splits))
+        ends = mesh.edges[mesh.attribute_edges]
+        points = points_on_edges(ends, splits[mesh.attribute_edges])
+        origins = super().origins().followed_by(*points)
         if not self._rules.blends or self._frames is None:
             return origins
         counts = np.append(splits, 0)[mesh.triangle_edges].sum(axis=1)
@@ -174,19 +177,29 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         positions: npt.NDArray[np.floating],
         out: Stream | None = None,
         view: View | None = None,
+        values: Mapping[str, npt.ArrayLike] | None = None,
     ) -> RefinedMesh:
         """Turn deformed `positions`, shape (V, 3), into triangles; see `Refiner.refine`."""
         if out is not None:
-            return super().refine(positions, out, view)
-        self.take(positions, view)
+            return super().refine(positions, out, view, values)
+        self.take(positions, view, values)
         return cast(RefinedMesh, self._refine_own(view))  # it has all members of one
 
     def refine_on_card(
-        self, positions: npt.NDArray[np.floating], out: GpuStream, view: View | None = None
+        self,
+        positions: npt.NDArray[np.floating],
+        out: GpuStream,
+        view: View | None = None,
+        values: Mapping[str, npt.ArrayLike] | None = None,
     ) -> RefinedMesh:
         """Refine into the buffers of a stream; see `GpuRefiner`."""
-        self.take(positions, view)
+        self.take(positions, view, values)
         return cast(RefinedMesh, self._refine_in(out, operator.call, view))
+
+    def follow_values(self) -> None:
+        """Hand values that a frame brings to the card, with the frame."""
+        super().follow_values()
+        self._has_new_values = True
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         """Refine in a context of our own, and copy the frame into arrays that were lent."""
@@ -213,7 +226,13 @@ class KahlerGl(BaseRefiner, GpuRefiner):
             self._frames = run(
                 Frames, stream.context, self._tables, self._rules, self.rest_positions
             )
+            self._has_new_values = self._values is not None
         self._run = run
+        if self._has_new_values:
+            assert self._values is not None
+            ends = self._values.values[self.connectivity.attribute_edge_uv]
+            run(self._frames.write_values, self._wedge_values, ends)
+            self._has_new_values = False
         self._fetched_splits = None
         measured = None  # by the processor
         if self._rules.others is not None:

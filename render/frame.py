@@ -100,7 +100,7 @@ class SkinMaps:
     """The images on a skin.
 
     texture: the albedo of its front side, unless the style is not textured, and its fine shape.
-    bumps: furrows, as far as the style and the amounts that were uploaded let them show; per-pixel
+    bumps: furrows, as far as the style and the uploaded amounts let them show; per-pixel
         shading alone has them.
     """
 
@@ -116,7 +116,7 @@ NO_MAPS = SkinMaps()
 class Skin:
     """The mesh of a frame: the last upload of a stream, and what lies on it.
 
-    maps: they need a stream of 8 columns, ValueError else.
+    maps: they need a stream of 8 columns or more, ValueError else.
     fade: a x + b y + c z + d, from 0 to 1, is the share of the mesh that shows at (x, y, z).
     values: the number that colours each triangle, see `ColourBy`, shape (M,), uint8; needed unless
         that is NONE.

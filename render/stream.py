@@ -7,7 +7,7 @@ Source: Kähler et al. 2003, section 3: refined triangles go to the renderer and
 """
 
 from enum import Enum
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import moderngl
 import numpy as np
@@ -28,6 +28,12 @@ class Share(Enum):
 
 NUMBER_BYTES = 4  # bytes
 COMMAND_WORDS = 7
+LAYOUTS = {
+    6: ("3f 3f", "in_position", "in_normal"),
+    8: ("3f 3f 2f", "in_position", "in_normal", "in_uv"),
+    10: ("3f 3f 2f 2f", "in_position", "in_normal", "in_uv", "in_bumps"),
+}  # of a vertex in OpenGL, by the columns of rows
+BUMPS = slice(8, 10)  # columns with the amounts of a bump map
 _Ranges = dict[Share, tuple[int, int]]  # first triangle and how many, in a buffer of indices
 
 
@@ -44,7 +50,7 @@ class UploadedMesh(Protocol):
 
     @property
     def vertices(self) -> Floats32:
-        """x y z, nx ny nz[, u v], shape (vertex_count, columns)."""
+        """x y z, nx ny nz[, u v[, two amounts of bumps]], shape (vertex_count, columns)."""
 
     @property
     def triangles(self) -> Unsigned32:
@@ -69,9 +75,10 @@ class _Uploaded(NamedTuple):
 class MeshBuffers:
     """One mesh of at most so many vertices and triangles, rewritten every frame, to be drawn.
 
-    columns: of its rows, 6 (position, normal) or 8 (and texture u, v).
+    columns: of its rows, 6 (position, normal), 8 (and texture u, v) or 10 (and how much of a bump
+        map shows, 0..1 in either slot of it).
     mesh: the last one that was written into it, another object after each upload.
-    has_bumps: whether that mesh came with amounts of a bump map.
+    has_bumps: whether the amounts of that mesh count.
     corners: of a box that holds its vertices, shape (8, 3), float64.
     places: where its vertices are, or some near them, shape (n, 3).
     """
@@ -79,9 +86,10 @@ class MeshBuffers:
     def __init__(
         self, gl: moderngl.Context, vertex_capacity: int, triangle_capacity: int, columns: int
     ) -> None:
-        if columns not in (6, 8):
+        if columns not in LAYOUTS:
             raise ValueError(
-                f"columns is {columns}; it must be 6 (position, normal) or 8 (and texture u, v)"
+                f"columns is {columns}; it must be 6 (position, normal), 8 (and texture u, v) or "
+                "10 (and two amounts of a bump map)"
             )
         if vertex_capacity < 1 or triangle_capacity < 1:
             raise ValueError(
@@ -95,13 +103,12 @@ class MeshBuffers:
         self.places: Floats32 = none[:, :3]
         self.corners = np.zeros((8, 3))
         self.has_bumps = False
-        self._room = vertex_capacity, triangle_capacity
+        self._triangle_capacity = triangle_capacity
         self.vertex_buffer = gl.buffer(
             reserve=NUMBER_BYTES * columns * vertex_capacity, dynamic=True
         )
         self.index_buffer = gl.buffer(reserve=3 * NUMBER_BYTES * triangle_capacity, dynamic=True)
-        # Made when they are first needed: amounts of bumps by vertex; and triangles parted by
-        # bumps, and chosen.
+        # Made when they are first needed: triangles parted by bumps, and chosen.
         self._more: dict[str, moderngl.Buffer] = {}
         self._ranges: _Ranges = {}
         self._vertex_arrays: dict[
@@ -118,31 +125,38 @@ class MeshBuffers:
         """How many triangles."""
         return self.mesh.triangle_count
 
-    def _rewrite(self, name: str, array: npt.NDArray[Any]) -> None:
-        """Hand over an array with a row for each vertex, or a number for each triangle (uint32)."""
+    def _rewrite(self, name: str, triangles: Unsigned32) -> None:
+        """Hand over some of the triangles, shape (.., 3)."""
         if name not in self._more:
-            room = self._room[array.dtype == np.uint32] * array.shape[1]
-            self._more[name] = self.context.buffer(reserve=NUMBER_BYTES * room, dynamic=True)
+            room = 3 * NUMBER_BYTES * self._triangle_capacity
+            self._more[name] = self.context.buffer(reserve=room, dynamic=True)
         self._more[name].orphan()
-        self._more[name].write(np.ascontiguousarray(array))
+        self._more[name].write(np.ascontiguousarray(triangles))
 
-    def _upload_bumps(self, bump_amounts: Floats32) -> None:
-        """Upload amounts, and the triangles anew: first those that have bumps."""
+    def _check_bumps(self, has_bumps: bool) -> None:
+        """Raise ValueError where amounts shall count that rows do not have."""
+        if has_bumps and self.columns != BUMPS.stop:
+            raise ValueError(
+                f"bumps on a stream of {self.columns} columns; their amounts are columns 9 and 10: "
+                "lend a stream of 10 columns, or upload without bumps"
+            )
+
+    def _part_bumps(self) -> None:
+        """Upload the triangles anew: first those that have bumps."""
         parts = self.mesh.triangles
-        is_bumped = (bump_amounts.max(axis=1) > 0.0)[parts].any(axis=1)
+        amounts = self.mesh.vertices[:, BUMPS]
+        is_bumped = (amounts.max(axis=1) > 0.0)[parts].any(axis=1)
         count = int(is_bumped.sum())
         self._ranges[Share.BUMPED] = 0, count
         self._ranges[Share.SMOOTH] = count, len(parts) - count
-        self._rewrite("in_bumps", bump_amounts)
         self._rewrite("parted", np.concatenate([parts[is_bumped], parts[~is_bumped]]))
 
     def check_uv(self) -> None:
         """Raise ValueError where rows have no texture coordinates, but a texture comes."""
-        if self.columns != 8:
+        if self.columns == 6:
             raise ValueError(
-                f"a texture meets a stream of {self.columns} columns; it needs texture "
-                "coordinates: lend a stream of 8 columns (position, normal, u v), or draw without "
-                "texture"
+                "a texture meets a stream of 6 columns; it needs texture coordinates: lend a "
+                "stream of 8 columns (position, normal, u v), or draw without texture"
             )
 
     def choose(self, is_chosen: Flags) -> None:
@@ -154,7 +168,7 @@ class MeshBuffers:
     def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
         """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
 
-        `share`: BUMPED and SMOOTH need bump_amounts, and give the program in_bumps.
+        `share`: BUMPED and SMOOTH need a mesh that has bumps, and give the program in_bumps.
         """
         if share is Share.ALL:
             self._draw_all(self._vertex_array(program, self.index_buffer))
@@ -177,13 +191,9 @@ class MeshBuffers:
         """The vertex array of a program and a buffer of triangles; the same one each time."""
         array = self._vertex_arrays.get((program, indices))
         if array is None:
-            names = ("in_position", "in_normal")
-            layout = ("3f 3f", *names) if self.columns == 6 else ("3f 3f 2f", *names, "in_uv")
-            bumps = self._more.get("in_bumps")
-            by_vertex = [] if bumps is None else [(bumps, "2f", "in_bumps")]
             array = self.context.vertex_array(
                 program,
-                [(self.vertex_buffer, *layout), *by_vertex],
+                [(self.vertex_buffer, *LAYOUTS[self.columns])],
                 index_buffer=indices,
                 index_element_size=4,
                 skip_errors=True,  # flat shading has no use for normals, plain skin none for uv
@@ -195,7 +205,8 @@ class MeshBuffers:
 class Stream(MeshBuffers):
     """Arrays of such a mesh, lent to its maker, and uploaded.
 
-    vertices: x y z, nx ny nz[, u v], shape (vertex_capacity, 6 or 8), float32; the borrower writes.
+    vertices: x y z, nx ny nz[, u v[, two amounts of bumps]], shape (vertex_capacity, 6, 8 or 10),
+        float32; the borrower writes.
     triangles: vertex numbers, shape (triangle_capacity, 3), uint32; the borrower writes.
     source: number of the triangle that each one comes from, shape (triangle_capacity,), int32; the
         borrower writes; never uploaded.
@@ -209,16 +220,12 @@ class Stream(MeshBuffers):
         self.triangles: Unsigned32 = np.zeros((triangle_capacity, 3), np.uint32)
         self.source: Integers32 = np.zeros(triangle_capacity, np.int32)
 
-    def upload(
-        self,
-        vertex_count: int,
-        triangle_count: int,
-        bump_amounts: Floats32 | None = None,
-    ) -> None:
+    def upload(self, vertex_count: int, triangle_count: int, *, has_bumps: bool = False) -> None:
         """Hand the first `vertex_count` vertices and `triangle_count` triangles to OpenGL.
 
-        bump_amounts: how much of a bump map shows, 0..1 in either slot of it, (vertex_count, 2).
+        has_bumps: whether the amounts in columns 9 and 10 count; else nothing of a bump map shows.
         """
+        self._check_bumps(has_bumps)
         if not 0 <= vertex_count <= len(self.vertices):
             raise ValueError(
                 f"vertex_count is {vertex_count}; this stream holds 0 to {len(self.vertices)}"
@@ -227,16 +234,11 @@ class Stream(MeshBuffers):
             raise ValueError(
                 f"triangle_count is {triangle_count}; this stream holds 0 to {len(self.triangles)}"
             )
-        if bump_amounts is not None and bump_amounts.shape != (vertex_count, 2):
-            raise ValueError(
-                f"bump_amounts has shape {bump_amounts.shape}; it must be ({vertex_count}, 2), two "
-                "amounts for each uploaded vertex"
-            )
         rows = self.vertices[:vertex_count]
         triangles = self.triangles[:triangle_count]
         self.mesh = _Uploaded(rows, triangles)
         self.places = rows[:, :3]
-        self.has_bumps = bump_amounts is not None
+        self.has_bumps = has_bumps
         self._ranges = {}
         if vertex_count == 0 or triangle_count == 0:
             return
@@ -246,8 +248,8 @@ class Stream(MeshBuffers):
         self.vertex_buffer.write(rows)
         self.index_buffer.orphan()
         self.index_buffer.write(triangles)
-        if bump_amounts is not None:
-            self._upload_bumps(bump_amounts)
+        if has_bumps:
+            self._part_bumps()
 
 
 class GpuStream(MeshBuffers):
@@ -279,21 +281,23 @@ class GpuStream(MeshBuffers):
         self,
         mesh: UploadedMesh,
         positions: npt.NDArray[np.floating],
-        bump_amounts: Floats32 | None = None,
+        *,
+        has_bumps: bool = False,
     ) -> None:
         """Draw the content of these buffers from now on.
 
         mesh: fetches it. positions: of the mesh that it was made of, (V, 3), near its vertices.
-        bump_amounts: as `Stream.upload` takes them.
+        has_bumps: as `Stream.upload` takes it.
         """
+        self._check_bumps(has_bumps)
         self.mesh = mesh
         self.places = positions.astype(np.float32)
-        self.has_bumps = bump_amounts is not None
+        self.has_bumps = has_bumps
         self._ranges = {}
         box = np.stack([positions.min(axis=0) - self._margin, positions.max(axis=0) + self._margin])
         self.corners = box_corners(box)
-        if bump_amounts is not None:
-            self._upload_bumps(bump_amounts)
+        if has_bumps:
+            self._part_bumps()
 
     def _draw_all(self, array: moderngl.VertexArray) -> None:
         array.render_indirect(self.command_buffer, moderngl.TRIANGLES, count=1)

@@ -61,17 +61,17 @@ class PolyDataRefiner:
                 f"the frame has {given.n_cells} cells, but the mesh at rest {self._rest.n_cells}; "
                 "its topology must stay as it was bound"
             )
-        mesh = self._refiner.refine(points, view=view)
+        values = {name: each for name, each in given.point_data.items() if name != self.NORMALS}
+        mesh = self._refiner.refine(points, view, values)
         shown: Any = mesh.positions.copy(), mesh.triangles.astype(np.int64)  # buffers are reused
         refined: pyvista.PolyData = pyvista.PolyData.from_regular_faces(*shown)
-        for name, values in given.point_data.items():
-            if name != self.NORMALS:
-                refined.point_data[name] = self._refiner.carry(values)
+        for name, carried in mesh.attributes.items():
+            refined.point_data[name] = carried
         cells = self._cells[mesh.source]
-        for name, values in given.cell_data.items():
-            refined.cell_data[name] = np.asarray(values)[cells]
-        for name, values in given.field_data.items():
-            refined.field_data[name] = values
+        for name, array in given.cell_data.items():
+            refined.cell_data[name] = np.asarray(array)[cells]
+        for name, array in given.field_data.items():
+            refined.field_data[name] = array
         refined.cell_data[SOURCE] = cells
         refined.point_data[self.NORMALS] = mesh.normals.copy()
         refined.point_data.active_normals_name = self.NORMALS

@@ -254,3 +254,23 @@ def test_the_examples_of_the_docstrings():
         runner.run(found)
     assert count > 8
     assert runner.summarize().failed == 0
+
+
+def test_point_data_of_every_frame():
+    """Heat that changes with the frames is that of the frame, in its own type, linear on edges."""
+    plate = pyvista.Plane(i_resolution=6, j_resolution=6)
+    refiner = plate.risorius.refiner(scheme="loop", criterion="normal")
+    for time in (0.0, 0.7, 1.3):
+        frame = plate.copy()
+        frame.points[:, 2] = 0.1 * np.sin(9.0 * plate.points[:, 0] + time)
+        frame["heat"] = plate.points[:, 0].astype(np.float64) + time
+        frame["label"] = np.full(plate.n_points, 2**60 + int(10 * time))
+        refined = refiner.refine(frame)
+        assert refined.n_points > plate.n_points
+        assert refined["heat"].dtype == np.float64
+        np.testing.assert_array_equal(refined["label"], frame["label"][0])
+        off = np.abs(
+            refined["heat"] - time - refined.points[:, 0]
+        )  # loop moves in the plane little
+        assert off.max() < 0.05
+        np.testing.assert_array_equal(refined["heat"][: plate.n_points], frame["heat"])

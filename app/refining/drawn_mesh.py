@@ -20,7 +20,7 @@ from ..scenes import Drawable
 from .plug_ins import PlugIn, plug_ins_of, reported
 from .presets import ON_CARD, Refinement
 from .refiners import refiner_for
-from .wrinkling import Amounts, on_rows
+from .wrinkling import WRINKLES, Amounts
 
 LARGE_MESH = 20_000  # triangles from which on a graphics card refines, where it may choose
 
@@ -35,33 +35,42 @@ class DrawnMesh:
     mesh: refine.RefinedMesh | None = None  # the last result, refined from:
     positions: Floats64 | None = None
     plug_ins: tuple[PlugIn, ...] = ()  # somebody else's code that refines it
+    wrinkles: bool = False  # whether the last frame has any
     resting: Callable[[], refine.Refiner] | None = None  # makes its twin, refined at rest
     _splits_at_rest: Unsigned8 | None = None  # of each edge, (E,)
 
-    def refine(self, positions: Floats64, camera: render.OrbitCamera) -> None:
+    def refine(
+        self,
+        positions: Floats64,
+        camera: render.OrbitCamera,
+        wrinkling: Amounts | None = None,
+    ) -> None:
         """Fill the lent buffers with refined triangles, as the camera sees them.
 
-        Raises PlugInError where somebody else's code fails.
+        `wrinkling`: how far the scene's vertices wrinkle. Raises PlugInError where somebody else's
+        code fails.
         """
         view = refine.View(camera.eye)
         self.positions = positions
+        self.wrinkles = self.can_wrinkle and wrinkling is not None and bool(wrinkling.any())
+        more = {"values": {WRINKLES: wrinkling}} if self.wrinkles else {}
+        refiner: Any = self.refiner  # one without attributes need not know of values
         with reported(self.plug_ins):
             if isinstance(self.stream, render.GpuStream):
-                assert isinstance(self.refiner, refine.GpuRefiner)  # see `bind`
-                self.mesh = self.refiner.refine_on_card(positions, self.stream, view)
+                self.mesh = refiner.refine_on_card(positions, self.stream, view, **more)
             else:
-                self.mesh = self.refiner.refine(positions, self.stream, view)
+                self.mesh = refiner.refine(positions, self.stream, view, **more)
 
-    def upload(self, wrinkling: Amounts | None = None) -> None:
-        """Upload the last refined mesh, and how far the scene's vertices wrinkle."""
+    def upload(self) -> None:
+        """Upload the last refined mesh."""
         assert self.mesh is not None and self.positions is not None
         with reported(self.plug_ins):
-            rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
             if isinstance(self.stream, render.GpuStream):
                 mesh: Any = self.mesh  # of a refiner that fetches rows on demand
-                self.stream.show(mesh, self.positions, rows)
+                self.stream.show(mesh, self.positions, has_bumps=self.wrinkles)
             else:
-                self.stream.upload(self.mesh.vertex_count, self.mesh.triangle_count, rows)
+                counts = self.mesh.vertex_count, self.mesh.triangle_count
+                self.stream.upload(*counts, has_bumps=self.wrinkles)
 
     def splits(self) -> Unsigned8:
         """For each triangle drawn, how many splits its source triangle's edges have."""
@@ -83,7 +92,12 @@ class DrawnMesh:
     def has_uv(self) -> bool:
         """Whether rows carry texture coordinates, which a refiner from outside may leave out."""
         # Position, normal, u and v.
-        return self.refiner.vertex_columns == 8
+        return self.refiner.vertex_columns >= 8
+
+    @property
+    def can_wrinkle(self) -> bool:
+        """Whether rows carry amounts of wrinkles, too."""
+        return self.refiner.vertex_columns == 10
 
     @property
     def triangle_count(self) -> int:
@@ -105,7 +119,7 @@ def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> 
     is_open = refinement.refiner is None and not refinement.options
     suits_card = has_card and is_open and len(scene.faces) >= LARGE_MESH
     asked = replace(refinement, refiner=ON_CARD) if suits_card else refinement
-    refiner = refiner_for(scene, asked)
+    refiner = refiner_for(scene, asked, attributes=_attributes_of(scene))
     plug_ins = plug_ins_of(*asked.on(scene.name))
     with reported(plug_ins):
         stream = _stream_for(scene, renderer, refiner)
@@ -117,6 +131,12 @@ def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> 
         return twin
 
     return DrawnMesh(refinement.label, refiner, stream, plug_ins=plug_ins, resting=resting)
+
+
+def _attributes_of(scene: Drawable) -> dict[str, Amounts]:
+    """What rows carry beside texture coordinates: amounts of wrinkles, where the scene has any."""
+    has_wrinkles = scene.skin.wrinkles is not None and scene.skin.uv is not None
+    return {WRINKLES: np.zeros((len(scene.rest_positions), 2), np.float32)} if has_wrinkles else {}
 
 
 def _stream_for(

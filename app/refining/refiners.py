@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from types import NoneType
+from types import MappingProxyType, NoneType
 from typing import Any, Literal, get_args, get_origin
 
 import numpy as np
@@ -20,17 +20,22 @@ from .presets import PRESETS, STATIC, Refinement, named
 Splits = npt.NDArray[np.uint8]
 
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
+NO_ATTRIBUTES: Mapping[str, npt.NDArray[np.float32]] = MappingProxyType({})
 AS_IT_SUITS = "automatic"  # the word for an option that is left open
 SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
 def refiner_for(
-    scene: Drawable, refinement: Refinement, splits: Splits | None = None
+    scene: Drawable,
+    refinement: Refinement,
+    splits: Splits | None = None,
+    attributes: Mapping[str, npt.NDArray[np.float32]] = NO_ATTRIBUTES,
 ) -> refine.Refiner:
     """Bind the refiner of a refinement to the scene's mesh.
 
-    `splits`: of each edge in all frames, shape (E,), in place of a criterion. Raises
-    UserError if it refuses an option, and PlugInError if somebody else's code fails.
+    `splits`: of each edge in all frames, shape (E,), in place of a criterion. `attributes`: values
+    of vertices at rest by name, left out for a refiner that takes none. Raises UserError if it
+    refuses an option, and PlugInError if somebody else's code fails.
     """
     name, options = refinement.on(scene.name)
     plug_ins = plug_ins_of(name, options)
@@ -45,9 +50,10 @@ def refiner_for(
         if splits is not None:
             options.pop("criterion", None)
             options["splits"] = splits
-        return refine.create(
-            name, scene.faces, scene.rest_positions, scene.skin.uv, scene.skin.face_uv, **options
-        )
+        mesh = scene.faces, scene.rest_positions, scene.skin.uv, scene.skin.face_uv
+        if attributes and refine.takes_attributes(name):
+            return refine.create(name, *mesh, **options, attributes=attributes)
+        return refine.create(name, *mesh, **options)
     except UserError:
         raise
     except (Exception, SystemExit) as error:

@@ -1,7 +1,7 @@
 """Wrinkles that come from the physics: how far the simulated skin is shortened, so far it folds.
 
-    simulated mesh ─> refine.Shortening ─> amount at each vertex ─> rows of refined mesh ┐
-    assets: map of furrows over the texture ─────────────────────────────────────────────┴> render
+    simulated mesh ─> refine.Shortening ─> amount at each vertex ─> refine: rows ┐
+    assets: map of furrows over the texture ─────────────────────────────────────┴> render
 
 The furrows stick to the skin, because their map does; only the amounts change from frame to frame.
 """
@@ -15,6 +15,7 @@ from risorius import refine
 
 from ..scenes import Drawable
 
+WRINKLES = "wrinkles"  # the attribute of refined meshes
 Amounts = npt.NDArray[np.float32]
 Points = npt.NDArray[np.float64]
 
@@ -46,13 +47,3 @@ class Compression:
         resting = self._resting / (1.0 + np.square(np.minimum(lost, 0.0) / half_depth_gain))
         shown: Amounts = np.maximum(amounts, resting).astype(np.float32)
         return shown
-
-
-def on_rows(amounts: Amounts, refiner: refine.Refiner) -> Amounts | None:
-    """The amounts at the rows that `refiner` made last, shape (N, 2); None without wrinkles."""
-    if not amounts.any():
-        return None
-    vertices, weights = refiner.origins()
-    corners = [np.take(amounts, vertices[:, i], axis=0) * weights[:, i : i + 1] for i in range(3)]
-    rows: Amounts = corners[0] + corners[1] + corners[2]
-    return rows

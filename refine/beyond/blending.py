@@ -144,13 +144,14 @@ class Blended(Kahler):
         share(place_centres, self._frame.centre_count, self.connectivity, self._frame)
         self._scheme.place_centres(self._frame)
 
-    def origins(self) -> Origins:
-        """Say for every vertex of the last frame where it lies on the input mesh."""
-        mesh = self.connectivity
+    def _origins_among(
+        self, of_wedges: npt.NDArray[np.integer], of_ends: npt.NDArray[np.integer]
+    ) -> Origins:
+        """Add the points in the middle of triangles."""
         centres = self._frame.centre_triangles[: self._frame.centre_count]
         weights = self._frame.centre_weights[: self._frame.centre_count]
-        corners = mesh.wedge_vertices[mesh.corners[centres]]
-        return super().origins().followed_by(corners, weights)
+        corners = of_wedges[self.connectivity.corners[centres]]
+        return super()._origins_among(of_wedges, of_ends).followed_by(corners, weights)
 
 
 @njit

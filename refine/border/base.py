@@ -22,8 +22,9 @@ from ..mesh.creases import with_creases
 from ..mesh.normals import vertex_normals
 from ..mesh.validation import as_array, checked_mesh, take_positions, used_vertices
 from .corner_values import AttributeLike, checked_corner_values
+from .frame_values import FrameValues, FrameValuesLike, refuse
 from .plugin import Origins, RefinedMesh, Refiner, Stream, View
-from .rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
+from .rows import GEOMETRY_COLUMNS, spread_over_wedges, wedge_values, write_wedges
 from .stream import OwnStream, StreamArrays, check_lent
 
 
@@ -71,7 +72,9 @@ class BaseRefiner(Refiner):
         mesh = connect_writable(triangles, len(positions), corners)
         self._mesh = with_creases(mesh, positions, crease_angle)
         self.connectivity = self._mesh.read_only()
+        self._frame_values: FrameValues | None = None
         if self._values is not None:
+            self._frame_values = FrameValues(self._values)
             self._wedge_values = wedge_values(self.connectivity, self._values.values)
         self.rest_positions = read_only(positions)
         self.positions = positions.copy()
@@ -112,12 +115,17 @@ class BaseRefiner(Refiner):
         if self._values is not None:
             write_wedges(self.connectivity, self._wedge_values, rows)
 
+    def follow_values(self) -> None:
+        """Take over values that a frame brings; a subclass that keeps values of its own extends it.
+
+        It is called before `fill` where they differ from those of the frame before.
+        """
+        assert self._values is not None
+        spread_over_wedges(self._values.values, self._mesh.wedge_uv, self._wedge_values)
+
     def origins(self) -> Origins:
         """Say where the wedges lie on the input mesh; a subclass adds its points to them."""
-        wedges = self.connectivity.wedge_vertices.astype(np.int32)
-        weights = np.zeros((len(wedges), 3), dtype=np.float32)
-        weights[:, 0] = 1.0
-        return Origins(np.stack([wedges] * 3, axis=1), weights)
+        return Origins.at(self.connectivity.wedge_vertices)
 
     def __reduce__(self) -> str:
         """Raise TypeError: its arrays look into each other, which no copy would do."""
@@ -151,16 +159,17 @@ class BaseRefiner(Refiner):
         positions: npt.NDArray[np.floating],
         out: Stream | None = None,
         view: View | None = None,
+        values: FrameValuesLike | None = None,
     ) -> RefinedMesh:
         """Turn deformed `positions`, shape (V, 3), into triangles; see `Refiner.refine`.
 
-        Raises ValueError if `positions` or the arrays of `out` have a wrong shape or type, or if
-        positions are not finite.
+        Raises ValueError if `positions`, `values` or the arrays of `out` have a wrong shape or
+        type, if positions or values are not finite, or if values have a name that was not bound.
         """
         stream = self._own_stream if out is None else out
         if out is not None:
             self._accept(out, self.vertex_capacity, self.triangle_capacity)
-        self.take(positions, view)
+        self.take(positions, view, values)
         vertex_count, triangle_count = self.fill(stream, view)
         vertices, triangles, source = self._accepted
         shown, normals = self._geometry
@@ -177,10 +186,15 @@ class BaseRefiner(Refiner):
             attributes,
         )
 
-    def take(self, positions: npt.NDArray[np.floating], view: View | None) -> None:
-        """Check the positions of a frame, and copy them into `positions` and `points`.
+    def take(
+        self,
+        positions: npt.NDArray[np.floating],
+        view: View | None,
+        values: FrameValuesLike | None = None,
+    ) -> None:
+        """Check the positions and values of a frame, and copy them.
 
-        Raises ValueError for a wrong shape or type, and for positions that are not finite.
+        Positions go into `positions` and `points`. Raises ValueError as `refine` does.
         """
         if type(positions) is not np.ndarray:
             positions = as_array("positions", positions, f"floats of shape {self._shape}")
@@ -192,6 +206,10 @@ class BaseRefiner(Refiner):
                 f"got {positions.dtype} of shape {positions.shape}"
             )
         take_positions(positions, self._is_used, self.positions, self.points)
+        if self._frame_values is None:
+            refuse(values)
+        elif self._frame_values.take(values):
+            self.follow_values()
 
     def _own(self, *things: object) -> None:
         """Raise ValueError if one of these, which learn one mesh, serves another refiner."""

@@ -46,6 +46,10 @@ class CornerValues:
     """Where the attributes are among the k columns."""
     has_uv: bool
     """Whether the first two columns are texture coordinates."""
+    own_rows: Mapping[str, Wide | None]
+    """Of each attribute: the row of its own array that a row here has, (A,); None: the same."""
+    own_lengths: Mapping[str, int]
+    """Of each attribute: the number of rows of its own array."""
 
 
 def checked_corner_values(
@@ -62,6 +66,7 @@ def checked_corner_values(
     tables: list[Floats] = []
     indices: list[Wide | None] = []
     columns: dict[str, slice] = {}
+    lengths: dict[str, int] = {}
     if uv is not None:
         values, corners = _checked_values("uv", uv, "face_uv", face_uv, faces, vertex_count)
         if values.shape[1] != 2:
@@ -79,17 +84,21 @@ def checked_corner_values(
         values, corners = _checked_values(what, pair[0], f"{what}[1]", pair[1], faces, vertex_count)
         start = sum(table.shape[1] for table in tables)
         columns[name] = slice(start, start + values.shape[1])
+        lengths[name] = len(values)
         tables.append(values)
         indices.append(corners)
     if not tables:
         return None
+    has_uv = uv is not None
     if all(corners is None for corners in indices):
-        return CornerValues(np.concatenate(tables, axis=1), None, columns, uv is not None)
+        joined = np.concatenate(tables, axis=1)
+        return CornerValues(joined, None, columns, has_uv, dict.fromkeys(columns), lengths)
     rows = np.stack([faces if corners is None else corners for corners in indices], axis=2)
     different, number = np.unique(rows.reshape(-1, len(tables)), axis=0, return_inverse=True)
     table = [values[different[:, k]] for k, values in enumerate(tables)]
+    own_rows = {name: different[:, has_uv + k] for k, name in enumerate(columns)}
     return CornerValues(
-        np.concatenate(table, axis=1), number.reshape(-1, 3), columns, uv is not None
+        np.concatenate(table, axis=1), number.reshape(-1, 3), columns, has_uv, own_rows, lengths
     )
 
 

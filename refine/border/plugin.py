@@ -74,6 +74,14 @@ class Origins(NamedTuple):
     weights: npt.NDArray[np.float32]
     """Their barycentric weights, shape (N, 3): any that are not negative and add up to one."""
 
+    @classmethod
+    def at(cls, vertices: npt.ArrayLike) -> "Origins":
+        """Return those of output vertices that lie at one input vertex each, shape (N,)."""
+        corners = np.stack([np.asarray(vertices, dtype=np.int32)] * 3, axis=1)
+        weights = np.zeros(corners.shape, dtype=np.float32)
+        weights[:, 0] = 1.0
+        return cls(corners, weights)
+
     def followed_by(self, vertices: npt.ArrayLike, weights: npt.ArrayLike) -> "Origins":
         """Return these, and after them those of more output vertices, each of shape (K, 3)."""
         return Origins(
@@ -170,13 +178,16 @@ class Refiner(Protocol):
         positions: npt.NDArray[np.floating],
         out: Stream | None = None,
         view: View | None = None,
+        values: Mapping[str, npt.ArrayLike] | None = None,
     ) -> RefinedMesh:
         """Turn deformed `positions`, shape (V, 3), any float type, into triangles; never writes it.
 
         The result views the arrays of `out`, or of the refiner's own stream without it. `view`:
-        for criteria that ask where the eye is. One frame at a time: threads take a refiner each. A
-        process must not be forked while one of its threads compiles: numba's lock stays shut in the
-        child. (After a first frame before the fork there is nothing to compile.)
+        for criteria that ask where the eye is. `values`: attributes of this frame by name, in place
+        of those that were bound, of the same shape each, (V, k) for values of vertices. One frame
+        at a time: threads take a refiner each. A process must not be forked while one of its
+        threads compiles: numba's lock stays shut in the child. (After a first frame before the fork
+        there is nothing to compile.)
         """
 
     @abstractmethod
@@ -189,6 +200,10 @@ class GpuRefiner(Refiner):
 
     @abstractmethod
     def refine_on_card(
-        self, positions: npt.NDArray[np.floating], out: GpuStream, view: View | None = None
+        self,
+        positions: npt.NDArray[np.floating],
+        out: GpuStream,
+        view: View | None = None,
+        values: Mapping[str, npt.ArrayLike] | None = None,
     ) -> RefinedMesh:
         """`refine` into a stream, whose context is current; arrays are fetched when read."""

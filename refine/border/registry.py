@@ -119,6 +119,11 @@ def parameters(name: str) -> tuple[inspect.Parameter, ...]:
     return tuple(_options(_signature(refiners.find(name))))
 
 
+def takes_attributes(name: str) -> bool:
+    """Whether a refiner takes `attributes`, as all that hand on `Values` do."""
+    return "attributes" in _allowed(_signature(refiners.find(name)))
+
+
 def _signature(factory: Callable[..., Refiner]) -> inspect.Signature:
     try:
         return inspect.signature(factory, eval_str=True)
@@ -137,18 +142,28 @@ def _options(signature: inspect.Signature) -> Iterator[inspect.Parameter]:
 
 def _check_options(name: str, factory: Callable[..., Refiner], options: dict[str, Any]) -> None:
     signature = _signature(factory)
-    allowed = {parameter.name for parameter in _options(signature)}
-    for parameter in signature.parameters.values():
-        if parameter.kind is parameter.VAR_KEYWORD:
-            if get_origin(parameter.annotation) is not Unpack:
-                return  # it takes anything
-            (values,) = get_args(parameter.annotation)
-            allowed |= values.__annotations__.keys()
-    allowed -= {"uv", "face_uv"}
+    if any(_takes_anything(each) for each in signature.parameters.values()):
+        return
+    allowed = _allowed(signature)
     unknown = sorted(set(options) - allowed)
     if unknown:
         takes = f"it takes {sorted(allowed)}" if allowed else "it takes none"
         raise ValueError(f"unknown option {unknown[0]!r} for refiner {name!r}; {takes}")
+
+
+def _takes_anything(parameter: inspect.Parameter) -> bool:
+    is_open = parameter.kind is parameter.VAR_KEYWORD
+    return is_open and get_origin(parameter.annotation) is not Unpack
+
+
+def _allowed(signature: inspect.Signature) -> set[str]:
+    """The names of all options, those of `Values` too, but for texture coordinates."""
+    allowed = {parameter.name for parameter in _options(signature)}
+    for parameter in signature.parameters.values():
+        if parameter.kind is parameter.VAR_KEYWORD and not _takes_anything(parameter):
+            (values,) = get_args(parameter.annotation)
+            allowed |= values.__annotations__.keys()
+    return allowed - {"uv", "face_uv"}
 
 
 @functools.cache

@@ -7,7 +7,7 @@ wedge (mesh/seams.py), so that vertex v of the input is row v.
 import numpy as np
 
 from ...jit import njit
-from ..mesh.arrays import Floats, Unsigned
+from ..mesh.arrays import Floats, Indices, Unsigned
 from ..mesh.connectivity import Connectivity
 
 GEOMETRY_COLUMNS = 6
@@ -23,6 +23,20 @@ def copy_along_seams(wedge_vertices: Unsigned, first: int, rows: Floats) -> None
     for w in range(first, wedge_vertices.shape[0]):
         for i in range(GEOMETRY_COLUMNS):
             rows[w, i] = rows[wedge_vertices[w], i]
+
+
+@njit
+def spread_over_wedges(values: Floats, wedge_uv: Indices, spread: Floats) -> None:
+    """Write `wedge_values` of other values into `spread`, shape (W, k); zeros stay.
+
+    `values`: shape (A, k); `wedge_uv`: the row of it that a wedge has, -1 for none, shape (W,).
+    """
+    for w in range(wedge_uv.shape[0]):
+        row = wedge_uv[w]
+        if row < 0:
+            continue
+        for i in range(values.shape[1]):
+            spread[w, i] = values[row, i]
 
 
 def wedge_values(mesh: Connectivity, values: Floats) -> Floats:

@@ -27,7 +27,6 @@ from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.stream import OwnStream, StreamArrays
 from ..mesh.arrays import Doubles, Floats, Indices, Short, Small, Unsigned
-from ..mesh.connectivity import Connectivity
 from ..mesh.threads import beside
 from .coherence import Coherent
 from .criterion import Criterion, NormalDrop
@@ -240,20 +239,36 @@ class Kahler(BaseRefiner):
 
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh."""
-        points = points_on_edges(self.connectivity, self.edge_splits)
-        return super().origins().followed_by(*points)
+        mesh = self.connectivity
+        return self._origins_among(mesh.wedge_vertices, mesh.edges[mesh.attribute_edges])
+
+    def origins_of_values(self) -> Origins:
+        """The same, by rows of the values that were bound at corners, in place of vertices.
+
+        So each side of a seam has its own. -1 stands for the row of a vertex without triangles.
+        """
+        return self._origins_among(self.connectivity.wedge_uv, self.connectivity.attribute_edge_uv)
+
+    def _origins_among(
+        self, of_wedges: npt.NDArray[np.integer], of_ends: npt.NDArray[np.integer]
+    ) -> Origins:
+        """The origins where wedges, shape (W,), and ends of attribute edges, (R, 2), have these."""
+        splits = self.edge_splits[self.connectivity.attribute_edges]
+        return Origins.at(of_wedges).followed_by(*points_on_edges(of_ends, splits))
 
 
-def points_on_edges(mesh: Connectivity, splits: Small) -> tuple[Indices, Doubles]:
-    """Where the new points lie on the mesh: vertices and their weights, shape (N, 3) each.
+def points_on_edges(
+    ends: npt.NDArray[np.integer], splits: Small
+) -> tuple[npt.NDArray[np.integer], Doubles]:
+    """Where the new points on edges lie: ends and their weights, shape (N, 3) each.
 
-    `splits`: of edges, shape (E,).
+    `ends`: of attribute edges, shape (R, 2); `splits`: of these edges, shape (R,).
     """
-    point_counts = np.array(POINTS_OF_EDGE)[splits[mesh.attribute_edges]]
+    point_counts = np.array(POINTS_OF_EDGE)[splits]
     # Place along the edge, in quarters, of the points of a block: x 2 x or 1 2 3.
     block_starts = np.cumsum(point_counts) - point_counts
     within = np.arange(point_counts.sum()) - np.repeat(block_starts, point_counts)
     place = np.where(np.repeat(point_counts, point_counts) == 1, 2, within + 1)
-    ends = np.repeat(mesh.edges[mesh.attribute_edges], point_counts, axis=0)
+    of_points = np.repeat(ends, point_counts, axis=0)
     weights = np.column_stack([4 - place, place, np.zeros_like(place)]) / 4.0
-    return np.column_stack([ends, ends[:, 0]]), weights
+    return np.column_stack([of_points, of_points[:, 0]]), weights

@@ -1,11 +1,9 @@
 """Wrinkles that follow the simulated skin: when, where, which way, and on which heads."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
-from risorius.app.refining.wrinkling import Compression, on_rows
+from risorius.app.refining.wrinkling import Compression
 from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
 
@@ -40,7 +38,6 @@ def test_nothing_wrinkles_at_rest(scene, wrinkling):
     """Exactly nothing, so that the picture without wrinkles is drawn."""
     found = amounts(scene, wrinkling)
     assert not found.any()
-    assert on_rows(found.astype(np.float32), SimpleNamespace()) is None
 
 
 @pytest.mark.parametrize(

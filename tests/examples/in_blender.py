@@ -34,7 +34,10 @@ def sheet():
     layer = mesh.uv_layers.new(name="Second")
     layer.uv.foreach_set("vector", corners.astype(np.float32).ravel())
     layer.active = layer.active_render = True
+    heat = mesh.attributes.new("heat", "FLOAT", "POINT")
+    heat.data.foreach_set("value", points[:, 0].astype(np.float32))
     thing = bpy.data.objects.new("sheet", mesh)
+    add_heating(thing)
     thing.location = (1.0, 2.0, 3.0)
     bpy.context.scene.collection.objects.link(thing)
     wave = thing.modifiers.new("wave", "WAVE")
@@ -45,6 +48,28 @@ def sheet():
     return thing
 
 
+def add_heating(thing):
+    """A modifier that adds the number of the frame to the heat of each point."""
+    nodes = bpy.data.node_groups.new("heating", "GeometryNodeTree")
+    nodes.is_modifier = True
+    nodes.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
+    nodes.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    start = nodes.nodes.new("NodeGroupInput")
+    end = nodes.nodes.new("NodeGroupOutput")
+    store = nodes.nodes.new("GeometryNodeStoreNamedAttribute")
+    store.inputs["Name"].default_value = "heat"
+    named = nodes.nodes.new("GeometryNodeInputNamedAttribute")
+    named.inputs["Name"].default_value = "heat"
+    add = nodes.nodes.new("ShaderNodeMath")
+    time = nodes.nodes.new("GeometryNodeInputSceneTime")
+    nodes.links.new(start.outputs["Geometry"], store.inputs["Geometry"])
+    nodes.links.new(named.outputs["Attribute"], add.inputs[0])
+    nodes.links.new(time.outputs["Frame"], add.inputs[1])
+    nodes.links.new(add.outputs["Value"], store.inputs["Value"])
+    nodes.links.new(store.outputs["Geometry"], end.inputs["Geometry"])
+    thing.modifiers.new("heating", "NODES").node_group = nodes
+
+
 def column(collection, name, width, kind=np.float32):
     """An attribute of all items of a collection."""
     return addon.numbers(collection, name, width, kind)
@@ -52,7 +77,7 @@ def column(collection, name, width, kind=np.float32):
 
 def watch(copy, source):
     """Step through all frames; compare each with the refiner itself."""
-    seen = {"triangles": [], "others": 0, "off": 0.0, "invalid": 0, "uv_off": 0.0}
+    seen = {"triangles": [], "others": 0, "off": 0.0, "invalid": 0, "uv_off": 0.0, "heat_off": 0.0}
     for frame in range(1, FRAMES + 1):
         bpy.context.scene.frame_set(frame)
         mesh = copy.data
@@ -69,6 +94,11 @@ def watch(copy, source):
         side = column(mesh.polygons, "material_index", 1, np.int32).repeat(3)
         places = addon.points_of(mesh)[corners, :2] + np.stack([3.0 * side, 0.0 * side], axis=1)
         seen["uv_off"] = max(seen["uv_off"], float(np.abs(uv - places).max()))
+        heat = column(mesh.attributes["heat"].data, "value", 1).ravel()
+        rest = column(source.data.attributes["position"].data, "vector", 3)
+        origins = bound.refiner.origins()
+        wanted = (rest[origins.vertices, 0] * origins.weights).sum(axis=1) + frame
+        seen["heat_off"] = max(seen["heat_off"], float(np.abs(heat - wanted).max()))
     final = copy.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
     normals = column(final.corner_normals, "vector", 3)
     shown = np.abs(normals - direct.normals[corners]).max()

@@ -56,6 +56,12 @@ def test_it_follows_the_source(seen):
 
 
 @pytest.mark.blender
+def test_numbers_of_points_go_along(seen):
+    """A modifier changes them in every frame; new points have those of their place."""
+    assert seen["heat_off"] < 1e-5
+
+
+@pytest.mark.blender
 def test_the_copy_looks_like_its_source(seen):
     """Same place, materials by face, the UV map that is shown; the source hides, once."""
     assert seen["finished"] == ["FINISHED"]

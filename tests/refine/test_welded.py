@@ -120,6 +120,22 @@ def test_types_stay(values, expected):
     assert_array_equal(carried[3:], np.array(expected, dtype=values.dtype))
 
 
+@pytest.mark.parametrize("seams", [False, True])
+def test_values_of_a_frame_are_its_attributes(seams):
+    """Of any type, as `carry` hands them on; a frame without has none."""
+    points, faces = box()
+    refiner = refine.WeldedRefiner(points, faces, seams=seams)
+    heat = np.arange(16, dtype=np.int64) + 2**60
+    mesh = refiner.refine(points * 1.5, values={"heat": heat, "place": points})
+    assert set(mesh.attributes) == {"heat", "place"}
+    assert_array_equal(mesh.attributes["heat"], refiner.carry(heat))
+    assert mesh.attributes["heat"].dtype == np.int64
+    assert_array_equal(mesh.attributes["place"], refiner.carry(points))
+    assert not refiner.refine(points).attributes
+    with pytest.raises(ValueError, match="3 values for a mesh of 16 points"):
+        refiner.refine(points, values={"heat": [1, 2, 3]})
+
+
 def test_words_come_from_an_end():
     """What is no number cannot be mixed."""
     assert set(one_triangle().carry(["a", "b", "c"])) == {"a", "b", "c"}

@@ -19,10 +19,11 @@ def furrowed(surface, texel, amounts, style=PLAIN):
     texels[:, 16:] = texel
     shape = square()
     renderer = render.Renderer(surface)
-    stream = lent(renderer, shape, columns=8)
-    stream.vertices[:, 6:] = shape.positions[:, :2] / 100.0 + 0.5
-    rows = None if amounts is None else np.tile(np.float32(amounts), (len(shape.positions), 1))
-    stream.upload(len(shape.positions), len(shape.triangles), rows)
+    stream = lent(renderer, shape, columns=10)
+    stream.vertices[:, 6:8] = shape.positions[:, :2] / 100.0 + 0.5
+    has_bumps = amounts is not None
+    stream.vertices[:, 8:] = amounts if has_bumps else 1.0
+    stream.upload(len(shape.positions), len(shape.triangles), has_bumps=has_bumps)
     bumps = render.BumpMap(renderer.surface, texels, STEEP)
     return draw(renderer, render.Skin(stream, render.SkinMaps(bumps=bumps)), style)
 
@@ -77,25 +78,24 @@ def test_per_pixel_shading_alone_has_them(surface, shading):
 def test_part_of_a_mesh_has_bumps_without_a_crack(renderer):
     """With a level map, a sphere half of whose vertices bump looks as it does without."""
     shape = sphere()
-    stream = lent(renderer, shape, columns=8)
+    stream = lent(renderer, shape, columns=10)
     level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
     frames = []
     for share in (0.0, 0.5):
-        rows = np.zeros((len(shape.positions), 2), np.float32)
-        rows[: int(share * len(rows))] = 1.0
-        stream.upload(len(shape.positions), len(shape.triangles), rows)
+        stream.vertices[: int(share * len(shape.positions)), 8:] = 1.0
+        stream.upload(len(shape.positions), len(shape.triangles), has_bumps=True)
         frames.append(draw(renderer, render.Skin(stream, render.SkinMaps(bumps=level))))
     assert np.abs(frames[0] - frames[1]).max() <= 1
 
 
 def test_what_does_not_fit_is_refused(renderer):
-    """A map that is none, amounts for other vertices, a stream without texture coordinates."""
+    """A map that is none, a stream without amounts, one without texture coordinates."""
     with pytest.raises(ValueError, match="the bump map has shape"):
         render.BumpMap(renderer.surface, np.zeros((4, 4, 3), np.uint8), STEEP)
     shape = square()
     stream = lent(renderer, shape)
-    with pytest.raises(ValueError, match="bump_amounts has shape"):
-        stream.upload(4, 2, np.zeros((3, 2), np.float32))
+    with pytest.raises(ValueError, match=r"bumps on a stream of 6 columns.* lend a stream of 10"):
+        stream.upload(4, 2, has_bumps=True)
     level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
     with pytest.raises(ValueError, match="8 columns"):
         render.Skin(stream, render.SkinMaps(bumps=level))

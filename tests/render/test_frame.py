@@ -27,9 +27,9 @@ def renderer(request: pytest.FixtureRequest) -> Iterator[render.Renderer]:
 def frames_of(renderer):
     """Frames that need everything: shadows, hidden triangles, opened skin, hair, maps, clips."""
     shape = joined(square(70.0, z=-45.0), sphere(2, 30.0))
-    stream = lent(renderer, shape, columns=8)
-    amounts = np.ones((len(shape.positions), 2), np.float32)
-    stream.upload(len(shape.positions), len(shape.triangles), amounts)
+    stream = lent(renderer, shape, columns=10)
+    stream.vertices[:, 8:] = 1.0
+    stream.upload(len(shape.positions), len(shape.triangles), has_bumps=True)
     bumps = render.BumpMap(renderer.surface, np.full((8, 8, 4), FURROWED, np.uint8), 100.0)
     texture = render.Texture(renderer.surface, np.full((8, 8, 3), (200, 90, 30), np.uint8))
     values = np.arange(len(shape.triangles), dtype=np.uint8) % 7

@@ -13,10 +13,13 @@ import bpy
 import numpy as np
 from bpy.app.handlers import persistent
 
+OWN = {"position", "custom_normal"}  # written by the copy itself
 LOOKS = {
     "SMOOTH": {"scheme": "cubic", "criterion": "displacement+rest"},
     "PAPER": {"scheme": "loop", "criterion": "normal", "normals": "linear"},
 }
+WIDTHS = {"FLOAT": 1, "FLOAT2": 2, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4}
+FIELDS = {"INT": "value", "FLOAT": "value", "FLOAT_COLOR": "color"}  # others have a "vector"
 SPLITS = "risorius_splits"  # of the mesh at rest: how often each edge is split in all frames
 _bound: dict[int, "Bound"] = {}  # of each refined copy, by its number in this session
 
@@ -31,6 +34,19 @@ def numbers(collection: Any, name: str, width: int, kind: type) -> np.ndarray:
 def points_of(mesh: bpy.types.Mesh) -> np.ndarray:
     """The positions of a mesh, shape (V, 3), as single floats, as Blender keeps them."""
     return numbers(mesh.attributes["position"].data, "vector", 3, np.float32)
+
+
+def values_of(mesh: bpy.types.Mesh) -> dict[str, np.ndarray]:
+    """Numbers of the points of a mesh that change with its frames, by name: heat, colours, strain.
+
+    Those that Blender keeps for itself, and positions, are none of them.
+    """
+    return {
+        each.name: numbers(each.data, FIELDS.get(each.data_type, "vector"), width, np.float32)
+        for each in mesh.attributes
+        if each.domain == "POINT" and (width := WIDTHS.get(each.data_type))
+        if each.name not in OWN and not each.name.startswith(".")
+    }
 
 
 class Bound:
@@ -53,14 +69,19 @@ class Bound:
         if splits is not None:
             del look["criterion"]
             look["splits"] = np.array(splits[:], dtype=np.uint8)
+        values = values_of(rest)
+        self.value_kinds = {name: rest.attributes[name].data_type for name in values}
         self.uv_shown = rest.uv_layers.active and rest.uv_layers.active.name
         self.refiner = refine.create(
             "kahler",
             numbers(triangles, "vertices", 3, np.int32),
             points_of(rest),
             attributes={
-                layer.name: (numbers(layer.uv, "vector", 2, np.float32), loops)
-                for layer in rest.uv_layers
+                **values,
+                **{
+                    layer.name: (numbers(layer.uv, "vector", 2, np.float32), loops)
+                    for layer in rest.uv_layers
+                },
             },
             **look,
             blend=settings.blend,
@@ -71,15 +92,23 @@ class Bound:
         """Refine the evaluated `source` into `mesh`; raises ValueError if it is another mesh."""
         if (len(source.vertices), len(source.polygons)) != self.counts:
             raise ValueError("The source has other vertices or faces than at rest")
-        frame = self.refiner.refine(points_of(source))
+        values = {
+            name: each
+            for name, each in values_of(source).items()
+            if name in self.value_kinds and WIDTHS[self.value_kinds[name]] == each.shape[1]
+        }
+        frame = self.refiner.refine(points_of(source), values=values)
         is_made = self.stays and self.corners is not None
         if not is_made:
             corners = frame.triangles.astype(np.int32).ravel()
             if self.corners is None or not np.array_equal(corners, self.corners):
                 self.make(mesh, frame, corners)
-            for name, values in frame.attributes.items():
-                write(mesh, name, "FLOAT2", "CORNER", values[frame.triangles.ravel()])
+            for name in frame.attributes.keys() - self.value_kinds.keys():
+                of_corners = frame.attributes[name][frame.triangles.ravel()]
+                write(mesh, name, "FLOAT2", "CORNER", of_corners)
         write(mesh, "position", "FLOAT_VECTOR", "POINT", frame.positions)
+        for name, kind in self.value_kinds.items():
+            write(mesh, name, kind, "POINT", frame.attributes[name])
         write(mesh, "custom_normal", "FLOAT_VECTOR", "POINT", frame.normals)
         mesh.update()
 
@@ -92,7 +121,7 @@ class Bound:
         mesh.polygons.foreach_set("loop_start", np.arange(0, len(corners), 3, dtype=np.int32))
         write(mesh, ".corner_vert", "INT", "CORNER", corners)
         write(mesh, "material_index", "INT", "FACE", self.materials[frame.source])
-        for name in frame.attributes:
+        for name in frame.attributes.keys() - self.value_kinds.keys():
             layer = mesh.uv_layers.get(name) or mesh.uv_layers.new(name=name, do_init=False)
             layer.active = layer.active_render = name == self.uv_shown
         mesh.update(calc_edges=True)
@@ -102,8 +131,7 @@ class Bound:
 def write(mesh: bpy.types.Mesh, name: str, kind: str, domain: str, values: np.ndarray) -> None:
     """Set an attribute of a mesh, which it is given if it has none of this name."""
     attribute = mesh.attributes.get(name) or mesh.attributes.new(name, kind, domain)
-    field = "value" if kind == "INT" else "vector"
-    attribute.data.foreach_set(field, np.ascontiguousarray(values).ravel())
+    attribute.data.foreach_set(FIELDS.get(kind, "vector"), np.ascontiguousarray(values).ravel())
 
 
 def update(copy: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
@@ -224,17 +252,22 @@ def refined_copy(context: bpy.types.Context) -> bpy.types.Object | None:
     return active if settings and settings.source and settings.rest else None
 
 
-class OBJECT_OT_risorius_keep(bpy.types.Operator):  # noqa: N801
-    """Keep the same triangles in all frames of the scene's range, as many as its motion needs"""
+class OfRefinedCopy:
+    """An operator of the active object, if that is a refined copy."""
 
-    bl_idname = "object.risorius_keep"
-    bl_label = "Keep One Topology"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Say whether the active object is a refined copy."""
         return refined_copy(context) is not None
+
+
+class OBJECT_OT_risorius_keep(OfRefinedCopy, bpy.types.Operator):  # noqa: N801
+    """Keep the same triangles in all frames of the scene's range, as many as its motion needs"""
+
+    bl_idname = "object.risorius_keep"
+    bl_label = "Keep One Topology"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Refine all frames, and keep the most splits that any of them has at each edge."""
@@ -258,18 +291,16 @@ class OBJECT_OT_risorius_keep(bpy.types.Operator):  # noqa: N801
         return {"FINISHED"}
 
 
-class OBJECT_OT_risorius_change(bpy.types.Operator):  # noqa: N801
+class OBJECT_OT_risorius_change(OfRefinedCopy, bpy.types.Operator):  # noqa: N801
     """Let each frame have its own triangles again"""
 
     bl_idname = "object.risorius_change"
     bl_label = "Change Topology"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Say whether the active object is a refined copy with one topology."""
-        copy = refined_copy(context)
-        return copy is not None and SPLITS in copy.risorius.rest
+        return super().poll(context) and SPLITS in refined_copy(context).risorius.rest
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Forget the splits."""

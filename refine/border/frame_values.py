@@ -1,0 +1,80 @@
+"""Values that change from frame to frame: attributes that a frame brings anew.
+
+Kähler, Haber, Seidel 2003, section 4.4, carry texture coordinates through splits linearly along
+edges. So do we with attributes (corner_values.py). Most stay as they were bound; heat, strain or
+the depth of wrinkles are other ones in each frame. They are bound like the rest, which gives them
+their columns and rows, and a frame writes other numbers there.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from ..mesh.arrays import Floats
+from ..mesh.validation import as_array
+from .corner_values import CornerValues
+
+FrameValuesLike = Mapping[str, npt.ArrayLike]
+"""Values of a frame by the names of attributes, each of the shape that was bound."""
+
+
+class FrameValues:
+    """The values of the frame, in the table that was bound."""
+
+    def __init__(self, bound: CornerValues) -> None:
+        """`bound`: its table is written in every frame that brings values."""
+        self._bound = bound
+        self._at_binding = bound.values.copy()
+        self._are_given = False
+
+    def take(self, given: FrameValuesLike | None) -> bool:
+        """Write the values of a frame into the table; return whether the table has changed.
+
+        Attributes that a frame does not bring have those of binding. Raises ValueError for a name
+        that was not bound, another shape, and numbers that are not finite in single precision.
+        """
+        if not given and not self._are_given:
+            return False
+        self._bound.values[:] = self._at_binding
+        self._are_given = bool(given)
+        for name, values in (given or {}).items():
+            self._write(name, values)
+        return True
+
+    def _write(self, name: str, given: npt.ArrayLike) -> None:
+        bound = self._bound
+        if name not in bound.columns:
+            raise ValueError(_unknown(name, list(bound.columns)))
+        columns = bound.columns[name]
+        shape = (bound.own_lengths[name], columns.stop - columns.start)
+        wanted = f"numbers of shape {shape}, as that attribute was bound"
+        array = as_array(f"values[{name!r}]", given, wanted)
+        if array.shape != shape or array.dtype.kind not in "fiu":
+            raise ValueError(
+                f"values[{name!r}] must be {wanted}, got {array.dtype} of shape {array.shape}"
+            )
+        with np.errstate(over="ignore"):
+            single: Floats = array.astype(np.float32, copy=False)
+        if not np.isfinite(single).all():
+            bad = int(np.isfinite(single).all(axis=1).argmin())
+            raise ValueError(
+                f"values[{name!r}] must be finite as single precision, but row {bad} is "
+                f"{array[bad]}"
+            )
+        rows = bound.own_rows[name]
+        bound.values[:, columns] = single if rows is None else single[rows]
+
+
+def refuse(given: FrameValuesLike | None) -> None:
+    """Raise ValueError for values where no attribute was bound."""
+    for name in given or ():
+        raise ValueError(_unknown(name, []))
+
+
+def _unknown(name: str, bound: list[str]) -> str:
+    there_are = f"bound are {bound}" if bound else "no attribute was bound"
+    return (
+        f"values[{name!r}] is no attribute of this refiner; {there_are}; bind it by "
+        f"attributes={{{name!r}: values at rest}}"
+    )
