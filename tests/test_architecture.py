@@ -60,7 +60,10 @@ def test_scenes_answer_for_themselves():
 @pytest.mark.parametrize(
     ("folder", "allowed"),
     [
-        ("risorius", {"click", "numba", "numpy", "pydantic", "pydantic_core", "pyvista", "tqdm"}),
+        (
+            "risorius",
+            {"PIL", "click", "numba", "numpy", "pydantic", "pydantic_core", "pyvista", "tqdm"},
+        ),
         ("refine", {"numpy"}),
         ("refine_gl", {"moderngl", "numpy"}),
         ("sim", {"numpy", "scipy"}),

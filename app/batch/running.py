@@ -50,7 +50,7 @@ def run_lines(
     if scheduler is None:
         yield from _run_here(waiting, processes)
         return
-    from .cluster import run_on_cluster
+    from ..cluster import run_on_cluster
 
     for job, result, why in run_on_cluster(do_line, waiting, scheduler):
         yield result or Result(job, FAILED, error=why)

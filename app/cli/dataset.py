@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from ..errors import UserError
 from ..text import counted, in_one_line
 from .options import PATH, SILENT, Size, printing
 
@@ -17,6 +18,13 @@ from .options import PATH, SILENT, Size, printing
     type=click.IntRange(1, 10**6),
     required=True,
     help="Number of samples; their names have six digits.",
+)
+@click.option(
+    "--first",
+    type=click.IntRange(0, 10**6 - 1),
+    default=0,
+    show_default=True,
+    help="Number of the first sample.",
 )
 @click.option("-o", "--output", type=PATH, required=True, help="The set's folder.")
 @click.option(
@@ -49,7 +57,16 @@ from .options import PATH, SILENT, Size, printing
     help="A colour, as '#8090a0' or grey, or a folder of pictures; soft colours by default.",
 )
 @click.option(
-    "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes."
+    "--shards",
+    type=click.IntRange(1, 10**6),
+    metavar="SAMPLES",
+    help="Put so many samples each into tar files of WebDataset.",
+)
+@click.option("--jobs", type=click.IntRange(1, 256), help="Processes; one by default.")
+@click.option(
+    "--scheduler",
+    metavar="ADDRESS",
+    help="Address of a Dask cluster that makes the samples: tcp://host:8786.",
 )
 @click.option("--resume", is_flag=True, help="Go on with a set, or make it larger.")
 @SILENT
@@ -60,18 +77,41 @@ from .options import PATH, SILENT, Size, printing
     "Print the table that --sample replaces, and end.",
 )
 def dataset(
-    count: int, output: Path, passes: str, jobs: int, resume: bool, quiet: bool, **drawn: Any
+    count: int,
+    first: int,
+    output: Path,
+    passes: str,
+    jobs: int | None,
+    scheduler: str | None,
+    resume: bool,
+    quiet: bool,
+    **drawn: Any,
 ) -> None:
     """Make pictures of faces with exact labels.
 
     Labels are action units, landmarks, head pose, gaze, camera, and the passes that you choose.
-    Every sample depends on --seed and its number alone, not on --jobs.
+    Every sample depends on --seed and its number alone, not on who makes it.
     """
     from ..dataset.making import make_set
     from ..dataset.request import request_of
 
+    if jobs is not None and scheduler is not None:
+        raise UserError("--jobs is for this computer; with --scheduler the cluster has its workers")
+    if first + count > 10**6:
+        raise UserError(
+            f"--first {first} --count {count}: ends at sample {first + count - 1}, the last can be "
+            f"999999; give --count {10**6 - first} or less"
+        )
     request = request_of(output, passes=passes.split(","), **drawn)
-    made = make_set(request, count, jobs=jobs, resume=resume, progress=not quiet)
+    made = make_set(
+        request,
+        count,
+        first=first,
+        jobs=jobs or 1,
+        scheduler=scheduler,
+        resume=resume,
+        progress=not quiet,
+    )
     click.echo(
         f"{in_one_line(output)}: {counted(made.samples, 'sample')}, {made.new} of them new, "
         f"{made.size / 1e6:.1f} MB"

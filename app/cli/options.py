@@ -126,7 +126,7 @@ class HeadName(click.ParamType["Path | int | str"]):
         if value in HEAD_NAMES:
             return str(value)
         if str(value).isdecimal():
-            return click.IntRange(0, 2**32 - 1).convert(value, param, ctx)
+            return click.IntRange(0, 2**53 - 1).convert(value, param, ctx)
         path: Path = PATH.convert(value, param, ctx)
         return path
 

@@ -21,8 +21,10 @@ from typing import Any
 from ..errors import UserError
 from ..files import cannot_be_written, check_links, save_text
 from ..staging import is_staging_folder, locked
+from .shards import PATTERN, read_shard
 
 UNFINISHED = ".unfinished"
+SEEN = "seen-"  # begins the name of a file by which workers see that they are at the folder
 LENGTHS = "files"  # the label that holds the length of each other file of a sample [bytes]
 
 
@@ -68,8 +70,10 @@ class SetFolder:
             with cannot_be_written(self.path):
                 for left in unfinished.glob("[0-9]*"):
                     shutil.rmtree(left)
+                for left in unfinished.glob(f"{SEEN}*"):
+                    left.unlink()
                 self.log.unlink(missing_ok=True)
-            if not self.there():
+            if not self._has_samples():
                 save_text(self.path / self.BEGUN, json.dumps(options, indent=1) + "\n")
             yield
         with cannot_be_written(self.path):
@@ -93,7 +97,7 @@ class SetFolder:
             raise UserError(
                 f"{begun}: does not say how a set was begun; name another folder"
             ) from None
-        if not self.there():
+        if not self._has_samples():
             return
         if not resume:
             raise UserError(f"{self.path}: holds a data set; add --resume, or name another folder")
@@ -106,11 +110,17 @@ class SetFolder:
                 )
 
     def there(self) -> set[int]:
-        """The numbers of the samples of which there is a .json."""
+        """The numbers of the samples of which there is a .json, here or in a shard."""
+        shards = map(read_shard, self.path.glob(PATTERN))
+        packed = {number for shard in shards if shard for number in shard.places}
         with os.scandir(self.path) as items:
             sample_name = re.compile(r"(\d{6})\.json")
             found = (sample_name.fullmatch(item.name) for item in items)
-            return {int(match[1]) for match in found if match}
+            return packed | {int(match[1]) for match in found if match}
+
+    def _has_samples(self) -> bool:
+        """Whether a sample is there, or a shard, of whose samples some can be read."""
+        return bool(self.there()) or any(self.path.glob(PATTERN))
 
     def has(self, index: int) -> bool:
         """Whether all files of a sample are there and whole, by the lengths in its .json."""
@@ -143,6 +153,20 @@ class SetFolder:
             finally:
                 shutil.rmtree(part, ignore_errors=True)
         return size
+
+    def take_sample(self, index: int, files: Mapping[str, bytes]) -> int:
+        """Put the files of a sample, made elsewhere, in place; how many bytes they have."""
+
+        def write(picture: Path) -> None:
+            for name, content in files.items():
+                (picture.parent / name).write_bytes(content)
+
+        return self.write_sample(index, write)
+
+    def files_of(self, index: int) -> list[Path]:
+        """The files of a sample, its .json first."""
+        names = [f"{name_of(index)}.json", *sorted(self.sample(index)[LENGTHS])]
+        return [self.path / name for name in names]
 
     def sample(self, index: int) -> dict[str, Any]:
         """The labels in the .json of a sample."""

@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from tqdm import tqdm
 
 from ..errors import UserError
 from ..files import save_text, written_atomically
 from ..stopping import cleaned_up_if_stopped
-from ..workers import Send, run_all
+from ..workers import run_all
 from .folder import SetFolder
+from .packing import Packing
 from .request import SetRequest
 from .sampling import draw
-from .studio import Studio
+from .sharing import Brought, Share, made_on_cluster, make_samples
 from .summary import card_of, write_index
-
-
-@dataclass(frozen=True)
-class Share:
-    """The samples that one process makes, by their numbers, person after person."""
-
-    request: SetRequest
-    indices: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -39,65 +33,112 @@ def make_set(
     request: SetRequest,
     count: int,
     *,
-    jobs: int,
+    first: int = 0,
+    jobs: int = 1,
+    scheduler: str | None = None,
     resume: bool = False,
     progress: bool = True,
 ) -> Made:
-    """Make the samples 0 to count - 1 of a set, as far as they are not whole, and its card.
+    """Make `count` samples of a set from number `first` on, as far as they are not whole.
 
-    Raises UserError where the set cannot be made, or was begun otherwise; samples that were made
-    until then stay.
+    jobs: processes here. scheduler: address of a Dask cluster that makes them instead. Raises
+    UserError where the set cannot be made, or was begun otherwise; samples that were made until
+    then stay.
     """
     folder = SetFolder(request.output)
+    numbers = range(first, first + count)
     with folder.held(request.options(), resume=resume):
-        last = max(folder.there(), default=-1)
-        if last >= count:
-            raise UserError(
-                f"{request.output}: has sample {last} already; give --count {last + 1} or more"
-            )
-        missing = [index for index in range(count) if not folder.has(index)]
-        made = count - len(missing)
-        shares = _shares(request, missing, jobs)
-        is_silent = not progress or None
+        _check(folder, numbers)
+        packing = Packing(folder, request.shards, numbers) if request.shards else None
+        if packing:
+            packing.begin()
+        missing = [n for n in numbers if not (packing and packing.has(n)) and not folder.has(n)]
+        if packing:
+            packing.expect(missing)
+        if scheduler is None:
+            shares = _shares(request, missing, -(-len(missing) // jobs))
+            arriving = run_all(make_samples, shares, log=folder.log)
+        else:
+            # A lost share costs its samples; the start of its process costs two seconds.
+            each = min(max(len(missing) // 64, 8), 64)
+            arriving = made_on_cluster(folder, _shares(request, missing, each), scheduler)
         size = 0
+        is_silent = not progress or None
+        made = count - len(missing)
         bar = tqdm(total=count, initial=made, unit="sample", disable=is_silent, leave=False)
         with cleaned_up_if_stopped(bar.close), bar:
-            try:
-                for bytes_of_sample in run_all(make_samples, shares, log=folder.log):
-                    size += bytes_of_sample
-                    bar.update()
-            except UserError as error:
-                text = f"{error} (with --resume the set goes on)"
-                raise UserError(text, error.trace) from None
-        _finish(folder, request, count)
+            for number, bytes_of_sample in _with_advice(_put_in_place(folder, missing, arriving)):
+                size += bytes_of_sample
+                if packing:
+                    packing.add(number)
+                bar.update()
+        _finish(folder, request, numbers, packing)
     return Made(count, len(missing), size)
 
 
-def make_samples(share: Share, send: Send) -> None:
-    """Make the samples of a share that do not exist yet, and send the size of each [bytes]."""
-    studio = Studio(share.request)
-    folder = SetFolder(share.request.output)
-    for index in share.indices:
-        if not folder.has(index):  # a process before may have died behind it
-            send(folder.write_sample(index, studio.shoot(index).save))
+def _check(folder: SetFolder, numbers: range) -> None:
+    """UserError where a folder has samples of other numbers already."""
+    there = folder.there()
+    if there <= set(numbers):
+        return
+    first = min(*there, numbers.start)
+    last = max(*there, numbers.stop - 1)
+    with_first = f"--first {first} and " if first or numbers.start else ""
+    raise UserError(
+        f"{folder.path}: has sample {max(there - set(numbers))} already; give {with_first}"
+        f"--count {last + 1 - first} or more"
+    )
 
 
-def _shares(request: SetRequest, missing: Sequence[int], jobs: int) -> list[Share]:
-    """As many shares as processes, about equally large.
+def _shares(request: SetRequest, missing: Sequence[int], each: int) -> list[Share]:
+    """Shares of so many samples each.
 
-    The samples of one person are together, for a head takes seconds to build.
+    The samples of one person are together, for a head takes a while to build; so are those of one
+    shard.
     """
-    ordered = sorted(missing, key=lambda index: draw(request.table, request.seed, index).person)
-    each = max(-(-len(ordered) // jobs), 1)
+
+    def place(number: int) -> tuple[int, int]:
+        shard = number // request.shards if request.shards else 0
+        return shard, draw(request.table, request.seed, number).person
+
+    ordered = sorted(missing, key=place)
     return [
         Share(request, tuple(ordered[first : first + each]))
-        for first in range(0, len(ordered), each)
+        for first in range(0, len(ordered), max(each, 1))
     ]
 
 
-def _finish(folder: SetFolder, request: SetRequest, count: int) -> None:
+def _put_in_place(
+    folder: SetFolder, missing: Iterable[int], arriving: Iterator[Brought]
+) -> Iterator[tuple[int, int]]:
+    """The number and size [bytes] of each sample that was missing, when its files are there."""
+    left = set(missing)
+    for sample in arriving:
+        if sample.number in left:  # a process that died may have brought it before
+            left.remove(sample.number)
+            has_files = bool(sample.files)
+            size = folder.take_sample(sample.number, sample.files) if has_files else sample.size
+            yield sample.number, size
+
+
+def _with_advice(made: Iterator[tuple[int, int]]) -> Iterator[tuple[int, int]]:
+    """The same; an error says how the set goes on."""
+    try:
+        yield from made
+    except UserError as error:
+        text = f"{error} (with --resume the set goes on)"
+        raise UserError(text, error.trace) from None
+
+
+def _finish(
+    folder: SetFolder, request: SetRequest, numbers: range, packing: Packing | None
+) -> None:
     """Write index and card from the samples' files."""
+
+    def labels_and_place(number: int) -> tuple[dict[str, Any], Mapping[str, str | int]]:
+        return packing.labels_and_place(number) if packing else (folder.sample(number), {})
+
     index = folder.path / "index.csv"
     with written_atomically(index) as part:
-        counts = write_index(part, map(folder.sample, range(count)))
-    save_text(folder.path / "README.md", card_of(request, counts))
+        counts = write_index(part, map(labels_and_place, numbers))
+    save_text(folder.path / "README.md", card_of(request, numbers, counts))

@@ -23,8 +23,8 @@ class SetRequest:
     """A data set that is asked for; fit to be pickled.
 
     output: the folder of the set. size: of the pictures [pixels]. passes: some of the images of
-    app/passes/passes.py. refiner: None for the look's. arguments: the same, as
-    options of the command line.
+    app/passes/passes.py. refiner: None for the look's. shards: how many samples each has; None for
+    no shards. arguments: the same, as options of the command line.
     """
 
     output: Path
@@ -34,6 +34,7 @@ class SetRequest:
     table: SampleTable
     backgrounds: Backgrounds = Backgrounds()  # noqa: RUF009 - frozen
     refiner: str | None = None
+    shards: int | None = None
     arguments: str = ""
     version: str = version("risorius")
 
@@ -48,6 +49,7 @@ class SetRequest:
             "passes": list(self.passes),
             "background": self.backgrounds.options,
             "refiner": self.refiner,
+            "shards": self.shards,
             **{f"[{name}]": section for name, section in table.items()},
         }
         return dict(json.loads(json.dumps(options)))
@@ -62,6 +64,7 @@ def request_of(
     sample: Path | None = None,
     background: str | None = None,
     refiner: str | None = None,
+    shards: int | None = None,
 ) -> SetRequest:
     """The request of a command line; UserError for options that cannot be."""
     check_wanted(passes, "face")
@@ -74,6 +77,7 @@ def request_of(
         "size": "x".join(map(str, size)),
         "background": background,
         "refiner": refiner,
+        "shards": shards,
     }
     words = [(f"--{name}", as_text(value)) for name, value in settings.items() if value is not None]
     return SetRequest(
@@ -84,5 +88,6 @@ def request_of(
         load_table(sample),
         backgrounds_of(background),
         refiner,
+        shards,
         shlex.join(word for pair in words for word in pair),
     )

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..motion.life import HEAD_RANGES
-from .table import BLINK, LETTERS, SampleTable, Shares, paired_units
+from .table import BLINK, LETTERS, PERSONS, SampleTable, Shares, paired_units
 
 MOST_UNITS = 7  # of a mixture
 
@@ -40,7 +40,8 @@ class Sample:
     kind, name: sort of face, and which: "expression", "happiness".
     controls: all values of the face but its gaze.
     gaze: where it looks within the head, to its left and up [degrees]; None: into the camera.
-    person: number of the one whose head it is. light: name of one of the renderer's.
+    person: number of the one whose head it is, as `assets.identities.sample_identity` has it.
+    light: name of one of the renderer's.
     surroundings: seed of light and background.
     """
 
@@ -83,7 +84,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
         {key: round(float(value), 4) for key, value in controls.items()},
         None if is_at_camera else (aside[0], aside[1]),
         SampleCamera(yaw, pitch, zoom, field_of_view, (across, along)),
-        int(looks.integers(table.persons.count)),
+        seed * PERSONS + int(looks.integers(table.persons.count)),
         chosen(looks, table.lights),
         int(looks.integers(2**63)),
     )

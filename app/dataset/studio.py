@@ -16,13 +16,7 @@ import numpy as np
 import PIL.Image
 
 from risorius import render
-from risorius.assets.identities import (
-    coloured,
-    drawn_irises,
-    features_of,
-    make_person,
-    sample_identity,
-)
+from risorius.assets.identities import in_colours, make_person, own_colours, sample_identity
 
 from ..motion import SETTLING
 from ..motion.life import EYE_RANGE, looking_at
@@ -121,27 +115,20 @@ class Studio:
         return image, {"light": lit, "background": name if colours is None else asdict(colours)}
 
     def _person_of(self, number: int) -> _Model:
-        """Person `number` of the set before the frame: head, tone of skin and colour of eyes.
-
-        The tone is an individual typology angle: 55 and more very light, below -30 dark.
-        """
-        table = self._request.table
-        stream_of_persons = 1  # sets their seeds apart from those of samples
-        seeds = np.random.SeedSequence([self._request.seed, number, stream_of_persons])
-        random = np.random.default_rng(seeds)
-        tone = round(float(random.uniform(*table.persons.tone)), 2)
-        irises = drawn_irises(random, tone, table.irises)
-        person = make_person(sample_identity(int(seeds.generate_state(1)[0])))
+        """Person `number` before the frame, drawn from the table's population."""
+        population = self._request.table.population
+        person = make_person(sample_identity(number, population=population))
+        colours = own_colours(person.identity, number, population=population)
         labels = {
             "number": number,
-            "tone": tone,
-            "irises": irises,
+            "tone": round(colours.angle, 2),
+            "irises": colours.irises,
             "sex": person.identity.sex.value,
             "age": round(person.identity.age, 1),
+            "hair": person.identity.cut,
             "measures": {code: round(value, 3) for code, value in person.measures.items()},
         }
-        features = features_of(person.identity, tone, random)
-        head = coloured(person, angle=tone, irises=irises, features=features)
+        head = in_colours(person, colours)
         scene = FaceScene(head)
         pipeline = Pipeline(scene, self._renderer)
         drawn = pipeline.bind(Refinement(refiner=self._request.refiner))

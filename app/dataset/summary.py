@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
@@ -25,13 +25,18 @@ class Counts:
     units: Counter[str] = field(default_factory=Counter)
 
 
-def write_index(path: Path, samples: Iterable[dict[str, Any]]) -> Counts:
-    """A CSV file with one row for each sample: its kind, the head's pose, every action unit."""
+def write_index(
+    path: Path, samples: Iterable[tuple[dict[str, Any], Mapping[str, str | int]]]
+) -> Counts:
+    """A CSV file with one row for each sample: its kind, the head's pose, every action unit.
+
+    samples: the labels of each, and more columns for it.
+    """
     counts = Counts()
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
-        for sample in samples:
-            row = _row(sample)
+        for sample, more in samples:
+            row = {**_row(sample), **more}
             if not counts.kinds:
                 table.writerow(row)
             table.writerow(row.values())
@@ -56,16 +61,18 @@ def _row(sample: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def card_of(request: SetRequest, counts: Counts) -> str:
+def card_of(request: SetRequest, numbers: range, counts: Counts) -> str:
     """The card of a requested set: how it was made, and how often each kind and unit occurs."""
-    samples = counts.kinds.total()
+    samples = len(numbers)
     persons = len(counts.persons)
     units = [(name, counts.units[name]) for name in sorted(counts.units, key=by_number)]
     text = (files(__package__) / "card.md").read_text("utf-8")
     return text.format(
         count=samples,
         version=request.version,
-        arguments=request.arguments,
+        arguments=f"--first {numbers.start} {request.arguments}"
+        if numbers.start
+        else request.arguments,
         persons=persons,
         samples_each=samples / persons,
         there=THERE,

@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from risorius import assets
-from risorius.assets.identities import DARKEST, LIGHTEST
-from risorius.assets.identities.complexion import IRIS_SHARES
+from risorius.assets.identities import DARKEST, LIGHTEST, Population
+from risorius.assets.identities.hair import CUTS
+from risorius.assets.identities.population import IRIS_SHARES
 from risorius.render import LIGHTS
 from risorius.schema import REST, MadeFrom, OneOf, Record, Within, called, parsed_toml, read
 
@@ -23,6 +24,7 @@ from ..files import NoSuchFileError, read_text
 
 LETTERS = ("A", "B", "C", "D", "E")
 BLINK = "AU45"
+PERSONS = 1_000_000  # of each seed: no other seed has them
 Shares = Mapping[str, float]
 Range = tuple[float, float]
 
@@ -141,9 +143,11 @@ class Camera(Record):
 
 @dataclass(frozen=True)
 class Persons(Record):
-    """How many they are, and the tone of their skin."""
+    """How many they are, the share of women, ages [years], and the tone of their skin."""
 
-    count: Annotated[int, Within(1, 1_000_000)]
+    count: Annotated[int, Within(1, PERSONS)]
+    women: Share
+    age: Annotated[Range, _between(18.0, 90.0)]
     tone: Annotated[Range, _between(DARKEST, LIGHTEST)]
 
 
@@ -164,7 +168,22 @@ class SampleTable(Record):
     camera: Camera
     persons: Persons
     irises: Annotated[Shares, _drawn_from(IRIS_SHARES)]
+    cuts_of_women: Annotated[Shares, _drawn_from(CUTS)]
+    cuts_of_men: Annotated[Shares, _drawn_from(CUTS)]
     lights: Annotated[Shares, _drawn_from(LIGHTS)]
+
+    @property
+    def population(self) -> Population:
+        """Whom persons are drawn from."""
+        persons = self.persons
+        return Population(
+            persons.women,
+            persons.age,
+            persons.tone,
+            self.irises,
+            self.cuts_of_women,
+            self.cuts_of_men,
+        )
 
     def goes_with(self, unit: str, others: Container[str]) -> bool:
         """Whether a unit may be there beside those that are."""

@@ -7,36 +7,47 @@ Any of them goes where the built-in head goes: `sim.create(person)`, `FaceScene(
 """
 
 from .complexion import (
-    DARKEST,
-    LIGHTEST,
     Features,
     built_in_hair,
     coloured,
     drawn_irises,
     features_of,
-    in_own_colours,
     recoloured,
 )
 from .hair import HAIR
-from .named import NAMED, person_called, person_in_words
+from .named import (
+    NAMED,
+    Colours,
+    in_colours,
+    in_own_colours,
+    own_colours,
+    person_called,
+    person_in_words,
+)
 from .person import Person, make_person
+from .population import DARKEST, EVERYBODY, LIGHTEST, Population
 from .space import Identity, Sex, sample_identity
 
 __all__ = [
     "DARKEST",
+    "EVERYBODY",
     "HAIR",
     "LIGHTEST",
     "NAMED",
+    "Colours",
     "Features",
     "Identity",
     "Person",
+    "Population",
     "Sex",
     "built_in_hair",
     "coloured",
     "drawn_irises",
     "features_of",
+    "in_colours",
     "in_own_colours",
     "make_person",
+    "own_colours",
     "person_called",
     "person_in_words",
     "recoloured",

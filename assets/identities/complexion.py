@@ -34,12 +34,10 @@ from .brows import Brows, drawn_brows, painted, stubble
 from .hair import CUTS, HAIR, OWN_CUT, Fall, Hairline, drawn_hairline, hair_of, scalp_of
 from .long_hair import falling_hair, tied_hair
 from .person import Person
+from .population import DARKEST, IRIS_SHARES, LIGHTEST
 from .space import Identity, Sex
 
-LIGHTEST = 70.0  # ITA [deg]
-DARKEST = -55.0
 ONLY_BROWN = 28.0  # ITA below which eyes are brown, as nearly all are there
-IRIS_SHARES = {"brown": 0.4, "hazel": 0.15, "green": 0.12, "blue": 0.2, "grey": 0.13}
 GREY_HAIR = (0.54, 0.52, 0.49)
 LOCKS_LIGHTER = 1.2  # than painted hair, which no other hair shades
 BEHIND = 30.0  # [mm] of the scalp, in the map of it: from the hairline back
@@ -306,22 +304,6 @@ def _share_of_grey(years: float, angle: float, early: float) -> float:
     later = delay * float(np.clip((ONLY_BROWN - angle) / (ONLY_BROWN - dark_skin), 0.0, 1.0))
     past = float(np.clip((years - 46.0 + 16.0 * early - later) / 34.0, 0.0, 1.0))
     return min(past * past, 0.95)
-
-
-def in_own_colours(
-    person: Person, seed: int, *, angle: float | None = None, irises: str | None = None
-) -> Person:
-    """A person with the skin, the eyes and the hair of a number, the same ones every time.
-
-    Tones are as likely as each other. angle, irises: instead of the number's own.
-    """
-    random = np.random.default_rng([seed, 18])
-    drawn_angle = random.uniform(DARKEST, LIGHTEST)
-    angle = drawn_angle if angle is None else angle
-    blood = float(np.clip(random.normal(1.0, 0.1), 0.75, 1.25))
-    drawn = drawn_irises(random, angle)
-    features = features_of(person.identity, angle, random)
-    return coloured(person, angle=angle, blood=blood, irises=irises or drawn, features=features)
 
 
 def _changes(melanin: float, blood: float) -> tuple[Floats64, Floats64, Floats64]:

@@ -1,14 +1,17 @@
 """Persons by number or by name."""
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from types import MappingProxyType
 from typing import NamedTuple
 
-from .complexion import in_own_colours
+import numpy as np
+
+from .complexion import Features, coloured, drawn_irises, features_of
 from .person import Person, make_person
-from .space import Sex, sample_identity
+from .population import EVERYBODY, Population
+from .space import Identity, Sex, sample_identity
 
 
 class _Known(NamedTuple):
@@ -29,6 +32,54 @@ NAMED: Mapping[str, _Known] = MappingProxyType(
         "maria": _Known(111, Sex.WOMAN, 66.0, 56.0, "blue", "aside"),
     }
 )
+
+
+@dataclass(frozen=True)
+class Colours:
+    """Somebody's tone of skin (ITA [deg]), blood in it, colour of eyes, and features."""
+
+    angle: float
+    blood: float
+    irises: str
+    features: Features
+
+
+def own_colours(
+    identity: Identity,
+    seed: int,
+    *,
+    angle: float | None = None,
+    irises: str | None = None,
+    population: Population = EVERYBODY,
+) -> Colours:
+    """The colours of a number, the same ones every time; tones are as likely as each other.
+
+    angle, irises: instead of the number's own.
+    """
+    random = np.random.default_rng([seed, 18])
+    drawn_angle = float(random.uniform(*population.tones))
+    angle = drawn_angle if angle is None else angle
+    blood = float(np.clip(random.normal(1.0, 0.1), 0.75, 1.25))
+    drawn = drawn_irises(random, angle, population.irises)
+    return Colours(angle, blood, irises or drawn, features_of(identity, angle, random))
+
+
+def in_own_colours(
+    person: Person, seed: int, *, angle: float | None = None, irises: str | None = None
+) -> Person:
+    """A person with the skin, the eyes and the hair of a number (`own_colours`)."""
+    return in_colours(person, own_colours(person.identity, seed, angle=angle, irises=irises))
+
+
+def in_colours(person: Person, colours: Colours) -> Person:
+    """A person with skin, eyes and hair of these colours."""
+    return coloured(
+        person,
+        angle=colours.angle,
+        blood=colours.blood,
+        irises=colours.irises,
+        features=colours.features,
+    )
 
 
 @cache

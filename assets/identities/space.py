@@ -31,6 +31,7 @@ from ...geometry.arrays import Floats64
 from ..data_files import read_arrays
 from ..loading import load
 from ..norms import NORMS, Sample, measures_of
+from .population import EVERYBODY, Population
 
 MOST = 2.5  # deviations
 PRESSED = {"go-go": 10.0, "zy-zy": 4.0, "ft-ft": 2.0}  # [mm] by calipers, both sides together
@@ -193,42 +194,26 @@ def person_space() -> PersonSpace:
 
 
 def sample_identity(
-    seed: int, *, sex: Sex | None = None, age: float | None = None, is_even: bool = False
+    seed: int,
+    *,
+    sex: Sex | None = None,
+    age: float | None = None,
+    is_even: bool = False,
+    population: Population = EVERYBODY,
 ) -> Identity:
     """The person of a number: the same one every time; even: left and right alike.
 
     seed: 0 and more. sex, age: instead of the number's own.
     """
     random = np.random.default_rng([seed, 17])
-    drawn = Sex.WOMAN if random.random() < 0.5 else Sex.MAN
+    drawn = Sex.WOMAN if random.random() < population.women else Sex.MAN
     sex = drawn if sex is None else sex
-    ages = 20.0, 75.0  # [years]
-    years = float(random.uniform(*ages))
+    years = float(random.uniform(*population.ages))
     age = years if age is None else age
     hair_lengths = 0.8, 1.2  # least and most, times those of the cut
     hair = float(random.uniform(*hair_lengths))
-    cut_shares = MappingProxyType(
-        {
-            Sex.WOMAN: {
-                "parted": 0.2,
-                "centred": 0.2,
-                "aside": 0.22,
-                "knotted": 0.14,
-                "topknot": 0.08,
-                "tailed": 0.16,
-            },
-            Sex.MAN: {
-                "short": 0.38,
-                "cropped": 0.3,
-                "brushed": 0.14,
-                "swept": 0.12,
-                "knotted": 0.03,
-                "tailed": 0.03,
-            },
-        }
-    )
-    cuts = cut_shares[sex]
-    cut = str(random.choice(list(cuts), p=list(cuts.values())))
+    cuts = population.cuts_of_women if sex is Sex.WOMAN else population.cuts_of_men
+    cut = str(random.choice(list(cuts), p=_normalised(cuts)))
     weights = person_space().draw(sex, age, random)
     sides = np.clip(random.normal(size=len(weights)), -MOST, MOST)
     unevenness = 0.1  # deviations that the left side has of another person
@@ -247,3 +232,8 @@ def sample_identity(
         corners=float(0.7 + 0.3 * is_woman + 0.5 * corners - 0.08 * late),
         brows=float((1.0 if is_woman else 0.0) + brows - 0.2 * late),
     )
+
+
+def _normalised(shares: Mapping[str, float]) -> Floats64:
+    weights = np.array(list(shares.values()))
+    return np.asarray(weights / weights.sum())

@@ -161,6 +161,32 @@ def test_what_is_no_such_set_is_left_alone(made, tmp_path):
     assert [path.name for path in other.iterdir()] == ["mine.txt"]
 
 
+@pytest.mark.slow
+def test_a_set_begins_anywhere(made, tmp_path):
+    """The same samples as in the set from 0 on, to which it can be completed."""
+    folder = tmp_path / "part"
+    assert run(folder, "--first", 2, count=2).exit_code == 0
+    for end in ENDS:
+        assert not (folder / f"000001{end}").exists()
+        assert (folder / f"000003{end}").read_bytes() == (made / f"000003{end}").read_bytes()
+    assert f"--count 2 --first 2 --seed {SEED}" in (folder / "README.md").read_text("utf-8")
+    message = refusal(run(folder, "--resume", "--first", 3, count=2))
+    assert "has sample 2 already; give --first 2 and --count 3 or more" in message
+    assert "2 of them new" in run(folder, "--resume").output
+    assert content(folder) == content(made)
+
+
+def test_a_set_ends_within_six_digits(tmp_path):
+    message = refusal(run(tmp_path, "--first", 999_998, count=3))
+    assert "ends at sample 1000000, the last can be 999999; give --count 2 or less" in message
+
+
+def test_jobs_and_scheduler_exclude_each_other(tmp_path):
+    """A cluster has the workers that it has."""
+    message = refusal(run(tmp_path, "--jobs", 2, "--scheduler", "tcp://a:1"))
+    assert "--jobs is for this computer" in message
+
+
 def test_two_cannot_make_one_set(made):
     request = request_of(made, seed=SEED, size=SIZE, passes=PASSES)
     with SetFolder(made).held(request.options(), resume=True):

@@ -1,0 +1,102 @@
+"""Work on the workers of a Dask cluster, each of which has processes of its own for it.
+
+Threads of a Dask worker cannot draw, and a crash of one looks like a kill. So a Dask worker hands
+its work to a `WorkerPool`, as this computer does.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import secrets
+import socket
+from collections import Counter
+from collections.abc import Callable, Generator, Iterator, Sequence
+from functools import partial
+from typing import Any
+
+from .errors import UserError
+from .extras import needed
+from .stopping import cleaned_up_if_stopped
+from .text import in_one_line
+from .workers import ATTEMPTS, WorkerPool, share_of_cores
+
+PATIENCE = 10.0  # [s] for the scheduler to answer
+LOSSES = 10  # times that Dask may give an item up because the workers under it were lost
+
+_pools: dict[str, WorkerPool] = {}
+"""In a Dask worker: the processes of each run."""
+
+
+def run_on_cluster(
+    work: Callable[[WorkerPool, Any], Any], items: Sequence[Any], scheduler: str
+) -> Generator[tuple[Any, Any, str], None, None]:
+    """Each item as it ends, with the result of its work, or with None and the reason.
+
+    An item whose workers are lost goes to others. Results leave the cluster as they are taken.
+    Raises UserError where no scheduler answers.
+    """
+    distributed = needed("distributed", "--scheduler", "cluster")
+    client = _client(distributed, scheduler)
+    run = secrets.token_hex(8)
+
+    def end() -> None:
+        """End the run's processes on all workers, busy or not."""
+        with contextlib.suppress(Exception):  # workers, or the scheduler, may be gone
+            client.run(_end, run, wait=True, on_error="ignore")
+
+    with client, cleaned_up_if_stopped(end):
+        try:
+            yield from _results(distributed, client, partial(_do, run, work), items)
+        finally:
+            end()
+
+
+def _client(distributed: Any, scheduler: str) -> Any:
+    """A connection to the scheduler at an address; UserError where none answers."""
+    try:  # asked first: a client takes half a minute to find that nobody is there
+        host_and_port = distributed.comm.get_address_host_port(scheduler)
+        socket.create_connection(host_and_port, PATIENCE).close()
+        return distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
+    except (OSError, TimeoutError, ValueError, OverflowError) as error:
+        why = getattr(error, "strerror", None) or error or "it does not speak Dask's protocol"
+        raise UserError(
+            f"--scheduler {scheduler}: no Dask scheduler answers there ({why}); "
+            "write the address that it prints at its start, as in tcp://host:8786"
+        ) from None
+
+
+def _results(
+    distributed: Any, client: Any, do: Callable[[Any], Any], items: Sequence[Any]
+) -> Iterator[tuple[Any, Any, str]]:
+    """As `run_on_cluster` yields them."""
+    losses = Counter[int]()
+    futures = client.map(do, items, pure=False, retries=ATTEMPTS - 1)
+    number_of = {future.key: number for number, future in enumerate(futures)}
+    ended = distributed.as_completed(
+        futures, loop=client.loop, with_results=True, raise_errors=False
+    )
+    del futures  # else the cluster would keep all results
+    for future, result in ended:
+        number = number_of.pop(future.key)
+        if future.status == "finished":
+            future.release()
+            yield items[number], result, ""
+            continue
+        error = future.exception()
+        losses[number] += 1
+        if isinstance(error, distributed.KilledWorker) and losses[number] < LOSSES:
+            again = client.submit(do, items[number], pure=False, retries=ATTEMPTS - 1)
+            number_of[again.key] = number
+            ended.add(again)
+        else:
+            yield items[number], None, in_one_line(error)
+
+
+def _do(run: str, work: Callable[[WorkerPool, Any], Any], item: Any) -> Any:
+    """In a Dask worker: work on an item."""
+    return work(_pools.setdefault(run, WorkerPool(share_of_cores())), item)
+
+
+def _end(run: str) -> None:
+    """In a Dask worker: the run is over."""
+    _pools.setdefault(run, WorkerPool()).stop()

@@ -1,0 +1,94 @@
+"""Packing: the samples of a folder go into shards, each shard when all of its samples are there."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..files import cannot_be_written
+from .folder import SetFolder
+from .shards import PATTERN, Shard, files_in, read_shard, remove_shard, write_shard
+
+
+class Packing:
+    """The shards of a set that has the samples of these numbers."""
+
+    def __init__(self, folder: SetFolder, size: int, numbers: range) -> None:
+        """size: samples in a shard; shard k has those from k * size on."""
+        self._folder = folder
+        self._size = size
+        self._numbers = numbers
+        self._packed: dict[int, Shard] = {}
+        self._waiting: dict[int, set[int]] = {}
+
+    def begin(self) -> None:
+        """Keep the shards that are whole, and take the others apart, as far as they can be read.
+
+        A shard that was written when the set was shorter is taken apart, too.
+        """
+        with cannot_be_written(self._folder.path):
+            for path in sorted(self._folder.path.glob(PATTERN)):
+                place = int(path.stem.removeprefix("shard-"))
+                shard = read_shard(path)
+                if shard is not None and sorted(shard.places) == self._wanted(place):
+                    self._packed[place] = shard
+                    continue
+                for name, content in files_in(path):
+                    (self._folder.path / name).write_bytes(content)
+                remove_shard(path)
+            self._remove_leftovers()
+
+    def has(self, number: int) -> bool:
+        """Whether a sample is in a shard."""
+        return number // self._size in self._packed
+
+    def expect(self, missing: Iterable[int]) -> None:
+        """Samples that will be made; pack the shards that lack none."""
+        places = {number // self._size for number in self._numbers}
+        self._waiting = {place: set() for place in places - self._packed.keys()}
+        for number in missing:
+            self._waiting[number // self._size].add(number)
+        for place in sorted(self._waiting):
+            self._pack_if_whole(place)
+
+    def add(self, number: int) -> None:
+        """A sample was made; pack its shard if that was the last."""
+        place = number // self._size
+        self._waiting[place].discard(number)
+        self._pack_if_whole(place)
+
+    def labels_and_place(self, number: int) -> tuple[dict[str, Any], dict[str, str | int]]:
+        """The labels of a sample, and where in which shard it lies."""
+        shard = self._packed[number // self._size]
+        return shard.labels_of(number), shard.place_of(number)
+
+    def _wanted(self, place: int) -> Sequence[int]:
+        first = place * self._size
+        last = min(first + self._size, self._numbers.stop)
+        return list(range(max(first, self._numbers.start), last))
+
+    def _pack_if_whole(self, place: int) -> None:
+        if place in self._packed or self._waiting[place]:
+            return
+        wanted = self._wanted(place)
+        files = {number: self._folder.files_of(number) for number in wanted}
+        path = self._folder.path / f"shard-{place:06d}.tar"
+        self._packed[place] = write_shard(path, files.items())
+        with cannot_be_written(path):
+            for each in files.values():
+                _remove(each)
+
+    def _remove_leftovers(self) -> None:
+        """Remove files whose sample is in a shard: the process ended before it could."""
+        with os.scandir(self._folder.path) as items:
+            found = [re.fullmatch(r"(\d{6})[._].+", item.name) for item in items]
+        packed = [each[0] for each in found if each and self.has(int(each[1]))]
+        _remove(self._folder.path / name for name in packed)
+
+
+def _remove(files: Iterable[Path]) -> None:
+    for file in files:
+        file.unlink(missing_ok=True)

@@ -1,0 +1,113 @@
+"""Shards of a data set: tar files of WebDataset with many samples each, and where these begin.
+
+A million small files slow a file system down. `shard-000003.tar` holds the samples 3000 to 3999
+where a shard has 1000. WebDataset parts the name of a file at its first dot, so `003000_seg.png` is
+`003000.seg.png` there. `shard-000003.json` has the length of the tar file, and the place of each
+sample in it; it is written last.
+
+WebDataset: Aizman, Maltby, Breuel 2019, "High Performance I/O For Large Scale Deep Learning",
+IEEE Big Data.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import re
+import tarfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+from ..files import written_atomically
+
+PATTERN = "shard-[0-9][0-9][0-9][0-9][0-9][0-9].tar"
+
+
+@dataclass(frozen=True)
+class Shard:
+    """A tar file of samples.
+
+    places: of each sample by its number: its first byte in the file, and how many bytes it has.
+    """
+
+    path: Path
+    places: Mapping[int, tuple[int, int]]
+
+    def labels_of(self, number: int) -> dict[str, Any]:
+        """The labels of a sample, whose .json is the first of its files."""
+        with self.path.open("rb") as file:
+            file.seek(self.places[number][0])
+            labels: dict[str, Any] = json.loads(next(_files_in(file))[1])
+        return labels
+
+    def place_of(self, number: int) -> dict[str, str | int]:
+        """The place of a sample, for the index of the set."""
+        first, length = self.places[number]
+        return {"shard": self.path.name, "offset": first, "bytes": length}
+
+
+def files_in(path: Path) -> Iterator[tuple[str, bytes]]:
+    """All files of samples that can be read from a tar file, by their names outside of it."""
+    with contextlib.suppress(OSError, tarfile.TarError), path.open("rb") as file:
+        yield from _files_in(file)
+
+
+def write_shard(path: Path, samples: Iterable[tuple[int, Sequence[Path]]]) -> Shard:
+    """Write a shard of samples, each a number and its files; UserError where that fails."""
+    places: dict[int, tuple[int, int]] = {}
+    with written_atomically(path) as part, part.open("wb") as file:
+        with tarfile.open(fileobj=file, mode="w", format=tarfile.USTAR_FORMAT) as tar:
+            for number, files in samples:
+                first = file.tell()
+                for each in files:
+                    _add(tar, each)
+                places[number] = first, file.tell() - first
+    content = {"bytes": path.stat().st_size, "samples": places}
+    with written_atomically(listing_of(path)) as part:
+        part.write_text(json.dumps(content) + "\n", encoding="utf-8")
+    return Shard(path, places)
+
+
+def read_shard(path: Path) -> Shard | None:
+    """The shard of a tar file; None unless it is as long as its listing says."""
+    try:
+        content = json.loads(listing_of(path).read_bytes())
+        if content["bytes"] != path.stat().st_size:
+            return None
+        samples = content["samples"].items()
+        return Shard(path, {int(number): (int(at), int(long)) for number, (at, long) in samples})
+    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return None
+
+
+def remove_shard(path: Path) -> None:
+    """Delete a tar file and its listing, as far as they are there."""
+    listing_of(path).unlink(missing_ok=True)
+    path.unlink(missing_ok=True)
+
+
+def listing_of(path: Path) -> Path:
+    """The file that has the places in a tar file."""
+    return path.with_suffix(".json")
+
+
+def _add(tar: tarfile.TarFile, path: Path) -> None:
+    """Add a file, without the time and the owner that its bytes would depend on."""
+    content = path.read_bytes()
+    member = tarfile.TarInfo(path.name.replace("_", ".", 1))
+    member.size = len(content)
+    tar.addfile(member, io.BytesIO(content))
+
+
+def _files_in(file: IO[bytes]) -> Iterator[tuple[str, bytes]]:
+    """The files of samples in a tar file, from where it stands."""
+    with tarfile.open(fileobj=file, mode="r:") as tar:
+        for member in tar:
+            content = tar.extractfile(member)
+            name = re.fullmatch(r"(\d{6})\.(\w+(?:\.\w+)?)", member.name)
+            if name and content is not None:
+                mark = "_" if "." in name[2] else "."
+                yield f"{name[1]}{mark}{name[2]}", content.read()

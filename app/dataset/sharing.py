@@ -1,0 +1,113 @@
+"""Shares of a set: samples that one process makes, here or on a worker of a Dask cluster.
+
+A worker that sees the folder of the set writes into it. Others make samples in a folder of their
+own, and hand the bytes back.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import secrets
+import socket
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from importlib.metadata import version
+from pathlib import Path
+
+from ..cluster import run_on_cluster
+from ..errors import UserError
+from ..files import cannot_be_written
+from ..workers import Send, WorkerPool
+from .folder import SEEN, UNFINISHED, SetFolder
+from .request import SetRequest
+from .studio import Studio
+
+
+@dataclass(frozen=True)
+class Share:
+    """The samples that one process makes, by their numbers, person after person.
+
+    token: a file in the folder of unfinished samples, by which a process on another computer sees
+    that the set's folder is there, too; "" on the same computer.
+    """
+
+    request: SetRequest
+    numbers: tuple[int, ...]
+    token: str = ""
+
+
+@dataclass(frozen=True)
+class Brought:
+    """A sample that was made, and how many bytes it has.
+
+    files: by their names, where they are handed back.
+    """
+
+    number: int
+    size: int = 0
+    files: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def make_samples(share: Share, send: Send) -> None:
+    """Make the samples of a share that do not exist yet, and send what is `Brought` of each."""
+    request = share.request
+    here = version("risorius")
+    if request.version != here:
+        raise UserError(
+            f"{socket.gethostname()} has Risorius {here}, the set needs {request.version}; install "
+            "the same on all computers"
+        )
+    with contextlib.ExitStack() as stack:
+        folder = SetFolder(request.output)
+        is_seen = not share.token or (folder.path / UNFINISHED / share.token).exists()
+        if not is_seen:
+            own = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="risorius-")))
+            (own / UNFINISHED).mkdir()
+            folder = SetFolder(own)
+        studio = Studio(request)
+        for number in share.numbers:
+            size = 0
+            if not folder.has(number):  # a process before may have died behind it
+                size = folder.write_sample(number, studio.shoot(number).save)
+            send(Brought(number, size, {} if is_seen else _taken(folder, number)))
+
+
+def _taken(folder: SetFolder, number: int) -> dict[str, bytes]:
+    """The files of a sample, which are removed."""
+    files = {path: path.read_bytes() for path in folder.files_of(number)}
+    for path in files:
+        path.unlink()
+    return {path.name: content for path, content in files.items()}
+
+
+def made_on_cluster(
+    folder: SetFolder, shares: Sequence[Share], scheduler: str
+) -> Iterator[Brought]:
+    """The samples of shares as a Dask cluster makes them; UserError for the first that failed."""
+    if not shares:
+        return
+    token = f"{SEEN}{secrets.token_hex(8)}"
+    with cannot_be_written(folder.path):
+        (folder.path / UNFINISHED / token).touch()
+    sent = [replace(share, token=token) for share in shares]
+    results = run_on_cluster(_make_on_worker, sent, scheduler)
+    with contextlib.closing(results):
+        for _, result, why in results:
+            if result is None or isinstance(result, str):
+                raise UserError(result or f"the cluster gave up: {why}")
+            yield from result
+
+
+def _make_on_worker(pool: WorkerPool, share: Share) -> list[Brought] | str:
+    """On a Dask worker: have a share made by a process; why it failed, if it did."""
+    made: dict[int, Brought] = {}  # a process that died may have brought some of them before
+
+    def keep(sample: Brought) -> None:
+        made[sample.number] = sample
+
+    try:
+        pool.run(make_samples, share, on_message=keep)
+    except UserError as error:
+        return f"{socket.gethostname()}: {error}"
+    return [*made.values()]

@@ -1,0 +1,94 @@
+"""Read a data set for training: pictures, units, landmarks, as arrays.
+
+    from risorius.faces import Faces
+
+`Faces` is a data set for PyTorch, with a length and items by number: hand it to a DataLoader. This
+file needs numpy and Pillow only, and nothing else of Risorius: it may be copied to where a network
+is trained.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import tarfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+
+UNITS = ("AU1", "AU2", "AU4", "AU6", "AU7", "AU10", "AU12", "AU14", "AU15", "AU17", "AU23", "AU24")
+
+
+class Faces:
+    """A set as `risorius dataset` makes it, of single files or in shards; each item is a sample."""
+
+    def __init__(self, folder: str | os.PathLike[str]) -> None:
+        """folder: that of the set. Raises OSError where there is no index."""
+        self.folder = Path(folder)
+        with (self.folder / "index.csv").open(encoding="utf-8", newline="") as file:
+            self.rows = list(csv.DictReader(file))
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __getitem__(self, number: int) -> dict[str, npt.NDArray[Any]]:
+        """A sample.
+
+        image (3, H, W) 0..1; units (12,) 0..1; pixels (70, 2) and visible (70,) of landmarks;
+        classes (H, W), 255 = leave out, where the set has them.
+        """
+        files = self.files(number)
+        labels = json.loads(files["json"])
+        sample = {
+            "image": _picture(files["png"]).astype(np.float32).transpose(2, 0, 1) / 255.0,
+            "units": np.array([float(self.rows[number][name]) for name in UNITS], np.float32),
+            "pixels": np.array(labels["landmarks"]["pixels"], np.float32),
+            "visible": np.array(labels["landmarks"]["visible"]),
+        }
+        if "seg.png" in files:
+            sample["classes"] = _picture(files["seg.png"])
+        return sample
+
+    def files(self, number: int) -> dict[str, bytes]:
+        """The content of the files of a sample, by "png", "json", "seg.png", "ldmks.txt", "exr"."""
+        row = self.rows[number]
+        if row.get("shard"):
+            with (self.folder / row["shard"]).open("rb") as file:
+                file.seek(int(row["offset"]))
+                part = io.BytesIO(file.read(int(row["bytes"])))
+            return dict(_members(part))
+        names = {
+            kind: self.folder / f"{row['id']}{mark}{kind}"
+            for mark, kinds in ((".", ("png", "json", "exr")), ("_", ("seg.png", "ldmks.txt")))
+            for kind in kinds
+        }
+        return {kind: path.read_bytes() for kind, path in names.items() if path.exists()}
+
+    def split(self, share: float = 0.2) -> tuple[list[int], list[int]]:
+        """Numbers for training and for testing; nobody's face is in both, somebody's in each."""
+        persons = sorted({int(row["person_number"]) for row in self.rows})
+        count = min(max(round(share * len(persons)), 1), len(persons) - 1)  # of one person, none
+        tested = set(persons[:count])
+        is_tested = [int(row["person_number"]) in tested for row in self.rows]
+        numbers = range(len(self))
+        return [k for k in numbers if not is_tested[k]], [k for k in numbers if is_tested[k]]
+
+
+def _members(part: io.BytesIO) -> list[tuple[str, bytes]]:
+    """The files in a part of a tar file, by their names behind the first dot."""
+    found = []
+    with tarfile.open(fileobj=part, mode="r:") as tar:
+        for member in tar:
+            content = tar.extractfile(member)
+            if content is not None:
+                found.append((member.name.partition(".")[2], content.read()))
+    return found
+
+
+def _picture(content: bytes) -> npt.NDArray[np.uint8]:
+    return np.asarray(PIL.Image.open(io.BytesIO(content)))

@@ -1,0 +1,269 @@
+"""A set in shards, and on a cluster: the bytes of the set that one process makes."""
+
+import contextlib
+import csv
+import io
+import json
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tarfile
+import textwrap
+import threading
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from risorius.app.dataset.folder import UNFINISHED, SetFolder
+from risorius.app.dataset.making import make_set
+from risorius.app.dataset.packing import Packing
+from risorius.app.dataset.request import SetRequest, request_of
+from risorius.app.dataset.sampling import draw
+from risorius.app.dataset.sharing import Share, made_on_cluster, make_samples
+from risorius.app.dataset.table import load_table
+from risorius.app.errors import UserError
+from risorius.assets.identities import own_colours, person_called, sample_identity
+from risorius.faces import UNITS, Faces
+
+from .test_dataset import content
+
+COUNT = 5
+SHARD = 2
+
+
+def request_for(folder: Path, shards: int | None = None) -> SetRequest:
+    """A small set in a folder."""
+    return request_of(folder, seed=4, size=(48, 40), passes=("segmentation",), shards=shards)
+
+
+@pytest.fixture(scope="module")
+def loose(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A set of single files."""
+    folder = tmp_path_factory.mktemp("loose") / "set"
+    make_set(request_for(folder), COUNT, progress=False)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def packed(loose: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same samples in shards; one is left over."""
+    folder = tmp_path_factory.mktemp("packed") / "set"
+    folder.mkdir()
+    for file in loose.glob("0*"):
+        shutil.copy(file, folder)
+    request = request_for(folder, SHARD)
+    (folder / "dataset.json").write_text(json.dumps(request.options(), indent=1) + "\n", "utf-8")
+    made = make_set(request, COUNT, resume=True, progress=False)
+    assert made.new == 0
+    return folder
+
+
+def members(path):
+    """The files in a tar file."""
+    with tarfile.open(path) as tar:
+        return {member.name: tar.extractfile(member).read() for member in tar}
+
+
+def test_shards_hold_the_files_of_the_set(loose, packed):
+    """By names that WebDataset parts at the first dot, and nothing is left beside them."""
+    shards = [f"shard-{k:06d}{end}" for k in range(3) for end in (".tar", ".json")]
+    assert {*content(packed)} == {"README.md", "dataset.json", "index.csv", *shards}
+    found = {}
+    for k in range(3):
+        found |= members(packed / f"shard-{k:06d}.tar")
+    wanted = {path.name.replace("_", "."): path.read_bytes() for path in loose.glob("0*")}
+    assert found == wanted
+    assert "000003.seg.png" in found
+
+
+def test_the_index_says_where_samples_are(loose, packed):
+    """By offset and length the part of a tar file is a tar file with that sample alone."""
+    with (packed / "index.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        whole = (packed / row["shard"]).read_bytes()
+        part = whole[int(row["offset"]) :][: int(row["bytes"])]
+        with tarfile.open(fileobj=io.BytesIO(part)) as tar:
+            names = {member.name for member in tar}
+        ends = ("json", "png", "ldmks.txt", "seg.png")
+        assert names == {f"{row['id']}.{end}" for end in ends}
+
+
+@pytest.mark.parametrize("kind", ["loose", "packed"])
+def test_the_reader_reads_both(loose, packed, kind):
+    """Pictures and labels of single files and of shards."""
+    folder = {"loose": loose, "packed": packed}[kind]
+    faces = Faces(folder)
+    assert len(faces) == COUNT
+    sample = faces[2]
+    assert sample["image"].shape == (3, 40, 48)
+    assert 0.0 <= sample["image"].min() < sample["image"].max() <= 1.0
+    assert sample["units"].shape == (len(UNITS),)
+    assert sample["pixels"].shape == (70, 2)
+    assert sample["visible"].shape == (70,)
+    assert sample["classes"].shape == (40, 48)
+    assert faces.files(3)["png"] == (loose / "000003.png").read_bytes()
+    assert faces.files(3)["ldmks.txt"] == (loose / "000003_ldmks.txt").read_bytes()
+    training, testing = faces.split(0.5)
+    assert sorted(training + testing) == [*range(COUNT)]
+    persons = [{faces.rows[k]["person_number"] for k in some} for some in (training, testing)]
+    assert persons[0].isdisjoint(persons[1])
+
+
+def test_the_page_reads_a_set_as_it_says(loose, tmp_path):
+    """Its lines, pasted, run anywhere: with numpy and Pillow alone."""
+    page = (Path(__file__).parents[2] / "docs" / "dataset.md").read_text("utf-8")
+    blocks = re.findall(r"(?:^    .*\n|^\n)+", page, re.MULTILINE)
+    (block,) = [each for each in blocks if "risorius.faces" in each]
+    shapes = "print({name: value.shape for name, value in sample.items()})"
+    modules = "import sys; print(any(f'risorius.{n}' in sys.modules for n in ('app', 'jit')))"
+    (tmp_path / "program.py").write_text(
+        f"{textwrap.dedent(block)}\n{shapes}\n{modules}\n", "utf-8"
+    )
+    (tmp_path / "faces").symlink_to(loose)
+    run = subprocess.run(
+        [sys.executable, "program.py"], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert "'image': (3, 40, 48), 'units': (12,), 'pixels': (70, 2)" in run.stdout
+    assert run.stdout.endswith("False\n")
+
+
+@pytest.mark.parametrize("end", ["cut", "empty", "no listing", "no tar"])
+def test_a_damaged_shard_is_made_anew(packed, tmp_path, end):
+    """What can be read of it counts; the set has the same bytes then."""
+    folder = tmp_path / "set"
+    shutil.copytree(packed, folder)
+    shard = folder / "shard-000000.tar"
+    whole = shard.read_bytes()
+    if end == "cut":
+        shard.write_bytes(whole[: len(whole) * 3 // 4])
+    if end == "empty":
+        shard.write_bytes(b"")
+    if end == "no listing":
+        shard.with_suffix(".json").unlink()
+    if end == "no tar":
+        shard.unlink()
+    (folder / "000002.png").write_bytes(b"left by a process that was killed")
+    made = make_set(request_for(folder, SHARD), COUNT, resume=True, progress=False)
+    assert made.new == {"cut": 1, "empty": 2, "no listing": 0, "no tar": 2}[end]
+    assert content(folder) == content(packed)
+
+
+def test_a_shard_grows_with_its_set(loose, packed, tmp_path):
+    """The last one is taken apart, and packed again with the samples that came on top."""
+    folder = SetFolder(tmp_path)
+    for file in loose.glob("0*"):
+        shutil.copy(file, tmp_path)
+    for count in (3, COUNT):
+        packing = Packing(folder, SHARD, range(count))
+        packing.begin()
+        packing.expect([])
+        for number in range(count):
+            labels, _ = packing.labels_and_place(number)
+            assert labels["index"] == number
+    for k in range(3):
+        name = f"shard-{k:06d}.tar"
+        assert (tmp_path / name).read_bytes() == (packed / name).read_bytes()
+
+
+def test_a_process_elsewhere_hands_samples_back(loose, tmp_path):
+    """Where it does not see the folder of the set: the files, as they would be there."""
+    brought = []
+    make_samples(Share(request_for(tmp_path / "nowhere"), (1,), "seen-0"), brought.append)
+    (sample,) = brought
+    assert sample.number == 1
+    assert not (tmp_path / "nowhere").exists()
+    assert sample.files == {path.name: path.read_bytes() for path in loose.glob("000001*")}
+    folder = SetFolder(tmp_path / "set")
+    (folder.path / UNFINISHED).mkdir(parents=True)
+    folder.take_sample(1, sample.files)
+    assert folder.has(1)
+    assert folder.files_of(1)[0].read_bytes() == (loose / "000001.json").read_bytes()
+
+
+def test_another_release_is_refused(tmp_path):
+    """It would draw other pictures."""
+    request = replace(request_for(tmp_path), version="0.0.1")
+    with pytest.raises(UserError, match=r"the set needs 0\.0\.1; install the same"):
+        make_samples(Share(request, (1,)), print)
+
+
+def test_persons_of_a_seed_are_nobody_elses():
+    """Their numbers are those of other commands, with the shape and colours that these have."""
+    table = load_table(None)
+    persons = [{draw(table, seed, k).person for k in range(300)} for seed in (0, 1, 7)]
+    assert all(len(some) > 100 for some in persons)
+    assert len(set.union(*persons)) == sum(map(len, persons))
+    assert min(persons[2]) // 10**6 == max(persons[2]) // 10**6 == 7
+    number = min(persons[1])
+    identity = sample_identity(number, population=table.population)
+    assert identity == sample_identity(number)
+    colours = own_colours(identity, number, population=table.population)
+    assert colours == own_colours(identity, number)
+    assert person_called(number).identity == identity
+
+
+@pytest.mark.parametrize(
+    ("text", "is_so"),
+    [
+        ("[persons]\nwomen = 1.0", lambda who, _: who.sex.value == "woman"),
+        ("[persons]\nage = [60, 61]", lambda who, _: 60 <= who.age <= 61),
+        ("[persons]\ntone = [-40, -30]", lambda _, own: -40 <= own.angle <= -30),
+        ("[cuts_of_women]\ntailed = 1\n[cuts_of_men]\ncropped = 1", lambda who, _: who.cut
+         == ("tailed" if who.sex.value == "woman" else "cropped")),
+    ],
+)  # fmt: skip
+def test_the_table_chooses_persons(tmp_path, text, is_so):
+    """By sex, age, tone and cut of hair."""
+    file = tmp_path / "my.toml"
+    file.write_text(text, "utf-8")
+    population = load_table(file).population
+    for number in range(6):
+        identity = sample_identity(number, population=population)
+        assert is_so(identity, own_colours(identity, number, population=population))
+
+
+@pytest.mark.slow
+def test_a_cluster_hands_bytes_back(loose, cluster, tmp_path):
+    """Where its workers do not see the folder."""
+    folder = SetFolder(tmp_path / "set")
+    (folder.path / UNFINISHED).mkdir(parents=True)
+    share = Share(request_for(tmp_path / "nowhere"), (0, 1))
+    for sample in made_on_cluster(folder, [share], cluster.scheduler_address):
+        folder.take_sample(sample.number, sample.files)
+    for number in (0, 1):
+        for file in folder.files_of(number):
+            assert file.read_bytes() == (loose / file.name).read_bytes()
+
+
+@pytest.mark.slow
+def test_a_cluster_loses_nothing_with_its_workers(packed, cluster, tmp_path):
+    """Workers are killed at random moments; the set has the same bytes."""
+    folder = tmp_path / "set"
+    is_made = threading.Event()
+    moments = random.Random(1)
+    kills = 0
+
+    def kill() -> None:
+        nonlocal kills
+        while kills < 3 and not is_made.wait(moments.uniform(4.0, 9.0)):
+            worker = moments.choice([*cluster.workers.values()])
+            with contextlib.suppress(ProcessLookupError, TypeError):  # it is being replaced
+                os.kill(worker.pid, signal.SIGKILL)
+                kills += 1
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    try:
+        request = request_for(folder, SHARD)
+        make_set(request, COUNT, scheduler=cluster.scheduler_address, progress=False)
+    finally:
+        is_made.set()
+        killer.join()
+    assert kills
+    assert content(folder) == content(packed)
