@@ -60,11 +60,11 @@ def write_shard(path: Path, samples: Iterable[tuple[int, Sequence[Path]]]) -> Sh
     places: dict[int, tuple[int, int]] = {}
     with written_atomically(path) as part, part.open("wb") as file:
         with tarfile.open(fileobj=file, mode="w", format=tarfile.USTAR_FORMAT) as tar:
+            first = 0
             for number, files in samples:
-                first = file.tell()
-                for each in files:
-                    _add(tar, each)
-                places[number] = first, file.tell() - first
+                length = sum(_add(tar, each) for each in files)
+                places[number] = first, length
+                first += length
     content = {"bytes": path.stat().st_size, "samples": places}
     with written_atomically(listing_of(path)) as part:
         part.write_text(json.dumps(content) + "\n", encoding="utf-8")
@@ -94,12 +94,14 @@ def listing_of(path: Path) -> Path:
     return path.with_suffix(".json")
 
 
-def _add(tar: tarfile.TarFile, path: Path) -> None:
-    """Add a file, without the time and the owner that its bytes would depend on."""
+def _add(tar: tarfile.TarFile, path: Path) -> int:
+    """Add a file, without time and owner, which bytes would depend on; how many bytes it takes."""
     content = path.read_bytes()
     member = tarfile.TarInfo(path.name.replace("_", ".", 1))
     member.size = len(content)
     tar.addfile(member, io.BytesIO(content))
+    block = tarfile.BLOCKSIZE
+    return block + -(-len(content) // block) * block
 
 
 def _files_in(file: IO[bytes]) -> Iterator[tuple[str, bytes]]:
