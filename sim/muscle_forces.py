@@ -35,6 +35,7 @@ from .fibres import (
     move_lines,
     over_skin,
 )
+from .landmarks import arc_lengths
 from .muscle_stack import bottom_up, points_along, stack_muscles
 from .muscles import Line, PlacedMuscle
 from .rig import LinearMuscle, Rig
@@ -105,7 +106,7 @@ class MuscleForces:
             moved = points + self.bundle.mandible[b][:, None] * mandible.displacements(points)
             if state.lines.is_carried[b]:
                 moved += state.lines.carried[b]
-            arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))])
+            arc = arc_lengths(moved)
             remaining = max(1.0 - self.bundle.contraction[b] * activation[muscle], LEAST_ARC)
             fixed = self.bundle.fixed_at[b] * arc[-1]
             line = [

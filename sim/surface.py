@@ -22,6 +22,7 @@ from scipy.sparse import linalg as sparse_linalg
 
 from ..geometry.arrays import Floats64, Integers32, Integers64
 from ..geometry.normals import cross_products, vertex_areas, vertex_normals
+from ..geometry.sides import sides_of
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,7 @@ def build_surface(positions: Floats64, faces: Integers32) -> SkinSurface:
     least_area = 0.01  # mm2 per vertex: keeps isolated vertices and slivers from having no mass
     areas: Floats64 = np.maximum(vertex_areas(positions, faces), least_area)
 
-    half_edges = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    half_edges = np.sort(sides_of(faces), axis=1)
     unique, inverse = np.unique(half_edges, axis=0, return_inverse=True)
     edges = unique.astype(np.int32).reshape(-1, 2)
     lengths = np.linalg.norm(positions[edges[:, 1]] - positions[edges[:, 0]], axis=1)

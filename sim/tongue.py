@@ -25,7 +25,7 @@ import scipy
 from ..geometry.arrays import Floats64, Integers64
 from . import checked
 from .coordinates import FaceSpace
-from .landmarks import smoothstep
+from .landmarks import arc_lengths, smoothstep
 from .skull import RigidMotion
 
 SAMPLES = 65  # points of the spine
@@ -121,7 +121,7 @@ class Tongue:
             (middle[2] - 1.0, over_lip),
             (front + above + overhang, low[1] - tip_drop),
         ])  # fmt: skip
-        lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+        lengths = arc_lengths(path)
         tip = lengths[2] + out * (lengths[-1] - lengths[2])
         # Its root is drawn long, its tip keeps its shape.
         place = np.linspace(0.0, 1.0, SAMPLES)

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from risorius import assets
 from risorius.assets.meshes import Mesh
+from risorius.geometry.sides import sides_of
 
 Array = npt.NDArray[np.float64]
 TURN = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])  # z up, looking along y
@@ -65,7 +66,7 @@ def closed(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
     """The mesh with a fan of triangles across the opening between some vertices on its edges."""
     centre = mesh.vertices[vertices].mean(axis=0)
     faces = mesh.faces
-    directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    directed = sides_of(faces)
     ways = {tuple(way) for way in directed.tolist()}
     following = {a: b for a, b in ways if (b, a) not in ways}
     border = np.array(list(following))

@@ -18,6 +18,7 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 from ...geometry.arrays import Floats64, Integers32, Integers64
+from ...geometry.sides import sides_of
 from ..errors import AssetError
 from ..topology import unique_points
 
@@ -76,7 +77,7 @@ def with_seams_joined(
     piece = pieces_of(faces, len(vertices))
     if (piece[landmarks] == piece[landmarks[0]]).all():
         return faces, landmarks
-    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    sides = sides_of(faces)
     edges, uses = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
     border = np.unique(edges[uses == 1])
     first, number = unique_points(vertices[border] + 0.0)  # no zero with a sign
@@ -123,7 +124,7 @@ def check_manifold(faces: Integers32, numbers: Integers64 | None = None) -> None
             f"the mesh is not manifold: triangle {number} has the vertices {corners}, one of them "
             "twice; remove triangles without area"
         )
-    directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    directed = sides_of(faces)
     edges, uses = np.unique(np.sort(directed, axis=1), axis=0, return_counts=True)
     if (uses > 2).any():
         a, b = edges[uses.argmax()]
@@ -245,7 +246,7 @@ def path_lengths(
 
 def _edges(vertices: Floats64, faces: Integers32) -> Any:
     """The lengths of edges, as a graph of vertices."""
-    links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    links = sides_of(faces)
     links = np.unique(np.sort(links, axis=1), axis=0)
     lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
     return sparse.csr_array((np.maximum(lengths, 1e-9), links.T), shape=(len(vertices),) * 2)

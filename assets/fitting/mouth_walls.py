@@ -18,6 +18,7 @@ import scipy
 from risorius.geometry.rays import exits
 
 from ...geometry.arrays import Floats32, Floats64, Integers32
+from ...geometry.sides import sides_of
 from ..model import Head, Part
 from .warp import Similarity, ThinPlateSpline
 
@@ -111,7 +112,7 @@ def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integers32
     skin = fitted.vertices
     faces = fitted.faces
     count = len(skin)
-    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    sides = sides_of(faces)
     numbers = sides.astype(np.int64)
     has_other = np.isin(numbers @ [count, 1], numbers @ [1, count])
     border = sides[~has_other]

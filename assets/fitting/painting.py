@@ -25,6 +25,7 @@ from risorius.geometry.normals import cross_products
 from risorius.geometry.texels import Texels, rates
 
 from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Integers64, Unsigned8
+from ...geometry.sides import sides_of
 from ..data_files import Image, read_arrays
 from ..errors import AssetError
 from ..model import Head, Segment, Wrinkles
@@ -59,7 +60,7 @@ def spread_uv(
     rim = np.concatenate([known.rings["rim_left"], known.rings["rim_right"]])
     on_rim = nearest.interpolate(np.isin(np.arange(len(known.vertices)), rim).astype(np.float64))
     count = len(vertices)
-    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
+    sides = sides_of(faces).astype(np.int64)
     links = np.unique(np.sort(sides, axis=1), axis=0)
     trust[is_behind_others(feet, vertices, links) & (on_rim < 0.99)] = 0.0
     # The nearer, the stiffer: else even steps over uneven edges, and slopes in the picture jump.

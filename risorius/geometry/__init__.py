@@ -3,6 +3,7 @@
 arrays.py       types of arrays
 closest.py      the closest points of a triangle mesh
 normals.py      cross products of triangles, normals of vertices
+sides.py        the sides of triangles, as pairs of vertices
 texels.py       the texels of a picture that triangles lie over
 read_only.py    views that cannot be written
 colour.py       screen colours (sRGB) and linear light

@@ -9,6 +9,7 @@ from risorius.assets.model import Head, Part
 from risorius.assets.topology import Edge, Faces
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.normals import cross_products
+from risorius.geometry.sides import sides_of
 
 
 def edge_faces(faces: Faces) -> dict[Edge, list[int]]:
@@ -22,7 +23,7 @@ def edge_faces(faces: Faces) -> dict[Edge, list[int]]:
 
 def is_manifold(faces: Integers32) -> bool:
     """Whether every edge has one or two faces and its two faces run along it in opposite ways."""
-    directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    directed = sides_of(faces)
     has_no_repeat = len(np.unique(directed, axis=0)) == len(directed)
     return has_no_repeat and all(len(beside) <= 2 for beside in edge_faces(faces).values())
 

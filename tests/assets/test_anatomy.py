@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from risorius.geometry.sides import sides_of
+
 # The right-hand partner of every left-hand landmark, read from the iBug figure.
 PAIRS = (
     [(k, 16 - k) for k in range(8)]
@@ -129,7 +131,7 @@ def test_mandible_carries_lower_lip_and_chin_only(head):
 
 def test_mandible_weight_is_smooth(head):
     """No jump between neighbours: at most 0.07 per millimetre."""
-    edges = np.concatenate([head.faces[:, [0, 1]], head.faces[:, [1, 2]], head.faces[:, [2, 0]]])
+    edges = sides_of(head.faces)
     step = np.abs(head.mandible_weight[edges[:, 0]] - head.mandible_weight[edges[:, 1]])
     length = np.linalg.norm(head.vertices[edges[:, 0]] - head.vertices[edges[:, 1]], axis=1)
     assert step.max() < 0.6

@@ -10,6 +10,7 @@ from numpy.linalg import norm
 from risorius.assets.intersections import self_intersections
 from risorius.assets.topology import boundary_loops
 from risorius.geometry.normals import cross_products, vertex_normals
+from risorius.geometry.sides import sides_of
 from tests.assets import checks
 
 TUCKED_ROWS = ("eye_0", "eye_1", "mouth_0", "mouth_1", "mouth_2", "nostril")
@@ -79,7 +80,7 @@ def test_edges_follow_the_nasolabial_fold(head):
     There a smile creases the skin.
     """
     corner = head.vertices[head.anatomy["cheilion_left"]]
-    directed = np.vstack([head.faces[:, [0, 1]], head.faces[:, [1, 2]], head.faces[:, [2, 0]]])
+    directed = sides_of(head.faces)
     edges = {*map(tuple, directed.tolist()), *map(tuple, directed[:, ::-1].tolist())}
     for side in ("left", "right"):
         fold = head.rings[f"nasolabial_fold_{side}"]
@@ -94,7 +95,7 @@ def test_edges_follow_the_nasolabial_fold(head):
 
 def test_outline_of_the_crown_is_smooth(head):
     """From no side does one see long edges on the upper half of the skull."""
-    edges = np.vstack([head.faces[:, [0, 1]], head.faces[:, [1, 2]], head.faces[:, [2, 0]]])
+    edges = sides_of(head.faces)
     ends = head.vertices[edges]
     on_crown = ends[:, :, 1].min(axis=1) > 45.0
     length = norm(ends[:, 0] - ends[:, 1], axis=1)
