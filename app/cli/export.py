@@ -46,6 +46,10 @@ class Exporting:
         help="With --refined: other triangles in each frame, as few as it needs (USD, OBJ, "
         "VTKHDF).",
     )
+    named_only: bool = option(
+        is_flag=True,
+        help="glTF without residual targets: ARKit's shapes alone, whose sum is millimetres off.",
+    )
     overwrite: bool = option(is_flag=True, help="Replace frames in a folder, or files beside -o.")
     quiet: bool = option(is_flag=True, help="No progress bar.")
 
@@ -79,6 +83,7 @@ def export(
         exporting.changing,
         exporting.overwrite,
         not exporting.quiet,
+        exporting.named_only,
     )
     check_request(output, chosen, request)
     performance = played(script, scene, settings=settings, quiet=exporting.quiet)

@@ -43,12 +43,14 @@ class ExportRequest:
     changes: each frame is refined by itself, into other triangles.
     overwrite: frames in a folder, and files beside the output, may be replaced.
     progress: a bar is shown.
+    named_only: no morph targets but those that ARKit names, whose sum is millimetres off.
     """
 
     refinement: Refinement | None = None
     changes: bool = False
     overwrite: bool = False
     progress: bool = True
+    named_only: bool = False
 
     def counted(self, frames: Iterable[Item], count: int) -> Iterator[Item]:
         """The frames that are being written, under a progress bar."""
@@ -143,6 +145,8 @@ def check_request(output: Path, chosen: Format, request: ExportRequest) -> None:
     if request.changes and not chosen.changes:
         names = ", ".join(each.name for each in FORMATS if each.changes)
         raise UserError(f"--changing does not go with {chosen.title}; it goes with {names}")
+    if request.named_only and chosen.name != "gltf":
+        raise UserError(f"--named-only does not go with {chosen.title}; it goes with gltf")
     chosen.load()
     if not chosen.suffixes:
         check_folder(output, overwrite=request.overwrite)

@@ -1,63 +1,181 @@
 """A clip as binary glTF (.glb), which Blender, browsers and game engines read: metres, y up.
 
 Bones are animated nodes, each standing where its bone turns; all other motion is weights of morph
-targets. Every frame of the clip is a keyframe. The motion by the head's pose is taken out of the
-skin's shapes, since the bone of the head adds it again. docs/export.md describes the content of a
-file, and how other programs show it.
+targets: ARKit's shapes by name, as in an avatar (`risorius rig`), and few that have no name and
+hold the rest of the motion. Every frame of the clip is a keyframe. The motion by the head's pose is
+taken out of the skin's shapes, since the bone of the head adds it again. docs/export.md describes
+the content of a file, and how other programs show it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
+from ..recordings.names import ARKIT
+from ..rig.bodies import Body, PartBody, Shaped, Skin, moving, poses_of
+from ..rig.curves import nearest_weights, shape_curves
 from ..rig.glb import Glb
-from ..rig.poses import CRANIUM, without_head_pose
-from ..rig.scene_meshes import Piece, add_mesh
+from ..rig.poses import CRANIUM, Pose, without_head_pose
+from ..rig.scene_file import add_pieces
+from ..rig.scene_meshes import Piece
 from ..rig.skeleton import Skeleton
-from ..rig.surface import Floats, RefinedSurface
+from ..rig.surface import Floats, MovingSurface, RefinedSurface
+from ..scenes import FaceScene
 from ..text import as_text
 from .clip import Clip
 from .formats import ExportRequest
-from .morphs import TOLERANCE, decompose, follow
+from .morphs import TOLERANCE, Morphs, decompose, follow
+from .refined import RefinedSkin
+
+Poses = Mapping[str, tuple[Pose, Pose]]
 
 
-def write_gltf(clip: Clip, part: Path, request: ExportRequest) -> str | None:
-    """Write the file; return a remark where it differs visibly from the clip."""
-    pieces, error = moving_pieces(clip)
-    part.write_bytes(_packed(clip, pieces))
-    if error <= TOLERANCE:
-        return None
-    count = max(len(piece.targets) for piece in pieces)
-    return f"{count} morph targets do not suffice: up to {error:.2f} mm off"
+@dataclass(frozen=True)
+class Moving:
+    """The surfaces of a clip with their targets, and how near these come to the simulation.
+
+    pieces: the skin first. off: name of a surface that bends -> the greatest distance of a vertex,
+    in any frame [mm]. mean: root of the mean square over the skin's vertices, and all frames [mm].
+    """
+
+    pieces: list[Piece]
+    off: Mapping[str, float]
+    mean: float
+
+    @property
+    def farthest(self) -> str:
+        """The surface that is farthest off."""
+        return max(self.off, key=lambda name: self.off[name])
+
+    @property
+    def words(self) -> str:
+        """A line for the user."""
+        counts = [sum(name in ARKIT for name in piece.names) for piece in self.pieces]
+        named = max(counts)
+        others = max(
+            len(piece.names) - count for piece, count in zip(self.pieces, counts, strict=True)
+        )
+        return (
+            f"{named} named targets and {others} residual ones, at most "
+            f"{self.off[self.farthest]:.2f} mm from the simulation ({self.farthest}), "
+            f"RMS of the skin {self.mean:.2f}"
+        )
 
 
-def moving_pieces(clip: Clip) -> tuple[list[Piece], float]:
-    """The surfaces of a clip with the targets that its motion needs; how far off they are [mm]."""
+def write_gltf(clip: Clip, part: Path, request: ExportRequest) -> str:
+    """Write the file; return how many targets it has, and how near they come to the clip."""
+    motion = moving_pieces(clip, request)
+    glb = Glb(clip.times)
+    bones = {piece.bone for piece in motion.pieces if piece.bone is not None}
+    skeleton = Skeleton(clip.scene, bones, glb, clip.bones)
+    roots = add_pieces(glb, clip.scene, motion.pieces, skeleton)
+    title = as_text(clip.script.title) or "motion"
+    part.write_bytes(glb.to_bytes(title, [*skeleton.roots, *roots]))
+    if motion.off[motion.farthest] > TOLERANCE and not request.named_only:
+        return f"{motion.words}: the motion needs more targets than readers take"
+    return motion.words
+
+
+def moving_pieces(clip: Clip, request: ExportRequest) -> Moving:
+    """The surfaces of a clip with the targets that its motion needs."""
+    poses: Poses = {}
+    weights = np.zeros((clip.frame_count, 0))
+    face = clip.scene.face
+    if face is not None:
+        scene = FaceScene(face.head, face.clone())
+        poses = dict(poses_of(scene, ARKIT, progress=request.progress))
+        weights = shape_curves(clip.scene, clip.times, clip.activations, clip.controls)
     pieces = []
-    error = 0.0
+    off: dict[str, Floats] = {}
     for surface, part in zip(clip.surfaces, [None, *clip.scene.parts], strict=True):
-        bone = None if part is None else part.bone
         if surface.shapes is None:
-            none = np.zeros((0, *surface.rest.shape))
-            normals = part.normals.astype(np.float64)
-            pieces.append(Piece(surface, bone, normals, (), none, none, np.zeros((0, 0))))
+            pieces.append(_rigid(surface, part))
             continue
-        shapes = surface.shapes.astype(np.float64)
+        (shaped,) = moving([_body_of(surface, part)], poses)
+        ways = surface.shapes.astype(np.float64)
         if part is None:
-            _take_pose_out(clip, shapes)
-        morphs = decompose(shapes - surface.rest)
-        normals = surface.normals_of(surface.rest, None)
-        bent = np.array([surface.normals_of(shape, k) for k, shape in enumerate(shapes)])
-        if isinstance(surface, RefinedSurface):  # its normals are those of the turned head
-            _take_pose_out(clip, bent, are_places=False)
-        bends = follow(morphs.weights, bent - normals)
-        names = tuple(f"motion {index + 1}" for index in range(len(morphs.targets)))
-        pieces.append(Piece(surface, bone, normals, names, morphs.targets, bends, morphs.weights))
-        error = max(error, morphs.error)
-    return pieces, error
+            _take_pose_out(clip, ways)
+        ways -= surface.rest
+        if part is None and poses:
+            weights = nearest_weights(shaped.targets, ways, weights)
+        bone = None if part is None else part.bone
+        named = _named(surface, bone, shaped, weights)
+        left = ways - _summed(named, named.targets)
+        if not request.named_only:
+            residual = decompose(left)
+            left -= np.tensordot(residual.weights, residual.targets, 1)
+            bends = follow(residual.weights, _bent(clip, surface) - _summed(named, named.bends))
+            named = _with_residual(named, residual, bends)
+        pieces.append(named)
+        off[surface.name] = np.linalg.norm(left, axis=2)
+    farthest = {name: float(distances.max()) for name, distances in off.items()}
+    return Moving(pieces, farthest, float(np.sqrt((off[clip.skin.name] ** 2).mean())))
+
+
+def _rigid(surface: MovingSurface, part: Any) -> Piece:
+    """A surface that a bone moves as a whole."""
+    none = np.zeros((0, *surface.rest.shape))
+    normals = part.normals.astype(np.float64)
+    return Piece(surface, part.bone, normals, (), none, none, np.zeros((0, 0)))
+
+
+def _body_of(surface: MovingSurface, part: Any) -> Body:
+    """A surface as a body that has a place in each pose, as its bone finds it."""
+    if part is not None:
+        return PartBody(part, surface.rest, part.bone)
+    if isinstance(surface, RefinedSurface):
+        return RefinedSkin(surface)
+    return Skin(surface.rest, surface.faces)
+
+
+def _named(surface: MovingSurface, bone: str | None, shaped: Shaped, weights: Floats) -> Piece:
+    """A surface with the named shapes that move it, if any does."""
+    count = len(shaped.targets)
+    return Piece(
+        surface,
+        bone,
+        surface.normals_of(surface.rest, None),
+        ARKIT[:count],
+        shaped.targets,
+        shaped.bends,
+        weights[:, :count],
+    )
+
+
+def _with_residual(piece: Piece, residual: Morphs, bends: Floats) -> Piece:
+    """A piece with more targets, which hold the rest of its motion."""
+    names = tuple(f"residual {index + 1}" for index in range(len(residual.targets)))
+    return replace(
+        piece,
+        names=(*piece.names, *names),
+        targets=np.concatenate([piece.targets, residual.targets]),
+        bends=np.concatenate([piece.bends, bends]),
+        weights=np.hstack([piece.weights, residual.weights]),
+    )
+
+
+def _summed(piece: Piece, changes: npt.NDArray[np.floating]) -> Floats:
+    """What the targets of a piece add up to in each frame, (N, V, 3), of changes (K, V, 3)."""
+    return np.asarray(np.tensordot(piece.weights, changes, 1))
+
+
+def _bent(clip: Clip, surface: MovingSurface) -> Floats:
+    """How normals differ from those at rest in each frame, as the bone finds them, (N, V, 3)."""
+    assert surface.shapes is not None
+    shapes = surface.shapes.astype(np.float64)
+    is_refined = isinstance(surface, RefinedSurface)  # its normals are those of the turned head
+    if surface is clip.skin and not is_refined:
+        _take_pose_out(clip, shapes)
+    bent = np.array([surface.normals_of(shape, frame) for frame, shape in enumerate(shapes)])
+    if is_refined:
+        _take_pose_out(clip, bent, are_places=False)
+    return bent - surface.normals_of(surface.rest, None)
 
 
 def _take_pose_out(clip: Clip, shapes: Floats, *, are_places: bool = True) -> None:
@@ -74,26 +192,3 @@ def _take_pose_out(clip: Clip, shapes: Floats, *, are_places: bool = True) -> No
         if not are_places:
             matrix[:3, 3] = 0.0
         shape[:] = without_head_pose(shape, matrix, share)
-
-
-def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
-    """The whole file."""
-    glb = Glb(clip.times)
-    bones = {piece.bone for piece in pieces if piece.bone is not None}
-    skeleton = Skeleton(clip.scene, bones, glb, clip.bones)
-    roots = list(skeleton.roots)
-    for piece in pieces:
-        node: dict[str, Any] = {"name": piece.surface.name}
-        share = None
-        if piece.bone is None and clip.scene.face is not None:
-            node["skin"] = skeleton.skin
-            share = clip.skin.carried(clip.scene.face.head_weight)
-        node["mesh"] = add_mesh(glb, clip.scene, piece, skeleton.pivot(piece.bone), share)
-        number = glb.add("nodes", node)
-        if piece.bone is None:
-            roots.append(number)
-        else:
-            skeleton.hang(number, piece.bone)
-        if len(piece.targets):
-            glb.animate(number, "weights", piece.weights)
-    return glb.to_bytes(as_text(clip.script.title) or "motion", roots)

@@ -13,14 +13,41 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine
+from risorius.geometry.normals import vertex_normals
 
 from ..errors import UserError
 from ..refining.plug_ins import plug_ins_of, reported
 from ..refining.presets import Refinement
-from ..rig.surface import RefinedSurface
+from ..rig.poses import Pose
+from ..rig.surface import Floats, Indices, RefinedSurface
 from .clip import Clip
 
 Places = npt.NDArray[np.void]
+
+
+class RefinedSkin:
+    """A refined skin as a body of an avatar: it is refined anew in each pose."""
+
+    name = "skin"
+
+    def __init__(self, surface: RefinedSurface) -> None:
+        self.rest: Floats = surface.rest
+        self.faces: Indices = surface.faces
+        self._refiner = surface.refiner
+        # Where texture coordinates have seams, several vertices are one.
+        rows = np.hstack([surface.rest, surface.rest_normals])
+        _, first, same = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+        self._same = first[same.ravel()]
+
+    def at(self, pose: Pose) -> Floats:
+        """Where its vertices are in a pose, shape (V, 3)."""
+        return self._refiner.refine(pose.skin).positions.astype(np.float64)
+
+    def normals_at(self, points: Floats) -> Floats:
+        """Unit normals where its vertices are at `points`, shape (V, 3) each."""
+        joined = self._same[self.faces].astype(np.int32)
+        normals: Floats = vertex_normals(points, joined)[self._same]
+        return normals
 
 
 @dataclass(frozen=True)
@@ -103,6 +130,7 @@ def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
         normals=normals,
         sources=rest.source,
         origins=origins,
+        refiner=refiner,
     )
     whole = replace(clip, surfaces=(skin, *clip.surfaces[1:]))
     apart = np.concatenate(distances)

@@ -8,18 +8,15 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..motion.curves import ARKIT_SHAPES, solved
-from ..playback import LEAD
-from ..recordings.conversion import lead_of
 from ..recordings.named_columns import OUTWARD
 from ..recordings.names import ARKIT
-from ..rig.surface import Floats, RefinedSurface
+from ..rig.curves import as_seen, shape_curves
+from ..rig.surface import RefinedSurface
 from .clip import Clip
 from .formats import ExportRequest
 
@@ -45,8 +42,9 @@ def write_npz(clip: Clip, part: Path, _: ExportRequest) -> None:
 
 def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     """Write the 52 shapes and the angles of head and eyes, in Live Link Face's columns."""
-    shapes = _as_seen(clip, solved(clip.scene, ARKIT_SHAPES, clip.activations, clip.controls))
-    lowest = _as_seen(clip, clip.activations)
+    curves = shape_curves(clip.scene, clip.times, clip.activations, clip.controls)
+    shapes = dict(zip(ARKIT, curves.T, strict=True))
+    lowest = as_seen(clip.times, clip.activations)
     other_order = {  # its columns are in ARKit's order but for these
         "jawLeft": "jawRight",
         "jawRight": "jawLeft",
@@ -56,7 +54,7 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     names = [other_order.get(name, name) for name in ARKIT]
     still = np.zeros(clip.frame_count)
     # As the app spells them: JawOpen.
-    columns = {name[0].upper() + name[1:]: shapes.get(name, still) for name in names}
+    columns = {name[0].upper() + name[1:]: shapes[name] for name in names}
     # Full controls in radians, and ARKit counts to the subject's right and down, where ours grow to
     # the left and up. The head rolls to the right shoulder there, and eyes look ahead along OUTWARD
     # axes.
@@ -92,11 +90,3 @@ def _timecode(time: float) -> str:
     seconds, frame = divmod(frames, timecode_rate)
     minutes, second = divmod(seconds, 60)
     return f"{minutes // 60:02}:{minutes % 60:02}:{second:02}:{frame:02}.{fraction:03}"
-
-
-def _as_seen(clip: Clip, curves: Mapping[str, Floats]) -> dict[str, Floats]:
-    """Values of controls, as late as the face shows them."""
-    return {
-        name: np.interp(clip.times - lead_of(name, LEAD), clip.times, values)
-        for name, values in curves.items()
-    }

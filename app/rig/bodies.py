@@ -61,7 +61,7 @@ class Skin:
 class PartBody:
     """A part of a scene: an eyeball, teeth, hair.
 
-    bone: of the node that it hangs on: the cranium, the neck, or an eye that turns as a node.
+    bone: of the node that it hangs on: the cranium, or the part's own, which moves it as a whole.
     """
 
     part: Any
@@ -78,7 +78,7 @@ class PartBody:
 
     def at(self, pose: Pose) -> Floats:
         if self.bone != CRANIUM:
-            return self.rest
+            return pose.parts[self.name].astype(np.float64)
         return moved_part(self.part, pose)
 
     def normals_at(self, points: Floats) -> Floats:

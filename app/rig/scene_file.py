@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..scenes import FaceScene
+from ..scenes import FaceScene, Scene
 from .bodies import PartBody, Shaped
 from .glb import Glb
 from .scene_meshes import Piece, add_mesh
@@ -27,15 +27,15 @@ def surface_of(scene: FaceScene, shaped: Shaped) -> MovingSurface:
     )
 
 
-def add_pieces(glb: Glb, scene: FaceScene, pieces: list[Piece], skeleton: Skeleton) -> list[int]:
+def add_pieces(glb: Glb, scene: Scene, pieces: list[Piece], skeleton: Skeleton) -> list[int]:
     """Add pieces to a file, below the nodes of their bones; return those that hang on none."""
     roots = []
     for piece in pieces:
         node: dict[str, Any] = {"name": piece.surface.name}
         share = None
-        if piece.bone is None:
+        if piece.bone is None and scene.face is not None:
             node["skin"] = skeleton.skin
-            share = scene.face.head_weight
+            share = piece.surface.carried(scene.face.head_weight)
         node["mesh"] = add_mesh(glb, scene, piece, skeleton.pivot(piece.bone), share)
         number = glb.add("nodes", node)
         if piece.bone is None:

@@ -72,13 +72,15 @@ class RefinedSurface(MovingSurface):
 
     rest_normals: where nothing moves, shape (V, 3). normals: in each frame, shape (N, V, 3).
     sources: the triangle of the scene's mesh that each triangle is part of, shape (F,).
-    origins: where each vertex lies on the scene's mesh.
+    origins: where each vertex lies on the scene's mesh. refiner: refines the scene's mesh into
+    these triangles.
     """
 
     rest_normals: Singles = field(kw_only=True)
     normals: Singles = field(kw_only=True)
     sources: Indices = field(kw_only=True)
     origins: refine.Origins = field(kw_only=True)
+    refiner: refine.Refiner = field(kw_only=True)
 
     def normals_of(self, points: Floats, frame: int | None) -> Floats:
         """The refiner's normals, shape (V, 3)."""

@@ -3,6 +3,7 @@
 import functools
 import io
 import json
+import re
 import struct
 from pathlib import Path
 
@@ -16,6 +17,8 @@ from risorius.app.export import gltf
 from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import ExportRequest, format_for, write
 from risorius.app.export.morphs import decompose
+from risorius.app.recordings.names import ARKIT
+from risorius.app.rig.poses import rest_in
 from risorius.app.script.script_file import parse_script
 from risorius.assets.fitting import fit_head
 from risorius.geometry.normals import vertex_normals
@@ -44,6 +47,12 @@ head_yaw = -1.0
 head_roll = 0.6
 gaze_vertical = -0.7
 """
+TAKE = """
+duration = 1.5
+[tracks]
+jawOpen = [{ time = 0.0, value = 0.0 }, { time = 0.5, value = 0.6 }]
+mouthSmileLeft = [{ time = 0.0, value = 0.0 }, { time = 0.5, value = 0.8 }]
+"""
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +70,11 @@ def written(clip, path):
 def glb(clip: Clip, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Its file."""
     path = tmp_path_factory.mktemp("glb") / "face.glb"
-    assert written(clip, path) is None
+    remark = written(clip, path)
+    assert remark.startswith("52 named targets and ")
+    assert re.search(
+        r"at most 0\.(0\d|10) mm from the simulation \(\w+\), RMS of the skin 0\.0\d$", remark
+    )
     return path
 
 
@@ -163,7 +176,7 @@ def test_the_file_is_as_validators_want_it(glb):
         assert np.isfinite(accessor.get("max", [0.0])).all()
     for name in ("skin", "tongue"):
         weights = player.weights(name)
-        assert 1 <= len(player.target_names(name)) == weights.shape[1] <= 250
+        assert 52 <= len(player.target_names(name)) == weights.shape[1] <= 250
         assert weights.min() >= 0.0
         assert weights.max() <= 1.0
 
@@ -241,7 +254,7 @@ def test_scenes_without_a_face_are_written_too(tmp_path):
     """A sheet by its targets."""
     text = 'scene = "plane"\n[[pose]]\ntime = 0\n[[pose]]\ntime = 0.6\namplitude = 1\nphase = 0.4\n'
     clip = record(parse_script(text, source="test"), None, 20.0, progress=False)
-    assert written(clip, tmp_path / "sheet.glb") is None
+    assert written(clip, tmp_path / "sheet.glb").startswith("0 named targets and ")
     player = Player(tmp_path / "sheet.glb")
     for surface in clip.surfaces:
         assert farthest(player, clip, surface.name) < NEAR
@@ -267,7 +280,51 @@ def test_what_targets_cannot_follow_is_reported(clip, tmp_path, monkeypatch):
     error = 1000.0 * max(farthest(player, clip, name) for name in ("skin", "tongue"))
     assert remark is not None
     assert f"{error:.2f} mm" in remark
+    assert "more targets than readers take" in remark
     assert error > 1.0
+
+
+def test_targets_have_the_names_and_the_forms_of_an_avatar(clip, glb):
+    """ARKit's 52, each where the simulation rests with it alone; others hold what is left."""
+    player = Player(glb)
+    names = player.target_names("skin")
+    assert tuple(names[:52]) == ARKIT
+    assert names[52:] == [f"residual {number + 1}" for number in range(len(names) - 52)]
+    shapes = player.shapes("skin")
+    for name in ("jawOpen", "mouthSmileLeft", "eyeBlinkRight"):
+        moved = rest_in(clip.scene.clone(), {name: 1.0}).skin - clip.skin.rest
+        assert np.abs(1000.0 * shapes[name] - moved).max() < 0.02, name
+    out = player.shapes("tongue")["tongueOut"]
+    assert np.abs(out).max() > 0.01
+    assert np.abs(player.shapes("tongue")["mouthSmileLeft"]).max() == 0.0
+
+
+def test_named_targets_alone_follow_the_motion(clip, tmp_path):
+    """Without residual ones; the line says how far off that is, and no weight leaves 0 to 1."""
+    path = tmp_path / "named.glb"
+    remark = write(clip, path, format_for(path, None), ExportRequest(named_only=True))
+    player = Player(path)
+    assert tuple(player.target_names("skin")) == ARKIT
+    assert "52 named targets and 0 residual ones" in remark
+    assert 0.5 < 1000.0 * farthest(player, clip, "skin") < 8.0  # of 50 that the skin moves
+    # No shape of ARKit's moves the tongue but tongueOut.
+    error = 1000.0 * farthest(player, clip, "tongue")
+    assert f"at most {error:.2f} mm from the simulation (tongue)" in remark
+    weights = player.weights("skin")
+    assert 0.0 <= weights.min() and weights.max() <= 1.0
+
+
+def test_weights_say_what_their_names_say(tmp_path):
+    """A take of ARKit's shapes comes back under their names, as late as the face shows it."""
+    script = parse_script(TAKE, source="test")
+    path = tmp_path / "take.glb"
+    written(record(script, None, 12.0, progress=False), path)
+    player = Player(path)
+    weights = dict(zip(player.target_names("skin"), player.weights("skin").T, strict=True))
+    assert weights["jawOpen"][-1] == pytest.approx(0.6, abs=0.1)
+    assert weights["mouthSmileLeft"][-1] == pytest.approx(0.8, abs=0.1)
+    assert weights["mouthSmileRight"].max() < 0.1
+    assert weights["eyeBlinkLeft"].max() < 0.1
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ from risorius.app.errors import UserError
 from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import ExportRequest, check_request, format_for, write
 from risorius.app.export.refined import RefinedClip, with_refined_skin
+from risorius.app.recordings.names import ARKIT
 from risorius.app.refining.presets import Refinement
 from risorius.app.rig.surface import RefinedSurface
 from risorius.app.scenes import FaceScene
@@ -82,9 +83,12 @@ def test_frames_are_those_of_a_refiner_with_the_same_splits(clip, refined):
 def test_gltf_plays_the_refined_skin(refined, tmp_path):
     """Morph targets and the bone of the head put the refined vertices within a tenth of a mm."""
     path = tmp_path / "face.glb"
-    assert write(refined.clip, path, format_for(path, None), ExportRequest(progress=False)) is None
+    remark = write(refined.clip, path, format_for(path, None), ExportRequest(progress=False))
+    assert remark is not None and "at most 0." in remark
     player = Player(path)
     skin = refined.clip.skin
+    assert tuple(player.target_names("skin")[:52]) == ARKIT
+    assert 1000.0 * np.linalg.norm(player.shapes("skin")["jawOpen"], axis=1).max() > 20.0
     indices = player.values(player.primitive("skin").indices).reshape(-1, 3)
     for frame in range(refined.clip.frame_count):
         corners = player.positions("skin", frame)[indices]
@@ -144,6 +148,7 @@ def test_a_refiner_that_never_changes_needs_no_splits(clip):
             "not go with glTF.*usd, obj, vtkhdf",
         ),
         ("face.csv", ExportRequest(Refinement()), "--refined does not go with ARKit"),
+        ("face.npz", ExportRequest(named_only=True), "--named-only does not go with numpy"),
     ],
 )
 def test_mistakes_are_reported(name, request_, error, tmp_path: Path):

@@ -1,0 +1,63 @@
+"""Curves of ARKit's shapes over time, by which a sum of named shapes follows a simulated face.
+
+Muscles, eyes and head follow their controls late, each with its own delay. The shapes of an avatar
+follow at once, so their curves are so much later.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import scipy
+
+from ..motion.curves import ARKIT_SHAPES, solved
+from ..playback import LEAD
+from ..recordings.conversion import lead_of
+from ..recordings.names import ARKIT
+from ..scenes import Scene
+from .surface import Floats, Singles
+
+
+def as_seen(times: Floats, curves: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Values of controls, (N,) each at these times [s], as late as the face shows them."""
+    return {
+        name: np.interp(times - lead_of(name, LEAD), times, values)
+        for name, values in curves.items()
+    }
+
+
+def shape_curves(
+    scene: Scene, times: Floats, activations: Mapping[str, Floats], controls: Mapping[str, Floats]
+) -> Floats:
+    """How far each of ARKit's shapes is seen in N frames, in Apple's order, shape (N, 52).
+
+    activations, controls: the sums and the set values of controls, (N,) each. Raises UserError for
+    a scene without muscles.
+    """
+    curves = as_seen(times, solved(scene, ARKIT_SHAPES, activations, controls))
+    still = np.zeros(len(times))
+    return np.stack([curves.get(name, still) for name in ARKIT], axis=1)
+
+
+def nearest_weights(targets: Singles, ways: Floats, curves: Floats) -> Floats:
+    """The weights from 0 to 1, (N, K), with which the targets come nearest to a motion.
+
+    Many mixtures of shapes come equally near. Of these the one next to the curves is taken, so
+    that a weight still says what its name says.
+
+    targets: shape (K, V, 3). ways: of the vertices from rest in each frame, shape (N, V, 3), in
+    the same unit. curves: the weights that are expected, shape (N, K).
+    """
+    # Of the mean square of a target. A tenth of it lets weights wander by 0.6 from the curves;
+    # ten times as much costs a fifth of the nearness.
+    trust = 0.03
+    rows = targets.reshape(len(targets), -1).astype(np.float64)
+    products = rows @ rows.T
+    least = trust * np.trace(products) / len(products)
+    corner = np.linalg.cholesky(products + least * np.eye(len(products)))
+    wanted = ways.reshape(len(ways), -1) @ rows.T + least * curves
+    reduced = scipy.linalg.solve_triangular(corner, wanted.T, lower=True).T
+    found = [scipy.optimize.lsq_linear(corner.T, each, (0.0, 1.0), "bvls").x for each in reduced]
+    weights: Floats = np.clip(found, 0.0, 1.0)
+    return weights
