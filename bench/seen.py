@@ -49,7 +49,7 @@ def face_tracker(model: Path) -> Iterator[Tracker]:
 
     UserError where the file is no model, and where MediaPipe is not installed.
     """
-    with _silent():
+    with silent():
         mediapipe = needed("mediapipe", "the face tracker", "mediapipe", package="MediaPipe")
         from mediapipe.tasks.python import BaseOptions, vision
     options = vision.FaceLandmarkerOptions(
@@ -63,7 +63,7 @@ def face_tracker(model: Path) -> Iterator[Tracker]:
         return {each.category_name: float(each.score) for each in found[0]} if found else {}
 
     try:
-        with _silent():
+        with silent():
             landmarker = vision.FaceLandmarker.create_from_options(options)
             scores(np.zeros((64, 64, 3), dtype=np.uint8))  # the first call is slow
     except (OSError, RuntimeError, ValueError) as error:
@@ -76,7 +76,7 @@ def face_tracker(model: Path) -> Iterator[Tracker]:
 
 
 @contextlib.contextmanager
-def _silent() -> Iterator[None]:
+def silent() -> Iterator[None]:
     """Keep the tracker's libraries from telling the error stream how they load; errors are raised.
 
     They write to the stream's number, past Python, and have no switch for it.

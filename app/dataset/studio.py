@@ -20,7 +20,8 @@ from risorius.assets.identities import in_colours, make_person, own_colours, sam
 
 from ..motion import SETTLING
 from ..motion.life import EYE_RANGE, looking_at
-from ..passes.labels import CameraLabels, Labelled
+from ..passes.camera import CameraLabels
+from ..passes.labels import Labelled
 from ..passes.passes import Passes
 from ..pictures import Image
 from ..pipeline import Pipeline, Viewport

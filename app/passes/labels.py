@@ -24,16 +24,17 @@ import numpy.typing as npt
 import PIL.Image
 
 from risorius import render
-from risorius.geometry.arrays import Flags, Floats32, Floats64
+from risorius.geometry.arrays import Floats32, Floats64
 
 from ..errors import UserError
 from ..extras import needed
 from ..files import named_in_text, written_atomically
 from ..pictures import Image
 from ..scenes import Face, Scene
+from .camera import CameraLabels
+from .landmarks import SIDES, Landmarks, jaw_on_bone, landmarks_in
 from .passes import NAMES, OF_FACES, Passes
 
-SIDES = ("right", "left")  # the subject's, in the order of landmarks
 DIGITS = 8  # behind the point: points projected anew are off by less than 1e-4 pixels
 
 
@@ -85,101 +86,25 @@ def labels_of(
         for side, way in ways.items()
     }
     if depth is not None:
-        found = landmarks_in(face, placed, depth)
+        on_bone = jaw_on_bone(face, placed, depth)
         labels["landmarks"] = {
-            "points": _plain(found.points),
-            "pixels": _plain(found.pixels),
-            "visible": found.visible.tolist(),
+            **_plain_landmarks(landmarks_in(face, placed, depth)),
+            "jaw_on_bone": _plain_landmarks(on_bone),
         }
     return labels
+
+
+def _plain_landmarks(found: Landmarks) -> dict[str, Any]:
+    return {
+        "points": _plain(found.points),
+        "pixels": _plain(found.pixels),
+        "visible": found.visible.tolist(),
+    }
 
 
 def _plain(numbers: Floats64) -> Any:
     """Lists of rounded numbers; no negative zeros."""
     return (np.round(numbers, DIGITS) + 0.0).tolist()
-
-
-@dataclass(frozen=True)
-class Landmarks:
-    """The points of one picture: 68 landmarks, the right pupil, the left pupil.
-
-    points: in the scene [mm], (70, 3). pixels: x to the right and y down; the middle of the first
-    pixel is (0.5, 0.5), (70, 2). visible: neither hidden nor beside the picture, (70,).
-    """
-
-    points: Floats64
-    pixels: Floats64
-    visible: Flags
-
-
-def points_of(face: Face) -> Floats64:
-    """Where the landmarks and the pupils of a face are now [mm], shape (70, 3)."""
-    bones = face.bone_transforms()
-    pupils = []
-    for side in SIDES:
-        bone = f"eye_{side}"
-        ball = next(part for part in face.head.parts if part.bone == bone)
-        front = ball.vertices[ball.vertices[:, 2].argmax()]
-        pupils.append(bones[bone][:3, :3] @ front + bones[bone][:3, 3])
-    return np.vstack([face.marked, pupils])
-
-
-def landmarks_in(face: Face, camera: CameraLabels, depth: Floats32) -> Landmarks:
-    """The landmarks of a face in the picture of which `depth`, (H, W), is the depth map."""
-    points = points_of(face)
-    pixels = camera.project(points)
-    depths = camera.to_camera(points)[:, 2]
-    height, width = depth.shape
-    columns, rows = np.floor(pixels).astype(int).T
-    is_inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
-    seen = depth[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)]
-    landmark_count = 70
-    # [mm] along the camera's axis: the refined skin may pass a landmark by and be steep within a
-    # pixel, and over a pupil a lid of a millimetre may close.
-    most_behind = 2.0
-    pupil_tolerance = 0.6
-    tolerance = np.where(
-        np.arange(landmark_count) < landmark_count - len(SIDES), most_behind, pupil_tolerance
-    )
-    tolerance = np.maximum(tolerance, depths / camera.intrinsics[0, 0])
-    # Background has the depth 0.
-    visible = is_inside & (seen > 0.0) & (np.abs(seen - depths) <= tolerance)
-    return Landmarks(points, pixels, visible)
-
-
-@dataclass(frozen=True)
-class CameraLabels:
-    """A camera as OpenCV describes one.
-
-    size: of the picture [pixels]. intrinsics: K, (3, 3). rotation, translation: R, (3, 3), and t,
-    (3,) [mm].
-    """
-
-    size: tuple[float, float]
-    intrinsics: Floats64
-    rotation: Floats64
-    translation: Floats64
-
-    @classmethod
-    def of(cls, camera: render.OrbitCamera, size: tuple[float, float]) -> CameraLabels:
-        """The labels of `camera` for a picture of `size`."""
-        width, height = size
-        focal = camera.focal(width / height, height)
-        right, up, back = camera.axes()
-        rotation = np.stack([right, -up, -back])
-        intrinsics = np.array([[focal, 0, width / 2], [0, focal, height / 2], [0, 0, 1.0]])
-        return cls(size, intrinsics, rotation, -rotation @ camera.eye)
-
-    def to_camera(self, points: Floats64) -> Floats64:
-        """Points of the scene, (n, 3), in the camera's coordinates [mm]."""
-        seen: Floats64 = points @ self.rotation.T + self.translation
-        return seen
-
-    def project(self, points: Floats64) -> Floats64:
-        """Where points of the scene, (n, 3), are in the picture [pixels], (n, 2)."""
-        seen = self.to_camera(points) @ self.intrinsics.T
-        pixels: Floats64 = seen[:, :2] / seen[:, 2:]
-        return pixels
 
 
 def gaze(face: Face, side: str) -> Floats64:

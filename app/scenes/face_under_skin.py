@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from risorius import assets, sim
+from risorius.assets.annotation import Annotation, annotation_of
 from risorius.assets.fitting import FittedHead, SimplifiedHead
 from risorius.geometry.arrays import Floats64
 
@@ -73,8 +75,13 @@ class Face:
 
     @property
     def marked(self) -> Floats64:
-        """Where the 68 landmarks are now [mm], shape (68, 3)."""
+        """Where the rig's 68 landmarks are now [mm], shape (68, 3)."""
         return np.asarray(self.positions[self.head.landmarks])
+
+    @cached_property
+    def annotation(self) -> Annotation:
+        """Where annotators of pictures put the 68 points."""
+        return annotation_of(self.head)
 
     def follow(self) -> None:
         """Bring the skin to where the simulated mesh is now."""

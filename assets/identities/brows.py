@@ -86,7 +86,7 @@ def _hairs(brows: Brows, random: np.random.Generator) -> Floats64:
     along = random.uniform(0.0, 1.0, count)
     across = 0.24 * random.normal(size=count)
     # They stand sparsely at both ends.
-    kept = random.random(count) < np.interp(along, (0.0, 0.22, 0.6, 1.05), (0.3, 1.0, 1.0, 0.0))
+    kept = random.random(count) < np.interp(along, (0.0, 0.22, 0.7, 1.0), (0.3, 1.0, 1.0, 0.35))
     along = along[kept]
     across = np.clip(across[kept], -0.55, 0.55)
     x = first + (last - first) * along

@@ -221,7 +221,7 @@ def _haired_segments(segments: Image, features: Features) -> Image:
         covered = scipy.ndimage.gaussian_filter(painted(features.brows, len(found)), blur)
         left = np.arange(found.shape[1]) > found.shape[1] / 2
         sides = np.where(left, np.uint8(Segment.LEFT_BROW), np.uint8(Segment.RIGHT_BROW))
-        least_cover = 0.2  # share of hairs from which skin is called brow
+        least_cover = 0.12  # share of hairs from which skin is called brow
         found = np.where((covered > least_cover) & (found == Segment.SKIN), sides, found)
     return found
 

@@ -12,7 +12,7 @@ from scipy.ndimage import binary_dilation
 from scipy.spatial import ConvexHull
 
 from risorius import assets, render
-from risorius.app.passes.labels import CameraLabels
+from risorius.app.passes.camera import CameraLabels
 from risorius.app.passes.passes import Passes
 from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import Refinement

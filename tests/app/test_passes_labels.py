@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from risorius import render
-from risorius.app.passes.labels import CameraLabels, gaze, labels_of
+from risorius.app.passes.camera import CameraLabels
+from risorius.app.passes.labels import gaze, labels_of
 from risorius.app.scenes import PlaneScene
 
 SIZES = st.tuples(st.integers(16, 4000), st.integers(16, 4000))

@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 
 from risorius import render
 
-from ...passes.labels import CameraLabels
+from ...passes.camera import CameraLabels
 from ...refining.presets import STATIC
 from ..interface.gui import LEFT, em
 from ..messages import Messages

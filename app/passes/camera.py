@@ -1,0 +1,45 @@
+"""A camera as plain numbers, those of OpenCV."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from risorius import render
+from risorius.geometry.arrays import Floats64
+
+
+@dataclass(frozen=True)
+class CameraLabels:
+    """A camera as OpenCV describes one.
+
+    size: of the picture [pixels]. intrinsics: K, (3, 3). rotation, translation: R, (3, 3), and t,
+    (3,) [mm].
+    """
+
+    size: tuple[float, float]
+    intrinsics: Floats64
+    rotation: Floats64
+    translation: Floats64
+
+    @classmethod
+    def of(cls, camera: render.OrbitCamera, size: tuple[float, float]) -> CameraLabels:
+        """The labels of `camera` for a picture of `size`."""
+        width, height = size
+        focal = camera.focal(width / height, height)
+        right, up, back = camera.axes()
+        rotation = np.stack([right, -up, -back])
+        intrinsics = np.array([[focal, 0, width / 2], [0, focal, height / 2], [0, 0, 1.0]])
+        return cls(size, intrinsics, rotation, -rotation @ camera.eye)
+
+    def to_camera(self, points: Floats64) -> Floats64:
+        """Points of the scene, (n, 3), in the camera's coordinates [mm]."""
+        seen: Floats64 = points @ self.rotation.T + self.translation
+        return seen
+
+    def project(self, points: Floats64) -> Floats64:
+        """Where points of the scene, (n, 3), are in the picture [pixels], (n, 2)."""
+        seen = self.to_camera(points) @ self.intrinsics.T
+        pixels: Floats64 = seen[:, :2] / seen[:, 2:]
+        return pixels

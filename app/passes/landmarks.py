@@ -1,0 +1,162 @@
+"""The landmarks of one picture, where annotators of photographs put them.
+
+The points of the jaw lie on the outline of the face as this camera sees it (`assets.annotation`
+has the ways on which it is sought). Their places on the bone, which the rig has, are kept beside.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from risorius.geometry.arrays import Flags, Floats32, Floats64
+
+from ..scenes import Face
+from .camera import CameraLabels
+
+SIDES = ("right", "left")  # the subject's, in the order of landmarks
+JAW_COUNT = 17  # landmarks, the first ones
+MOST_BEHIND = 2.0  # [mm] that the refined skin may pass a landmark by, along the camera's axis
+
+
+@dataclass(frozen=True)
+class Landmarks:
+    """The points of one picture: 68 landmarks, the right pupil, the left pupil.
+
+    points: in the scene [mm], (70, 3). pixels: x to the right and y down; the middle of the first
+    pixel is (0.5, 0.5), (70, 2). visible: neither hidden nor beside the picture, (70,). Those of
+    the jaw alone are 17.
+    """
+
+    points: Floats64
+    pixels: Floats64
+    visible: Flags
+
+
+def landmarks_in(face: Face, camera: CameraLabels, depth: Floats32) -> Landmarks:
+    """The landmarks of a face in the picture of which `depth`, (H, W), is the depth map."""
+    positions = face.positions
+    jaw = outline(face, camera)
+    inner = face.annotation.inner_points(positions)
+    points = np.vstack([jaw, inner, _pupils(face)])
+    pixels = camera.project(points)
+    pupil_tolerance = 0.6  # [mm]: over a pupil a lid of a millimetre may close
+    tolerance = np.full(len(points) - JAW_COUNT, MOST_BEHIND)
+    tolerance[-len(SIDES) :] = pupil_tolerance
+    visible = np.concatenate(
+        [
+            _is_uncovered(jaw, camera, depth),
+            _is_on_surface(points[JAW_COUNT:], tolerance, camera, depth),
+        ]
+    )
+    return Landmarks(points, pixels, visible)
+
+
+def jaw_on_bone(face: Face, camera: CameraLabels, depth: Floats32) -> Landmarks:
+    """The rig's landmarks of the jaw, which keep to the bone however the head turns."""
+    points = face.marked[:JAW_COUNT]
+    tolerance = np.full(JAW_COUNT, MOST_BEHIND)
+    visible = _is_on_surface(points, tolerance, camera, depth)
+    return Landmarks(points, camera.project(points), visible)
+
+
+def outline(face: Face, camera: CameraLabels) -> Floats64:
+    """The outline of a face as a camera sees it [mm], shape (17, 3), from the right eye's height.
+
+    Of each way over the skin it has the place that lies farthest out: at first to the side at the
+    eyes and down at the chin, then across the line that was found. As annotators do, points are
+    set evenly from there to there.
+    """
+    ways = face.annotation.ways(face.positions)
+    seen = camera.project(ways.reshape(-1, 3)).reshape(*ways.shape[:3], 2)
+    upright = camera.rotation @ face.bone_transforms()["cranium"][:3, :2]
+    aside, up = (axis / np.linalg.norm(axis) for axis in (upright[:2, 0], upright[:2, 1]))
+    across = np.array([-up[1], up[0]])
+    across *= np.sign(across @ aside) or 1.0  # to the subject's left
+    turn = np.linspace(0.0, 0.5 * np.pi, ways.shape[1])[:, None]
+    halves = []
+    for side, sign in enumerate((-1.0, 1.0)):
+        outward = sign * across * np.cos(turn) - up * np.sin(turn)
+        for _ in range(3):
+            farthest = (seen[side] * outward[:, None]).sum(axis=2).argmax(axis=1)
+            line = _smoothed(ways[side, np.arange(len(farthest)), farthest])
+            outward = _normals(camera.project(line), outward)
+        halves.append(_spread(line, camera.project(line), JAW_COUNT // 2 + 1))
+    right, left = halves
+    return np.vstack([right, left[-2::-1]])
+
+
+def _normals(pixels: Floats64, outward: Floats64) -> Floats64:
+    """Unit normals of a line in the picture, (n, 2), on the side of directions (n, 2)."""
+    along = np.gradient(pixels, axis=0)
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
+    normals = along @ np.array([[0.0, 1.0], [-1.0, 0.0]])
+    return np.asarray(normals * np.sign((normals * outward).sum(axis=1, keepdims=True)))
+
+
+def _smoothed(points: Floats64) -> Floats64:
+    """Points of a line, (n, 3), without the steps of an ear's root; the ends stay."""
+    line = points
+    for _ in range(3):
+        line = line.copy()
+        line[1:-1] = 0.25 * line[:-2] + 0.5 * line[1:-1] + 0.25 * line[2:]
+    return line
+
+
+def _spread(points: Floats64, pixels: Floats64, count: int) -> Floats64:
+    """Points of a line, (n, 3), as far from each other in the picture, shape (count, 3)."""
+    lengths = np.linalg.norm(np.diff(pixels, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(lengths)])
+    places = np.linspace(0.0, along[-1], count)
+    return np.stack([np.interp(places, along, column) for column in points.T], axis=1)
+
+
+def _pupils(face: Face) -> Floats64:
+    """Where the pupils are, shape (2, 3)."""
+    bones = face.bone_transforms()
+    pupils = []
+    for side in SIDES:
+        bone = f"eye_{side}"
+        ball = next(part for part in face.head.parts if part.bone == bone)
+        front = ball.vertices[ball.vertices[:, 2].argmax()]
+        pupils.append(bones[bone][:3, :3] @ front + bones[bone][:3, 3])
+    return np.array(pupils)
+
+
+def _is_on_surface(
+    points: Floats64, tolerance: Floats64, camera: CameraLabels, depth: Floats32
+) -> Flags:
+    """Whether points (n, 3) lie on the nearest surface to within `tolerance` [mm], (n,)."""
+    seen, is_inside = _depths_at(camera.project(points), depth)
+    depths = camera.to_camera(points)[:, 2]
+    # The surface may be steep within a pixel.
+    tolerance = np.maximum(tolerance, depths / camera.intrinsics[0, 0])
+    # Background has the depth 0.
+    return np.asarray(is_inside & (seen > 0.0) & (np.abs(seen - depths) <= tolerance))
+
+
+def _is_uncovered(points: Floats64, camera: CameraLabels, depth: Floats32) -> Flags:
+    """Whether nothing lies over points of an outline, (n, 3): hair, a nose, the frame's edge.
+
+    The skin may be much nearer a pixel inside; 3 mm outside begins the surface behind.
+    """
+    pixels = camera.project(points)
+    depths = camera.to_camera(points)[:, 2]
+    outward = _normals(pixels, pixels - pixels.mean(axis=0))
+    beside = 3.0 * camera.intrinsics[0, 0] / depths[:, None]  # [pixels] of 3 mm
+    steep = 6.0  # [mm] along the camera's axis, by which an outline bends away within a pixel
+    is_free = np.zeros(len(points), dtype=np.bool_)
+    for places in (pixels, pixels + np.maximum(beside, 1.0) * outward):
+        seen, is_inside = _depths_at(places, depth)
+        is_free |= is_inside & ((seen == 0.0) | (seen >= depths - steep))
+    return np.asarray(is_free & _depths_at(pixels, depth)[1])
+
+
+def _depths_at(pixels: Floats64, depth: Floats32) -> tuple[Floats64, Flags]:
+    """Depths [mm] at pixels (n, 2), and which of them are in the picture."""
+    height, width = depth.shape
+    columns, rows = np.floor(pixels).astype(int).T
+    is_inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
+    seen = depth[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)]
+    return seen.astype(np.float64), is_inside

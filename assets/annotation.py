@@ -1,0 +1,161 @@
+"""Where annotators of photographs put the 68 points of iBug on a head.
+
+The rig has 68 landmarks of its own, which lie where muscles need them (`Head.landmarks`). Those of
+the picture lie where people see a border: on the edge of the lids and of the red of the lips, on
+the brow that is painted. A jaw has no such border; its points lie on the outline of the face, which
+is another place of the skin from every camera.
+
+Sources: Sagonas et al. 2016, "300 Faces In-The-Wild Challenge: database and results" (the scheme);
+Zhu et al. 2015, "High-fidelity pose and expression normalization for face recognition in the wild"
+(landmarks of the outline move over the skin as the head turns).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from risorius.geometry.arrays import Floats64, Integers32
+from risorius.geometry.closest import SurfacePoints, closest_points
+from risorius.geometry.normals import vertex_normals
+
+from .data_files import read_toml
+from .fitting.head import FittedHead
+from .fitting.warp import ThinPlateSpline, nearest_on
+from .identities.person import Person
+from .loading import load
+from .model import Head, Segment
+
+FIRST_INNER = 17  # the number of the first landmark that is not of the jaw
+LANES = 25  # ways over the skin on which a side's outline is sought, from the eye to the chin
+STEPS = 25  # places along each of them
+
+
+@dataclass(frozen=True, eq=False)
+class Annotation:
+    """Places on the skin of one head; see the module.
+
+    inner: of the points 17 to 67, in their order.
+    lanes: of the ways on which the outline is sought, LANES times STEPS places of the right side
+        and as many of the left one, each way from the cheek outward.
+    """
+
+    inner: SurfacePoints
+    lanes: SurfacePoints
+
+    def inner_points(self, positions: Floats64) -> Floats64:
+        """Where the points 17 to 67 are, on vertices (V, 3), shape (51, 3)."""
+        return self.inner.interpolate(positions)
+
+    def ways(self, positions: Floats64) -> Floats64:
+        """Where the ways of the outline are, on vertices (V, 3), shape (2, LANES, STEPS, 3)."""
+        return self.lanes.interpolate(positions).reshape(2, LANES, STEPS, 3)
+
+
+def annotation_of(head: Head | FittedHead) -> Annotation:
+    """The annotation of a head at rest.
+
+    A head of the user's has the points that its landmark file has, for these are annotations.
+    """
+    if isinstance(head, Head | Person):
+        points, lanes = _of_built_in()
+        return Annotation(_with_brows(head, points), lanes)
+    known = load("head")
+    warp = ThinPlateSpline(known.vertices[known.landmarks], head.vertices[head.landmarks])
+    lanes = _of_built_in()[1]
+    places = warp.points(lanes.interpolate(known.vertices))
+    ways = lanes.interpolate(vertex_normals(known.vertices, known.faces))
+    marked = _vertices(head.landmarks[FIRST_INNER:])
+    return Annotation(marked, nearest_on(places, ways, head.vertices, head.faces))
+
+
+@lru_cache(maxsize=1)
+def _of_built_in() -> tuple[SurfacePoints, SurfacePoints]:
+    """The places of points and lanes on the triangles that all persons share."""
+    table = read_toml(Path(__file__).with_name("annotation.toml"))
+    known = load("head")
+    uv = known.uv[known.landmarks[FIRST_INNER:]].astype(np.float64)
+    mirrored = known.mirror[known.landmarks]
+    for name, place in table["points"].items():
+        number = int(name)
+        other = int(np.flatnonzero(mirrored == known.landmarks[number])[0])
+        uv[number - FIRST_INNER] = place
+        uv[other - FIRST_INNER] = place if other == number else _mirror_image(np.array(place))
+    ends = [_evenly(np.array(table["outline"][name]), LANES) for name in ("inner", "outer")]
+    share = np.linspace(0.0, 1.0, STEPS)[:, None]
+    left = ends[0][:, None] + share * (ends[1] - ends[0])[:, None]
+    lanes = np.stack([_mirror_image(left), left])
+    return _on_texture(uv), _on_texture(lanes.reshape(-1, 2))
+
+
+def _mirror_image(uv: Floats64) -> Floats64:
+    return np.asarray(uv * [-1.0, 1.0] + [1.0, 0.0])
+
+
+def _evenly(corners: Floats64, count: int) -> Floats64:
+    """Points from corner to corner, as many between each pair, shape (count, k)."""
+    places = np.linspace(0.0, len(corners) - 1.0, count)
+    number = np.arange(len(corners))
+    return np.stack([np.interp(places, number, column) for column in corners.T], axis=1)
+
+
+def _on_texture(uv: Floats64) -> SurfacePoints:
+    """The places of the built-in head's skin that texture coordinates (n, 2) show."""
+    known = load("head")
+    level = np.zeros((len(known.uv), 1))
+    flat = np.hstack([known.uv.astype(np.float64), level])
+    return closest_points(np.hstack([uv, np.zeros((len(uv), 1))]), flat, known.faces)
+
+
+def _vertices(numbers: Integers32) -> SurfacePoints:
+    """Vertices as places on the surface."""
+    count = len(numbers)
+    weights = np.tile([1.0, 0.0, 0.0], (count, 1))
+    corners = np.repeat(numbers[:, None], 3, axis=1)
+    return SurfacePoints(np.zeros(count), np.zeros(count, np.int64), corners, weights)
+
+
+def _with_brows(head: Head | Person, points: SurfacePoints) -> SurfacePoints:
+    """Places with those of the brows on the brows of a head's own picture."""
+    corners = points.corners.copy()
+    weights = points.weights.copy()
+    sides = ((Segment.RIGHT_BROW, -1.0, range(21, 16, -1)), (Segment.LEFT_BROW, 1.0, range(22, 27)))
+    for segment, side, numbers in sides:
+        rows, columns = np.nonzero(head.segments[::2, ::2] == segment)
+        if len(rows) == 0:
+            continue
+        size = np.array(head.segments.shape)[::-1]
+        pixels = 2.0 * np.column_stack([columns, rows]) + 0.5
+        found = _on_texture(pixels / size * [1.0, -1.0] + [0.0, 1.0])
+        chosen = _along_brow(found.interpolate(head.vertices) * [side, 1.0, 1.0])
+        at = np.array(numbers) - FIRST_INNER
+        corners[at] = found.corners[chosen]
+        weights[at] = found.weights[chosen]
+    return SurfacePoints(points.distances, points.triangles, corners, weights)
+
+
+def _along_brow(places: Floats64) -> Integers32:
+    """Five of the places (n, 3) [mm] of a left brow, from the nose outward, shape (5,).
+
+    Both ends, and three on the upper edge, as far from each other along it.
+    """
+    x, y, _ = places.T
+    strip_width = 1.0  # [mm]
+    strip = np.round((x - x.min()) / strip_width).astype(int)
+    last = int(strip.max())
+    edge = []
+    for number in range(last + 1):
+        inside = np.flatnonzero(strip == number)
+        if len(inside) == 0:
+            continue
+        is_end = number in (0, last)
+        wanted = np.median(y[inside]) if is_end else y[inside].max()
+        edge.append(inside[np.abs(y[inside] - wanted).argmin()])
+    lengths = np.linalg.norm(np.diff(places[edge], axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(lengths)])
+    stations = np.linspace(0.0, along[-1], 5)
+    nearest = np.abs(along[:, None] - stations).argmin(axis=0)
+    return np.asarray(np.array(edge)[nearest], dtype=np.int32)

@@ -1,0 +1,293 @@
+"""Detectors of other people on a set of ours: do its landmarks mean what theirs mean?
+
+dlib's shape predictor learned iBug's 68 points (Kazemi, Sullivan 2014; Sagonas et al. 2016).
+MediaPipe's face landmarker (Google, Apache-2.0) has a mesh of its own, on whose lines the 68 are
+set here as the scheme has them: evenly along a brow or a jaw, half way between peak and corner of
+the lips. An error is a distance in the picture, in hundredths of the distance between the outer
+corners of the eyes at their depth. It has two parts:
+
+    constant   the mean offset of a point on frontal pictures, both sides as one: another definition
+    the rest   how well the detector works on these pictures
+
+A detector checks a definition; it is no measure of a face's form.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import PIL.Image
+
+from risorius.app.errors import UserError
+from risorius.app.extras import needed
+from risorius.app.pictures import Image
+from risorius.geometry.arrays import Flags, Floats64
+from risorius.sim.landmarks import MIRRORED
+
+from .report import Target, at_most, table
+from .seen import silent
+
+Detector = Callable[[Image], Floats64 | None]
+
+DETECTORS = {"dlib": "dlib", "mediapipe": "MediaPipe"}
+GROUPS = {
+    "jaw": slice(0, 17),
+    "brows": slice(17, 27),
+    "nose": slice(27, 36),
+    "lids": slice(36, 48),
+    "lips": slice(48, 68),
+    "all": slice(0, 68),
+}
+# The points of the right side, which are mirror images of those of the left.
+RIGHT = {*range(8), *range(17, 22), 31, 32, *range(36, 42), 48, 49, 50, 58, 59, 60, 61, 67}
+MOST_ERROR = {"dlib": 3.0, "mediapipe": 2.8}  # percent, on frontal pictures
+MOST_CONSTANT = 1.5  # percent, of any point
+MOST_YAW = 10.0  # [degrees] of frontal pictures
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What a detector found in the pictures of a set.
+
+    errors: of each picture and point, in the frame of the face: along the line of the eyes to the
+    subject's left, and down [percent of the eyes' distance], (n, 68, 2). yaw: of the heads
+    [degrees], (n,). picture_count: of the set, with those in which it found no face.
+    """
+
+    detector: str
+    errors: Floats64
+    yaw: Floats64
+    picture_count: int
+
+    @property
+    def distances(self) -> Floats64:
+        """How far each point is off [percent], (n, 68)."""
+        return np.asarray(np.linalg.norm(self.errors, axis=2))
+
+    @property
+    def is_frontal(self) -> Flags:
+        """Of each picture, (n,)."""
+        return np.abs(self.yaw) < MOST_YAW
+
+    @property
+    def constant(self) -> Floats64:
+        """The mean error of each point on frontal pictures, both sides as one, (68, 2)."""
+        if not self.is_frontal.any():
+            return np.full((68, 2), np.nan)
+        mean = self.errors[self.is_frontal].mean(axis=0)
+        return np.asarray(0.5 * (mean + mean[MIRRORED] * [-1.0, 1.0]))
+
+
+def is_installed(detector: str) -> bool:
+    """Whether the library of a detector is there."""
+    return importlib.util.find_spec(detector) is not None
+
+
+@contextlib.contextmanager
+def opened(detector: str, model: Path | None) -> Iterator[Detector]:
+    """A detector of `DETECTORS`, with its model; UserError where it is missing or no such file.
+
+    It takes a picture (H, W, 3) to its 68 points (68, 2) [pixels, the middle of the first one is
+    0.5], or to None where it finds no face.
+    """
+    if detector == "dlib":
+        yield _dlib(model)
+    elif model is None:
+        raise UserError("--model: MediaPipe needs its file face_landmarker.task")
+    else:
+        with _mediapipe(model) as found:
+            yield found
+
+
+def _dlib(model: Path | None) -> Detector:
+    """dlib's detector of frontal faces, and its 68 points in the face."""
+    dlib = needed("dlib", "the detector", "dlib")
+    file = model or _packaged_model()
+    try:
+        predictor = dlib.shape_predictor(str(file))
+    except RuntimeError as error:
+        raise UserError(f"{file}: is no shape predictor of dlib: {error}") from None
+    faces = dlib.get_frontal_face_detector()
+    larger = 1  # times that pictures are doubled, for small faces
+
+    def detect(image: Image) -> Floats64 | None:
+        array = np.ascontiguousarray(image)
+        boxes = faces(array, larger)
+        if not boxes:
+            return None
+        box = max(boxes, key=lambda each: each.area())
+        # Annotations count pixels from 1, dlib from 0: half of a pixel either way, left as it is.
+        points = predictor(array, box).parts()
+        return np.array([(point.x, point.y) for point in points], dtype=np.float64)
+
+    return detect
+
+
+def _packaged_model() -> Path:
+    """The predictor that the package face_recognition_models brings."""
+    package = importlib.util.find_spec("face_recognition_models")
+    places = list(package.submodule_search_locations or ()) if package else []
+    if not places:
+        raise UserError(
+            "--model: give shape_predictor_68_face_landmarks.dat, or install the package "
+            "face_recognition_models, which has it"
+        )
+    return Path(places[0]) / "models" / "shape_predictor_68_face_landmarks.dat"
+
+
+@contextlib.contextmanager
+def _mediapipe(model: Path) -> Iterator[Detector]:
+    """MediaPipe's mesh of a face, and the 68 points on it."""
+    with silent():
+        mediapipe = needed("mediapipe", "the detector", "mediapipe", package="MediaPipe")
+        from mediapipe.tasks.python import BaseOptions, vision
+    options = vision.FaceLandmarkerOptions(base_options=BaseOptions(model_asset_path=str(model)))
+
+    def detect(image: Image) -> Floats64 | None:
+        array = np.ascontiguousarray(image)
+        picture = mediapipe.Image(image_format=mediapipe.ImageFormat.SRGB, data=array)
+        found = landmarker.detect(picture).face_landmarks
+        if not found:
+            return None
+        height, width = image.shape[:2]
+        return points_of_mesh(np.array([(each.x * width, each.y * height) for each in found[0]]))
+
+    try:
+        with silent():
+            landmarker = vision.FaceLandmarker.create_from_options(options)
+            detect(np.zeros((64, 64, 3), dtype=np.uint8))  # the first call is slow
+    except (OSError, RuntimeError, ValueError) as error:
+        raise UserError(f"{model}: is no model of MediaPipe's face landmarker: {error}") from None
+    with contextlib.closing(landmarker):
+        yield detect
+
+
+def points_of_mesh(mesh: Floats64) -> Floats64:
+    """The 68 points on MediaPipe's mesh (478, 2), shape (68, 2)."""
+    right = _half_of_mesh(mesh, 0)
+    left = _half_of_mesh(mesh, 1)
+    points = np.empty((68, 2))
+    for number, place in {**right, **{int(MIRRORED[k]): left[k] for k in left}}.items():
+        points[number] = place
+    return points
+
+
+def _half_of_mesh(mesh: Floats64, side: int) -> dict[int, Floats64]:
+    """The points of the middle and of one side, numbered as on the right; side: 0 right, 1 left.
+
+    Numbers of the mesh stand in pairs, right and left.
+    """
+
+    def line(pairs: Sequence[tuple[int, int]], count: int) -> Floats64:
+        corners = mesh[[pair[side] for pair in pairs]]
+        lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
+        along = np.concatenate([[0.0], np.cumsum(lengths)])
+        places = np.linspace(0.0, along[-1], count)
+        return np.stack([np.interp(places, along, column) for column in corners.T], axis=1)
+
+    jaw = [(127, 356), (234, 454), (93, 323), (132, 361), (58, 288), (172, 397), (136, 365),
+           (150, 379), (149, 378), (176, 400), (148, 377), (152, 152)]  # fmt: skip
+    upper_brow = [(70, 300), (63, 293), (105, 334), (66, 296), (107, 336)]
+    upper_lid = [(33, 263), (246, 466), (161, 388), (160, 387), (159, 386), (158, 385),
+                 (157, 384), (173, 398), (133, 362)]  # fmt: skip
+    lower_lid = [(33, 263), (7, 249), (163, 390), (144, 373), (145, 374), (153, 380),
+                 (154, 381), (155, 382), (133, 362)]  # fmt: skip
+    upper_lip = [(61, 291), (185, 409), (40, 270), (39, 269), (37, 267)]
+    lower_lip = [(91, 321), (181, 405)]
+    ridge = [(168, 168), (6, 6), (197, 197), (195, 195), (5, 5), (4, 4)]
+    mesh = mesh.copy()
+    above, below = mesh[[(162, 389)[side], (127, 356)[side]]]
+    mesh[jaw[0][side]] = 0.25 * above + 0.75 * below  # at the height of the eyes
+    # The ends of a brow are the middle of its upper and its lower line, which begins farther from
+    # the nose than iBug's brows do.
+    outer, inner = mesh[[(46, 276)[side], (55, 285)[side]]]
+    mesh[upper_brow[0][side]] = 0.5 * (mesh[upper_brow[0][side]] + outer)
+    mesh[upper_brow[-1][side]] = 0.35 * (mesh[upper_brow[-1][side]] + inner) + 0.3 * mesh[9]
+    found = dict(zip(range(9), line(jaw, 9), strict=True))
+    found |= dict(zip(range(17, 22), line(upper_brow, 5), strict=True))
+    found |= dict(zip(range(27, 31), line(ridge, 4), strict=True))
+    found |= dict(zip((36, 37, 38, 39), line(upper_lid, 4), strict=True))
+    found |= dict(zip((36, 41, 40, 39), line(lower_lid, 4), strict=True))
+    found |= dict(zip((48, 49, 50), line(upper_lip, 3), strict=True))
+    found[59] = line(lower_lip, 3)[1]
+    single = {31: (240, 460), 32: (97, 326), 33: (2, 2), 51: (0, 0), 57: (17, 17), 58: (84, 314),
+              60: (78, 308), 61: (82, 312), 62: (13, 13), 66: (14, 14), 67: (87, 317)}  # fmt: skip
+    return found | {number: mesh[pair[side]] for number, pair in single.items()}
+
+
+def measure(folder: Path, name: str, detector: Detector) -> Finding:
+    """Compare a detector with the labels of a set; UserError where the folder has no samples."""
+    files = sorted(folder.glob("[0-9]*.json"))
+    if not files:
+        raise UserError(f"{folder}: holds no data set; make one with `risorius dataset`")
+    errors = []
+    yaw = []
+    for file in files:
+        labels = json.loads(file.read_text("utf-8"))
+        picture = PIL.Image.open(file.with_suffix(".png")).convert("RGB")
+        found = detector(np.asarray(picture))
+        if found is not None:
+            errors.append(errors_of(found, labels))
+            yaw.append(labels["head"]["yaw"])
+    return Finding(name, np.array(errors).reshape(-1, 68, 2), np.array(yaw), len(files))
+
+
+def errors_of(found: Floats64, labels: Mapping[str, Any]) -> Floats64:
+    """How far points (68, 2) are from those of labels; see `Finding.errors`, shape (68, 2)."""
+    pixels = np.array(labels["landmarks"]["pixels"])[:68]
+    points = np.array(labels["landmarks"]["points"])[[36, 45]]
+    camera = labels["camera"]
+    depths = (points @ np.array(camera["R"]).T + camera["t"])[:, 2]
+    apart = np.linalg.norm(points[0] - points[1]) * camera["K"][0][0] / depths.mean()
+    across = pixels[42:48].mean(axis=0) - pixels[36:42].mean(axis=0)
+    across /= np.linalg.norm(across)
+    axes = np.array([across, [-across[1], across[0]]])
+    return np.asarray(100.0 * (found - pixels) @ axes.T / apart)
+
+
+def report(finding: Finding) -> str:
+    """The text to print."""
+    frontal = finding.is_frontal
+    rows = []
+    for name, numbers in GROUPS.items():
+        largest = np.linalg.norm(finding.constant[numbers], axis=1).max()
+        of_group = finding.distances[:, numbers]
+        rows.append((name, _mean(of_group), _mean(of_group[frontal]), largest))
+    offsets = [
+        (f"{MIRRORED[number]}, {number}" if MIRRORED[number] != number else str(number), *offset)
+        for number, offset in enumerate(finding.constant)
+        if number not in RIGHT and np.hypot(*offset) > MOST_CONSTANT
+    ]
+    lines = [
+        f"{finding.picture_count} pictures; {DETECTORS[finding.detector]} finds a face in "
+        f"{len(finding.yaw)}, {frontal.sum()} of them frontal (yaw below {MOST_YAW:g} degrees)",
+        "mean distance from the labels, in percent of the distance of the outer eye corners",
+        "",
+        *table("points:<7|all:6.2f|frontal:8.2f|largest constant:17.2f", rows),
+    ]
+    if offsets:
+        lines += ["", f"constant above {MOST_CONSTANT:g} %, so far the detector's lie elsewhere:"]
+        lines += table("points:<7|outward:8.1f|down:6.1f", offsets)
+    return "\n".join(lines)
+
+
+def targets(finding: Finding) -> list[Target]:
+    """The bounds on frontal pictures."""
+    error = _mean(finding.distances[finding.is_frontal])
+    constant = float(np.linalg.norm(finding.constant, axis=1).max())
+    most = MOST_ERROR[finding.detector]
+    return [
+        at_most("frontal pictures", error, most, " %"),
+        at_most("the constant part of any point", constant, MOST_CONSTANT, " %"),
+    ]
+
+
+def _mean(values: Floats64) -> float:
+    return float(values.mean()) if values.size else float("nan")

@@ -1,0 +1,137 @@
+"""Landmarks of pictures: on the borders that the picture shows, the jaw's on its outline."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from scipy.ndimage import distance_transform_edt
+
+from risorius import render
+from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.passes.camera import CameraLabels
+from risorius.app.passes.labels import labels_of
+from risorius.app.passes.landmarks import landmarks_in
+from risorius.app.passes.passes import Passes
+from risorius.app.scenes import FaceScene
+from risorius.assets import Segment
+from risorius.assets.fitting import fit_head
+from risorius.assets.identities import person_called
+from tests.heads import stranger
+
+SIZE = (900, 900)
+MOST = 1.5  # [mm]
+RIGHT_JAW = slice(0, 9)
+LEFT_JAW = slice(8, 17)
+
+
+class Portrait:
+    """A face that is drawn from somewhere, with its classes and landmarks."""
+
+    def __init__(self, studio: Capture, yaw: float = 0.0, pitch: float = 0.0) -> None:
+        scene = studio.scene
+        studio.camera = render.OrbitCamera.framing(scene.framing.extent)
+        studio.camera.orbit(yaw, pitch)
+        studio.draw_image()
+        passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
+        drawn = passes.draw(studio.camera, studio.options.style, ["segmentation", "depth"])
+        camera = CameraLabels.of(studio.camera, SIZE)
+        self.classes = drawn["segmentation"]
+        self.found = landmarks_in(scene.face, camera, drawn["depth"])
+        self.labels = labels_of(scene, studio.camera, SIZE, drawn["depth"])
+        far = camera.to_camera(self.found.points)[:, 2]
+        self.millimetres = far / camera.intrinsics[0, 0]  # of a pixel at each landmark
+
+    def away(self, numbers, segments):
+        """How far landmarks are from the nearest pixel of some classes [mm]."""
+        far = distance_transform_edt(~np.isin(self.classes, segments))
+        columns, rows = np.floor(self.found.pixels[numbers]).astype(int).T
+        return far[rows, columns] * self.millimetres[numbers]
+
+    def off_border(self, numbers, segments):
+        """How far landmarks are from the border of some classes [mm]."""
+        inside = np.isin(self.classes, segments)
+        far = np.maximum(distance_transform_edt(inside), distance_transform_edt(~inside))
+        columns, rows = np.floor(self.found.pixels[numbers]).astype(int).T
+        return (far[rows, columns] - 1.0) * self.millimetres[numbers]
+
+    def ends(self, segment):
+        """The outermost pixels of a class, left and right in the picture, (2, 2)."""
+        rows, columns = np.nonzero(self.classes == segment)
+        places = np.column_stack([columns, rows]) + 0.5
+        return places[[columns.argmin(), columns.argmax()]]
+
+
+@pytest.fixture(scope="module", params=["built-in", 3, 8])
+def studio(request: pytest.FixtureRequest) -> Iterator[Capture]:
+    """Faces before a camera."""
+    face = FaceScene() if request.param == "built-in" else FaceScene(person_called(request.param))
+    with Capture(face, CaptureOptions(size=SIZE)) as opened:
+        yield opened
+
+
+def test_mesh_picture_and_label_agree(studio):
+    """Corners of eyes and mouth, ends of brows, and the border of the red, within 1.5 mm."""
+    portrait = Portrait(studio)
+    pixels = portrait.found.pixels
+    for numbers, segment in (
+        ((36, 39), Segment.RIGHT_EYE),
+        ((42, 45), Segment.LEFT_EYE),
+    ):
+        off = np.linalg.norm(pixels[list(numbers)] - portrait.ends(segment), axis=1)
+        assert (off * portrait.millimetres[list(numbers)] < MOST).all(), (segment.name, off)
+    for numbers, segment in (
+        (np.arange(17, 22), Segment.RIGHT_BROW),
+        (np.arange(22, 27), Segment.LEFT_BROW),
+    ):
+        across = np.abs(pixels[numbers[[0, -1]]] - portrait.ends(segment))[:, 0]
+        assert (across * portrait.millimetres[numbers[[0, -1]]] < MOST).all(), segment.name
+        assert (portrait.off_border(numbers, segment) < MOST).all(), segment.name
+    lips = [Segment.TOP_LIP, Segment.BOTTOM_LIP]
+    border = portrait.off_border([48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59], lips)
+    assert (border < MOST).all(), border
+
+
+def test_the_jaw_lies_on_the_outline_that_is_seen(studio):
+    """In front on both sides, turned on the far side; the bone's points do not slide."""
+    face = [Segment.SKIN, Segment.NOSE, Segment.TOP_LIP, Segment.BOTTOM_LIP]
+    chin = range(6, 11)  # whose edge is soft; the throat has the tone of the skin
+    sides = [number for number in range(17) if number not in chin]
+    steepest = 2.5  # [mm] beside an ear, whose root is no sharp border
+    portrait = Portrait(studio)
+    assert (portrait.off_border(sides, face) < steepest).all()
+    for yaw, far in ((-35.0, [12, 13, 14]), (35.0, [2, 3, 4])):
+        turned = Portrait(studio, yaw)
+        assert (turned.off_border(far, [Segment.BACKGROUND, Segment.NECK]) < steepest).all()
+        on_bone = turned.labels["landmarks"]["jaw_on_bone"]
+        marked = studio.scene.face.marked[:17]
+        assert np.allclose(on_bone["points"], marked)
+        assert np.linalg.norm(turned.found.points[far] - marked[far], axis=1).min() > 4.0
+
+
+def test_an_outline_without_hair_over_it_is_visible(scene):
+    """All of it in front; a turned head hides none of the far side."""
+    scene.reset()
+    with Capture(scene, CaptureOptions(size=SIZE)) as opened:
+        assert Portrait(opened).found.visible[:17].all()
+        assert Portrait(opened, -35.0).found.visible[9:16].all()
+
+
+def test_points_of_the_jaw_are_spread_evenly(studio):
+    """As annotators set them, from the height of the eyes to the chin."""
+    portrait = Portrait(studio)
+    pixels = portrait.found.pixels
+    for side in (RIGHT_JAW, LEFT_JAW):
+        steps = np.linalg.norm(np.diff(pixels[side], axis=0), axis=1)
+        assert steps.max() < 1.2 * steps.min()
+    eyes = pixels[[36, 45], 1].mean()
+    assert np.abs(pixels[[0, 16], 1] - eyes).max() * portrait.millimetres[36] < 9.0
+
+
+def test_a_head_of_ones_own_keeps_its_marks(tmp_path):
+    """Where its owner put them; the jaw slides over its surface."""
+    scene = FaceScene(fit_head(*stranger().write(tmp_path)))
+    with Capture(scene, CaptureOptions(size=SIZE)) as opened:
+        portrait = Portrait(opened)
+    marked = scene.face.marked
+    assert np.allclose(portrait.found.points[17:68], marked[17:])
+    assert np.linalg.norm(portrait.found.points[:17] - marked[:17], axis=1).max() < 25.0

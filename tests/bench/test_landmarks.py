@@ -1,0 +1,76 @@
+"""The bench of landmarks: how errors are counted, and what it says without a detector."""
+
+import json
+
+import numpy as np
+import PIL.Image
+from pytest import approx
+
+from risorius.bench import landmarks
+from risorius.sim.landmarks import MIRRORED
+from tests.app.command_line import risorius
+
+FACE = np.random.default_rng(3).uniform(40.0, 60.0, (68, 2))
+FACE[36] = 30.0, 50.0
+FACE[45] = 70.0, 50.0
+FACE[37:42] = 36.0, 50.0
+FACE[42:45] = 64.0, 50.0
+FACE[46:48] = 64.0, 50.0
+
+
+def labels_of_face(yaw=0.0):
+    """Labels of a flat face 500 mm before a camera that shows a millimetre as a pixel."""
+    points = np.column_stack([FACE, np.full(68, 500.0)])
+    return {
+        "camera": {
+            "K": [[500.0, 0, 0], [0, 500.0, 0], [0, 0, 1]],
+            "R": np.eye(3).tolist(),
+            "t": [0.0, 0.0, 0.0],
+        },
+        "head": {"yaw": yaw},
+        "landmarks": {"pixels": FACE.tolist(), "points": points.tolist()},
+    }
+
+
+def test_an_error_is_a_share_of_the_distance_of_the_eyes():
+    """Two of forty pixels are 5 %, to the side and down."""
+    errors = landmarks.errors_of(FACE + np.array([2.0, -1.0]), labels_of_face())
+    assert np.allclose(errors, [5.0, -2.5])
+
+
+def test_a_constant_part_is_one_on_both_sides(tmp_path):
+    """A detector that sets every corner of the mouth outward by 3 %, the rest as labelled."""
+    outward = np.zeros((68, 2))
+    outward[48, 0] = -1.2
+    outward[54, 0] = 1.2
+    for number in range(3):
+        (tmp_path / f"{number:06d}.json").write_text(json.dumps(labels_of_face(20.0 * number)))
+        PIL.Image.new("RGB", (8, 8)).save(tmp_path / f"{number:06d}.png")
+    found = landmarks.measure(tmp_path, "dlib", lambda image: FACE + outward)
+    assert found.is_frontal.tolist() == [True, False, False]
+    assert found.constant[54] == approx([3.0, 0.0])
+    assert np.count_nonzero(np.abs(found.constant) > 1e-9) == 2
+    text = landmarks.report(found)
+    assert "48, 54       3.0    0.0" in text
+    met = [target.is_met for target in landmarks.targets(found)]
+    assert met == [True, False]
+
+
+def test_a_tracker_s_mesh_gives_all_68_points():
+    """And every point of the left has its mirror image on the right."""
+    mesh = np.random.default_rng(1).uniform(0.0, 100.0, (478, 2))
+    points = landmarks.points_of_mesh(mesh)
+    assert points.shape == (68, 2)
+    assert np.isfinite(points).all()
+    left = {number for number in range(68) if number not in landmarks.RIGHT}
+    assert {int(MIRRORED[number]) for number in left if MIRRORED[number] != number} == (
+        landmarks.RIGHT
+    )
+
+
+def test_without_the_detector_one_line_says_so(tmp_path, monkeypatch):
+    """It is an extra; nothing fails where it is missing."""
+    monkeypatch.setattr(landmarks, "is_installed", lambda name: False)
+    result = risorius("bench", "landmarks", tmp_path, "--detector", "dlib")
+    assert result.exit_code == 0
+    assert result.output == "skipped: dlib is not installed; pip install '.[dlib]' brings it\n"
