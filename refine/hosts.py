@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Flags, Floats64, Integers32, Integers64, Unsigned8
 from ..geometry.read_only import read_only
 from .border.plugin import RefinedMesh, View
 from .border.registry import create
 from .kahler.refiner import Kahler
-from .mesh.arrays import Doubles, Flags, Indices, Small, Wide
 from .mesh.seams import weld as weld_vertices
 from .mesh.validation import checked_mesh
 
@@ -73,15 +73,15 @@ class WeldedRefiner:
         assert isinstance(refiner, Kahler)
         self._refiner = refiner
         self._mesh: RefinedMesh | None = None
-        self._origins: tuple[Wide, Doubles] | None = None
+        self._origins: tuple[Integers64, Floats64] | None = None
 
     @property
-    def edges(self) -> Indices:
+    def edges(self) -> Integers32:
         """End points of each edge, shape (E, 2), among the welded vertices."""
         return self._refiner.edges
 
     @property
-    def splits(self) -> Small:
+    def splits(self) -> Unsigned8:
         """How often each edge was split in the last frame, shape (E,), read only."""
         return self._refiner.splits
 
@@ -131,7 +131,7 @@ class WeldedRefiner:
             carried[between] = _mixed(table, rows[between], weights[between])
         return carried
 
-    def _find_origins(self) -> tuple[Wide, Doubles]:
+    def _find_origins(self) -> tuple[Integers64, Floats64]:
         """The input's points that each point of the frame lies between, (N, 3), and its weights."""
         if self._mesh is None:
             raise ValueError("nothing is refined yet; call refine(points) before carry(values)")
@@ -144,7 +144,7 @@ class WeldedRefiner:
         return rows, wide / wide.sum(axis=1, keepdims=True)  # as single they add up to 1.00000003
 
 
-def _mixed(table: npt.NDArray[Any], rows: Wide, weights: Doubles) -> npt.NDArray[Any]:
+def _mixed(table: npt.NDArray[Any], rows: Integers64, weights: Floats64) -> npt.NDArray[Any]:
     """Means of rows of a table, (M, 3), with weights of the same shape; numbers of any type."""
     if table.dtype.kind == "c":  # as pairs: infinity times a complex share is no number
         pairs = np.ascontiguousarray(table)[..., None].view(table.real.dtype)
@@ -166,7 +166,7 @@ def _mixed(table: npt.NDArray[Any], rows: Wide, weights: Doubles) -> npt.NDArray
 
 
 def _mixed_wide(
-    corners: npt.NDArray[np.integer], shares: Doubles, has_part: Flags
+    corners: npt.NDArray[np.integer], shares: Floats64, has_part: Flags
 ) -> npt.NDArray[np.integer]:
     """The same for integers of 64 bits, shape (M, 3, ...), which doubles do not hold.
 

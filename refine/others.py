@@ -27,6 +27,7 @@ from typing import Any, Unpack
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Floats32, Integers32
 from .border.base import BaseRefiner
 from .border.corner_values import Values
 from .border.plugin import Origins, Stream, View
@@ -38,7 +39,6 @@ from .border.rows import (
 )
 from .kahler.frame import buffers_for, split_everywhere
 from .kahler.smoothing import place_middles, place_vertices
-from .mesh.arrays import Floats, Indices
 from .mesh.connectivity import Connectivity, connect
 from .mesh.creases import sharpened
 from .mesh.rings import vertex_rings
@@ -52,7 +52,7 @@ MOST_LEVELS = 4
 class Level:
     """One step of subdivision of a mesh with V vertices and E edges: every edge split once."""
 
-    def __init__(self, connectivity: Connectivity, points: Floats, normals: Floats) -> None:
+    def __init__(self, connectivity: Connectivity, points: Floats32, normals: Floats32) -> None:
         """Take `points` and `normals`, shape (V, 3), as buffers that a frame fills."""
         vertex_count = connectivity.vertex_count
         self.points = points
@@ -65,7 +65,7 @@ class Level:
         frame = buffers_for(connectivity, positions, points, normals)
         self._frame = split_everywhere(frame, vertex_count)
 
-    def subdivide(self, rows: Floats) -> None:
+    def subdivide(self, rows: Floats32) -> None:
         """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
         points = self.points
         normals = self.normals
@@ -165,15 +165,15 @@ class _Refined:
     """A subdivided mesh in terms of the mesh it came from."""
 
     connectivity: Connectivity
-    values: Floats | None
+    values: Floats32 | None
     """Texture coordinates and attributes, shape (A, k)."""
-    source: Indices
+    source: Integers32
     """Triangle of the input that each triangle is part of, shape (M,)."""
-    barycentric: Floats
+    barycentric: Floats32
     """Corners of each triangle in coordinates of its source, shape (M, 3, 3)."""
 
     @classmethod
-    def of(cls, connectivity: Connectivity, values: Floats | None) -> "_Refined":
+    def of(cls, connectivity: Connectivity, values: Floats32 | None) -> "_Refined":
         """Take a mesh as it is."""
         face_count = len(connectivity.faces)
         return cls(
@@ -222,7 +222,7 @@ class _Refined:
         )
 
 
-def _with_middles(values: Floats, mesh: Connectivity) -> Floats:
+def _with_middles(values: Floats32, mesh: Connectivity) -> Floats32:
     """Values of a mesh, (A, k), and after them those in the middle of each attribute edge."""
     middles = values[mesh.attribute_edge_uv].mean(axis=1, dtype=np.float32)
     return np.concatenate([values, middles])

@@ -20,8 +20,8 @@ Not in the paper.
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.arrays import Floats32, Floats64, Integers64, Unsigned32
 from ..jit import njit
-from .mesh.arrays import Doubles, Floats, Unsigned, Wide
 from .mesh.validation import checked_mesh, take_positions_like_rest, used_vertices
 from .mesh.vectors import difference, dot
 
@@ -63,7 +63,7 @@ class Shortening:
         self._rest = np.zeros((len(triangles), 3))
         _square_lengths(rest, self._faces, self._rest)
 
-    def measure(self, positions: npt.NDArray[np.floating]) -> Floats:
+    def measure(self, positions: npt.NDArray[np.floating]) -> Floats32:
         """Loss of length of each vertex along its directions, up to 1, shape (V, k).
 
         0 = none, below 0 a gain. `positions`: shape (V, 3), any float type. The result
@@ -75,7 +75,7 @@ class Shortening:
         return self._lost
 
 
-def _weights(rest: Doubles, faces: Wide, directions: Doubles) -> Floats:
+def _weights(rest: Floats64, faces: Integers64, directions: Floats64) -> Floats32:
     """Of each triangle's squared edge lengths at its corners, shape (F, 3, k, 3)."""
     a, b, c = (rest[faces[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
@@ -104,7 +104,7 @@ def _weights(rest: Doubles, faces: Wide, directions: Doubles) -> Floats:
 
 
 @njit
-def _square_lengths(positions: Doubles, faces: Unsigned, squares: Doubles) -> None:
+def _square_lengths(positions: Floats64, faces: Unsigned32, squares: Floats64) -> None:
     """Write the squared lengths of the edges 01, 12, 20 of each triangle, shape (F, 3)."""
     for t in range(faces.shape[0]):
         for i in range(3):
@@ -114,7 +114,7 @@ def _square_lengths(positions: Doubles, faces: Unsigned, squares: Doubles) -> No
 
 @njit
 def _shorten(
-    positions: Doubles, faces: Unsigned, rest: Doubles, weights: Floats, lost: Floats
+    positions: Floats64, faces: Unsigned32, rest: Floats64, weights: Floats32, lost: Floats32
 ) -> None:
     """Write the loss of length along the directions, (V, k)."""
     lost[:] = np.float32(0.0)

@@ -19,8 +19,8 @@ from importlib.resources import files
 import moderngl
 import numpy as np
 
+from risorius.geometry.arrays import Floats32, Floats64, Unsigned32
 from risorius.refine import GpuStream
-from risorius.refine.mesh.arrays import Doubles, Floats, Unsigned
 
 from .context import LEAST_VERSION, GpuError
 from .rules import THREADS, Rules
@@ -36,7 +36,7 @@ class Frames:
     """Buffers and programs of one mesh in one context, which has to be current in all calls."""
 
     def __init__(
-        self, gl: moderngl.Context, tables: Tables, rules: Rules, rest_positions: Doubles
+        self, gl: moderngl.Context, tables: Tables, rules: Rules, rest_positions: Floats64
     ) -> None:
         """Hand the mesh over, and look at it at rest: positions of shape (V, 3).
 
@@ -61,7 +61,7 @@ class Frames:
         for name in rules.passes[: rules.passes.index("mark") + 1]:
             self._dispatch(name, is_rest=True)
 
-    def run(self, positions: Doubles, metric: Floats | None, stream: GpuStream) -> None:
+    def run(self, positions: Floats64, metric: Floats32 | None, stream: GpuStream) -> None:
         """Refine a frame into the buffers of a stream.
 
         `positions`: shape (V, 3); `metric`: measured by the processor, shape (E,).
@@ -80,7 +80,7 @@ class Frames:
         for name in self._programs:
             self._dispatch(name)
 
-    def write_values(self, of_wedges: Floats, of_edge_ends: Floats) -> None:
+    def write_values(self, of_wedges: Floats32, of_edge_ends: Floats32) -> None:
         """Hand over texture coordinates and attributes in place of those of binding.
 
         `of_wedges`: shape (W, k); `of_edge_ends`: at both ends of attribute edges, shape (R, 2, k).
@@ -90,7 +90,7 @@ class Frames:
                 offset = NUMBER_BYTES * self._tables.sizes[f"{name}_at"]
                 self._mesh.write(np.ascontiguousarray(values, np.float32), offset=offset)
 
-    def fetch(self, name: str, count: int, size: int = NUMBER_BYTES) -> Unsigned:
+    def fetch(self, name: str, count: int, size: int = NUMBER_BYTES) -> Unsigned32:
         """The first numbers, or vectors, that passes have handed on under a name, as numbers.
 
         This waits for the frame.
@@ -105,7 +105,7 @@ class Frames:
         for binding, buffer in enumerate((self._mesh, self._positions, self._fields, self._work)):
             buffer.bind_to_storage_buffer(binding)
 
-    def _hand_over(self, positions: Doubles, metric: Floats | None) -> None:
+    def _hand_over(self, positions: Floats64, metric: Floats32 | None) -> None:
         """Upload positions, in double precision; the driver may still read those before."""
         if len(positions):
             self._positions.orphan()

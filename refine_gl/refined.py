@@ -7,15 +7,15 @@ from typing import Any
 import moderngl
 import numpy as np
 
+from risorius.geometry.arrays import Floats32, Integers32, Integers64, Unsigned32
 from risorius.refine import GpuStream, RefinedMesh
-from risorius.refine.mesh.arrays import Floats, Indices, Unsigned, Wide
 
 COMMAND_WORDS = 7
 """Of a command buffer: DrawElementsIndirectCommand (5), numbers of vertices and of triangles."""
 
 Run = Callable[..., Any]
 """Calls a function with arguments where the context of a stream is current."""
-Columns = tuple[Floats | None, Mapping[str, Floats]]
+Columns = tuple[Floats32 | None, Mapping[str, Floats32]]
 """Texture coordinates and attributes in the rows of a frame."""
 
 
@@ -41,7 +41,7 @@ class GpuMesh:
     """
 
     def __init__(
-        self, stream: GpuStream, run: Run, columns: int, parted: Callable[[Floats], Columns]
+        self, stream: GpuStream, run: Run, columns: int, parted: Callable[[Floats32], Columns]
     ) -> None:
         """`columns`: of a row; `parted`: takes texture coordinates and attributes out of rows."""
         self._stream = stream
@@ -50,7 +50,7 @@ class GpuMesh:
         self._parted = parted
 
     @cached_property
-    def _counts(self) -> Wide:
+    def _counts(self) -> Integers64:
         words = self._fetched("command_buffer", COMMAND_WORDS).view(np.uint32)
         return words[-2:].astype(np.int64)
 
@@ -65,38 +65,38 @@ class GpuMesh:
         return int(self._counts[1])
 
     @cached_property
-    def vertices(self) -> Floats:
+    def vertices(self) -> Floats32:
         """Rows x y z, nx ny nz[, u v][, attributes], shape (N, columns); others are views of it."""
         words = self._fetched("vertex_buffer", self._columns * self.vertex_count)
         return words.view(np.float32).reshape(-1, self._columns)
 
     @property
-    def positions(self) -> Floats:
+    def positions(self) -> Floats32:
         """Vertex positions, shape (N, 3)."""
         return self.vertices[:, 0:3]
 
     @property
-    def normals(self) -> Floats:
+    def normals(self) -> Floats32:
         """Unit vertex normals, shape (N, 3)."""
         return self.vertices[:, 3:6]
 
     @cached_property
-    def triangles(self) -> Unsigned:
+    def triangles(self) -> Unsigned32:
         """Vertices of each triangle, shape (M, 3)."""
         return self._fetched("index_buffer", 3 * self.triangle_count).reshape(-1, 3)
 
     @cached_property
-    def source(self) -> Indices:
+    def source(self) -> Integers32:
         """Input triangle that each is part of, shape (M,)."""
         return self._fetched("source_buffer", self.triangle_count).view(np.int32)
 
     @property
-    def uv(self) -> Floats | None:
+    def uv(self) -> Floats32 | None:
         """Texture coordinates, shape (N, 2); None if the mesh was bound without."""
         return self._parted(self.vertices)[0]
 
     @property
-    def attributes(self) -> Mapping[str, Floats]:
+    def attributes(self) -> Mapping[str, Floats32]:
         """The attributes that were bound, by name, shape (N, k)."""
         return self._parted(self.vertices)[1]
 
@@ -105,7 +105,7 @@ class GpuMesh:
         arrays = [getattr(self, name) for name in RefinedMesh._fields[:-1]]
         return RefinedMesh, (*arrays, dict(self.attributes))
 
-    def _fetched(self, name: str, count: int) -> Unsigned:
+    def _fetched(self, name: str, count: int) -> Unsigned32:
         """The first numbers of a buffer, in memory of their own that may be written."""
         words = np.empty(count, np.uint32)
         if count:

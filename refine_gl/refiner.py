@@ -14,6 +14,7 @@ from typing import Literal, Unpack, cast
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.arrays import Unsigned8
 from risorius.refine import (
     THRESHOLD_ONCE,
     THRESHOLD_TWICE,
@@ -32,7 +33,6 @@ from risorius.refine import (
 )
 from risorius.refine.beyond.options import criterion_of
 from risorius.refine.kahler.refiner import points_on_edges
-from risorius.refine.mesh.arrays import Small
 
 from .context import GpuError, OwnContext, own_context
 from .frames import VECTOR_BYTES, Frames, programs_of
@@ -129,7 +129,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         self._frames: Frames | None = None  # of the context of the last frame
         self._run: Run = operator.call
         self._has_new_values = False  # that the card has not
-        self._fetched_splits: Small | None = self.edge_splits
+        self._fetched_splits: Unsigned8 | None = self.edge_splits
 
     @property
     def vertex_capacity(self) -> int:
@@ -142,7 +142,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         return self._tables.sizes["most_subtriangles"] * len(self.connectivity.faces)
 
     @property
-    def splits(self) -> Small:
+    def splits(self) -> Unsigned8:
         """How often each edge was split in the last frame, shape (E,), read only; fetched."""
         if self._fetched_splits is None:
             assert self._frames is not None

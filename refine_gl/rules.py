@@ -11,6 +11,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.arrays import Floats32, Floats64
 from risorius.refine import (
     Connectivity,
     Criterion,
@@ -26,7 +27,6 @@ from risorius.refine.beyond.measuring import mean_length
 from risorius.refine.kahler.coherence import sequence_tables
 from risorius.refine.kahler.criterion import Thresholds, find_undefined_normals
 from risorius.refine.kahler.table import CONFIGURATIONS
-from risorius.refine.mesh.arrays import Doubles, Floats
 from risorius.refine.mesh.rings import vertex_rings
 from risorius.refine.mesh.vectors import ONE
 
@@ -63,7 +63,11 @@ class Rules:
     """Settings bound to a mesh."""
 
     def __init__(
-        self, mesh: Connectivity, rest_positions: Doubles, rest_normals: Floats, settings: Settings
+        self,
+        mesh: Connectivity,
+        rest_positions: Floats64,
+        rest_normals: Floats32,
+        settings: Settings,
     ) -> None:
         """Raise ValueError for criteria that the card has not."""
         self._mesh = mesh
@@ -179,7 +183,7 @@ class Rules:
         find_undefined_normals(self._mesh.faces, self._rest, undefined)
         return np.asarray(undefined[self._mesh.edges].any(axis=1))
 
-    def measure_others(self, positions: Doubles, normals: Floats, view: View | None) -> Floats:
+    def measure_others(self, positions: Floats64, normals: Floats32, view: View | None) -> Floats32:
         """Measure a frame on the processor: the metric of every edge, shape (E,)."""
         assert self.others is not None
         metric = np.empty(len(self._mesh.edges), np.float32)

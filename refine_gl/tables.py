@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats32, Unsigned32
 from risorius.refine import Connectivity
 from risorius.refine.border.rows import GEOMETRY_COLUMNS, wedge_values
 from risorius.refine.kahler.table import CENTRE
-from risorius.refine.mesh.arrays import Floats, Unsigned
 
 from .rules import Arrays, Rules
 
@@ -23,7 +23,7 @@ GROUP = 256
 class Tables(NamedTuple):
     """One mesh as shaders see it."""
 
-    words: Unsigned
+    words: Unsigned32
     """All its arrays, floats by their bits, one behind the other."""
     sizes: dict[str, int]
     """Counts, and as `NAME_at` where arrays begin: numbers of the uniform block."""
@@ -37,7 +37,7 @@ class Tables(NamedTuple):
     """Numbers that they hand on."""
 
 
-def tables_of(mesh: Connectivity, values: Floats, rules: Rules) -> Tables:
+def tables_of(mesh: Connectivity, values: Floats32, rules: Rules) -> Tables:
     """Lay out a mesh. `values`: of corners, shape (A, k)."""
     arrays = {**_arrays(mesh, values), **rules.arrays()}
     sizes = _counts(mesh, values.shape[1], arrays, rules)
@@ -116,7 +116,7 @@ def _work(mesh: Connectivity, sizes: dict[str, int]) -> dict[str, int]:
     }
 
 
-def _arrays(mesh: Connectivity, values: Floats) -> Arrays:
+def _arrays(mesh: Connectivity, values: Floats32) -> Arrays:
     """The connectivity, the corners around each vertex in the order of triangles, and values.
 
     Those are texture coordinates and attributes, of wedges and at both ends of attribute edges.

@@ -13,8 +13,8 @@ import numpy.typing as npt
 import pyvista
 from tqdm import tqdm
 
+from .geometry.arrays import Integers64
 from .refine import View, WeldedRefiner, splits_of_clip
-from .refine.mesh.arrays import Wide
 
 SOURCE = "vtkOriginalCellIds"  # what PyVista's own filters call the cell that a cell was made of
 
@@ -138,22 +138,22 @@ class PolyDataRefiner:
 class Cells(NamedTuple):
     """Cells of one kind, as VTK keeps them."""
 
-    starts: Wide
+    starts: Integers64
     """Where each cell begins among `points`, and where the last one ends, shape (C + 1,)."""
-    points: Wide
+    points: Integers64
     """Points of all cells, one cell behind the other."""
 
     @property
-    def sizes(self) -> Wide:
+    def sizes(self) -> Integers64:
         """Points of each cell, shape (C,)."""
         return np.diff(self.starts)
 
-    def of(self, cell: int) -> Wide:
+    def of(self, cell: int) -> Integers64:
         """The points of one cell."""
         return self.points[self.starts[cell] : self.starts[cell + 1]]
 
 
-def triangles_of(mesh: pyvista.PolyData) -> tuple[Wide, Wide]:
+def triangles_of(mesh: pyvista.PolyData) -> tuple[Integers64, Integers64]:
     """Cut the surface of a mesh into triangles, shape (F, 3), and name the cell of each, (F,).
 
     Lines, lone points and polygons of less than three points have no surface and drop out. VTK is
@@ -195,7 +195,7 @@ def _cells_of(array: Any, point_count: int) -> Cells:
     return Cells(starts, points)
 
 
-def _cut_polygons(points: npt.ArrayLike, polygons: Cells) -> tuple[Wide, Wide]:
+def _cut_polygons(points: npt.ArrayLike, polygons: Cells) -> tuple[Integers64, Integers64]:
     """Triangles of the polygons with more than three points, (T, 3), and the polygon of each."""
     large = np.flatnonzero(polygons.sizes > 3)
     if len(large) == 0:

@@ -44,6 +44,7 @@ from typing import Unpack
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.arrays import Floats32, Integers64, Unsigned8, Unsigned16, Unsigned32
 from ...jit import njit
 from ..border.corner_values import Values
 from ..border.plugin import Origins, View
@@ -61,7 +62,6 @@ from ..kahler.table import (
     subdivide,
     table_of,
 )
-from ..mesh.arrays import Floats, Short, Small, Unsigned, Wide
 from ..mesh.connectivity import Connectivity
 from ..mesh.threads import share
 from ..mesh.vectors import (
@@ -138,7 +138,7 @@ class Blended(Kahler):
         number_centres(frame.configurations, *self._patterns, frame.centre_triangles, counts)
         return int(counts[ROWS] + counts[CENTRES]), int(counts[TRIANGLES])
 
-    def _place(self, rows: Floats) -> None:
+    def _place(self, rows: Floats32) -> None:
         """Write vertices and points on edges, then those in the middle of triangles."""
         super()._place(rows)
         share(place_centres, self._frame.centre_count, self.connectivity, self._frame)
@@ -156,7 +156,7 @@ class Blended(Kahler):
 
 @njit
 def weigh_geomorphs(
-    metric: Floats, splits: Small, geomorph_once: Floats, geomorph_twice: Floats
+    metric: Floats32, splits: Unsigned8, geomorph_once: Floats32, geomorph_twice: Floats32
 ) -> int:
     """Write splits and geomorph weights of every edge from its metric, all of (E,); count NaN."""
     undefined = 0
@@ -170,11 +170,11 @@ def weigh_geomorphs(
 
 @njit
 def number_centres(
-    configurations: Short,
-    subtriangle_counts: Small,
-    subtriangles: Small,
-    centre_triangles: Unsigned,
-    counts: Wide,
+    configurations: Unsigned16,
+    subtriangle_counts: Unsigned8,
+    subtriangles: Unsigned8,
+    centre_triangles: Unsigned32,
+    counts: Integers64,
 ) -> None:
     """List the triangles that have a point in the middle; count them, and all subtriangles.
 
@@ -223,7 +223,7 @@ def centre_shares(x: np.float32, y: np.float32, z: np.float32) -> tuple[Vector, 
 
 
 @njit
-def mixed_corners(rows: Floats, corners: Unsigned, shares: Vector, first: int) -> Vector:
+def mixed_corners(rows: Floats32, corners: Unsigned32, shares: Vector, first: int) -> Vector:
     """Shares of three rows, from column `first` on."""
     a = row_of(rows, corners[0], first)
     b = row_of(rows, corners[1], first)

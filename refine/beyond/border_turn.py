@@ -28,9 +28,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64, Unsigned32
 from ...jit import njit
 from ..kahler.criterion import find_undefined_normals
-from ..mesh.arrays import Doubles, Floats, Indices, Unsigned, Wide
 from ..mesh.borders import border_neighbours
 from ..mesh.connectivity import Connectivity
 from ..mesh.vectors import (
@@ -57,17 +57,17 @@ two more took 12 % more triangles for 3 % of the error."""
 class Nearby(NamedTuple):
     """The vertices and edges on and beside the borders of a mesh; compiled code takes it."""
 
-    curves: Unsigned
+    curves: Unsigned32
     """The vertices p, a, q of every turn, shape (T, 3)."""
-    rest_turns: Floats
+    rest_turns: Floats32
     """Along, aside and up at rest, shape (T, 3)."""
-    spread: Unsigned
+    spread: Unsigned32
     """Vertices that turns spread to and from, those nearer to the border first, shape (S, 2)."""
-    spread_shares: Floats
+    spread_shares: Floats32
     """How much of a turn spreads, shape (S,)."""
-    edges: Unsigned
+    edges: Unsigned32
     """The edges on and beside the border, shape (N,)."""
-    edge_shares: Floats
+    edge_shares: Floats32
     """How much of the sum of the turns at its ends is the measure of an edge, shape (N,)."""
 
 
@@ -79,7 +79,7 @@ class BorderTurn(Measuring):
         super().__init__(once, twice, "angles in radians")
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Find what lies on borders and beside them, and how borders turn at rest."""
         super().bind(connectivity, rest_positions, rest_normals)
@@ -87,13 +87,13 @@ class BorderTurn(Measuring):
         self._nearby = find_nearby(connectivity, rest_positions)
         write_turns(rest_positions, rest_normals, self._nearby.curves, self._nearby.rest_turns)
 
-    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+    def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the refinement metric of every edge, shape (E,)."""
         measure_turns(positions, normals, self._edges, self._nearby, self._turns, metric)
         self.thresholds.scale(metric)
 
 
-def find_nearby(mesh: Connectivity, rest_positions: Doubles) -> Nearby:
+def find_nearby(mesh: Connectivity, rest_positions: Floats64) -> Nearby:
     """Find the vertices and edges on and beside the borders; turns at rest are still to be written.
 
     A vertex that has no normal at rest, because all triangles around are slivers, has no turn.
@@ -134,7 +134,7 @@ def find_nearby(mesh: Connectivity, rest_positions: Doubles) -> Nearby:
     )
 
 
-def rings_from_border(mesh: Connectivity) -> Wide:
+def rings_from_border(mesh: Connectivity) -> Integers64:
     """How many edges each vertex is away from the border, REACH_RINGS at most, shape (V,)."""
     ring = np.full(mesh.vertex_count, REACH_RINGS)
     ring[mesh.edges[~mesh.around.is_interior]] = 0
@@ -145,7 +145,7 @@ def rings_from_border(mesh: Connectivity) -> Wide:
     return ring
 
 
-def ways_inward(mesh: Connectivity, ring: Wide) -> tuple[list[Indices], list[Doubles]]:
+def ways_inward(mesh: Connectivity, ring: Integers64) -> tuple[list[Integers32], list[Floats64]]:
     """For each ring but the first, the ways along edges to its vertices from the ring before.
 
     Returns their ends and starts, shape (2, S), and the share of each in the mean of all ways that
@@ -163,7 +163,9 @@ def ways_inward(mesh: Connectivity, ring: Wide) -> tuple[list[Indices], list[Dou
 
 
 @njit
-def turn_at(positions: Doubles, normal: Vector, p: np.uint32, a: np.uint32, q: np.uint32) -> Vector:
+def turn_at(
+    positions: Floats64, normal: Vector, p: np.uint32, a: np.uint32, q: np.uint32
+) -> Vector:
     """Along, aside and up of the turn of a border p, a, q."""
     u = unit(between(positions, p, a))
     v = unit(between(positions, a, q))
@@ -171,7 +173,9 @@ def turn_at(positions: Doubles, normal: Vector, p: np.uint32, a: np.uint32, q: n
 
 
 @njit
-def write_turns(positions: Doubles, normals: Floats, curves: Unsigned, turns: Floats) -> None:
+def write_turns(
+    positions: Floats64, normals: Floats32, curves: Unsigned32, turns: Floats32
+) -> None:
     """Write along, aside and up of every turn, shape (T, 3)."""
     for k in range(curves.shape[0]):
         p = curves[k, 0]
@@ -182,12 +186,12 @@ def write_turns(positions: Doubles, normals: Floats, curves: Unsigned, turns: Fl
 
 @njit
 def measure_turns(
-    positions: Doubles,
-    normals: Floats,
-    edges: Unsigned,
+    positions: Floats64,
+    normals: Floats32,
+    edges: Unsigned32,
     nearby: Nearby,
-    turns: Floats,
-    measures: Floats,
+    turns: Floats32,
+    measures: Floats32,
 ) -> None:
     """Write the turn of every vertex since rest, shape (V,), and the measure of every edge, (E,).
 

@@ -31,11 +31,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...geometry.arrays import Floats32, Floats64, Unsigned32
 from ...jit import njit
 from ..kahler.frame import ONCE, FrameBuffers
 from ..kahler.look_up import SIDE_BITS, SIDE_MASK
 from ..kahler.smoothing import Scheme
-from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.borders import border_neighbours
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.creases import sectors_of
@@ -87,15 +87,15 @@ SLIVER_SINE = 1e-9
 class Tangents(NamedTuple):
     """Data of the tangents at the ends of cubic edges; compiled code takes it as it is."""
 
-    normals: Floats
+    normals: Floats32
     """Unit normals, each corner weighted as at rest, of the S sectors of vertices: shape (S, 3)."""
-    steeper: Floats
+    steeper: Floats32
     """Unit normals that go further from those of their neighbours, shape (S, 3)."""
-    off: Floats
+    off: Floats32
     """How much of each neighbour's normal is taken off, shape (S,)."""
-    ends: Unsigned
+    ends: Unsigned32
     """Sectors at both ends of every edge, shape (E, 2); of those on borders no matter."""
-    beyond: Unsigned
+    beyond: Unsigned32
     """The vertices before and after every border edge, shape (E, 2); of others no matter."""
 
 
@@ -106,7 +106,7 @@ class CubicScheme(Scheme):
     uses_normals = False
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Weigh the corners of the mesh at rest, and follow its borders."""
         mesh = self._mesh = connectivity
@@ -149,7 +149,7 @@ class CubicScheme(Scheme):
         rows = self._displacements.reshape(-1, 3)
         share(place_on_curves, count, self._around.points, frame, rows)
 
-    def measure(self, displacements: Floats, turns: Floats) -> None:
+    def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far the middle of every edge stands out if it is split once, shape (E,).
 
         A mean of normals turns nothing: `turns`, shape (E,), become zero.
@@ -157,7 +157,7 @@ class CubicScheme(Scheme):
         displacement_sizes(self._displacements, displacements)
         turns[:] = ZERO
 
-    def _displace(self, positions: Doubles) -> None:
+    def _displace(self, positions: Floats64) -> None:
         fans = self._fans
         tangents = self._tangents
         crosses = self._crosses
@@ -177,7 +177,7 @@ class CubicScheme(Scheme):
 
 
 @njit
-def weigh_corners(positions: Doubles, faces: Unsigned, weights: Rows) -> None:
+def weigh_corners(positions: Floats64, faces: Unsigned32, weights: Rows) -> None:
     """Write sqrt(angle / |cross product|) of every corner, shape (F, 3); 0 without an area."""
     for t in range(faces.shape[0]):
         for i in range(3):
@@ -193,7 +193,7 @@ def weigh_corners(positions: Doubles, faces: Unsigned, weights: Rows) -> None:
             weights[t, i] = np.sqrt(angle / area) if area > SLIVER_SINE * size else 0.0
 
 
-def follow_borders(mesh: Connectivity, rest_positions: Doubles) -> Unsigned:
+def follow_borders(mesh: Connectivity, rest_positions: Floats64) -> Unsigned32:
     """Find the vertices before and after every border edge, shape (E, 2); its own ends at a corner.
 
     Rows of other edges have no meaning.
@@ -205,7 +205,7 @@ def follow_borders(mesh: Connectivity, rest_positions: Doubles) -> Unsigned:
 
 @njit
 def cross_products(
-    first: int, last: int, positions: Doubles, faces: Unsigned, crosses: Floats
+    first: int, last: int, positions: Floats64, faces: Unsigned32, crosses: Floats32
 ) -> None:
     """Write the normals of triangles times twice their areas, shape (F, 3)."""
     for t in range(first, last):
@@ -216,11 +216,11 @@ def cross_products(
 def weighted_normals(
     first: int,
     last: int,
-    starts: Unsigned,
-    corners: Unsigned,
-    weights: Floats,
-    crosses: Floats,
-    normals: Floats,
+    starts: Unsigned32,
+    corners: Unsigned32,
+    weights: Floats32,
+    crosses: Floats32,
+    normals: Floats32,
 ) -> None:
     """Write unit vertex normals, each corner weighted as at rest, shape (V, 3).
 
@@ -239,11 +239,11 @@ def weighted_normals(
 def steepen_normals(
     first: int,
     last: int,
-    starts: Unsigned,
-    neighbours: Unsigned,
-    normals: Floats,
-    steeper: Floats,
-    off: Floats,
+    starts: Unsigned32,
+    neighbours: Unsigned32,
+    normals: Floats32,
+    steeper: Floats32,
+    off: Floats32,
 ) -> None:
     """Write unit normals less those of their neighbours, `off` of each, shape (V, 3)."""
     for v in range(first, last):
@@ -261,7 +261,7 @@ def length_of(d: Vector) -> np.float32:
 
 @njit
 def write_cubic(
-    displacements: Floats, e: int, i: int, turn_a: np.float32, turn_b: np.float32
+    displacements: Floats32, e: int, i: int, turn_a: np.float32, turn_b: np.float32
 ) -> None:
     """Write coordinate i of the displacements of an edge.
 
@@ -277,9 +277,9 @@ def displace_cubic(
     first: int,
     last: int,
     around: Surroundings,
-    positions: Doubles,
+    positions: Floats64,
     tangents: Tangents,
-    displacements: Floats,
+    displacements: Floats32,
 ) -> None:
     """Write the displacements of edges: those of the cubic with the tangents at both ends.
 
@@ -311,7 +311,7 @@ def displace_cubic(
 
 
 @njit
-def displacement_sizes(displacements: Floats, sizes: Floats) -> None:
+def displacement_sizes(displacements: Floats32, sizes: Floats32) -> None:
     """Write how far the middle of every edge is displaced, shape (E,)."""
     for e in range(sizes.shape[0]):
         middle = row_of(displacements[e], MIDDLE)
@@ -320,7 +320,7 @@ def displacement_sizes(displacements: Floats, sizes: Floats) -> None:
 
 @njit
 def place_on_curves(
-    first: int, last: int, ends: Unsigned, frame: FrameBuffers, displacements: Floats
+    first: int, last: int, ends: Unsigned32, frame: FrameBuffers, displacements: Floats32
 ) -> None:
     """Write positions: vertices as they are, and the one or three points of every split edge.
 
@@ -354,7 +354,7 @@ def place_on_curves(
 
 @njit
 def place_mean_normals(
-    first: int, last: int, ends: Unsigned, frame: FrameBuffers, normals: Floats
+    first: int, last: int, ends: Unsigned32, frame: FrameBuffers, normals: Floats32
 ) -> None:
     """Write normals: of vertices, shape (V, 3), and between them; loop and `ends` as above."""
     rows = frame.rows

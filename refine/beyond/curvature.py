@@ -15,8 +15,8 @@ rims of ears, where long and short edges meet.)
 
 import numpy as np
 
+from ...geometry.arrays import Floats32, Floats64, Unsigned32
 from ...geometry.normals import cross_products
-from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity
 from ..mesh.creases import Sectors, sectors_of
 from .blending import RAMP_WIDTH
@@ -45,7 +45,7 @@ class RestCurvature(Measuring):
         super().__init__(once, twice, "heights in sizes of the mesh")
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Decide on all edges."""
         super().bind(connectivity, rest_positions, rest_normals)
@@ -68,12 +68,12 @@ class RestCurvature(Measuring):
         # Metrics at which a blended point has grown: there is nothing that it could grow with.
         self._decided = np.array([-np.inf, RAMP_WIDTH, 1.0 + RAMP_WIDTH], np.float32)[splits]
 
-    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+    def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the refinement metric of every edge, shape (E,)."""
         metric[:] = self._decided
 
 
-def _normals_of_sectors(sectors: Sectors, faces: Unsigned, positions: Doubles) -> Doubles:
+def _normals_of_sectors(sectors: Sectors, faces: Unsigned32, positions: Floats64) -> Floats64:
     """Unit normals of sectors, weighted by area, shape (S, 3)."""
     crosses = cross_products(positions, faces)
     normals = np.zeros((sectors.sector_count, 3))
@@ -84,7 +84,7 @@ def _normals_of_sectors(sectors: Sectors, faces: Unsigned, positions: Doubles) -
     return normals
 
 
-def _diagonal(positions: Doubles) -> float:
+def _diagonal(positions: Floats64) -> float:
     """Of the box around the ends of edges, shape (E, 2, 3); 1 if it has no size.
 
     Points that no triangle uses do not count: where they lie says nothing of the mesh.

@@ -27,10 +27,10 @@ the finer mesh's but those of the refined surface (surface_normals.py), which ha
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.arrays import Floats32, Floats64, Unsigned32
 from ...geometry.closest import closest_points
 from ...jit import njit
 from ..kahler.frame import FrameBuffers
-from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.validation import checked_mesh
 from ..mesh.vectors import TINY, Vector, between, cross, dot, less, plus, row_of, unit, write_row
@@ -61,7 +61,7 @@ class DetailScheme(CubicScheme):
         self._finer = positions, faces
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Compare the cubic at rest with the finer mesh, point by point."""
         super().bind(connectivity, rest_positions, rest_normals)
@@ -101,13 +101,13 @@ class DetailScheme(CubicScheme):
         self._add(twice, NEAR_END)
         super().place_positions(frame)
 
-    def _add(self, edges: Unsigned, point: int) -> None:
+    def _add(self, edges: Unsigned32, point: int) -> None:
         add_offsets(edges, point, self._offsets, self._axes, self._displacements)
 
 
 @njit
 def add_offsets(
-    edges: Unsigned, point: int, offsets: Floats, axes: Floats, displacements: Floats
+    edges: Unsigned32, point: int, offsets: Floats32, axes: Floats32, displacements: Floats32
 ) -> None:
     """Add the stored offsets of one point of some edges, shape (N,), to displacements, (E, 3, 3).
 
@@ -120,7 +120,7 @@ def add_offsets(
 
 
 @njit
-def write_axes(up: Vector, towards: Vector, axes: Floats) -> None:
+def write_axes(up: Vector, towards: Vector, axes: Floats32) -> None:
     """Write three orthogonal directions of length one as rows of `axes`, shape (3, 3).
 
     The first is `up`, the second is `towards` made normal to it.
@@ -133,7 +133,9 @@ def write_axes(up: Vector, towards: Vector, axes: Floats) -> None:
 
 
 @njit
-def middle_axes(around: Surroundings, positions: Doubles, normals: Floats, axes: Floats) -> None:
+def middle_axes(
+    around: Surroundings, positions: Floats64, normals: Floats32, axes: Floats32
+) -> None:
     """Write the directions of the middles of all edges: upright on the edge, along it, across.
 
     Upright is the mean of the normals at both ends, made normal to the edge. `normals`: of
@@ -150,7 +152,7 @@ def middle_axes(around: Surroundings, positions: Doubles, normals: Floats, axes:
 
 @njit
 def quarter_axes(
-    around: Surroundings, positions: Doubles, normals: Floats, edges: Unsigned, axes: Floats
+    around: Surroundings, positions: Floats64, normals: Floats32, edges: Unsigned32, axes: Floats32
 ) -> None:
     """Write the directions of the quarters of some edges, shape (N,), from those of their middles.
 

@@ -9,9 +9,9 @@ measure both (`Scheme.measure`): those with curved edges, and all with `normals=
 
 import numpy as np
 
+from ...geometry.arrays import Floats32, Floats64
 from ...jit import njit
 from ..kahler.smoothing import Scheme
-from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity
 from .blending import RAMP_WIDTH
 from .measuring import Measuring, mean_length
@@ -48,14 +48,14 @@ class Displacement(Measuring):
         self._scheme = scheme
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Store the unit of length."""
         super().bind(connectivity, rest_positions, rest_normals)
         self._unit = mean_length(connectivity, rest_positions)
         self._turns = np.zeros(len(connectivity.edges), dtype=np.float32)
 
-    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+    def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the refinement metric of every edge, shape (E,)."""
         limits = self.thresholds
         self._scheme.measure(metric, self._turns)
@@ -66,7 +66,7 @@ class Displacement(Measuring):
 
 
 @njit
-def count_turns(sizes: Floats, turns: Floats, scale: np.float32) -> None:
+def count_turns(sizes: Floats32, turns: Floats32, scale: np.float32) -> None:
     """Add `turns`, shape (E,), of normals [rad] x length, to `sizes` of edges, as squares."""
     for e in range(sizes.shape[0]):
         turn = scale * turns[e]
@@ -74,7 +74,7 @@ def count_turns(sizes: Floats, turns: Floats, scale: np.float32) -> None:
 
 
 @njit
-def advance_metric(metric: Floats, soon: np.float32, ramp: np.float32) -> None:
+def advance_metric(metric: Floats32, soon: np.float32, ramp: np.float32) -> None:
     """Stretch the metrics, shape (E,), so that `soon` becomes `ramp`, where points have grown."""
     if soon >= ramp:
         return

@@ -17,11 +17,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...geometry.arrays import Floats32, Floats64, Unsigned8, Unsigned32
 from ...jit import njit
 from ..border.plugin import View
 from ..kahler.criterion import Criterion, Thresholds
 from ..kahler.smoothing import Scheme
-from ..mesh.arrays import Doubles, Floats, Small, Unsigned
 from ..mesh.connectivity import Connectivity
 from ..mesh.vectors import ONE
 from .blending import RAMP_WIDTH
@@ -37,7 +37,7 @@ class Measuring(Criterion):
         self.thresholds = Thresholds(once, twice, meaning)
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Take the edges."""
         self._edges = connectivity.edges.view(np.uint32)
@@ -54,7 +54,7 @@ class Maximum(Criterion):
         self.is_constant = all(part.is_constant for part in criteria)
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Bind them all."""
         for part in self.parts:
@@ -72,7 +72,7 @@ class Maximum(Criterion):
         for part in self.parts:
             part.set_view(view)
 
-    def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
+    def mark(self, positions: Floats64, normals: Floats32, splits: Unsigned8) -> None:
         """Write the largest number of splits of every edge into `splits`, shape (E,)."""
         splits[:] = 0
         for part in self.parts:
@@ -84,7 +84,7 @@ class Maximum(Criterion):
         """Only a whole of measuring parts measures; others decide in whole splits."""
         return all(part.measures for part in self.parts)
 
-    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+    def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the largest metric of every edge, shape (E,)."""
         self.parts[0].measure(positions, normals, metric)
         for part in self.parts[1:]:
@@ -117,7 +117,7 @@ class Silhouette(Measuring):
             )
         self._eye = eye
 
-    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+    def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the refinement metric of every edge, shape (E,)."""
         limits = self.thresholds
         most = limits.once + (ONE + RAMP_WIDTH) * limits.width
@@ -127,12 +127,12 @@ class Silhouette(Measuring):
 
 @njit
 def turns_at_silhouette(
-    positions: Doubles,
-    normals: Floats,
-    edges: Unsigned,
-    eye: Doubles,
+    positions: Floats64,
+    normals: Floats32,
+    edges: Unsigned32,
+    eye: Floats64,
     most: np.float32,
-    turns: Floats,
+    turns: Floats32,
 ) -> None:
     """Write 1 - the cosine of the normals of every edge, faded out away from the silhouette.
 
@@ -157,7 +157,7 @@ def turns_at_silhouette(
         turns[e] = turn * max(0.0, 1.0 - away / SILHOUETTE_BAND)
 
 
-def mean_length(connectivity: Connectivity, positions: Doubles) -> np.float32:
+def mean_length(connectivity: Connectivity, positions: Floats64) -> np.float32:
     """Mean length of the edges; 1 if there are none."""
     ends = positions[connectivity.edges]
     lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)

@@ -24,11 +24,11 @@ Differs from the paper, whose rule is `normals="linear"`.
 
 import numpy as np
 
+from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Unsigned32
 from ...jit import njit
 from ..kahler.frame import ONCE, ROWS, FrameBuffers, buffers_for, split_everywhere
 from ..kahler.look_up import SIDE_BITS, SIDE_MASK
 from ..kahler.smoothing import Scheme
-from ..mesh.arrays import Doubles, Flags, Floats, Indices, Unsigned
 from ..mesh.connectivity import Connectivity
 from ..mesh.fans import fans_of
 from ..mesh.threads import share
@@ -65,7 +65,7 @@ looks softer in deep folds and is farther from dense faces: 0.3 costs five point
 class WholeSurface:
     """The surface of a frame where every edge is split once, and its normals."""
 
-    def __init__(self, mesh: Connectivity, rest_positions: Doubles) -> None:
+    def __init__(self, mesh: Connectivity, rest_positions: Floats64) -> None:
         """Make room; `rest_positions`: shape (V, 3)."""
         self._mesh = mesh
         self._fans = fans_of(mesh)
@@ -108,7 +108,7 @@ class WholeSurface:
         around = mesh.around.points, mesh.edge_sides, mesh.around.is_interior
         share(surface_normals_of_edges, len(mesh.edges), *around, rows, centres, normals)
 
-    def measure(self, displacements: Floats, turns: Floats) -> None:
+    def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far middles stand out of their edges, and their normals turn; shape (E,) each.
 
         Against the straight edge, and against the mean of the normals at its ends [rad], times the
@@ -129,7 +129,7 @@ class RefinedNormals(Scheme):
         self._scheme = scheme
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Bind the scheme, and make room for its surface."""
         self._scheme.bind(connectivity, rest_positions, rest_normals)
@@ -157,7 +157,7 @@ class RefinedNormals(Scheme):
         triangles = self._mesh.faces, self._mesh.triangle_edges
         share(turn_centres, frame.centre_count, *triangles, frame, self._surface.rows)
 
-    def measure(self, displacements: Floats, turns: Floats) -> None:
+    def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far middles would stand out, and turn the normal, of every edge, (E,) each.
 
         The normal of a vertex on a crease is between those of its sides, and a
@@ -169,7 +169,7 @@ class RefinedNormals(Scheme):
 
 @njit
 def see_from(
-    first: int, last: int, positions: Doubles, origin: int, near: Doubles, points: Floats
+    first: int, last: int, positions: Floats64, origin: int, near: Floats64, points: Floats32
 ) -> None:
     """Write positions less that of one vertex, shape (V, 3), in double and in single precision."""
     for v in range(first, last):
@@ -179,7 +179,7 @@ def see_from(
 
 
 @njit
-def between_rows(rows: Floats, a: np.uint32, b: np.uint32) -> Vector:
+def between_rows(rows: Floats32, a: np.uint32, b: np.uint32) -> Vector:
     """The vector from row a to row b."""
     return less(row_of(rows, b), ONE, row_of(rows, a))
 
@@ -189,10 +189,10 @@ def place_surface_centres(
     first: int,
     last: int,
     vertex_count: int,
-    faces: Unsigned,
-    triangle_edges: Indices,
-    rows: Floats,
-    centres: Floats,
+    faces: Unsigned32,
+    triangle_edges: Integers32,
+    rows: Floats32,
+    centres: Floats32,
 ) -> None:
     """Write the points in the middle of triangles with three split edges, shape (F, 3).
 
@@ -214,12 +214,12 @@ def place_surface_centres(
 def surface_normals_of_vertices(
     first: int,
     last: int,
-    starts: Unsigned,
-    corners: Unsigned,
-    triangle_edges: Indices,
-    rows: Floats,
-    centres: Floats,
-    normals: Floats,
+    starts: Unsigned32,
+    corners: Unsigned32,
+    triangle_edges: Integers32,
+    rows: Floats32,
+    centres: Floats32,
+    normals: Floats32,
 ) -> None:
     """Write unit normals of vertices, the first of `normals`, shape (V + E, 3).
 
@@ -245,12 +245,12 @@ def surface_normals_of_vertices(
 def surface_normals_of_edges(
     first: int,
     last: int,
-    points: Unsigned,
-    edge_sides: Unsigned,
+    points: Unsigned32,
+    edge_sides: Unsigned32,
     is_interior: Flags,
-    rows: Floats,
-    centres: Floats,
-    normals: Floats,
+    rows: Floats32,
+    centres: Floats32,
+    normals: Floats32,
 ) -> None:
     """Write unit normals of the middles of edges, the last of `normals`, shape (V + E, 3).
 
@@ -277,7 +277,7 @@ def surface_normals_of_edges(
 
 @njit
 def turn_normals(
-    first: int, last: int, points: Unsigned, frame: FrameBuffers, normals: Floats
+    first: int, last: int, points: Unsigned32, frame: FrameBuffers, normals: Floats32
 ) -> None:
     """Write the normals of vertices and of the points of split edges, as far as they have grown.
 
@@ -310,10 +310,10 @@ def turn_normals(
 def turn_centres(
     first: int,
     last: int,
-    faces: Unsigned,
-    triangle_edges: Indices,
+    faces: Unsigned32,
+    triangle_edges: Integers32,
     frame: FrameBuffers,
-    rows: Floats,
+    rows: Floats32,
 ) -> None:
     """Turn the normals of points in the middle of triangles as the least grown edge allows.
 
@@ -345,11 +345,11 @@ def turn_centres(
 def measure_edges(
     first: int,
     last: int,
-    points: Unsigned,
-    rows: Floats,
-    normals: Floats,
-    displacements: Floats,
-    turns: Floats,
+    points: Unsigned32,
+    rows: Floats32,
+    normals: Floats32,
+    displacements: Floats32,
+    turns: Floats32,
 ) -> None:
     """Write the distance of each middle from its edge, and turn of its normal x length, (E,).
 

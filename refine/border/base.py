@@ -15,8 +15,8 @@ from weakref import WeakValueDictionary
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.arrays import Floats32, Floats64, Integers32, Unsigned8, Unsigned32
 from ...geometry.read_only import read_only
-from ..mesh.arrays import Doubles, Floats, Indices, Small, Unsigned
 from ..mesh.connectivity import Connectivity, connect_writable
 from ..mesh.creases import with_creases
 from ..mesh.normals import vertex_normals
@@ -42,15 +42,15 @@ class BaseRefiner(Refiner):
 
     connectivity: Connectivity
     """Edges, neighbours and wedges of the mesh, found once; read only."""
-    rest_positions: Doubles
+    rest_positions: Floats64
     """Undeformed vertex positions, shape (V, 3); read only."""
-    positions: Doubles
+    positions: Floats64
     """Those of this frame, a copy: a simulation may run on meanwhile."""
-    points: Floats
+    points: Floats32
     """The same in single precision."""
-    normals: Floats
+    normals: Floats32
     """Vertex normals of this frame after `find_normals`, shape (V, 3)."""
-    edge_splits: Small
+    edge_splits: Unsigned8
     """What `splits` shows, for `fill` to write; 0 at first."""
 
     def __init__(
@@ -84,7 +84,7 @@ class BaseRefiner(Refiner):
         self._shape = positions.shape
         self._is_used = used_vertices(triangles, len(positions))
         self._accepted: StreamArrays = _NO_ROWS
-        self._geometry: tuple[Floats, Floats]
+        self._geometry: tuple[Floats32, Floats32]
 
     @abstractmethod
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
@@ -107,7 +107,7 @@ class BaseRefiner(Refiner):
         """Write the vertex normals of `positions` into `normals`."""
         vertex_normals(self.positions, self._mesh.faces, self.normals)
 
-    def write_wedges(self, rows: Floats) -> None:
+    def write_wedges(self, rows: Floats32) -> None:
         """Write copies of vertices along texture seams, and all texture coordinates and attributes.
 
         The first V rows have positions and normals already.
@@ -135,17 +135,17 @@ class BaseRefiner(Refiner):
         )
 
     @property
-    def splits(self) -> Small:
+    def splits(self) -> Unsigned8:
         """How often each edge was split in the last frame, shape (E,), read only."""
         return read_only(self.edge_splits)
 
     @property
-    def edges(self) -> Indices:
+    def edges(self) -> Integers32:
         """End points of each edge, shape (E, 2)."""
         return self.connectivity.edges
 
     @property
-    def triangle_edges(self) -> Indices:
+    def triangle_edges(self) -> Integers32:
         """Edges of each triangle, shape (F, 3); -1 for a triangle that names a vertex twice."""
         return self.connectivity.triangle_edges
 
@@ -242,7 +242,7 @@ class BaseRefiner(Refiner):
         check_lent("source", source, np.int32, (triangle_count,))
         self._take_arrays(vertices, triangles, source)
 
-    def _take_arrays(self, vertices: Floats, triangles: Unsigned, source: Indices) -> None:
+    def _take_arrays(self, vertices: Floats32, triangles: Unsigned32, source: Integers32) -> None:
         self._accepted = StreamArrays(vertices, triangles, source)
         self._geometry = vertices[:, 0:3], vertices[:, 3:6]
 
@@ -251,7 +251,7 @@ class BaseRefiner(Refiner):
         """The stream of frames that are lent none."""
         return OwnStream(self.vertex_columns, self.vertex_capacity, self.triangle_capacity)
 
-    def values_in(self, vertices: Floats) -> tuple[Floats | None, Mapping[str, Floats]]:
+    def values_in(self, vertices: Floats32) -> tuple[Floats32 | None, Mapping[str, Floats32]]:
         """Texture coordinates and attributes in rows of a frame, shape (N, columns): views."""
         if self._values is None:
             return None, _NO_ATTRIBUTES
@@ -268,4 +268,4 @@ _NO_ROWS = StreamArrays(
     triangles=np.zeros((0, 3), np.uint32),
     source=np.zeros(0, np.int32),
 )
-_NO_ATTRIBUTES: Mapping[str, Floats] = MappingProxyType({})
+_NO_ATTRIBUTES: Mapping[str, Floats32] = MappingProxyType({})

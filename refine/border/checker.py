@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..mesh.arrays import Flags, Indices, Wide
+from ...geometry.arrays import Flags, Integers32, Integers64
 from ..mesh.validation import LARGEST_COORDINATE
 from .plugin import Origins, RefinedMesh, Refiner
 
@@ -39,9 +39,9 @@ they are a part or more away from each other, and have to come with the same wei
 class _Places(NamedTuple):
     """Where output vertices lie on the input mesh, the same for equal places."""
 
-    vertices: Wide
+    vertices: Integers64
     """Input vertices in rising order, shape (N, 3); -1 where one has no part."""
-    parts: Wide
+    parts: Integers64
     """Their parts, which add up to `PARTS`, shape (N, 3)."""
 
 
@@ -108,7 +108,7 @@ def _check_arrays(mesh: RefinedMesh, origins: Origins, vertex_count: int, face_c
     _require_all(is_unit | (length == 0.0), "normals have length one or zero")
 
 
-def _input_faces(refiner: Refiner) -> Wide:
+def _input_faces(refiner: Refiner) -> Integers64:
     """Vertices of the input triangles, found again from their edges: corner i is on i - 1 and i.
 
     -1 for triangles without edges.
@@ -138,7 +138,7 @@ def _rounded(origins: Origins) -> _Places:
     return _Places(vertices, parts)
 
 
-def _number_places(places: _Places, mesh: RefinedMesh) -> Wide:
+def _number_places(places: _Places, mesh: RefinedMesh) -> Integers64:
     """Number equal places on the input mesh alike, shape (N,)."""
     # A point inside a triangle is one of this triangle, even if another has the same corners.
     is_inside = (places.parts > 0).all(axis=1)
@@ -148,7 +148,7 @@ def _number_places(places: _Places, mesh: RefinedMesh) -> Wide:
     return np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 
-def _check_same_places(mesh: RefinedMesh, points: Wide) -> None:
+def _check_same_places(mesh: RefinedMesh, points: Integers64) -> None:
     _, first, inverse = np.unique(points, return_index=True, return_inverse=True)
     original = first[inverse.reshape(-1)]
     _require_all(
@@ -169,7 +169,9 @@ def _check_sources(mesh: RefinedMesh, proper: Flags) -> None:
     )
 
 
-def _places_in_source(places: _Places, triangles: Wide, source_faces: Wide) -> Wide:
+def _places_in_source(
+    places: _Places, triangles: Integers64, source_faces: Integers64
+) -> Integers64:
     """Corners of subtriangles in parts of their source's coordinates, shape (M, 3, 3)."""
     is_corner = places.vertices[triangles][..., None] == source_faces[:, None, None, :]
     corners = (places.parts[triangles][..., None] * is_corner).sum(axis=2)
@@ -180,7 +182,9 @@ def _places_in_source(places: _Places, triangles: Wide, source_faces: Wide) -> W
     return np.asarray(corners, dtype=np.int64)
 
 
-def _check_cover(corners: Wide, source: Indices, proper: Wide, rows: Wide) -> None:
+def _check_cover(
+    corners: Integers64, source: Integers32, proper: Integers64, rows: Integers64
+) -> None:
     u = corners[:, 1] - corners[:, 0]
     v = corners[:, 2] - corners[:, 0]
     areas = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]  # in squares of parts; PARTS^2 of the whole
@@ -198,7 +202,9 @@ def _check_cover(corners: Wide, source: Indices, proper: Wide, rows: Wide) -> No
     )
 
 
-def _check_sub_edges(triangles: Wide, corners: Wide, source: Indices, refiner: Refiner) -> None:
+def _check_sub_edges(
+    triangles: Integers64, corners: Integers64, source: Integers32, refiner: Refiner
+) -> None:
     starts = triangles.ravel()
     ends = np.roll(triangles, -1, axis=1).ravel()
     # A sub-edge lies on edge i of its source where coordinate i + 2 is zero at both ends.
@@ -240,7 +246,7 @@ def _check_sub_edges(triangles: Wide, corners: Wide, source: Indices, refiner: R
     )
 
 
-def _sides_of_edges(refiner: Refiner) -> tuple[Wide, Wide]:
+def _sides_of_edges(refiner: Refiner) -> tuple[Integers64, Integers64]:
     """How many input triangles run along and against each edge."""
     faces = _input_faces(refiner)
     proper = faces[:, 0] >= 0

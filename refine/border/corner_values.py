@@ -11,7 +11,7 @@ from typing import TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from ..mesh.arrays import Floats, Wide
+from ...geometry.arrays import Floats32, Integers64
 from ..mesh.validation import as_array, checked_indices
 
 AttributeLike = npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]
@@ -38,22 +38,22 @@ class Values(TypedDict, total=False):
 class CornerValues:
     """Texture coordinates and attributes side by side: one row per different corner."""
 
-    values: Floats
+    values: Floats32
     """Shape (A, k)."""
-    corners: Wide | None
+    corners: Integers64 | None
     """Row of every corner, shape (F, 3); None if vertex v has row v."""
     columns: Mapping[str, slice]
     """Where the attributes are among the k columns."""
     has_uv: bool
     """Whether the first two columns are texture coordinates."""
-    own_rows: Mapping[str, Wide | None]
+    own_rows: Mapping[str, Integers64 | None]
     """Of each attribute: the row of its own array that a row here has, (A,); None: the same."""
     own_lengths: Mapping[str, int]
     """Of each attribute: the number of rows of its own array."""
 
 
 def checked_corner_values(
-    faces: Wide,
+    faces: Integers64,
     vertex_count: int,
     *,
     uv: npt.ArrayLike | None = None,
@@ -63,8 +63,8 @@ def checked_corner_values(
     """Join texture coordinates and attributes into one table; None if there are none."""
     if uv is None and face_uv is not None:
         raise ValueError("face_uv points into uv, but uv is None; pass both or neither")
-    tables: list[Floats] = []
-    indices: list[Wide | None] = []
+    tables: list[Floats32] = []
+    indices: list[Integers64 | None] = []
     columns: dict[str, slice] = {}
     lengths: dict[str, int] = {}
     if uv is not None:
@@ -107,9 +107,9 @@ def _checked_values(
     values: npt.ArrayLike,
     what_corners: str,
     corners: npt.ArrayLike | None,
-    faces: Wide,
+    faces: Integers64,
     vertex_count: int,
-) -> tuple[Floats, Wide | None]:
+) -> tuple[Floats32, Integers64 | None]:
     wanted = "numbers of shape " + (
         "(U, 2)" if what == "uv" else "(V, k), or a tuple of such values and the row of each corner"
     )

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from ..mesh.arrays import Floats
+from ...geometry.arrays import Floats32
 from ..mesh.validation import as_array
 from .corner_values import CornerValues
 
@@ -55,7 +55,7 @@ class FrameValues:
                 f"values[{name!r}] must be {wanted}, got {array.dtype} of shape {array.shape}"
             )
         with np.errstate(over="ignore"):
-            single: Floats = array.astype(np.float32, copy=False)
+            single: Floats32 = array.astype(np.float32, copy=False)
         if not np.isfinite(single).all():
             bad = int(np.isfinite(single).all(axis=1).argmin())
             raise ValueError(

@@ -6,8 +6,8 @@ wedge (mesh/seams.py), so that vertex v of the input is row v.
 
 import numpy as np
 
+from ...geometry.arrays import Floats32, Integers32, Unsigned32
 from ...jit import njit
-from ..mesh.arrays import Floats, Indices, Unsigned
 from ..mesh.connectivity import Connectivity
 
 GEOMETRY_COLUMNS = 6
@@ -15,7 +15,7 @@ GEOMETRY_COLUMNS = 6
 
 
 @njit
-def copy_along_seams(wedge_vertices: Unsigned, first: int, rows: Floats) -> None:
+def copy_along_seams(wedge_vertices: Unsigned32, first: int, rows: Floats32) -> None:
     """Copy position and normal of vertices on texture seams to their other sides.
 
     `wedge_vertices`: the vertex of every wedge, shape (W,), of which copies begin with `first`.
@@ -26,7 +26,7 @@ def copy_along_seams(wedge_vertices: Unsigned, first: int, rows: Floats) -> None
 
 
 @njit
-def spread_over_wedges(values: Floats, wedge_uv: Indices, spread: Floats) -> None:
+def spread_over_wedges(values: Floats32, wedge_uv: Integers32, spread: Floats32) -> None:
     """Write `wedge_values` of other values into `spread`, shape (W, k); zeros stay.
 
     `values`: shape (A, k); `wedge_uv`: the row of it that a wedge has, -1 for none, shape (W,).
@@ -39,7 +39,7 @@ def spread_over_wedges(values: Floats, wedge_uv: Indices, spread: Floats) -> Non
             spread[w, i] = values[row, i]
 
 
-def wedge_values(mesh: Connectivity, values: Floats) -> Floats:
+def wedge_values(mesh: Connectivity, values: Floats32) -> Floats32:
     """Texture coordinates and attributes of wedges, 0 where none is given, shape (W, k).
 
     `values`: shape (A, k); the mesh says which row of it a wedge has.
@@ -48,7 +48,7 @@ def wedge_values(mesh: Connectivity, values: Floats) -> Floats:
     return np.concatenate([values, zeros])[mesh.wedge_uv]  # -1 is the last row
 
 
-def write_wedges(mesh: Connectivity, values: Floats, rows: Floats) -> None:
+def write_wedges(mesh: Connectivity, values: Floats32, rows: Floats32) -> None:
     """Write what follows a vertex: its copies along seams, and the values of `wedge_values`."""
     copy_along_seams(mesh.wedge_vertices, mesh.vertex_count, rows)
     rows[: len(values), GEOMETRY_COLUMNS:] = values

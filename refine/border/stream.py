@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..mesh.arrays import Floats, Indices, Unsigned
+from ...geometry.arrays import Floats32, Integers32, Unsigned32
 
 GROWTH_FACTOR = 1.25
 """How much more than it needs a stream of one's own takes when it has to grow."""
@@ -13,11 +13,11 @@ GROWTH_FACTOR = 1.25
 class StreamArrays(NamedTuple):
     """The arrays of a stream, checked."""
 
-    vertices: Floats
+    vertices: Floats32
     """Rows of the output (rows.py), shape (.., k)."""
-    triangles: Unsigned
+    triangles: Unsigned32
     """Their corners, shape (.., 3)."""
-    source: Indices
+    source: Integers32
     """Input triangle that each is part of, shape (..,)."""
 
 
@@ -27,12 +27,12 @@ class OwnStream:
     def __init__(self, columns: int, vertex_capacity: int, triangle_capacity: int) -> None:
         self._most = vertex_capacity, triangle_capacity
         self.vertices = np.zeros((0, columns), dtype=np.float32)
-        self.triangles: Unsigned = np.zeros((0, 3), dtype=np.uint32)
-        self.source: Indices = np.zeros(0, dtype=np.int32)
+        self.triangles: Unsigned32 = np.zeros((0, 3), dtype=np.uint32)
+        self.source: Integers32 = np.zeros(0, dtype=np.int32)
 
     @classmethod
     def with_triangles(
-        cls, columns: int, vertex_count: int, triangles: Unsigned, source: Indices
+        cls, columns: int, vertex_count: int, triangles: Unsigned32, source: Integers32
     ) -> "OwnStream":
         """A stream of frames that all have these triangles, and so many vertices."""
         stream = cls(columns, vertex_count, len(triangles))

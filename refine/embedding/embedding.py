@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
 from ...geometry.read_only import read_only
 from ...jit import njit
 from ..beyond.cubic import SLIVER_SINE
-from ..mesh.arrays import Doubles, Floats, Indices, Wide
 from ..mesh.connectivity import connect_writable
 from ..mesh.creases import with_creases
 from ..mesh.threads import share
@@ -34,9 +34,9 @@ from .places import across_edges, has_area, nearest_places, settle
 class EmbeddedPoints(NamedTuple):
     """The fine mesh in a frame."""
 
-    positions: Doubles
+    positions: Floats64
     """Shape (N, 3)."""
-    normals: Floats | None
+    normals: Floats32 | None
     """Those that were given, turned with the surface, of length one, shape (N, 3), or None."""
 
 
@@ -97,7 +97,7 @@ class Embedding:
         self._numbers = numbers.reshape(-1).astype(np.int32)
         self._surface = SmoothSurface(mesh, rest, used)
         self.offsets = np.zeros_like(fine)
-        self._normals: Floats | None = None
+        self._normals: Floats32 | None = None
         on_surface = np.empty_like(fine)
         self._place(self.offsets, on_surface)
         self.offsets = fine - on_surface
@@ -127,7 +127,7 @@ class Embedding:
         share(turn_vectors, len(turned), *given_places, self._normals, turned)
         return EmbeddedPoints(moved, turned)
 
-    def carry(self, values: npt.ArrayLike) -> Doubles:
+    def carry(self, values: npt.ArrayLike) -> Floats64:
         """Values at coarse vertices, shape (V,) or (V, k), at the fine ones: (N,) or (N, k).
 
         They are linear in each triangle. Raises ValueError for another number of values.
@@ -138,17 +138,17 @@ class Embedding:
                 f"values must be one for each of {len(self._positions)} coarse vertices, got "
                 f"shape {table.shape}"
             )
-        carried: Doubles = np.einsum(
+        carried: Floats64 = np.einsum(
             "nc,nc...->n...", self.weights, table[self._faces[self.triangles]]
         )
         return carried
 
-    def _place(self, offsets: Doubles, moved: Doubles) -> None:
+    def _place(self, offsets: Floats64, moved: Floats64) -> None:
         places = self._surface.rows, self._numbers, self.weights
         share(place_points, len(moved), *places, offsets, self._stretch, moved)
 
 
-def checked_vectors(name: str, given: npt.ArrayLike, count: int | None) -> Doubles:
+def checked_vectors(name: str, given: npt.ArrayLike, count: int | None) -> Floats64:
     """A copy of finite vectors, shape (count, 3), or of any number where that is None."""
     rows = "N" if count is None else str(count)
     array = as_array(name, given, f"numbers of shape ({rows}, 3)")
@@ -172,7 +172,7 @@ def _groups(
     face_labels: npt.ArrayLike | None,
     count: int,
     is_proper: npt.NDArray[np.bool_],
-) -> tuple[list[tuple[Wide, Wide]], Wide]:
+) -> tuple[list[tuple[Integers64, Integers64]], Integers64]:
     """Fine points with the triangles that they may lie on; label of each triangle, -1 for none."""
     if (labels is None) != (face_labels is None):
         raise ValueError("labels and face_labels go together: give both or none of them")
@@ -196,7 +196,7 @@ def _groups(
     return groups, label_of
 
 
-def _checked_labels(name: str, given: npt.ArrayLike, count: int) -> Wide:
+def _checked_labels(name: str, given: npt.ArrayLike, count: int) -> Integers64:
     array = as_array(name, given, f"integers of shape ({count},)")
     if array.shape != (count,) or array.dtype.kind not in "iub":
         raise ValueError(
@@ -207,7 +207,7 @@ def _checked_labels(name: str, given: npt.ArrayLike, count: int) -> Wide:
 
 @njit
 def rotation_at(
-    rows: Doubles, t: int, u: float, v: float, w: float
+    rows: Floats64, t: int, u: float, v: float, w: float
 ) -> tuple[float, float, float, float, float]:
     """Unit quaternion w, x, y, z and stretch at a place on patch t; no turn where it has none."""
     at = (u, v, w)
@@ -230,12 +230,12 @@ def rotation_at(
 def place_points(
     first: int,
     last: int,
-    rows: Doubles,
-    numbers: Indices,
-    weights: Doubles,
-    offsets: Doubles,
+    rows: Floats64,
+    numbers: Integers32,
+    weights: Floats64,
+    offsets: Floats64,
     stretched: float,
-    moved: Doubles,
+    moved: Floats64,
 ) -> None:
     """Write fine points, shape (N, 3): places on patches `numbers`, and their turned offsets.
 
@@ -260,11 +260,11 @@ def place_points(
 def turn_vectors(
     first: int,
     last: int,
-    rows: Doubles,
-    numbers: Indices,
-    weights: Doubles,
-    vectors: Floats,
-    turned: Floats,
+    rows: Floats64,
+    numbers: Integers32,
+    weights: Floats64,
+    vectors: Floats32,
+    turned: Floats32,
 ) -> None:
     """Write vectors at fine points as the surface turns them, shape (N, 3)."""
     for k in range(first, last):

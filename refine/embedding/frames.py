@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...geometry.arrays import Floats64, Integers64, Unsigned32
 from ...geometry.normals import cross_products
 from ...jit import njit
 from ..beyond.cubic import SLIVER_SINE, weigh_corners
-from ..mesh.arrays import Doubles, Unsigned, Wide
 from ..mesh.connectivity import Connectivity
 from ..mesh.creases import corner_sectors
 from ..mesh.vectors import Vector, cross, difference, dot, less, plus, times, write_row
@@ -31,16 +31,16 @@ LEAST_SIDE = 0.1
 class Fans(NamedTuple):
     """What lies around S sectors, K corners in all; compiled code takes it as it is."""
 
-    starts: Unsigned
+    starts: Unsigned32
     """Corners of sector s are from `starts[s]` to `starts[s + 1]` in what follows, (S + 1,)."""
-    corners: Unsigned
+    corners: Unsigned32
     """Vertices of their triangles, that of the sector first, shape (K, 3)."""
-    shares: Doubles
+    shares: Floats64
     """What a triangle adds to the axes, shape (K, 5): the weight of its cross product; then how
     much of its first and second edge, for each of two directions that lie in the surface."""
 
 
-def sound_sectors(mesh: Connectivity, rest: Doubles) -> Wide:
+def sound_sectors(mesh: Connectivity, rest: Floats64) -> Integers64:
     """Sector of each corner, shape (F, 3): parted at borders and creases, and where it has no side.
 
     Where the normals of a sector cancel each other, as on a sheet with two faces that lie on one
@@ -63,7 +63,9 @@ def sound_sectors(mesh: Connectivity, rest: Doubles) -> Wide:
     return sectors
 
 
-def fans_of_sectors(mesh: Connectivity, rest: Doubles, corner_sector: Wide, used: Wide) -> Fans:
+def fans_of_sectors(
+    mesh: Connectivity, rest: Floats64, corner_sector: Integers64, used: Integers64
+) -> Fans:
     """The fans of the sectors `used`; `corner_sector`: of each corner, shape (F, 3)."""
     around = np.flatnonzero(np.isin(corner_sector, used))  # corners, 3 x triangle + i
     number = np.searchsorted(used, corner_sector.ravel()[around])
@@ -80,7 +82,7 @@ def fans_of_sectors(mesh: Connectivity, rest: Doubles, corner_sector: Wide, used
     return Fans(starts, np.ascontiguousarray(fans), shares)
 
 
-def _shares(rest: Doubles, fans: Unsigned, sector: Wide, weights: Doubles) -> Doubles:
+def _shares(rest: Floats64, fans: Unsigned32, sector: Integers64, weights: Floats64) -> Floats64:
     """`Fans.shares`; `sector`: of each corner, (K,); `weights`: of cross products, (K,)."""
     first = rest[fans[:, 1]] - rest[fans[:, 0]]
     second = rest[fans[:, 2]] - rest[fans[:, 0]]
@@ -106,7 +108,7 @@ def _shares(rest: Doubles, fans: Unsigned, sector: Wide, weights: Doubles) -> Do
     return np.stack(shares, axis=1)
 
 
-def _sums(numbers: Wide, values: Doubles, count: int) -> Doubles:
+def _sums(numbers: Integers64, values: Floats64, count: int) -> Floats64:
     """Sums of rows with the same number, shape (count, k)."""
     columns = [np.bincount(numbers, column, minlength=count) for column in values.T]
     return np.stack(columns, axis=1)
@@ -122,7 +124,7 @@ def unit_of(v: Vector) -> Vector:
 
 
 @njit
-def find_axes(first: int, last: int, positions: Doubles, fans: Fans, axes: Doubles) -> None:
+def find_axes(first: int, last: int, positions: Floats64, fans: Fans, axes: Floats64) -> None:
     """Write the axes of sectors, shape (S, 16).
 
     Rows normal, across, beside of length one; the stretch; and where the two directions that lie in
@@ -153,7 +155,7 @@ def find_axes(first: int, last: int, positions: Doubles, fans: Fans, axes: Doubl
 
 
 @njit
-def find_frames(first: int, last: int, rest: Doubles, axes: Doubles, frames: Doubles) -> None:
+def find_frames(first: int, last: int, rest: Floats64, axes: Floats64, frames: Floats64) -> None:
     """Write frames of sectors, (S, 5): how far `axes`, (S, 16), have turned since `rest`.
 
     A quaternion is zero where a frame is none, now or at rest: then it counts for nothing.
@@ -173,7 +175,7 @@ def find_frames(first: int, last: int, rest: Doubles, axes: Doubles, frames: Dou
 
 
 @njit
-def write_quaternion(turn: Doubles, quaternion: Doubles) -> None:
+def write_quaternion(turn: Floats64, quaternion: Floats64) -> None:
     """Write the quaternion w, x, y, z of a rotation, a matrix (3, 3).
 
     From its largest number, as Shepperd does (1978, "Quaternion from rotation matrix").

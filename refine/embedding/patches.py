@@ -24,9 +24,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...geometry.arrays import Floats64, Integers64, Unsigned32
 from ...jit import njit
 from ..beyond.cubic import follow_borders
-from ..mesh.arrays import Doubles, Unsigned, Wide
 from ..mesh.connectivity import Connectivity
 from ..mesh.threads import share
 from ..mesh.vectors import Vector, cross, difference, dot, less, plus, row_of, times, write_row
@@ -59,26 +59,26 @@ class Patches(NamedTuple):
     T patches, D directed edges and S sectors of vertices (frames.py).
     """
 
-    corners: Unsigned
+    corners: Unsigned32
     """Vertices of each patch, shape (T, 3)."""
-    sectors: Unsigned
+    sectors: Unsigned32
     """Sectors that its corners belong to, shape (T, 3)."""
-    near: Unsigned
+    near: Unsigned32
     """Directed edges from each corner to the next one and to the one before, shape (T, 6)."""
-    ways: Unsigned
+    ways: Unsigned32
     """Of directed edges: the vertices a and b from which and to which they run; the vertex before
     a on a border that runs on, or NO_VERTEX inside; the sector at a; shape (D, 4)."""
-    slopes: Doubles
+    slopes: Floats64
     """How much of both directions of the sector their tangent at rest is, shape (D, 2); on a
     border, the edge's share of the chord across a."""
-    rest: Doubles
+    rest: Floats64
     """Axes of sectors at rest, shape (S, 16), as `find_axes` writes them."""
 
 
 class SmoothSurface:
     """The patches over some triangles of a mesh, in the positions of a frame."""
 
-    def __init__(self, mesh: Connectivity, rest: Doubles, triangles: Wide) -> None:
+    def __init__(self, mesh: Connectivity, rest: Floats64, triangles: Integers64) -> None:
         """Bind to `rest`, positions (V, 3), and the patches of `triangles`, shape (T,)."""
         corner_sector = sound_sectors(mesh, rest)
         used, numbers = np.unique(corner_sector[triangles], return_inverse=True)
@@ -104,11 +104,11 @@ class SmoothSurface:
         self.move(rest)
 
     @property
-    def normals(self) -> Doubles:
+    def normals(self) -> Floats64:
         """Unit normals of sectors, shape (S, 3); zero where triangles have none."""
         return np.ascontiguousarray(self._axes[:, :3])
 
-    def move(self, positions: Doubles) -> None:
+    def move(self, positions: Floats64) -> None:
         """Find the patches over `positions`, shape (V, 3)."""
         patches = self._patches
         share(find_axes, len(self._axes), positions, self._fans, self._axes)
@@ -119,8 +119,8 @@ class SmoothSurface:
 
 
 def _directed_edges(
-    mesh: Connectivity, rest: Doubles, triangles: Wide, sectors: Unsigned
-) -> tuple[Unsigned, Unsigned]:
+    mesh: Connectivity, rest: Floats64, triangles: Integers64, sectors: Unsigned32
+) -> tuple[Unsigned32, Unsigned32]:
     """`Patches.near` and `Patches.ways` of some triangles, whose corners have `sectors`."""
     borders = follow_borders(mesh, rest)
     faces = mesh.faces[triangles]
@@ -141,7 +141,7 @@ def _directed_edges(
 
 
 @njit
-def find_slopes(first: int, last: int, rest: Doubles, patches: Patches) -> None:
+def find_slopes(first: int, last: int, rest: Floats64, patches: Patches) -> None:
     """Write `patches.slopes`, from the axes at rest."""
     for k in range(first, last):
         a, b, before, s = patches.ways[k]
@@ -159,7 +159,7 @@ def find_slopes(first: int, last: int, rest: Doubles, patches: Patches) -> None:
 
 
 @njit
-def share_of_chord(positions: Doubles, before: np.uint32, a: np.uint32, b: np.uint32) -> float:
+def share_of_chord(positions: Floats64, before: np.uint32, a: np.uint32, b: np.uint32) -> float:
     """The part of a border's length from the vertex before a to b that is the edge from a to b."""
     length = distance(positions, a, b)
     whole = length + distance(positions, before, a)
@@ -167,7 +167,7 @@ def share_of_chord(positions: Doubles, before: np.uint32, a: np.uint32, b: np.ui
 
 
 @njit
-def distance(positions: Doubles, a: np.uint32, b: np.uint32) -> float:
+def distance(positions: Floats64, a: np.uint32, b: np.uint32) -> float:
     """Length of an edge."""
     d = difference(positions, a, b)
     return float(np.sqrt(dot(d, d)))
@@ -175,7 +175,7 @@ def distance(positions: Doubles, a: np.uint32, b: np.uint32) -> float:
 
 @njit
 def find_tangents(
-    first: int, last: int, positions: Doubles, patches: Patches, axes: Doubles, tangents: Doubles
+    first: int, last: int, positions: Floats64, patches: Patches, axes: Floats64, tangents: Floats64
 ) -> None:
     """Write a third of the tangents of directed edges, shape (D, 3)."""
     for k in range(first, last):
@@ -203,11 +203,11 @@ def find_tangents(
 def write_patches(
     first: int,
     last: int,
-    positions: Doubles,
+    positions: Floats64,
     patches: Patches,
-    tangents: Doubles,
-    frames: Doubles,
-    rows: Doubles,
+    tangents: Floats64,
+    frames: Floats64,
+    rows: Floats64,
 ) -> None:
     """Write the control points and frames of patches, shape (T, 45)."""
     for t in range(first, last):
@@ -235,7 +235,7 @@ def write_patches(
 
 
 @njit
-def place_on(rows: Doubles, t: int, u: float, v: float, w: float) -> Vector:
+def place_on(rows: Floats64, t: int, u: float, v: float, w: float) -> Vector:
     """The place on patch t with barycentric coordinates u, v, w."""
     uu = u * u
     vv = v * v

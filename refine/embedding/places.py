@@ -11,10 +11,10 @@ found; its offset is the rest.
 
 import numpy as np
 
+from ...geometry.arrays import Flags, Floats64, Integers64, Unsigned32
 from ...geometry.closest import closest_points
 from ...geometry.normals import cross_products
 from ...jit import njit
-from ..mesh.arrays import Doubles, Flags, Unsigned, Wide
 from ..mesh.connectivity import Connectivity
 from ..mesh.threads import share
 from ..mesh.vectors import Vector, dot, less, plus, row_of, times
@@ -37,12 +37,12 @@ UPRIGHT = 1e-12
 
 
 def nearest_places(
-    points: Doubles,
-    normals: Doubles | None,
-    rest: Doubles,
-    faces: Wide,
-    groups: list[tuple[Wide, Wide]],
-) -> tuple[Wide, Doubles]:
+    points: Floats64,
+    normals: Floats64 | None,
+    rest: Floats64,
+    faces: Integers64,
+    groups: list[tuple[Integers64, Integers64]],
+) -> tuple[Integers64, Floats64]:
     """The nearest places on flat triangles: their numbers, shape (N,), and coordinates, (N, 3).
 
     `groups`: points, and the triangles that these may lie on.
@@ -59,7 +59,7 @@ def nearest_places(
     return triangles, weights
 
 
-def has_area(rest: Doubles, faces: Wide, sliver: float) -> Flags:
+def has_area(rest: Floats64, faces: Integers64, sliver: float) -> Flags:
     """Flag triangles that have a direction, shape (F,)."""
     areas = np.linalg.norm(cross_products(rest, faces), axis=1)
     edges = rest[faces[:, [1, 2, 0]]] - rest[faces]
@@ -67,7 +67,7 @@ def has_area(rest: Doubles, faces: Wide, sliver: float) -> Flags:
     return np.asarray(areas > sliver * longest**2)
 
 
-def across_edges(mesh: Connectivity, label: Wide) -> Wide:
+def across_edges(mesh: Connectivity, label: Integers64) -> Integers64:
     """The side beyond each side of triangles, 4 x triangle + i, shape (F, 3); -1 for none.
 
     Only through edges inside, between triangles of one label, shape (F,); -1 for no label.
@@ -84,7 +84,11 @@ def across_edges(mesh: Connectivity, label: Wide) -> Wide:
 
 
 def settle(
-    points: Doubles, surface: SmoothSurface, across: Wide, triangles: Wide, weights: Doubles
+    points: Floats64,
+    surface: SmoothSurface,
+    across: Integers64,
+    triangles: Integers64,
+    weights: Floats64,
 ) -> None:
     """Slide places, (N,) and (N, 3), until points, shape (N, 3), stand upright on them."""
     given = surface.rows, surface.normals, surface.sectors, across
@@ -95,13 +99,13 @@ def settle(
 def slide(
     first: int,
     last: int,
-    points: Doubles,
-    rows: Doubles,
-    normals: Doubles,
-    sectors: Unsigned,
-    across: Wide,
-    triangles: Wide,
-    weights: Doubles,
+    points: Floats64,
+    rows: Floats64,
+    normals: Floats64,
+    sectors: Unsigned32,
+    across: Integers64,
+    triangles: Integers64,
+    weights: Floats64,
 ) -> None:
     """Do that for some of the points."""
     place = np.zeros(3)
@@ -137,12 +141,12 @@ def slide(
 @njit
 def linearise(
     point: Vector,
-    rows: Doubles,
-    normals: Doubles,
-    sectors: Unsigned,
+    rows: Floats64,
+    normals: Floats64,
+    sectors: Unsigned32,
     t: int,
-    place: Doubles,
-    columns: Doubles,
+    place: Floats64,
+    columns: Floats64,
 ) -> tuple[float, Vector]:
     """Distance from a place on patch t, and what of the way there lies aside of its normal.
 
@@ -167,7 +171,7 @@ def linearise(
 
 
 @njit
-def slope(rows: Doubles, t: int, u: float, v: float, w: float, i: int) -> Vector:
+def slope(rows: Floats64, t: int, u: float, v: float, w: float, i: int) -> Vector:
     """How a place on patch t moves as its coordinate i grows and the others stay."""
     at = (u, v, w)
     j = (i + 1) % 3
@@ -181,7 +185,7 @@ def slope(rows: Doubles, t: int, u: float, v: float, w: float, i: int) -> Vector
 
 
 @njit
-def advance(aside: Vector, columns: Doubles, across: Wide, t: int, place: Doubles) -> int:
+def advance(aside: Vector, columns: Floats64, across: Integers64, t: int, place: Floats64) -> int:
     """Move a place on patch t by one step of Newton's method, to its edge at most.
 
     Returns the corner opposite of the edge that is to be crossed, INSIDE, or STUCK.
@@ -209,7 +213,7 @@ def advance(aside: Vector, columns: Doubles, across: Wide, t: int, place: Double
 
 
 @njit
-def newton_step(aside: Vector, columns: Doubles) -> Vector:
+def newton_step(aside: Vector, columns: Floats64) -> Vector:
     """The step in barycentric coordinates that takes `aside` away, by least squares."""
     first = less(row_of(columns, 1), 1.0, row_of(columns, 0))
     second = less(row_of(columns, 2), 1.0, row_of(columns, 0))
@@ -228,7 +232,7 @@ def newton_step(aside: Vector, columns: Doubles) -> Vector:
 
 
 @njit
-def step_along(aside: Vector, columns: Doubles, i: int, j: int) -> Vector:
+def step_along(aside: Vector, columns: Floats64, i: int, j: int) -> Vector:
     """The step along the edge from corner i to corner j that takes most of `aside` away."""
     way = less(row_of(columns, j), 1.0, row_of(columns, i))
     squared = dot(way, way)
@@ -241,7 +245,7 @@ def step_along(aside: Vector, columns: Doubles, i: int, j: int) -> Vector:
 
 
 @njit
-def cross_edge(across: Wide, t: int, hit: int, place: Doubles) -> int:
+def cross_edge(across: Integers64, t: int, hit: int, place: Floats64) -> int:
     """Carry a place on the edge opposite of corner `hit` of patch t to the patch beyond it."""
     side = (hit + 1) % 3
     beyond = across[t, side]

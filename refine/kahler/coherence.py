@@ -41,9 +41,9 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.arrays import Unsigned8, Unsigned16
 from ...geometry.read_only import read_only
 from ...jit import njit
-from ..mesh.arrays import Short, Small
 from .table import (
     CONFIGURATION_COUNT,
     MOST_SPLITS,
@@ -69,9 +69,9 @@ class SequenceTables:
     """Edges in the order of their splits; number 0 is (), shorter ones come first."""
     patterns: Patterns
     """Subtriangles of each sequence."""
-    transitions: Short
+    transitions: Unsigned16
     """Next sequence for each sequence and each configuration wanted, shape (271, 27)."""
-    removals: Small
+    removals: Unsigned8
     """How many splits this takes back out of order, shape (271, 27)."""
 
 
@@ -200,13 +200,13 @@ class Coherent:
         self._steps = tables.transitions.copy(), tables.removals.copy()
         self.patterns = tables.patterns
         """A row for each sequence."""
-        self._states: Short = np.zeros(face_count, dtype=np.uint16)
+        self._states: Unsigned16 = np.zeros(face_count, dtype=np.uint16)
         self._shown = read_only(self._states)
         self.removals_out_of_order = 0
         """Splits taken back while a later one stayed, in all frames; each may turn lines."""
 
     @property
-    def states(self) -> Short:
+    def states(self) -> Unsigned16:
         """The sequence of each triangle, (F,), read only: all that lives from frame to frame.
 
         May be set to those of another refiner of the same mesh, which goes on from there. Raises
@@ -225,7 +225,7 @@ class Coherent:
             )
         self._states[:] = given
 
-    def follow(self, configurations: Short) -> Short:
+    def follow(self, configurations: Unsigned16) -> Unsigned16:
         """Move every triangle from its sequence to the next one; return these, shape (F,).
 
         `configurations`: s0 + 3 s1 + 9 s2 of each triangle in the frame, shape (F + 1,).
@@ -236,10 +236,10 @@ class Coherent:
 
 @njit
 def follow_splits(
-    configurations: Short,
-    transitions: Short,
-    removals: Small,
-    states: Short,
+    configurations: Unsigned16,
+    transitions: Unsigned16,
+    removals: Unsigned8,
+    states: Unsigned16,
 ) -> int:
     """Replace every sequence in `states`, shape (F,), by the next one for its configuration.
 

@@ -20,10 +20,10 @@ from numbers import Real
 
 import numpy as np
 
+from ...geometry.arrays import Flags, Floats32, Floats64, Unsigned8, Unsigned32
 from ...jit import njit
 from ..border.plugin import View
 from ..border.registry import Registry
-from ..mesh.arrays import Doubles, Flags, Floats, Small, Unsigned
 from ..mesh.connectivity import Connectivity
 from ..mesh.vectors import ONE, WIDTH, add_to_row, cross, difference, dot, row_of
 from .smoothing import Scheme
@@ -61,21 +61,21 @@ class Criterion:
     is_constant = False
     """Whether every frame gets the same splits. A refiner asks once then, at its first frame, and
     keeps its vertices and triangles in number and order."""
-    _metric: Floats = np.zeros(0, dtype=np.float32)
+    _metric: Floats32 = np.zeros(0, dtype=np.float32)
     """What `mark` follows from, shape (E,)."""
 
     def set_scheme(self, scheme: Scheme) -> None:
         """Learn where points will go."""
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Learn the undeformed mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
 
     def set_view(self, view: View | None) -> None:
         """Learn where the eye is in this frame; None if nobody said."""
 
-    def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
+    def mark(self, positions: Floats64, normals: Floats32, splits: Unsigned8) -> None:
         """Write 0, 1 or 2 for every edge into `splits`, shape (E,)."""
         if len(self._metric) != len(splits):
             self._metric = np.zeros(len(splits), dtype=np.float32)
@@ -88,14 +88,14 @@ class Criterion:
         """Whether it has a `measure`."""
         return type(self).measure is not Criterion.measure
 
-    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+    def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the refinement metric of every edge, shape (E,): above 0 one split, above 1 two.
 
         It has to be a continuous function of the positions for blending to be one.
         """
         raise NotImplementedError(f"{type(self).__name__} must have a method mark or measure")
 
-    def complaint(self, metric: Floats) -> str:
+    def complaint(self, metric: Floats32) -> str:
         """Describe the edges whose metric is NaN; `metric`: of every edge, shape (E,)."""
         bad = np.flatnonzero(np.isnan(metric))
         return (
@@ -103,7 +103,7 @@ class Criterion:
             f"edges, first for edge {bad[0]}; measure must write a number for every edge"
         )
 
-    def find_complaint(self, positions: Doubles, normals: Floats, edge_count: int) -> str | None:
+    def find_complaint(self, positions: Floats64, normals: Floats32, edge_count: int) -> str | None:
         """Measure a frame again, each of its parts alone; return the first complaint of one."""
         for part in self.parts:
             complaint = part.find_complaint(positions, normals, edge_count)
@@ -153,7 +153,7 @@ class Thresholds:
         """The metric that cannot be exceeded: 1 where the second level is switched off."""
         return np.float32(1.0 if np.isinf(self.twice) else np.inf)
 
-    def scale(self, measures: Floats, unit: np.float32 = ONE) -> None:
+    def scale(self, measures: Floats32, unit: np.float32 = ONE) -> None:
         """Turn measures of edges, shape (E,), into metrics; `unit`: of the thresholds."""
         scale_metric(measures, self.once * unit, self.width * unit, self.most)
 
@@ -170,7 +170,7 @@ class NormalDrop(Criterion):
         """Drops above which an edge is split once and twice; may be replaced at any time."""
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Store the dot product of every edge of the undeformed mesh."""
         self._edges = connectivity.edges.astype(np.uint32)  # what may be written is taken faster
@@ -183,13 +183,13 @@ class NormalDrop(Criterion):
         if undefined.any():
             self._rest_dots[undefined[connectivity.edges].any(axis=1)] = -np.inf
 
-    def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
+    def mark(self, positions: Floats64, normals: Floats32, splits: Unsigned8) -> None:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
         once = self.thresholds.once
         twice = self.thresholds.twice
         mark_drops(normals, self._edges, self._rest_dots, once, twice, self._dots, splits)
 
-    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+    def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the refinement metric of every edge, shape (E,)."""
         edge_dots(normals, self._edges, metric)
         np.subtract(self._rest_dots, metric, out=metric)
@@ -197,7 +197,7 @@ class NormalDrop(Criterion):
 
 
 @njit
-def edge_dots(normals: Floats, edges: Unsigned, dots: Floats) -> None:
+def edge_dots(normals: Floats32, edges: Unsigned32, dots: Floats32) -> None:
     """Write the dot product of the normals at both ends of every edge into `dots`, shape (E,)."""
     assert normals.shape[1] == WIDTH and edges.shape[1] == 2
     for e in range(edges.shape[0]):
@@ -208,13 +208,13 @@ def edge_dots(normals: Floats, edges: Unsigned, dots: Floats) -> None:
 
 @njit
 def mark_drops(
-    normals: Floats,
-    edges: Unsigned,
-    rest_dots: Floats,
+    normals: Floats32,
+    edges: Unsigned32,
+    rest_dots: Floats32,
     once: np.float32,
     twice: np.float32,
-    dots: Floats,
-    splits: Small,
+    dots: Floats32,
+    splits: Unsigned8,
 ) -> None:
     """Write 0, 1 or 2 into `splits`, shape (E,), by the drop of the dot product (as above).
 
@@ -228,7 +228,7 @@ def mark_drops(
 
 
 @njit
-def splits_of_metric(metric: Floats, splits: Small) -> int:
+def splits_of_metric(metric: Floats32, splits: Unsigned8) -> int:
     """Write 0, 1 or 2 into `splits`, shape (E,): above 0 once, above 1 twice; count NaN."""
     undefined = 0
     for e in range(metric.shape[0]):
@@ -238,14 +238,14 @@ def splits_of_metric(metric: Floats, splits: Small) -> int:
 
 
 @njit
-def scale_metric(metric: Floats, once: np.float32, width: np.float32, most: np.float32) -> None:
+def scale_metric(metric: Floats32, once: np.float32, width: np.float32, most: np.float32) -> None:
     """Turn the measures in `metric`, shape (E,), into metrics (see `Thresholds`)."""
     for e in range(metric.shape[0]):
         metric[e] = min((metric[e] - once) / width, most)
 
 
 @njit
-def find_undefined_normals(faces: Unsigned, positions: Doubles, undefined: Flags) -> None:
+def find_undefined_normals(faces: Unsigned32, positions: Floats64, undefined: Flags) -> None:
     """Flag the vertices, shape (V,), whose normal is nothing but rounding."""
     sums = np.zeros((positions.shape[0], 4))
     for t in range(faces.shape[0]):

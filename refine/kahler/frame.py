@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..mesh.arrays import Doubles, Floats, Short, Small, Unsigned, Wide
+from ...geometry.arrays import Floats32, Floats64, Integers64, Unsigned8, Unsigned16, Unsigned32
 from ..mesh.connectivity import Connectivity
 
 ROWS, ONCE, TWICE, TRIANGLES, CENTRES = range(5)
@@ -25,50 +25,50 @@ subtriangles, triangles with a point in the middle."""
 class FrameBuffers(NamedTuple):
     """One frame of a mesh with V vertices, F triangles, E edges and R attribute edges."""
 
-    positions: Doubles
+    positions: Floats64
     """Deformed vertex positions, shape (V, 3)."""
-    points: Floats
+    points: Floats32
     """The same in single precision, which is enough for all but differences."""
-    normals: Floats
+    normals: Floats32
     """Their unit normals, shape (V, 3)."""
-    splits: Small
+    splits: Unsigned8
     """Splits of attribute edges, edges first, shape (R + 1,); the last is where no edge is."""
-    geomorph_once: Floats
+    geomorph_once: Floats32
     """How far the middle point of an edge is from the straight edge to its place, shape (E,).
 
     Ones, but for frames that are blended (beyond/blending.py); no meaning where no point is.
     """
-    geomorph_twice: Floats
+    geomorph_twice: Floats32
     """How far its quarter points are."""
-    first_points: Unsigned
+    first_points: Unsigned32
     """Output row of the first point of every split attribute edge, shape (R + 1,).
 
     There is one point on an edge split once, its middle; one split twice has a quarter point, the
     middle and another quarter point, from its first end to its second.
     """
-    split_once: Unsigned
+    split_once: Unsigned32
     """The edges that are split; the first `counts[ONCE]` count."""
-    split_twice: Unsigned
+    split_twice: Unsigned32
     """The edges that are split twice; the first `counts[TWICE]` count."""
-    configurations: Short
+    configurations: Unsigned16
     """s0 + 3 s1 + 9 s2 of each triangle's edges, shape (F + 1,); the last one has no meaning."""
-    centre_triangles: Unsigned
+    centre_triangles: Unsigned32
     """The triangles with a point in the middle, which only blending has; the first
     `counts[CENTRES]` count. Shape (F + 1,)."""
-    centre_weights: Floats
+    centre_weights: Floats32
     """Where in its triangle each of these points is: weights of the corners, shape (F + 1, 3)."""
-    counts: Wide
+    counts: Integers64
     """How many there are of what, shape (5,): see ROWS, ONCE, TWICE, TRIANGLES, CENTRES."""
-    rows: Floats
+    rows: Floats32
     """The output: x y z, nx ny nz, attributes; row v is vertex v."""
 
     @property
-    def split_edges(self) -> Unsigned:
+    def split_edges(self) -> Unsigned32:
         """The edges that are split in this frame, once or twice."""
         return self.split_once[: self.counts[ONCE]]
 
     @property
-    def twice_split_edges(self) -> Unsigned:
+    def twice_split_edges(self) -> Unsigned32:
         """Those of them that are split twice."""
         return self.split_twice[: self.counts[TWICE]]
 
@@ -79,7 +79,7 @@ class FrameBuffers(NamedTuple):
 
 
 def buffers_for(
-    mesh: Connectivity, positions: Doubles, points: Floats, normals: Floats
+    mesh: Connectivity, positions: Floats64, points: Floats32, normals: Floats32
 ) -> FrameBuffers:
     """Make the buffers of a mesh, but for `rows`, of which there are none yet."""
     edge_count = len(mesh.edges)

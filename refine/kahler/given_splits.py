@@ -15,8 +15,8 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.arrays import Floats32, Floats64, Integers32, Unsigned8
 from ..border.plugin import View
-from ..mesh.arrays import Doubles, Floats, Indices, Small
 from ..mesh.connectivity import Connectivity
 from ..mesh.validation import as_array
 from .criterion import Criterion
@@ -44,7 +44,7 @@ class GivenSplits(Criterion):
         self._splits = given.astype(np.uint8)
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Raise ValueError unless there is a number for every edge."""
         edge_count = len(connectivity.edges)
@@ -54,11 +54,11 @@ class GivenSplits(Criterion):
                 f"(refiner.edges), got {len(self._splits)}"
             )
 
-    def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
+    def mark(self, positions: Floats64, normals: Floats32, splits: Unsigned8) -> None:
         """Write the given splits, shape (E,)."""
         splits[:] = self._splits
 
-    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+    def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write a metric by which points have grown as far as they can, shape (E,)."""
         np.copyto(metric, self._splits)
         metric[self._splits == 0] = -np.inf
@@ -68,11 +68,11 @@ class SplitsEdges(Protocol):
     """A `Refiner`, or a `WeldedRefiner`."""
 
     @property
-    def edges(self) -> Indices:
+    def edges(self) -> Integers32:
         """End points of each edge, shape (E, 2)."""
 
     @property
-    def splits(self) -> Small:
+    def splits(self) -> Unsigned8:
         """How often each edge was split in the last frame, shape (E,)."""
 
     def refine(self, positions: npt.NDArray[np.floating], /, *, view: View | None = None) -> object:
@@ -81,7 +81,7 @@ class SplitsEdges(Protocol):
 
 def splits_of_clip(
     refiner: SplitsEdges, frames: Iterable[npt.NDArray[np.floating]], view: View | None = None
-) -> Small:
+) -> Unsigned8:
     """Refine all frames; return the most splits that any of them has at each edge, shape (E,).
 
         changing = refine.create("kahler", faces, rest)

@@ -14,9 +14,9 @@ Everything here goes from the edges that are split, not from the triangles: most
 
 import numpy as np
 
+from ...geometry.arrays import Floats32, Integers32, Integers64, Unsigned8, Unsigned16, Unsigned32
 from ...jit import njit
 from ..border.rows import GEOMETRY_COLUMNS
-from ..mesh.arrays import Floats, Indices, Short, Small, Unsigned, Wide
 from ..mesh.vectors import HALF, QUARTER, THREE_QUARTERS, WIDTH, row_of, write_row
 from .frame import ONCE, ROWS, TRIANGLES, TWICE, FrameBuffers
 from .table import CENTRE
@@ -36,16 +36,16 @@ def points_on(split: int) -> int:
 
 @njit
 def number_points(
-    edge_sides: Unsigned,
-    more_sides: Unsigned,
-    attribute_edges: Unsigned,
+    edge_sides: Unsigned32,
+    more_sides: Unsigned32,
+    attribute_edges: Unsigned32,
     wedge_count: int,
-    splits: Small,
-    first_points: Unsigned,
-    split_once: Unsigned,
-    split_twice: Unsigned,
-    configurations: Short,
-    counts: Wide,
+    splits: Unsigned8,
+    first_points: Unsigned32,
+    split_once: Unsigned32,
+    split_twice: Unsigned32,
+    configurations: Unsigned16,
+    counts: Integers64,
 ) -> tuple[int, int, int]:
     """List the split edges, give new points their rows, and triangles their configuration.
 
@@ -95,7 +95,7 @@ def number_points(
 
 
 @njit
-def copy_along_attribute_edges(attribute_edges: Unsigned, frame: FrameBuffers) -> None:
+def copy_along_attribute_edges(attribute_edges: Unsigned32, frame: FrameBuffers) -> None:
     """Copy position and normal of new points on texture seams to their other sides."""
     for r in range(frame.geomorph_once.shape[0], attribute_edges.shape[0]):
         for point in range(points_on(frame.splits[r])):
@@ -106,7 +106,7 @@ def copy_along_attribute_edges(attribute_edges: Unsigned, frame: FrameBuffers) -
 
 
 @njit
-def place_attributes(attribute_edge_uv: Indices, frame: FrameBuffers, values: Floats) -> None:
+def place_attributes(attribute_edge_uv: Integers32, frame: FrameBuffers, values: Floats32) -> None:
     """Write attributes of new points, linearly along attribute edges; `values`: shape (A, k)."""
     vertices = frame.rows
     for r in range(attribute_edge_uv.shape[0]):
@@ -128,16 +128,16 @@ def place_attributes(attribute_edge_uv: Indices, frame: FrameBuffers, values: Fl
 
 @njit
 def look_up_triangles(
-    corners: Unsigned,
-    triangle_attribute_edges: Unsigned,
-    splits: Small,
-    first_points: Unsigned,
-    table_rows: Short,
-    subtriangle_counts: Small,
-    subtriangles: Small,
+    corners: Unsigned32,
+    triangle_attribute_edges: Unsigned32,
+    splits: Unsigned8,
+    first_points: Unsigned32,
+    table_rows: Unsigned16,
+    subtriangle_counts: Unsigned8,
+    subtriangles: Unsigned8,
     first_centre: int,
-    triangles: Unsigned,
-    source: Indices,
+    triangles: Unsigned32,
+    source: Integers32,
 ) -> None:
     """Write the subtriangles of every triangle by its row in the table (section 4.3).
 

@@ -21,12 +21,12 @@ from typing import NamedTuple, Unpack
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.arrays import Floats32, Floats64, Integers32, Unsigned8, Unsigned16, Unsigned32
 from ...geometry.read_only import read_only
 from ..border.base import BaseRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.stream import OwnStream, StreamArrays
-from ..mesh.arrays import Doubles, Floats, Indices, Short, Small, Unsigned
 from ..mesh.threads import beside
 from .coherence import Coherent
 from .criterion import Criterion, NormalDrop
@@ -45,9 +45,9 @@ class Topology(NamedTuple):
     """The triangles of all frames, where every frame has the same."""
 
     vertex_count: int
-    triangles: Unsigned
+    triangles: Unsigned32
     """Shape (M, 3), read only."""
-    source: Indices
+    source: Integers32
     """Input triangle that each is part of, shape (M,), read only."""
 
 
@@ -183,7 +183,7 @@ class Kahler(BaseRefiner):
             return OwnStream.with_triangles(self.vertex_columns, *self.topology)
         return super()._own_stream
 
-    def _look_up_in(self, patterns: Patterns, rows: Short) -> None:
+    def _look_up_in(self, patterns: Patterns, rows: Unsigned16) -> None:
         """Take a table, and where each triangle says which row of it is its own."""
         self._patterns = patterns
         self._of_look_up = (
@@ -217,7 +217,7 @@ class Kahler(BaseRefiner):
             self.history.follow(self._frame.configurations)
         return vertex_count, triangle_count
 
-    def _place(self, rows: Floats) -> None:
+    def _place(self, rows: Floats32) -> None:
         """Write vertices and new points: positions, normals, attributes (section 4.2)."""
         self._scheme.place(self._frame)
         if self._values is not None:
@@ -225,7 +225,7 @@ class Kahler(BaseRefiner):
             copy_along_attribute_edges(self.connectivity.attribute_edges, self._frame)
             place_attributes(self.connectivity.attribute_edge_uv, self._frame, self._values.values)
 
-    def _look_up(self, triangles: Unsigned, source: Indices) -> None:
+    def _look_up(self, triangles: Unsigned32, source: Integers32) -> None:
         """Write the subtriangles of every triangle (section 4.3)."""
         look_up_triangles(*self._of_look_up, self._first_centre, triangles, source)
 
@@ -258,8 +258,8 @@ class Kahler(BaseRefiner):
 
 
 def points_on_edges(
-    ends: npt.NDArray[np.integer], splits: Small
-) -> tuple[npt.NDArray[np.integer], Doubles]:
+    ends: npt.NDArray[np.integer], splits: Unsigned8
+) -> tuple[npt.NDArray[np.integer], Floats64]:
     """Where the new points on edges lie: ends and their weights, shape (N, 3) each.
 
     `ends`: of attribute edges, shape (R, 2); `splits`: of these edges, shape (R,).

@@ -46,9 +46,9 @@ scheme is one small class, `Scheme`.
 
 import numpy as np
 
+from ...geometry.arrays import Floats32, Floats64, Integers64, Unsigned8, Unsigned32
 from ...jit import njit
 from ..border.registry import Registry
-from ..mesh.arrays import Doubles, Floats, Small, Unsigned, Wide
 from ..mesh.connectivity import Connectivity
 from ..mesh.rings import NEAR_COUNT, vertex_rings
 from ..mesh.vectors import (
@@ -97,7 +97,7 @@ class Scheme:
     """Schemes that this one asks. Each of them, too, serves one refiner only."""
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Learn the mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
 
@@ -124,7 +124,7 @@ class Scheme:
         """Whether it has a `measure`."""
         return type(self).measure is not Scheme.measure
 
-    def measure(self, displacements: Floats, turns: Floats) -> None:
+    def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far a split would move the middle of each edge and turn its normal, (E,) each.
 
         The turn is an angle [rad] times the length of the edge. The criterion `displacement` reads
@@ -141,7 +141,7 @@ class LoopScheme(Scheme):
     """The paper's scheme: Loop's rules with Warren's weights (section 4.2)."""
 
     def bind(
-        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Work out the weights of every vertex."""
         self._around = connectivity.around
@@ -175,7 +175,7 @@ class LoopScheme(Scheme):
 
 
 @njit
-def write_mean_normal(rows: Floats, p: np.uint32, q: np.uint32, row: np.uint32) -> None:
+def write_mean_normal(rows: Floats32, p: np.uint32, q: np.uint32, row: np.uint32) -> None:
     """Write the unit mean of the normals of two rows."""
     total = plus(row_of(rows, p, 3), row_of(rows, q, 3))
     write_row(rows, row, unit(total), 3)
@@ -183,7 +183,7 @@ def write_mean_normal(rows: Floats, p: np.uint32, q: np.uint32, row: np.uint32) 
 
 @njit
 def geomorph_vertices(
-    ends: Unsigned, edges: Unsigned, geomorph: Floats, vertex_geomorph: Floats
+    ends: Unsigned32, edges: Unsigned32, geomorph: Floats32, vertex_geomorph: Floats32
 ) -> None:
     """A vertex moves as much as the most grown edge at it: 0 where none is split, shape (V,).
 
@@ -200,15 +200,15 @@ def geomorph_vertices(
 
 @njit
 def place_vertices(
-    points: Floats,
-    normals: Floats,
-    own: Floats,
-    ring: Floats,
-    near: Unsigned,
-    starts: Unsigned,
-    others: Unsigned,
-    geomorph: Floats,
-    vertices: Floats,
+    points: Floats32,
+    normals: Floats32,
+    own: Floats32,
+    ring: Floats32,
+    near: Unsigned32,
+    starts: Unsigned32,
+    others: Unsigned32,
+    geomorph: Floats32,
+    vertices: Floats32,
 ) -> None:
     """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3).
 
@@ -231,15 +231,15 @@ def place_vertices(
 
 @njit
 def place_middles(
-    points: Floats,
-    normals: Floats,
-    around: Unsigned,
-    edges: Unsigned,
-    splits: Small,
-    first_points: Unsigned,
-    geomorph: Floats,
-    middles: Floats,
-    vertices: Floats,
+    points: Floats32,
+    normals: Floats32,
+    around: Unsigned32,
+    edges: Unsigned32,
+    splits: Unsigned8,
+    first_points: Unsigned32,
+    geomorph: Floats32,
+    middles: Floats32,
+    vertices: Floats32,
 ) -> None:
     """Write the first-level point of every split edge (Fig. 3), and keep it in `middles`.
 
@@ -268,7 +268,7 @@ def place_middles(
 
 @njit
 def wing(
-    points: Floats, middles: Floats, ends: tuple[int, int], e: np.uint32, geomorph: np.float32
+    points: Floats32, middles: Floats32, ends: tuple[int, int], e: np.uint32, geomorph: np.float32
 ) -> Vector:
     """The first-level point of a neighbour edge, as far as it has grown out of its midpoint."""
     start = row_of(points, ends[0])
@@ -278,23 +278,23 @@ def wing(
 
 
 @njit
-def geomorph_of_split(splits: Small, geomorph: Floats, e: np.uint32) -> np.float32:
+def geomorph_of_split(splits: Unsigned8, geomorph: Floats32, e: np.uint32) -> np.float32:
     """How far the middle of an edge has grown; 0 where it has none."""
     return geomorph[e] if splits[e] > 0 else ZERO
 
 
 @njit
 def place_quarters(
-    points: Floats,
-    around: Unsigned,
-    wings: Unsigned,
-    edges: Unsigned,
-    splits: Small,
-    first_points: Unsigned,
-    once: Floats,
-    twice: Floats,
-    middles: Floats,
-    vertices: Floats,
+    points: Floats32,
+    around: Unsigned32,
+    wings: Unsigned32,
+    edges: Unsigned32,
+    splits: Unsigned8,
+    first_points: Unsigned32,
+    once: Floats32,
+    twice: Floats32,
+    middles: Floats32,
+    vertices: Floats32,
 ) -> None:
     """Write the quarter points of every edge that is split twice, and move its middle (Fig. 4).
 
@@ -344,25 +344,25 @@ def place_quarters(
 
 @njit
 def place_by_loop(  # noqa: PLR0913 - all of it at once: four calls take longer than their work
-    points: Floats,
-    normals: Floats,
-    around: Unsigned,
-    wings: Unsigned,
-    own: Floats,
-    ring: Floats,
-    near: Unsigned,
-    starts: Unsigned,
-    others: Unsigned,
-    splits: Small,
-    first_points: Unsigned,
-    split_once: Unsigned,
-    split_twice: Unsigned,
-    counts: Wide,
-    once: Floats,
-    twice: Floats,
-    vertex_geomorph: Floats,
-    middles: Floats,
-    rows: Floats,
+    points: Floats32,
+    normals: Floats32,
+    around: Unsigned32,
+    wings: Unsigned32,
+    own: Floats32,
+    ring: Floats32,
+    near: Unsigned32,
+    starts: Unsigned32,
+    others: Unsigned32,
+    splits: Unsigned8,
+    first_points: Unsigned32,
+    split_once: Unsigned32,
+    split_twice: Unsigned32,
+    counts: Integers64,
+    once: Floats32,
+    twice: Floats32,
+    vertex_geomorph: Floats32,
+    middles: Floats32,
+    rows: Floats32,
 ) -> None:
     """Write moved vertices, the first level and the second level of a frame.
 

@@ -64,7 +64,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..mesh.arrays import Small, Wide
+from ...geometry.arrays import Integers64, Unsigned8
 
 CENTRE = 12
 """Number of a point in the middle of a triangle, which none of the paper's patterns has."""
@@ -78,7 +78,7 @@ POINTS_OF_EDGE = (0, 1, 3)
 Triangle = tuple[int, int, int]
 
 
-def _point_coordinates() -> Wide:
+def _point_coordinates() -> Integers64:
     """Barycentric coordinates of the 12 points in quarters, shape (12, 3); rows sum to 4."""
     corners = 4 * np.eye(3, dtype=np.int64)
     points = list(corners)
@@ -194,12 +194,12 @@ class Patterns(NamedTuple):
     The paper looks up the row s_0 + 3 s_1 + 9 s_2 (section 4.3).
     """
 
-    counts: Small
+    counts: Unsigned8
     """Subtriangles of each row, shape (K,)."""
-    subtriangles: Small
+    subtriangles: Unsigned8
     """Their points, numbered as above, unused ones 0, shape (K, most, 3)."""
 
-    def of(self, row: int) -> Small:
+    def of(self, row: int) -> Unsigned8:
         """Subtriangles of one row, shape (M, 3)."""
         return self.subtriangles[row, : self.counts[row]]
 

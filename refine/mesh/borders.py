@@ -7,7 +7,7 @@ or of a table cloth. Corners are found on the mesh at rest and remain corners wh
 
 import numpy as np
 
-from .arrays import Doubles, Unsigned
+from ...geometry.arrays import Floats64, Unsigned32
 from .connectivity import Connectivity
 
 CORNER_COSINE = 0.5
@@ -18,7 +18,7 @@ TURN_ROUNDING = 1e-9
 """A turn that misses 60 degrees by less than this is none."""
 
 
-def border_neighbours(mesh: Connectivity, rest_positions: Doubles) -> Unsigned:
+def border_neighbours(mesh: Connectivity, rest_positions: Floats64) -> Unsigned32:
     """Find the two neighbours of every vertex along its border, shape (V, 2).
 
     A vertex where no border runs on is its own neighbour, twice. `rest_positions`: shape (V, 3).

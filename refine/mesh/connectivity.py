@@ -29,9 +29,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.arrays import Flags, Integers32, Unsigned32
 from ...geometry.read_only import read_only
 from ...jit import njit
-from .arrays import Flags, Indices, Unsigned
 from .seams import find_seams
 from .validation import as_indices
 
@@ -41,9 +41,9 @@ MOST_VERTICES = 2**31  # whose numbers are 32 bit, as in the tables that the ker
 class Surroundings(NamedTuple):
     """What lies around each edge: all that placing points on edges asks of a mesh."""
 
-    points: Unsigned
+    points: Unsigned32
     """a, b and the opposite corners c, d, shape (E, 4); c = d = a on a border."""
-    wings: Unsigned
+    wings: Unsigned32
     """Edges ac, bc, ad, bd, shape (E, 4); the edge itself on a border."""
     is_interior: Flags
     """Whether two triangles run through the edge in opposite directions, shape (E,)."""
@@ -52,29 +52,29 @@ class Surroundings(NamedTuple):
 class Connectivity(NamedTuple):
     """Index arrays of one mesh; V vertices, F triangles, E edges, W wedges, R attribute edges."""
 
-    faces: Unsigned
+    faces: Unsigned32
     """Vertices of each triangle, shape (F, 3)."""
-    edges: Indices
+    edges: Integers32
     """End points a, b of each edge, in the order of first use, shape (E, 2)."""
     around: Surroundings
     """What lies around each edge."""
-    edge_sides: Unsigned
+    edge_sides: Unsigned32
     """The first two sides of each edge, 4 x triangle + i, shape (E, 2); 4 F where there is none."""
-    more_sides: Unsigned
+    more_sides: Unsigned32
     """Edge and side beyond the first two, shape (X, 2): edges of three triangles."""
-    triangle_edges: Indices
+    triangle_edges: Integers32
     """Edges of each triangle, shape (F, 3); -1 for a triangle that names a vertex twice."""
-    corners: Unsigned
+    corners: Unsigned32
     """Wedge of each triangle corner, shape (F, 3); equals `faces` without texture seams."""
-    triangle_attribute_edges: Unsigned
+    triangle_attribute_edges: Unsigned32
     """2 x attribute edge + (1 if the triangle runs against it), shape (F, 3); 2 R where is none."""
-    wedge_vertices: Unsigned
+    wedge_vertices: Unsigned32
     """Vertex of each wedge, shape (W,)."""
-    wedge_uv: Indices
+    wedge_uv: Integers32
     """Texture coordinate of each wedge, shape (W,); -1 where no corner gives the vertex one."""
-    attribute_edges: Unsigned
+    attribute_edges: Unsigned32
     """Edge of each attribute edge, shape (R,)."""
-    attribute_edge_uv: Indices
+    attribute_edge_uv: Integers32
     """Texture coordinates at the ends a, b of each attribute edge, shape (R, 2)."""
     is_sharp: Flags
     """Edges that are creases and count as borders (creases.py), shape (E,)."""
@@ -152,7 +152,9 @@ def connect_writable(
 
 
 @njit
-def find_edges(faces: Unsigned, vertex_count: int) -> tuple[Indices, Indices, Unsigned, Indices]:
+def find_edges(
+    faces: Unsigned32, vertex_count: int
+) -> tuple[Integers32, Integers32, Unsigned32, Integers32]:
     """Number the edges in the order of their first use, which keeps neighbours near in memory.
 
     Returns the edge of each half-edge, -1 for none, shape (3 F,); end points, shape (E, 2); the
@@ -199,8 +201,12 @@ def find_edges(faces: Unsigned, vertex_count: int) -> tuple[Indices, Indices, Un
 
 @njit
 def find_surroundings(
-    faces: Unsigned, edge_of: Indices, edges: Indices, sides: Unsigned, side_counts: Indices
-) -> tuple[Unsigned, Unsigned, Flags]:
+    faces: Unsigned32,
+    edge_of: Integers32,
+    edges: Integers32,
+    sides: Unsigned32,
+    side_counts: Integers32,
+) -> tuple[Unsigned32, Unsigned32, Flags]:
     """Find the fields of `Surroundings` (see the picture)."""
     points = np.empty((edges.shape[0], 4), np.uint32)
     wings = np.empty((edges.shape[0], 4), np.uint32)
@@ -231,7 +237,7 @@ def find_surroundings(
     return points, wings, is_interior
 
 
-def _more_sides(edge_of: Indices, sides: Unsigned, side_counts: Indices) -> Unsigned:
+def _more_sides(edge_of: Integers32, sides: Unsigned32, side_counts: Integers32) -> Unsigned32:
     """Sides of edges of more than two triangles that `edge_sides` has no room for."""
     proper = np.flatnonzero(edge_of >= 0)
     crowded = proper[side_counts[edge_of[proper]] > 2]

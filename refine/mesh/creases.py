@@ -20,26 +20,28 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...geometry.arrays import Flags, Floats64, Integers32, Unsigned32
 from ...jit import njit
-from .arrays import Doubles, Flags, Indices, Unsigned
 from .connectivity import Connectivity
 
 
 class Sectors(NamedTuple):
     """A mesh whose vertices are parted by sectors; without creases a sector is a vertex."""
 
-    corners: Unsigned
+    corners: Unsigned32
     """Sector of each corner, shape (F, 3). Vertex v has sector v, and others after all V."""
-    edges: Unsigned
+    edges: Unsigned32
     """Sectors at both ends of every edge, on its first side; and after all E those of creases on
     their second side, shape (E', 2)."""
-    edge_of: Unsigned
+    edge_of: Unsigned32
     """The edge that each of these is of, shape (E',)."""
     sector_count: int
     """S, of all sectors."""
 
 
-def with_creases(mesh: Connectivity, rest_positions: Doubles, crease_angle: object) -> Connectivity:
+def with_creases(
+    mesh: Connectivity, rest_positions: Floats64, crease_angle: object
+) -> Connectivity:
     """Make borders of the edges that are sharper at rest than `crease_angle` [degrees].
 
     None keeps the mesh as it is; `rest_positions`: shape (V, 3). Raises ValueError for an angle
@@ -69,7 +71,7 @@ def sharpened(mesh: Connectivity, is_sharp: Flags) -> Connectivity:
     return mesh._replace(around=around, is_sharp=is_sharp)
 
 
-def dihedral_angles(mesh: Connectivity, positions: Doubles) -> Doubles:
+def dihedral_angles(mesh: Connectivity, positions: Floats64) -> Floats64:
     """Angle between the normals of the two triangles at each interior edge [rad], shape (E,).
 
     0 for all other edges, and beside triangles without an area.
@@ -107,7 +109,7 @@ def sectors_of(mesh: Connectivity) -> Sectors:
     )
 
 
-def corner_sectors(mesh: Connectivity, is_parting: Flags) -> tuple[Unsigned, int]:
+def corner_sectors(mesh: Connectivity, is_parting: Flags) -> tuple[Unsigned32, int]:
     """The sector of each corner, shape (F, 3), and the number of sectors.
 
     `is_parting`: edges that sectors end at, shape (E,). Vertex v has sector v, others come after
@@ -134,8 +136,8 @@ def corner_sectors(mesh: Connectivity, is_parting: Flags) -> tuple[Unsigned, int
 
 
 def _ends_on_side(
-    mesh: Connectivity, corners: Unsigned, sides: Unsigned, edges: np.ndarray
-) -> Unsigned:
+    mesh: Connectivity, corners: Unsigned32, sides: Unsigned32, edges: np.ndarray
+) -> Unsigned32:
     """Sectors at the ends a, b of some edges, (N, 2), on given sides, 4 x triangle + i, (N,)."""
     triangles = (sides >> 2).astype(np.int64)
     places = (sides & 3).astype(np.int64)
@@ -149,13 +151,13 @@ def _ends_on_side(
 
 @njit
 def _joined_corners(
-    faces: Unsigned,
-    edges: Indices,
-    edge_sides: Unsigned,
-    more_sides: Unsigned,
+    faces: Unsigned32,
+    edges: Integers32,
+    edge_sides: Unsigned32,
+    more_sides: Unsigned32,
     is_sharp: Flags,
     on_crease: Flags,
-) -> Indices:
+) -> Integers32:
     """A corner that stands for all of the same sector, for every corner, shape (3 F,).
 
     Corners at a vertex without creases are one sector, also where no edge joins them.

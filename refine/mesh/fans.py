@@ -10,20 +10,20 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .arrays import Unsigned
+from ...geometry.arrays import Unsigned32
 from .connectivity import Connectivity
 
 
 class Fans(NamedTuple):
     """What lies around each vertex of a mesh with V vertices, F triangles and E edges."""
 
-    corner_starts: Unsigned
+    corner_starts: Unsigned32
     """Those of vertex v are `corners[corner_starts[v]:corner_starts[v + 1]]`, shape (V + 1,)."""
-    corners: Unsigned
+    corners: Unsigned32
     """Corners that lie there, 4 x triangle + i, triangles in their order, shape (3 F,)."""
-    neighbour_starts: Unsigned
+    neighbour_starts: Unsigned32
     """The same for neighbours, shape (V + 1,)."""
-    neighbours: Unsigned
+    neighbours: Unsigned32
     """The other ends of the edges there, edges in their order, shape (2 E,)."""
 
 
@@ -45,7 +45,7 @@ def fans_around(
 
 def _by_vertex(
     vertices: npt.NDArray[np.integer], vertex_count: int
-) -> tuple[Unsigned, npt.NDArray[np.intp]]:
+) -> tuple[Unsigned32, npt.NDArray[np.intp]]:
     order = np.argsort(vertices, axis=None, kind="stable")
     counts = np.bincount(vertices.ravel(), minlength=vertex_count)
     return np.concatenate([[0], np.cumsum(counts)]).astype(np.uint32), order

@@ -9,8 +9,8 @@ origin loses nothing. Normals at rest and in a frame come from the same code: se
 
 import numpy as np
 
+from ...geometry.arrays import Floats32, Floats64, Unsigned32
 from ...jit import njit
-from .arrays import Doubles, Floats, Unsigned
 from .vectors import (
     ONE,
     WIDTH,
@@ -29,13 +29,13 @@ from .vectors import (
 
 
 @njit
-def cross_product(positions: Doubles, a: np.uint32, b: np.uint32, c: np.uint32) -> Vector:
+def cross_product(positions: Floats64, a: np.uint32, b: np.uint32, c: np.uint32) -> Vector:
     """Normal of a triangle times twice its area."""
     return cross(between(positions, a, b), between(positions, a, c))
 
 
 @njit
-def normalise(vectors: Floats) -> None:
+def normalise(vectors: Floats32) -> None:
     """Bring vectors, shape (V, 3), to length one; those that are zero stay zero.
 
     Without a branch the loop takes several at a time. Vectors whose square single precision
@@ -57,7 +57,7 @@ def normalise(vectors: Floats) -> None:
 
 
 @njit
-def vertex_normals(positions: Doubles, faces: Unsigned, normals: Floats) -> None:
+def vertex_normals(positions: Floats64, faces: Unsigned32, normals: Floats32) -> None:
     """Write the area-weighted unit normal of every vertex into `normals`, shape (V, 3).
 
     Zero where a vertex has no triangle with an area. `faces`: vertices of triangles, shape (F, 3).

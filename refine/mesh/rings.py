@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .arrays import Doubles, Floats, Unsigned
+from ...geometry.arrays import Floats32, Floats64, Unsigned32
 from .connectivity import Connectivity
 
 BORDER_OWN_WEIGHT = 3 / 4
@@ -37,15 +37,15 @@ class Rings(NamedTuple):
     it as it is.
     """
 
-    own: Floats
+    own: Floats32
     """Weight of the vertex itself, less its weight in its own ring, shape (V,)."""
-    ring: Floats
+    ring: Floats32
     """Weight of every vertex in the ring, shape (V,); 0 where the vertex never moves."""
-    near: Unsigned
+    near: Unsigned32
     """The first eight of the ring, shape (V, 8)."""
-    starts: Unsigned
+    starts: Unsigned32
     """The rest: `others[starts[v]:starts[v + 1]]`, shape (V + 1,)."""
-    others: Unsigned
+    others: Unsigned32
     """Vertices that are further on in their rings than the eighth."""
 
 
@@ -92,6 +92,6 @@ def vertex_rings(connectivity: Connectivity) -> Rings:
     )
 
 
-def warren_weight(valence: npt.NDArray[np.integer]) -> Doubles:
+def warren_weight(valence: npt.NDArray[np.integer]) -> Floats64:
     """Weight of one neighbour of an interior vertex: 3/16 for valence 3, else 3/(8 valence)."""
     return np.where(valence == 3, 3.0 / 16.0, 3.0 / (8.0 * np.maximum(valence, 1)))

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .arrays import Doubles, Flags, Indices, Unsigned, Wide
+from ...geometry.arrays import Flags, Floats64, Integers32, Integers64, Unsigned32
 from .validation import checked_mesh, size_of, used_vertices
 
 SAME_PLACE = 1e-9
@@ -28,10 +28,10 @@ LAST_BITS = 2.0
 
 
 def find_seams(
-    faces: Unsigned,
-    edge_of: Indices,
-    edges: Indices,
-    sides: Unsigned,
+    faces: Unsigned32,
+    edge_of: Integers32,
+    edges: Integers32,
+    sides: Unsigned32,
     vertex_count: int,
     face_uv: npt.NDArray[np.integer] | None,
 ) -> dict[str, npt.NDArray[Any]]:
@@ -73,7 +73,7 @@ def find_seams(
     }
 
 
-def number_by_first_use(keys: Wide) -> tuple[Wide, Wide]:
+def number_by_first_use(keys: Integers64) -> tuple[Integers64, Integers64]:
     """Number equal keys alike, in the order in which they first appear.
 
     Returns the number of every key, and for every number the place of its first use. The order
@@ -88,7 +88,7 @@ def number_by_first_use(keys: Wide) -> tuple[Wide, Wide]:
 
 def weld(
     positions: npt.ArrayLike, faces: npt.ArrayLike, *, tolerance: float | None = None
-) -> tuple[Indices, Indices]:
+) -> tuple[Integers32, Integers32]:
     """Merge vertices at one place: for meshes whose vertices were doubled along seams.
 
     `positions`: shape (V, 3); `faces`: shape (F, 3); `tolerance`: how far apart vertices may lie
@@ -120,7 +120,7 @@ def weld(
     return first_uses.astype(np.int32), number[corners].astype(np.int32)
 
 
-def number_places(points: Doubles, distance: float) -> Wide:
+def number_places(points: Floats64, distance: float) -> Integers64:
     """Number points, shape (N, 3), so that those have one number that are one place.
 
     They are one place if they are not farther apart than `distance`, or others lie between them
@@ -139,7 +139,7 @@ def number_places(points: Doubles, distance: float) -> Wide:
     return np.asarray(joined[numbers.reshape(-1)], dtype=np.int64)
 
 
-def _near_pairs(places: Doubles, distance: float) -> Wide:
+def _near_pairs(places: Floats64, distance: float) -> Integers64:
     """Pairs of different places not farther apart than `distance`, shape (P, 2).
 
     Places are sorted into cubes, which are some times larger than the distance. One that lies so
@@ -174,8 +174,8 @@ def _near_pairs(places: Doubles, distance: float) -> Wide:
 
 
 def _attribute_edges(
-    corner_uv: Wide, edge_of: Wide, is_reversed: Flags, first: Wide
-) -> tuple[Wide, Wide, Wide]:
+    corner_uv: Integers64, edge_of: Integers64, is_reversed: Flags, first: Integers64
+) -> tuple[Integers64, Integers64, Integers64]:
     """Attribute edge of each half-edge; the edge of each, and texture coordinates at its ends."""
     start_uv = corner_uv.ravel()
     end_uv = np.roll(corner_uv, -1, axis=1).ravel()
@@ -191,7 +191,9 @@ def _attribute_edges(
     )
 
 
-def _wedges(faces: Wide, corner_uv: Wide, vertex_count: int) -> tuple[Wide, Wide, Wide]:
+def _wedges(
+    faces: Integers64, corner_uv: Integers64, vertex_count: int
+) -> tuple[Integers64, Integers64, Integers64]:
     """Wedge of each corner, vertex of each wedge, texture coordinate of each wedge."""
     vertices = faces.ravel()
     number, first = number_by_first_use(
@@ -207,8 +209,8 @@ def _wedges(faces: Wide, corner_uv: Wide, vertex_count: int) -> tuple[Wide, Wide
 
 
 def _originals_first(
-    number: Wide, first: Wide, owner: Wide, owner_first: Wide
-) -> tuple[Wide, Wide]:
+    number: Integers64, first: Integers64, owner: Integers64, owner_first: Integers64
+) -> tuple[Integers64, Integers64]:
     """Renumber copies so that copy k < len(owner_first) is the one its owner k was first seen as.
 
     `owner`: edge (or vertex) of each copy; `owner_first`: first use of each owner, -1 for none.

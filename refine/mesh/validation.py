@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.arrays import Flags, Floats32, Floats64, Integers64
 from ...jit import njit
-from .arrays import Doubles, Flags, Floats, Wide
 
 LARGEST_COORDINATE = 1e15
 """No coordinate may be larger: cross products of edges have to stay finite in single precision."""
@@ -25,7 +25,7 @@ def checked_mesh(
     positions: npt.ArrayLike,
     faces: npt.ArrayLike,
     names: tuple[str, str] = ("rest_positions", "faces"),
-) -> tuple[Doubles, Wide]:
+) -> tuple[Floats64, Integers64]:
     """Return positions, shape (V, 3), in double precision, and triangles, (F, 3), as copies.
 
     Points that no triangle uses may lie anywhere, and need not be numbers: those that are none come
@@ -67,7 +67,7 @@ def used_vertices(faces: npt.NDArray[np.integer], vertex_count: int) -> Flags:
     return is_used
 
 
-def size_of(positions: Doubles) -> float:
+def size_of(positions: Floats64) -> float:
     """Longest side of the box around positions, shape (N, 3); 0 if there are none."""
     return float(np.ptp(positions, axis=0).max()) if len(positions) > 0 else 0.0
 
@@ -86,7 +86,7 @@ def as_array(name: str, given: npt.ArrayLike, wanted: str) -> npt.NDArray[Any]:
     return array
 
 
-def checked_indices(name: str, indices: npt.ArrayLike, limit: int, target: str) -> Wide:
+def checked_indices(name: str, indices: npt.ArrayLike, limit: int, target: str) -> Integers64:
     """Return triangles, shape (F, 3), as a copy; all indices are from 0 to `limit` - 1."""
     return as_indices(name, indices, limit, target).astype(np.int64)
 
@@ -113,7 +113,7 @@ def as_indices(
 
 
 def take_positions(
-    given: npt.NDArray[np.floating], is_used: Flags, positions: Doubles, points: Floats
+    given: npt.NDArray[np.floating], is_used: Flags, positions: Floats64, points: Floats32
 ) -> None:
     """Copy the positions of a frame, shape (V, 3), in double and in single precision.
 
@@ -140,7 +140,7 @@ def take_positions(
 
 
 def take_positions_like_rest(
-    positions: npt.ArrayLike, is_used: Flags, own: Doubles, points: Floats
+    positions: npt.ArrayLike, is_used: Flags, own: Floats64, points: Floats32
 ) -> None:
     """The same, after the shape and kind of what a user gave were compared with `own`, (V, 3)."""
     given = np.asarray(positions)
@@ -153,7 +153,7 @@ def take_positions_like_rest(
 
 
 @njit
-def copy_finite(given: Doubles, positions: Doubles, points: Floats) -> int:
+def copy_finite(given: Floats64, positions: Floats64, points: Floats32) -> int:
     """Copy positions, shape (V, 3), in double and single precision; count numbers too large.
 
     That is NaN, or not below LARGEST_COORDINATE: 0 unless what moves the mesh has blown up.

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.arrays import Floats64
 from ...jit import njit
-from .arrays import Doubles
 
 Rows = npt.NDArray[np.number[Any]]
 Number = int | np.uint32
@@ -110,7 +110,7 @@ def add_to_row(rows: Rows, k: Number, v: Vector) -> None:
 
 
 @njit
-def difference(positions: Doubles, a: Number, b: Number) -> Vector:
+def difference(positions: Floats64, a: Number, b: Number) -> Vector:
     """The vector from a to b."""
     return (
         positions[b, 0] - positions[a, 0],
@@ -120,7 +120,7 @@ def difference(positions: Doubles, a: Number, b: Number) -> Vector:
 
 
 @njit
-def between(positions: Doubles, a: Number, b: Number) -> Vector:
+def between(positions: Floats64, a: Number, b: Number) -> Vector:
     """The vector from a to b, rounded when it has been taken."""
     x, y, z = difference(positions, a, b)
     return np.float32(x), np.float32(y), np.float32(z)
