@@ -1,4 +1,4 @@
-"""What the program makes, before a change of the code and after it, compared file by file.
+"""The outputs of the program before and after a change of the code, compared file by file.
 
     python tests/goldens.py make out/before    with the code as it was
     python tests/goldens.py make out/after     with the code as it is

@@ -1,4 +1,4 @@
-"""How much memory this process holds, for tests of what is used again and again."""
+"""How much memory this process holds, for tests of repeated use."""
 
 import ctypes
 import gc
@@ -12,7 +12,7 @@ MEGABYTE = 2**20
 
 
 def held_memory() -> float:
-    """What this process has in memory, without what the allocator keeps for later [MB].
+    """The memory of this process, without pages that the allocator keeps for later [MB].
 
     Skips the test where the system says nothing of it.
     """

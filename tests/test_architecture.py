@@ -92,7 +92,7 @@ def _imported(node):
 
 
 def test_files_and_functions_are_short():
-    """One screen for a function, a few for a file; what is excused is too long indeed."""
+    """One screen for a function, a few for a file; an excused one is too long indeed."""
     sources = [path for folder in FOLDERS for path in tracked(folder, "*.py")]
     assert len(sources) > 100
     long = {

@@ -1,4 +1,4 @@
-"""What the pages promise to a reader is there: links, pictures, commands, code, and the site."""
+"""Pages keep their promises: links, pictures, commands, code, and the site."""
 
 import importlib
 import os
@@ -25,7 +25,7 @@ COMMAND = re.compile(r"(?:`|^(?:    )?(?:xvfb-run -a )?)(risorius [a-z][^`#\n]*)
 
 
 def anchor(title):
-    """What a heading is called in a link: ASCII letters, digits and hyphens, as MkDocs has it."""
+    """The name of a heading in a link: ASCII letters, digits and hyphens, as MkDocs has it."""
     plain = unicodedata.normalize("NFKD", title).encode("ascii", "ignore").decode()
     return re.sub(r"[-\s]+", "-", re.sub(r"[^\w\s-]", "", plain).strip().lower())
 
@@ -78,7 +78,7 @@ def test_commands_are_known(page):
 
 
 def test_pages_of_the_documentation_are_read():
-    """The patterns above find what they look for."""
+    """The patterns above find their targets."""
     shown = [words for page in PAGES for words in COMMAND.findall(page.read_text("utf-8"))]
     assert len(shown) > 40
     assert any("--compare" in words for words in shown)
@@ -184,7 +184,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.slow
 @pytest.mark.parametrize("package", ["refine", "sim", "render", "assets", "app.recordings"])
 def test_the_reference_has_every_public_name(site, package):
-    """What a package exports has a place on its page; special methods have none."""
+    """Every export of a package has a place on its page; special methods have none."""
     name = package.rpartition(".")[2]
     page = (site / "reference" / name / "index.html").read_text(encoding="utf-8")
     places = set(re.findall(r'id="(risorius[.\w]*)"', page))

@@ -88,7 +88,7 @@ def test_code_is_kept_and_never_old(package):
 
 @pytest.mark.parametrize("fault", ["no folder", "open", "a link", "of somebody else"])
 def test_without_a_folder_code_is_compiled_anew(package, fault):
-    """What others could have written is not run; one line says what it costs."""
+    """Code that others could have written is not run; one line names the cost."""
     if fault == "no folder":
         package.code.parent.write_text("")
     else:

@@ -1,4 +1,4 @@
-"""What is installed: complete, one package, the same from checkout and sdist, usable anywhere."""
+"""Installed: complete, one package, the same from checkout and sdist, usable anywhere."""
 
 import ast
 import json
@@ -74,7 +74,7 @@ def test_what_an_editor_leaves_is_not_listed(tmp_path):
 
 
 def test_python_versions_agree():
-    """What is claimed is what continuous integration runs."""
+    """Every claimed version is run by continuous integration."""
     workflow = (ROOT / ".github" / "workflows" / "tests.yml").read_text(encoding="utf-8")
     (matrix,) = re.findall(r"python: (\[.*\])", workflow)
     start = "Programming Language :: Python :: 3."
@@ -125,7 +125,7 @@ class Built:
 
 
 def run(*words, **options):
-    """Run a program that must end well; what it says."""
+    """Run a program that must end well; its output."""
     result = subprocess.run(
         [str(word) for word in words], capture_output=True, text=True, timeout=600, **options
     )
@@ -189,7 +189,7 @@ def test_wheel_of_the_sdist_is_that_of_the_checkout(built):
 
 @pytest.mark.slow
 def test_sdist_holds_what_its_tests_need(built):
-    """Whoever packages it for a system can run the tests, and read the documentation."""
+    """A packager for a system can run the tests, and read the documentation."""
     with tarfile.open(built.sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     wanted = {

@@ -105,7 +105,7 @@ def test_doubled_points_do_not_crack():
 
 
 def test_polygons_strips_and_lines():
-    """Whatever has a surface is cut into triangles, whose cells are known; the rest drops out."""
+    """Everything with a surface is cut into triangles of known cells; the rest drops out."""
     mesh = pyvista.Disc(inner=0.0, c_res=5).merge(pyvista.Line())
     mesh.cell_data["number"] = np.arange(mesh.n_cells)
     refined = mesh.risorius.refine()

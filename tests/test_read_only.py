@@ -1,4 +1,4 @@
-"""What is said never to change cannot be written: neither by mistake nor by one `+=`."""
+"""Arrays that never change cannot be written: neither by mistake nor by one `+=`."""
 
 import enum
 import types
@@ -99,7 +99,7 @@ def moved(head):
 
 @pytest.mark.parametrize("name", THINGS)
 def test_nothing_of_it_can_be_written(name, head):
-    """Whatever its public attributes lead to."""
+    """Everything that its public attributes lead to."""
     found = dict(arrays_of(THINGS[name](head), name, {}))
     assert found
     assert [way for way, array in found.items() if array.flags.writeable] == []

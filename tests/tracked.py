@@ -15,7 +15,7 @@ def tracked(folder: str | Path = ROOT, pattern: str = "*") -> list[Path]:
 
 @functools.cache
 def _files() -> tuple[Path, ...]:
-    """All of them; of an unpacked source distribution, which has no git, what is in it."""
+    """All of them; of an unpacked source distribution, which has no git, its files."""
     git = ["git", "-C", str(ROOT), "ls-files", "-z", "--cached"]
     try:
         if not (ROOT / ".git").exists():

@@ -1,4 +1,4 @@
-"""The command as tests give it, in this process, and what it refuses; and Blender, as a reader."""
+"""The command as tests give it, in this process, with its refusals; and Blender, as a reader."""
 
 import os
 import signal
@@ -19,7 +19,7 @@ def risorius(*arguments: object) -> Result:
 
 
 def succeeded(*arguments: object) -> str:
-    """What the command prints, which must succeed."""
+    """The output of the command, which must succeed."""
     result = risorius(*arguments)
     assert result.exit_code == 0, result.output
     return result.output
@@ -34,7 +34,7 @@ def refusal(result: Result) -> str:
 
 
 def started(*words: object, **options: Any) -> subprocess.Popen[bytes]:
-    """Start Python with these words as a process that hears signals, whoever runs the tests.
+    """Start Python with these words as a process that hears signals in every shell.
 
     Those that run behind an `&` or `nohup` ignore them, and pass that on. What it says is kept.
     """

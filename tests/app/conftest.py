@@ -47,7 +47,7 @@ def viewer() -> Iterator[Viewer]:
     """One window for all tests of a file."""
     script = replace(script_for(None, "face"), duration=0.5)
     with Viewer(script, SIZE) as opened:
-        opened.settings.is_alive = False  # what is compared stands still
+        opened.settings.is_alive = False  # pictures that are compared stand still
         settle(opened)
         yield opened
 

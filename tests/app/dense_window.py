@@ -30,7 +30,7 @@ def main() -> None:
 
 @contextlib.contextmanager
 def _dense_screen() -> Iterator[None]:
-    """Tell X how dense its screen is, and in the end nothing of it any more."""
+    """Set the density of X's screen, and remove it in the end."""
     screen = display.Display()
     root = screen.screen().root
     resources = screen.intern_atom("RESOURCE_MANAGER")

@@ -65,7 +65,7 @@ class Source:
         self._display.flush()
 
     def _wait_for(self, name: str) -> Any:
-        """The window's answer; whoever asks for the names meanwhile gets them."""
+        """The window's answer; programs that ask for the names meanwhile get them."""
         end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
             while self._display.pending_events():

@@ -94,7 +94,7 @@ class Player:
         return list(mesh.extras.get("targetNames", []))
 
     def target(self, name: str, number: int, attribute: str = "POSITION") -> Array:
-        """What a morph target adds."""
+        """The displacements of a morph target."""
         added = self.primitive(name).targets[number]
         index = added[attribute] if isinstance(added, dict) else getattr(added, attribute)
         return self.values(index).astype(np.float64)

@@ -53,7 +53,7 @@ def written(path: Path, columns: Columns) -> Path:
 
 
 def take_in(folder: Path, columns: Columns, *, rate: float | None = None) -> Take:
-    """What is read of a table with these columns."""
+    """The take of a table with these columns."""
     return read_take(written(folder / "take.csv", columns), rate=rate)
 
 

@@ -32,7 +32,7 @@ def studio() -> Iterator[Capture]:
 
 
 def picture(studio, anatomy, **style):
-    """What is seen of the face as it is now."""
+    """The picture of the face as it is now."""
     options = replace(studio.options, anatomy=anatomy)
     studio.options = replace(options, style=render.Style(**style))
     return studio.draw_image().astype(int)

@@ -60,7 +60,7 @@ def contents(*names):
 
 
 def test_a_list_is_done_and_not_done_again():
-    """Every output is what the command alone makes; --resume makes what is missing or older."""
+    """Every output is that of the command alone; --resume makes missing and older ones."""
     ended = batch("--jobs", "2")
     assert ended.exit_code == 0, ended.output
     assert "3 lines: 3 ok, 0 failed, 0 skipped; 33 frames" in ended.stdout
@@ -182,7 +182,7 @@ def test_a_cluster_does_what_is_done_here(cluster):
 
 
 def films(count):
-    """A list of so many films, and what they are called."""
+    """A list of so many films, and their names."""
     for number in range(count):
         script = SCRIPT.format(1 + number / 20, "amplitude")
         Path(f"{number}.toml").write_text(f'scene = "plane"\n{script}')

@@ -47,7 +47,7 @@ def test_what_no_camera_is(scene, text):
 
 
 def test_a_wrong_camera_or_sound_of_a_script_is_reported_with_its_name(tmp_path):
-    """Of many scripts one knows which to mend; what the command line says needs no name."""
+    """Of many scripts one knows which to mend; a value of the command line needs no name."""
     script = tmp_path / "mine.toml"
     target = tmp_path / "film.mp4"
     key = "duration = 0.1\n[[pose]]\ntime = 0.0\njoy = 1.0\n"

@@ -1,4 +1,4 @@
-"""The command line: what it writes, and that mistakes are one line and exit code 2."""
+"""The command line: its outputs, and that mistakes are one line and exit code 2."""
 
 from itertools import combinations
 from pathlib import Path
@@ -105,7 +105,7 @@ def test_a_script_begins_in_its_first_pose(tmp_path):
 
 
 def test_controls_lists_what_scripts_may_name():
-    """Muscles and the names of every layer appear, with limits and what they do."""
+    """Muscles and the names of every layer appear, with limits and effects."""
     result = risorius("controls")
     assert result.exit_code == 0
     for name in ("joy", "zygomaticus_major_left", "jaw_open", "viseme_aa", "AU12_left"):

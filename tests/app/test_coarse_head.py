@@ -113,7 +113,7 @@ def test_command_draws_the_coarse_head(tmp_path):
 
 
 def test_splits_beyond_rest_are_where_muscles_pull(scene):
-    """The look smooth splits at rest, which does not count; what a kiss adds is at the mouth."""
+    """The look smooth splits at rest, which does not count; a kiss adds splits at the mouth."""
     with render.open_offscreen((64, 64)) as surface:
         renderer = render.Renderer(surface)
         camera = camera_for(scene, None)

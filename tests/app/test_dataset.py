@@ -97,7 +97,7 @@ def test_a_damaged_sample_is_made_anew(made, tmp_path):
 
 
 def test_a_sample_counts_when_all_of_its_files_are_whole(made, tmp_path):
-    """Whatever stands in the place of one of them, the sample is not there."""
+    """With another thing in the place of one of them, the sample is not there."""
     labels = (made / "000001.json").read_bytes()
     picture = (made / "000001.png").read_bytes()
     instead = [
@@ -266,7 +266,7 @@ def test_pictures_stand_behind_faces(tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("unit", load_table(None).units)
 def test_landmarks_move_further_the_more_of_a_unit(face, unit):
-    """What a label says is seen: the farthest landmark goes on with every step, by a tenth."""
+    """The effect of a label is seen: the farthest landmark goes on with every step, by a tenth."""
     rest = face.rest_positions[face.landmarks]
     moved = []
     for value in (0.25, 0.5, 0.75, 1.0):
@@ -281,7 +281,7 @@ def test_landmarks_move_further_the_more_of_a_unit(face, unit):
 
 
 def apertures_of(face, pose):
-    """What a label says of mouth and eyes in a pose."""
+    """The label of mouth and eyes in a pose."""
     face.reset()
     face.pose(pose)
     face.step(1.0)

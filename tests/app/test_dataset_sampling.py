@@ -102,7 +102,7 @@ def test_a_table_of_ones_own_replaces_sections(tmp_path):
     ],
 )
 def test_a_wrong_table_is_reported_in_one_line(tmp_path, text, message):
-    """File, section and row, and what is allowed."""
+    """File, section and row, and the allowed values."""
     with pytest.raises(UserError) as raised:
         read(tmp_path, text)
     assert str(raised.value).startswith(str(tmp_path / "my.toml"))

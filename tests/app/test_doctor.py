@@ -82,7 +82,7 @@ def test_refinement_on_the_card(able, is_software, message, monkeypatch):
 
 @pytest.mark.parametrize("missing", [(), ("offscreen",), ("window", "films")])
 def test_offscreen_alone(ill, missing):
-    """What is not asked for is neither missing nor there."""
+    """A command that nobody asked for is neither missing nor there."""
     ill(*missing)
     result = ask("--offscreen")
     assert result.exit_code == (2 if "offscreen" in missing else 0)

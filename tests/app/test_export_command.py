@@ -53,7 +53,7 @@ def export(*arguments):
 
 @pytest.mark.parametrize("name", OUTPUTS)
 def test_every_format_is_written_and_leaves_nothing_else(name, folder):
-    """What the table of formats says lies beside the script, and may be written again."""
+    """Files of the table of formats lie beside the script, and may be written again."""
     for _ in range(2):
         arguments = ("plane.toml", "--as", name, "-o", OUTPUTS[name], "--overwrite")
         result = export(*arguments)
@@ -78,7 +78,7 @@ def test_curves_need_muscles():
 
 
 def test_files_of_somebody_else_stay(folder):
-    """What would lie beside the output, a head of the user's, and what is in a folder."""
+    """Files beside the output, a head of the user's, and files in a folder."""
     Path("x.obj").write_text("mine")
     line = refusal(export("plane.toml", "-o", "x.pc2"))
     assert "x.obj: is there, and x.pc2 would come with such a file" in line

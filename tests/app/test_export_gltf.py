@@ -1,4 +1,4 @@
-"""glTF files hold what the clip holds: every vertex at every frame, read back by other readers."""
+"""glTF files hold the whole clip: every vertex at every frame, read back by other readers."""
 
 import functools
 import io
@@ -26,7 +26,7 @@ from risorius.geometry.normals import vertex_normals
 from .command_line import positions_in_blender
 from .glb_player import Player
 
-NEAR = 0.1e-3  # [m] what is promised
+NEAR = 0.1e-3  # [m] as promised
 SCRIPT = """
 title = "All that moves"
 [[pose]]

@@ -110,7 +110,7 @@ def test_arkit_shows_set_values(scene, tmp_path):
 
 
 def test_expressions_become_shapes(scene, tmp_path):
-    """What the script does not say in shapes is solved for, and looks alike."""
+    """Controls that are no shapes are solved for, and look alike."""
     text = "duration = 0.6\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\njoy = 1.0\n"
     clip = record(script_of(text), scene, RATE, progress=False)
     path = tmp_path / "take.csv"

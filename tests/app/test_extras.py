@@ -1,4 +1,4 @@
-"""Without extras: pictures are drawn, and what is missing is named with what installs it."""
+"""Without extras: pictures are drawn, and a missing library is named with its cure."""
 
 import json
 import os

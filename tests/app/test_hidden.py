@@ -41,7 +41,7 @@ def test_no_pixel_changes(studio, camera, pose, monkeypatch):
     may_be_seen = FarthestDepths.may_be_seen
 
     def noted(*arguments, **sides):
-        """What it says, and how much of it."""
+        """Its words, and how many of them."""
         result = may_be_seen(*arguments, **sides)
         shares.append(float(np.mean(result)))
         return result

@@ -154,7 +154,7 @@ def test_what_others_move_is_left_to_them(scene):
 
 @pytest.mark.slow
 def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone():
-    """What a script names anywhere is the script's for the whole film; the rest lives beneath."""
+    """A control that a script names belongs to it for the whole film; the rest lives beneath."""
     keys = (Key(0.0, 0.0), Key(2.9, 0.0), Key(3.0, 0.4))
     script = Script(
         "smile", 3.0, "here", tracks={"AU12": Channel.of(keys), "AU1": Channel.of(keys)}

@@ -1,4 +1,4 @@
-"""A face that is sent: sockets on loopback, calibration, and what is done when nobody sends."""
+"""A face that is sent: sockets on loopback, calibration, and rest when nobody sends."""
 
 import socket
 import time
@@ -89,7 +89,7 @@ def wire(request: pytest.FixtureRequest) -> Iterator[Wire]:
 
 
 def test_a_frame_leads_the_controls(wire):
-    """What is sent comes out as controls, blinks a little stronger; the line names the sender."""
+    """Shapes come out as controls, blinks a little stronger; the line names the sender."""
     assert wire.face.state is State.WAITING
     assert wire.face.presence == 0.0
     wire.take(live_link({"JawOpen": 0.5, "EyeBlinkLeft": 0.5, "HeadYaw": -0.3927}, subject="Ada"))
@@ -127,7 +127,7 @@ def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire):
     steps = [before - after for before, after in pairwise(presences)]
     assert min(steps) >= 0.0
     assert max(steps) < 0.08
-    assert wire.face.controls()["jawOpen"] == 0.5  # what it fades away from
+    assert wire.face.controls()["jawOpen"] == 0.5  # from which it fades away
     wire.take(frame, seconds=1.0 / 60.0)
     assert 0.0 < wire.face.presence < 0.1
     wire.take(frame, seconds=EASING_IN)

@@ -1,4 +1,4 @@
-"""Packets of live faces: what they mean, and that nothing in a network can do harm."""
+"""Packets of live faces: their meaning, and that nothing in a network can do harm."""
 
 import math
 import struct
@@ -71,7 +71,7 @@ def test_without_a_face_live_link_sends_no_values():
 
 
 def test_nonsense_among_values_is_left_out():
-    """What is no number, a shape far from 0 and 1, an angle beyond half a turn; 1.2 is noise."""
+    """NaN, a shape far from 0 and 1, an angle beyond half a turn are left out; 1.2 is noise."""
     odd = {"JawOpen": -9.8e5, "MouthPucker": 1.2, "CheekPuff": math.nan, "TongueOut": math.inf}
     odd |= {"HeadYaw": 9.8e5, "HeadPitch": math.nan}
     channels = channels_of(parse_live_link(live_link(odd)))

@@ -26,7 +26,7 @@ def test_a_studio_forgets_the_persons_before(tmp_path):
 def test_captures_that_are_opened_and_closed_take_no_memory():
     """A hundred of one scene: the least that is held while the last are made is as at first.
 
-    What is held goes up and down by tens of megabytes, as drivers give back pictures late.
+    Memory goes up and down by tens of megabytes, as drivers give back pictures late.
     """
     scene = FaceScene()
     options = CaptureOptions(size=(96, 96))

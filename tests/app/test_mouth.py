@@ -1,4 +1,4 @@
-"""What is in the mouth: the farther back, the darker."""
+"""Parts in the mouth: the farther back, the darker."""
 
 from risorius.app.scenes.mouth import shaded_mouth
 

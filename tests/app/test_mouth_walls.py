@@ -107,7 +107,7 @@ def seen_from_in_front(sitter, pitches):
 @pytest.mark.slow
 @pytest.mark.parametrize("lowest", [-118.0, -113.0])
 def test_nothing_hangs_below_a_mask(renderer, lowest):
-    """A skin without a neck hides what is in its mouth, at rest and with an open jaw.
+    """A skin without a neck hides the inside of its mouth, at rest and with an open jaw.
 
     Only who looks up into a mask whose jaw is open sees what lies in it.
     """

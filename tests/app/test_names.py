@@ -83,7 +83,7 @@ def test_a_script_names_no_such_sound(tmp_path):
 @pytest.mark.parametrize("end", [".pc2", ".usdz", ".glb", ".vtkhdf", ".npz", ".csv"])
 @pytest.mark.parametrize("where", ["name", pytest.param("folder", marks=pytest.mark.slow)])
 def test_motion_with_such_a_name_is_exported(where, end, tmp_path):
-    """The file, its folder, or what it was made of may be called so."""
+    """The file, its folder, or its source may be called so."""
     script = pose(tmp_path / f"{RAW}.toml")
     folder = tmp_path / (RAW if where == "folder" else "folder")
     target = folder / f"{'plain' if where == 'folder' else RAW}{end}"
@@ -121,7 +121,7 @@ def test_pictures_with_such_a_name_have_their_passes(tmp_path):
 @pytest.mark.slow
 @needs_bytes
 def test_sets_and_lists_with_such_names(tmp_path):
-    """What they write of themselves is UTF-8: card, labels, the table of what became of lines."""
+    """Their own texts are UTF-8: card, labels, the table of results."""
     backgrounds = tmp_path / f"{RAW}_pictures"
     backgrounds.mkdir()
     PIL.Image.new("RGB", (80, 64), (20, 90, 60)).save(backgrounds / f"{RAW}.png")
@@ -186,7 +186,7 @@ def secret(tmp_path: Path) -> Path:
 
 
 def test_an_output_takes_the_place_of_a_link(secret, tmp_path):
-    """And what the link leads to stays as it is, whether it is there or not."""
+    """And the target of the link stays as it is, whether it is there or not."""
     shared = tmp_path / "shared"
     grey = np.full((8, 8, 3), 128, np.uint8)
     for name in ("face.png", "nowhere.png"):
@@ -227,7 +227,7 @@ def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(secret, tmp
 
 @pytest.mark.slow
 def test_frames_and_samples_follow_no_link(secret, tmp_path):
-    """Nor do pictures in folders that are there already, or what a set has not finished."""
+    """Nor do pictures in folders that are there already, or unfinished samples of a set."""
     shared = tmp_path / "shared"
     script = pose(tmp_path / "pose.toml")
     frames = shared / "frames"
@@ -250,7 +250,7 @@ def test_frames_and_samples_follow_no_link(secret, tmp_path):
 
 
 def test_a_link_is_no_way_around_what_is_read(tmp_path):
-    """An output that would take the place of an input is refused, by whatever name."""
+    """An output that would take the place of an input is refused under any name."""
     real, link, other = (tmp_path / name for name in ("real.toml", "link.toml", "other.toml"))
     real.write_text("mine")
     link.symlink_to(real)
@@ -260,4 +260,4 @@ def test_a_link_is_no_way_around_what_is_read(tmp_path):
             check_apart((output,), (read,))
     with pytest.raises(UserError, match="two outputs at once"):
         check_apart((other, tmp_path / "here" / "other.toml"), ())
-    check_apart((link, other), (real,))  # the link gives way, and what it leads to is left
+    check_apart((link, other), (real,))  # the link gives way, and its target is left

@@ -26,7 +26,7 @@ EXPRESSIONS = {
 
 
 def passes_of(studio, wanted):
-    """The passes of these names of what was drawn last."""
+    """The passes of these names of the last picture."""
     passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
     return passes.draw(studio.camera, studio.options.style, wanted)
 
@@ -189,7 +189,7 @@ def test_landmarks_lie_on_the_depth_map(studio, expression, view):
 
 
 def test_pupils_are_hidden_by_lids_and_everything_by_the_frame(studio):
-    """A closed eye has no pupil to be seen; what is beside the picture is not visible."""
+    """A closed eye has no visible pupil; landmarks beside the picture are not visible."""
     for controls, is_seen in (({}, True), ({"AU43": 1.0}, False)):
         scene = posed(studio, controls)
         camera = seen_from(studio)

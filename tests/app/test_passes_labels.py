@@ -1,4 +1,4 @@
-"""Cameras, poses and gazes as numbers: against OpenGL's matrices and what was asked of the face."""
+"""Cameras, poses and gazes as numbers: against OpenGL's matrices and the pose of the face."""
 
 import json
 import math

@@ -26,7 +26,7 @@ def surface() -> Iterator[Any]:
 
 
 def image(pipeline, drawn):
-    """What is seen of a scene, by one refiner."""
+    """The picture of a scene, by one refiner."""
     surface = pipeline.renderer.surface
     camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="front")
     pipeline.draw(camera, render.Style(), [Viewport(drawn, (0, 0, *SIZE))])

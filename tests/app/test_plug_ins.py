@@ -244,7 +244,7 @@ def chosen(name: str) -> tuple[str, ...]:
 
 @pytest.mark.parametrize("name", BROKEN)
 def test_an_error_in_one_is_reported_with_its_name(tmp_path, name):
-    """Whatever it raises, and whenever: one line, in pictures and in motion."""
+    """Any error at any time is one line, in pictures and in motion."""
     draw = ("capture", "-o", tmp_path / "face.png", "--size", "64x48")
     move = ("export", "-o", tmp_path / "face.vtkhdf", "--refined", "--fps", "5")
     for words in (draw, move):

@@ -1,4 +1,4 @@
-"""Gaps and the order of time: whatever rows a reader found, a Take keeps its promises."""
+"""Gaps and the order of time: with any rows of a reader, a Take keeps its promises."""
 
 import math
 
@@ -36,7 +36,7 @@ def test_any_rows(rows):
 
 
 def test_rows_are_put_in_the_order_of_their_times():
-    """Of two with one time the first counts; what is years away is no time of this take."""
+    """Of two with one time the first counts; a time years away is none of this take."""
     times = np.array([0.2, 0.0, 0.1, 0.1, np.nan, 0.3, 1e9])
     take = whole_take("any", "x", times, {"jawOpen": np.arange(7) / 10.0})
     assert take.times == approx([0.0, 0.1, 0.2, 0.3])

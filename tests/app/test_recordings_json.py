@@ -23,12 +23,12 @@ def written(path, document):
 
 
 def take_in(folder, document):
-    """What is read of the document."""
+    """The take of the document."""
     return read_take(written(folder / "take", document))
 
 
 def categories(jaw, key="category_name", as_text=False):
-    """What the landmarker answers for one face."""
+    """The answer of the landmarker for one face."""
     scores = {name: jaw if name == "jawOpen" else 0.125 for name in ("_neutral", *NAMES)}
     return [
         {"index": number, "score": str(score) if as_text else score, key: name, "displayName": ""}
@@ -166,7 +166,7 @@ def test_the_nod_and_tilt_of_a_matrix(tmp_path):
      '{"jawOpen": ' + "9" * 5000 + "}"],
 )  # fmt: skip
 def test_json_of_something_else(text, tmp_path):
-    """One line says what is wrong."""
+    """One line names the fault."""
     path = tmp_path / "take"
     path.write_text(text)
     with pytest.raises(UserError, match="take"):
@@ -252,6 +252,6 @@ def test_mouth_shapes_of_rhubarb(tmp_path):
      ([{"start": "x"}], "'start': was 'x', must be a number")],
 )  # fmt: skip
 def test_wrong_mouth_shapes(cues, words, tmp_path):
-    """The cue is counted, and what is allowed is named."""
+    """The cue is counted, and the allowed ones are named."""
     with pytest.raises(UserError, match=words):
         take_in(tmp_path, {"mouthCues": cues})

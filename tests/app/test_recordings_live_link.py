@@ -1,4 +1,4 @@
-"""Takes of Live Link Face: times, names, units and signs are found from what the file holds."""
+"""Takes of Live Link Face: times, names, units and signs are found from the content of the file."""
 
 import math
 
@@ -36,7 +36,7 @@ def test_a_raw_take(tmp_path):
 
 @pytest.mark.parametrize("name", ["take.csv", "take.toml", "take", "take.json"])
 def test_the_name_of_the_file_does_not_count(name, tmp_path):
-    """What a file holds says what it is."""
+    """The content of a file decides its kind."""
     path = written(tmp_path / name, live_link())
     assert is_recording(path)
     assert read_take(path).kind == "Live Link Face"
@@ -44,7 +44,7 @@ def test_the_name_of_the_file_does_not_count(name, tmp_path):
 
 @pytest.mark.parametrize("left_out", [("TongueOut",), (), ("TongueOut", *ANGLES), ANGLES])
 def test_fewer_columns(left_out, tmp_path):
-    """60, 61, 51 and 52 columns; what is not there is no channel."""
+    """60, 61, 51 and 52 columns; a missing column is no channel."""
     columns = {name: values for name, values in live_link().items() if name not in left_out}
     take = take_in(tmp_path, columns)
     assert ("tongueOut" in take.channels) == ("TongueOut" not in left_out)
@@ -138,7 +138,7 @@ def test_rates(rate, tmp_path):
 
 
 def test_a_rate_that_the_user_knows(tmp_path):
-    """It counts more than what was inferred."""
+    """It counts more than an inferred one."""
     times, _ = take_of(tmp_path, timecodes(np.arange(10)), rate=30.0)
     assert times[-1] == approx(9 / 30.0)
 

@@ -27,7 +27,7 @@ def check(path):
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
 def test_encodings(encoding, tmp_path):
-    """With or without a mark, a name that is no ASCII stays what it is."""
+    """With or without a mark, a name that is no ASCII stays as it is."""
     path = tmp_path / "take.csv"
     text = table({"Stimmung für später": [1] * 6} | COLUMNS)
     path.write_bytes(text.encode(encoding))
@@ -78,7 +78,7 @@ def test_a_torn_last_row(tmp_path):
     ],
 )
 def test_what_is_no_recording(content, words, tmp_path):
-    """One line says what the file is, and what is known."""
+    """One line names the kind of the file, and the known kinds."""
     path = tmp_path / "take.csv"
     path.write_bytes(content)
     with pytest.raises(UserError, match=words):

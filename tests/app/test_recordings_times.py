@@ -48,7 +48,7 @@ def test_any_timecode(base, step, tmp_path):
 
 @pytest.mark.parametrize(("rate", "base"), [(23.976, 24), (29.97, 30), (47.952, 48), (59.94, 60)])
 def test_the_true_rate_of_timecode(rate, base, tmp_path):
-    """A rate that is a thousandth less than the count is what the camera really does."""
+    """A rate that is a thousandth less than the count is the real rate of the camera."""
     cells = [timecode(frame, base) for frame in range(3 * base)]
     take = take_of(tmp_path, cells, name="Timecode", rate=rate)
     assert take.duration == approx((3 * base - 1) / rate)

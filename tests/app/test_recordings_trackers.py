@@ -86,7 +86,7 @@ def test_no_face_at_all(tmp_path):
 
 
 def test_rows_of_nan(tmp_path):
-    """Cells without a number are gaps, whatever stands there."""
+    """Cells without a number are gaps."""
     columns = openface()
     cells = list(np.full(60, 2.0))
     cells[10:14] = ["nan", "inf", "NaN", "1e99"]

@@ -62,7 +62,7 @@ UNITS = {
 
 @pytest.mark.parametrize("kind", UNITS)
 def test_units(kind, tmp_path):
-    """A channel peaks at its share of the greatest value; what was guessed is reported."""
+    """A channel peaks at its share of the greatest value; a guess is reported."""
     columns, channel, peak, note = UNITS[kind]
     take = of_table(tmp_path, columns)
     assert take.channels.keys() == {channel}
@@ -72,7 +72,7 @@ def test_units(kind, tmp_path):
 
 
 def test_stray_values_are_no_percent(tmp_path):
-    """A few values that are far off leave the others what they are."""
+    """A few values that are far off leave the others as they are."""
     jaw = RISE.copy()
     jaw[[20, 70]] = 80.0
     take = of_table(tmp_path, {"jawOpen": jaw})

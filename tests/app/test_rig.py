@@ -1,4 +1,4 @@
-"""Avatars hold what the simulation does: named shapes, on the vertices of the file."""
+"""Avatars move as the simulation does: named shapes, on the vertices of the file."""
 
 import json
 import struct
@@ -100,7 +100,7 @@ def test_most_of_a_shape_takes_no_room(built_in):
 
 @dataclass(frozen=True)
 class Whole:
-    """A head with parts, its avatar and what was printed."""
+    """A head with parts, its avatar and the printed report."""
 
     mesh: Path
     places: dict[str, slice]
@@ -319,7 +319,7 @@ def test_a_folder_of_objs_keeps_the_lines_of_the_file(whole, tmp_path):
 
 
 def test_wrong_options_are_refused(whole, tmp_path):
-    """In one line that says what is allowed."""
+    """In one line with the allowed values."""
     landmarks = whole.mesh.with_suffix(".json")
     head = (whole.mesh, "--landmarks", landmarks)
     for words, expected in (
@@ -335,7 +335,7 @@ def test_wrong_options_are_refused(whole, tmp_path):
 
 
 def test_a_ball_is_found_where_it_is():
-    """Also by half of it; what is no ball leaves the guess as it was."""
+    """Also by half of it; a part that is no ball leaves the guess as it was."""
     points = 12.0 * ball(3).vertices + (30.0, 1.0, 70.0)
     front = points[points[:, 2] > 68.0]
     centre, radius = sphere_of(front, np.array([31.0, 0.0, 72.0]), 11.0)

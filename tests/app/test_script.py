@@ -1,4 +1,4 @@
-"""Scripts: what they mean, and what is said when they are wrong."""
+"""Scripts: their meaning, and messages when they are wrong."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ joy = [ { time = 0.0, value = 0.25 } ]
 
 
 def test_poses_and_tracks_add_up():
-    """Poses interpolate, what a pose does not name is zero, tracks are added."""
+    """Poses interpolate, a control that no pose names is zero, tracks are added."""
     script = parse_script(HELLO, source="hello.toml")
     assert script.at(1.5) == approx({"joy": 0.75, "jaw_open": 0.25, "blink": 0.0})
     assert script.at(2.0) == approx({"joy": 1.25, "jaw_open": 0.5, "blink": 1.0})
@@ -213,7 +213,7 @@ def test_missing_and_unreadable_files(tmp_path):
 
 
 def test_names_are_reported_on_one_line():
-    """What a terminal would obey, or break the line at, is escaped; long names are cut."""
+    """Codes that a terminal obeys, and ends of lines, are escaped; long names are cut."""
     for name, shown in (
         ("a\\nrisorius: b", r"a\nrisorius: b"),
         ("\\u001b[2J", r"\x1b[2J"),

@@ -32,7 +32,7 @@ def scripts(draw):
 
 @given(places=PLACES, ends=st.tuples(TIMES, TIMES).map(sorted), reach=st.floats(0.0, 2.0))
 def test_places_in_a_stretch_and_near(places, ends, reach):
-    """What is between two times, and what is nearest to one."""
+    """Keys between two times, and the nearest to one."""
     first, last = ends
     chosen = Places.of(*places)
     assert chosen.between(first, last) == {each for each in places if first <= each.time <= last}
@@ -47,7 +47,7 @@ def test_places_in_a_stretch_and_near(places, ends, reach):
 
 @given(script=scripts(), places=PLACES, steps=st.integers(-9, 9), are_copies=st.booleans())
 def test_keys_arrive_as_one_by_one(script, places, steps, are_copies):
-    """Moved or copied keys keep all but their time, and take the place of what was there."""
+    """Moved or copied keys keep all but their time, and take the place of other keys."""
     places &= places_of(script)
     shift = max(steps / 8.0, -min((place.time for place in places), default=0.0))
     before = dict(keyed_by_place(script))

@@ -28,7 +28,7 @@ def take_of(**channels):
 
 @pytest.fixture
 def heard() -> Iterator[socket.socket]:
-    """A socket that hears what is sent."""
+    """A socket that hears packets."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as opened:
         opened.bind((LOOPBACK, 0))
         opened.settimeout(10.0)
@@ -68,7 +68,7 @@ class Stopped(Exception):  # noqa: N818, what ends the test is no error
 
 
 def clock_until(end):
-    """A clock, a sleep that moves it and ends the test, and what was slept."""
+    """A clock, a sleep that moves it and ends the test, and the slept times."""
     now = [0.0]
     slept = []
 

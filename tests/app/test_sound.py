@@ -68,7 +68,7 @@ def test_other_rates_are_in_step(tmp_path, rate):
 
 
 def test_what_is_no_sound_is_reported_in_one_line(tmp_path):
-    """Missing, empty, damaged, mute, a folder, a pipe: what it is, and what would do."""
+    """Missing, empty, damaged, mute, a folder, a pipe: the fault, and the cure."""
     (tmp_path / "text.wav").write_text("no sound")
     (tmp_path / "empty.wav").touch()
     write_wav(tmp_path / "mute.wav", np.zeros(0))
@@ -244,7 +244,7 @@ def test_a_player_gives_the_sound_from_the_place_on(device, speed):
 @pytest.mark.parametrize("pace", [0.99, 1.0, 1.01])
 @pytest.mark.parametrize("frames_per_second", [12.0, 60.0, 144.0])
 def test_the_picture_keeps_to_the_sound(device, pace, frames_per_second, monkeypatch):
-    """Over a minute both are less than a frame apart, whatever the device's clock counts.
+    """Over a minute both are less than a frame apart, with any clock of the device.
 
     pace: seconds of the device for one of ours. The steps of physics are the window's own.
     """

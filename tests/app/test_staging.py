@@ -21,7 +21,7 @@ def made_old(folder):
 
 @pytest.fixture
 def killed(tmp_path: Path) -> Path:
-    """What a process left that was killed while it made a film."""
+    """A folder left by a process that was killed while it made a film."""
     (path := tmp_path / ".risorius-0123456789ab").mkdir(mode=0o700)
     (path / "film.mp4").write_bytes(b"half")
     return path

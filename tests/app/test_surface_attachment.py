@@ -22,7 +22,7 @@ POSES = (
 
 
 def attached(scene):
-    """What is attached to its skin."""
+    """Parts that are attached to its skin."""
     return [part for part in scene.parts if isinstance(part, SurfaceAttachment)]
 
 
@@ -32,7 +32,7 @@ def attached(scene):
     st.lists(st.floats(-50.0, 50.0), min_size=3, max_size=3),
 )
 def test_a_skin_that_only_moves_takes_them_along(scene, turn, shift):
-    """Whatever turns and shifts the whole skin does the same to them; with their bone, nothing."""
+    """A turn and a shift of the whole skin carry them along; with their bone, nothing."""
     turned = Rotation.from_rotvec(turn)
     skin = turned.apply(np.array(scene.rest_positions)) + shift
     bone = np.eye(4)

@@ -13,7 +13,7 @@ SAMPLE = st.tuples(st.integers(1, 10**7), st.floats(-1.0, 1.0))  # [us] after th
     samples=st.lists(SAMPLE, min_size=1, max_size=200), tolerance=st.sampled_from([1e-6, 2e-3, 0.3])
 )
 def test_no_sample_is_further_off_than_the_tolerance(samples, tolerance):
-    """Whatever was recorded; and keys are at the times of samples, the first and the last too."""
+    """With any recording; and keys are at the times of samples, the first and the last too."""
     times = np.round(np.cumsum([step for step, _ in samples]) * 1e-6, 6)
     values = np.array([value for _, value in samples])
     channel = thinned(times, values, tolerance)

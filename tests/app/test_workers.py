@@ -1,4 +1,4 @@
-"""Processes that work: what they hand over, whatever dies, nothing left when they are stopped."""
+"""Processes that work: their results, their deaths, and nothing left when they are stopped."""
 
 import os
 import signal
@@ -28,7 +28,7 @@ list(run_all(working.write_slowly, [folder / "a", folder / "b"]))
 
 
 def run(work, *arguments, jobs=1, **options):
-    """What a piece of work hands over."""
+    """The result of a piece of work."""
     messages = list[Any]()
     WorkerPool(jobs).run(work, *arguments, on_message=messages.append, **options)
     return messages
@@ -64,7 +64,7 @@ def test_every_share_is_done_in_a_process_of_its_own():
 
 
 def test_what_dies_is_done_again(tmp_path):
-    """A killed process is replaced, and the log says of what it died."""
+    """A killed process is replaced, and the log names the cause of death."""
     log = tmp_path / "log"
     other = tmp_path / ".risorius-0123456789ab"
     other.mkdir()  # what another process is at
@@ -92,7 +92,7 @@ def test_what_kills_every_process_is_given_up(tmp_path):
     ],
 )
 def test_what_is_raised_is_reported_and_not_tried_again(tmp_path, kind, message):
-    """In one line; a defect leaves a traceback in the log, what the user can mend does not."""
+    """In one line; a defect leaves a traceback in the log, one for the user does not."""
     log = tmp_path / "log"
     with pytest.raises(UserError, match=message):
         run(working.fail, kind, log=log)
@@ -109,7 +109,7 @@ def test_everything_that_is_printed_goes_to_its_log(tmp_path):
 
 
 def test_libraries_share_the_cores(monkeypatch):
-    """More processes than cores have one thread each; what the user allows is shared."""
+    """More processes than cores have one thread each; the number that the user allows is shared."""
     monkeypatch.delenv("LP_NUM_THREADS", raising=False)
     assert run(working.library_threads, jobs=1024) == ["1"]
     monkeypatch.setenv("LP_NUM_THREADS", "7")

@@ -39,7 +39,7 @@ def die(send: Send) -> None:
 
 
 def fail(kind: str, send: Send) -> None:
-    """Raise what the name says, or hand over what cannot be sent."""
+    """Raise the named error, or hand over a thing that cannot be sent."""
     if kind == "user":
         raise UserError("the nose is too long")
     if kind == "defect":

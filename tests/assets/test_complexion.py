@@ -92,7 +92,7 @@ def _texel(head, image, vertex):
 
 @pytest.mark.parametrize("angle", [DARKEST - 1.0, LIGHTEST + 1.0, float("nan")])
 def test_no_other_tones(angle):
-    """One line with what is allowed."""
+    """One line with the allowed values."""
     with pytest.raises(ValueError, match="it must be -55 "):
         recoloured(angle)
 

@@ -30,7 +30,7 @@ def other() -> Stranger:
 
 @pytest.fixture(scope="module")
 def fitted(other: Stranger) -> FittedHead:
-    """What was fitted to it."""
+    """The head fitted to it."""
     return fit(other.mesh, other.landmarks)
 
 
@@ -53,7 +53,7 @@ def test_files_are_read_and_fitted(other, fitted, tmp_path):
 
 
 def test_head_comes_to_millimetres_and_the_face_space(fitted):
-    """Whatever unit and axes the file has, landmarks lie near those of the built-in head."""
+    """In any unit and axes, landmarks lie near those of the built-in head."""
     known = assets.load("head")
     off = fitted.vertices[fitted.landmarks] - known.vertices[known.landmarks]
     assert norm(off, axis=1).mean() < 10.0
@@ -146,7 +146,7 @@ def test_a_fitted_head_makes_faces(fitted, simulation):
 
 
 def test_the_tongue_of_a_fitted_head_comes_out(fitted, simulation):
-    """Its own lips are what it lies on."""
+    """It lies on its own lips."""
     settled_displacement(simulation, {"jaw_open": 0.4, "tongue_out": 1.0})
     bent = simulation.anatomy.tongue()
     jaw = simulation.bones.transforms()["mandible"]

@@ -39,7 +39,7 @@ def material(maker, texture, **more):
 
 
 def read(maker, folder):
-    """What is read of the file."""
+    """The mesh of the file."""
     return assets.read_mesh(maker.write(folder / "a.glb"))
 
 
@@ -445,7 +445,7 @@ def test_a_document_may_have_its_data_beside_it(maker, tmp_path, is_beside):
 
 
 def test_pictures_of_a_kind_that_is_not_read_are_named(maker, tmp_path):
-    """And only when they are drawn: hair may have what the skin has not."""
+    """And only when they are drawn: hair may have a kind that the skin has not."""
     texture = maker.add("textures", {"extensions": {"KHR_texture_basisu": {"source": 0}}})
     number = material(maker, {"index": texture})
     attributes = {"TEXCOORD_0": maker.accessor(UV)}

@@ -66,7 +66,7 @@ def test_unit_axes_and_other_pieces_do_not_matter():
 
 @pytest.mark.slow
 def test_more_points_make_it_better_and_stay():
-    """What is placed by hand is left alone, and draws its neighbours along."""
+    """A point placed by hand is left alone, and draws its neighbours along."""
     person = make_person(sample_identity(1))
     mesh = Mesh(person.vertices, person.faces)
     true = person.vertices[person.landmarks]

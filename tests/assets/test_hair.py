@@ -34,7 +34,7 @@ def haired(cut, *, number=0, receded=0.0, length=1.0):
 
 
 def hair_of(person, name=HAIR):
-    """Its hair, seen from outside: what grows on the scalp, or what is tied."""
+    """Its hair, seen from outside: on the scalp, or tied."""
     return next(part for part in person.parts if part.name == name)
 
 

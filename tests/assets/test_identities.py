@@ -1,4 +1,4 @@
-"""Persons: heads that measure what was asked for, and are faces like the built-in one."""
+"""Persons: heads of the wanted measures, and faces like the built-in one."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Loading: what `assets.load` promises, and what it says when it cannot keep it."""
+"""Loading: the promises of `assets.load`, and its messages when it cannot keep them."""
 
 import shutil
 import subprocess
@@ -81,7 +81,7 @@ def test_missing_and_broken_files_are_reported_when_they_are_needed(name, tmp_pa
 
 
 def test_files_are_made_from_this_head(head):
-    """What is laid over a head was made from its mesh."""
+    """Maps over a head were made from its mesh."""
     own = zlib.crc32(head.faces.tobytes(), zlib.crc32(head.vertices.tobytes()))
     found = [np.load(file).get("made_from") for file in tracked("assets/data", "head_*.npz")]
     assert found == len(found) * [own]

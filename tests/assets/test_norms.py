@@ -28,13 +28,13 @@ Angle Orthodontist 85:211-217, persons with a normal vertical pattern.
 
 @pytest.fixture(scope="module")
 def measures(head: Head) -> dict[str, float]:
-    """What it measures."""
+    """Its measures."""
     return measures_of(head.vertices, head.anatomy)
 
 
 @pytest.fixture(scope="module")
 def page() -> str:
-    """What the documentation says about it."""
+    """The page about it."""
     return (Path(__file__).parents[2] / "docs" / "head.md").read_text(encoding="utf-8")
 
 

@@ -185,7 +185,7 @@ def test_pictures_that_cannot_be_used_are_refused(name, content, message, other,
 
 
 def test_a_link_out_of_the_folder_is_refused(other, tmp_path):
-    """What a name leads to counts, not how it looks."""
+    """The target of a name counts, not its look."""
     folder = tmp_path / "inside"
     folder.mkdir()
     _striped().save(tmp_path / "secret.png")
@@ -225,7 +225,7 @@ def test_layouts_that_cover_a_picture_many_times_are_refused():
 
 
 def test_pictures_are_drawn_from_one_layout_to_another():
-    """Mirrored once and again, a picture is what it was."""
+    """Mirrored once and again, a picture is as before."""
     picture = np.asarray(_striped())
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32)
     faces = np.array([[0, 1, 2], [0, 2, 3]], np.int32)

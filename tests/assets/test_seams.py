@@ -24,7 +24,7 @@ def head() -> Head:
 
 @pytest.fixture(scope="module")
 def plain(head: Head) -> FittedHead:
-    """What is fitted to it."""
+    """The head fitted to it."""
     return fit(Mesh(head.vertices, head.faces), head.landmarks)
 
 

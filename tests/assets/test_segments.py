@@ -1,4 +1,4 @@
-"""The map of classes: every texel has one, sides mirror, and named places are what they are."""
+"""The map of classes: every texel has one, sides mirror, and named places have their classes."""
 
 import numpy as np
 import pytest
@@ -53,7 +53,7 @@ def test_named_places_are_what_they_are(head, place):
 
 
 def test_lips_ears_and_lids_follow_their_rows(head):
-    """The red is lip, above or below, what is behind it is mouth, the helix is ear."""
+    """The red is lip, above or below, behind it is mouth, the helix is ear."""
     upper, lower = slice(1, 5), slice(10, 14)  # without corners, and the middle of both sides
     for row in (3, 4):
         ring = head.rings[f"mouth_{row}_left"]

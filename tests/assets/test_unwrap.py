@@ -29,7 +29,7 @@ def stretches(head):
 
 
 def seen_in_front(head):
-    """Faces of the face itself, without what is tucked in, shape (F,)."""
+    """Faces of the face itself, without those tucked in, shape (F,)."""
     tucked = [head.rings[f"{row}_{side}"] for row in TUCKED_ROWS for side in ("left", "right")]
     _, y, z = head.vertices[head.faces].mean(axis=1).T
     in_front = (z > 62.0) & (y < 62.0) & (y > -112.0)

@@ -74,7 +74,7 @@ def test_own_motion_is_known_again(scored):
 
 
 def held_to(*rows):
-    """What is missed beside a shape that is sound."""
+    """Missing rows beside a shape that is sound."""
     sound = Row("jawOpen", 0.99, 1.0, 0.02, 0.5)
     return [target.text for target in targets([sound, *rows], []) if not target.is_met]
 

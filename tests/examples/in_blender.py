@@ -1,4 +1,4 @@
-"""Run by Blender's Python: the add-on on a sheet under a wave; prints what it saw as JSON."""
+"""Run by Blender's Python: the add-on on a sheet under a wave; prints its findings as JSON."""
 
 import json
 import sys

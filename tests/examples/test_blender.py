@@ -23,7 +23,7 @@ BLENDER = os.environ.get("RISORIUS_BLENDER_PYTHON", HERE)
 
 @pytest.fixture(scope="module")
 def seen(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """What the program in in_blender.py saw."""
+    """The findings of in_blender.py."""
     if not BLENDER:
         pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")
     folder = tmp_path_factory.mktemp("blender")
@@ -148,7 +148,7 @@ def test_the_manifest_keeps_the_rules():
 
 
 def test_every_setting_of_the_looks_is_an_option():
-    """What the add-on hands to the refiner is known to it, without Blender."""
+    """The refiner knows all options of the add-on, without Blender."""
     from risorius import refine
 
     source = (EXAMPLES / "risorius_refine" / "__init__.py").read_text(encoding="utf-8")

@@ -73,7 +73,7 @@ REFUSED = {
     f"{IMAGE} --option coherent=on --option blend=on": "coherent",
     f"{IMAGE} --refiner loop --option levels=0": "levels",
     f"{IMAGE} --compare --refiner none": "other than none",
-    # What is asked for does not go together.
+    # Options that do not go together.
     "capture": "nothing to write",
     "capture good.toml -o x.mp4 --time 1": "for a film write --time FROM:TO",
     "capture good.toml --set joy -o x.png": "a script and --set exclude each other",
@@ -149,7 +149,7 @@ GIVEN = {  # what else a command needs to come as far as the option
     "bench motion": "--reference folder",
     "bench reference": "folder -o made",
 }
-INSTEAD = {  # where one option excludes what is given
+INSTEAD = {  # where one option excludes a given one
     ("capture", "--set"): "-o x.png --size 16x16 --fps 5 --time 0 --quiet",
     ("capture", "--sound"): "good.toml -o x.mp4 --size 16x16 --fps 5 --quiet",
     ("capture", "--head"): f"{GIVEN['capture']} --landmarks marks.json",

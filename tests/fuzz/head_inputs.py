@@ -27,7 +27,7 @@ WRONG_KIND = "every landmark must be a vertex number, or every one a point"
 
 
 class Kind(Enum):
-    """What must become of an input; a text in its place is what the one line says."""
+    """The wanted result of an input; a text in its place is that of the one line."""
 
     MESH = "a mesh"
     HEAD = "a fitted head"
@@ -49,7 +49,7 @@ class OddHead(NamedTuple):
 
 
 def open_brought(brought: Brought) -> Mesh | FittedHead:
-    """Read or fit what was written, as the command does."""
+    """Read or fit the written files, as the command does."""
     if brought.landmarks is None:
         return assets.read_mesh(brought.mesh)
     return fit_head(brought.mesh, brought.landmarks)

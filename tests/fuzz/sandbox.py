@@ -73,7 +73,7 @@ def furnish(folder: Path) -> None:
 
 
 def contents(folder: Path) -> dict[str, str]:
-    """Every name in a folder with what it is: bytes, link or kind."""
+    """Every name in a folder with its content: bytes, link or kind."""
     found = {}
     for parent, folders, names in os.walk(folder):
         for name in (*folders, *names):
@@ -90,7 +90,7 @@ def contents(folder: Path) -> dict[str, str]:
 
 @contextmanager
 def bounded(seconds: float = LONGEST, memory: int = MOST_MEMORY) -> Iterator[None]:
-    """A failure where what is done takes too long, waits for ever, or takes too much memory."""
+    """A failure where work takes too long, waits for ever, or takes too much memory."""
 
     def stop(*_: object) -> None:
         raise TookTooLong(f"more than {seconds:g} s")
@@ -125,7 +125,7 @@ def _kilobytes(name: str) -> int:
 
 
 def run_command(arguments: tuple[str, ...]) -> Ended:
-    """Run the command in this process, within bounds; whatever it does not catch comes through."""
+    """Run the command in this process, within bounds; other errors come through."""
     with bounded():
         result = CliRunner(catch_exceptions=False).invoke(command(), arguments)
     return Ended(result.exit_code, result.stdout, result.stderr)

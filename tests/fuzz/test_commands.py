@@ -37,6 +37,6 @@ def test_mistakes(line, sandbox):
 @pytest.mark.slow
 @pytest.mark.parametrize("words", [pytest.param(w, id=name) for name, w in hostile_values()])
 def test_hostile_values(words, sandbox):
-    """Whatever an option is given: success, or one line."""
+    """Any value of an option: success, or one line."""
     before = contents(sandbox)
     check_end(run_command(words), sandbox, before)

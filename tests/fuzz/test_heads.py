@@ -22,7 +22,7 @@ MOST_MEMORY = 400_000_000  # [bytes] more than before
 
 @contextmanager
 def quiet_and_bounded():
-    """A failure where what is done takes too long or too much memory, or warns on the screen.
+    """A failure where work takes too long or too much memory, or warns on the screen.
 
     An underflow shows nothing (numpy's default), and where it happens depends on the processor.
     """
@@ -36,7 +36,7 @@ def quiet_and_bounded():
 
 @pytest.mark.parametrize("odd", head_inputs(), ids=lambda odd: odd.name)
 def test_odd_heads(odd, tmp_path, capfd):
-    """What it must become is in the table; a refusal is one line that names the file."""
+    """The wanted result is in the table; a refusal is one line that names the file."""
     brought = odd.write(tmp_path)
     if isinstance(odd.expected, str):
         with quiet_and_bounded(), pytest.raises(AssetError) as refusal:

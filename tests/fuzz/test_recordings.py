@@ -40,7 +40,7 @@ TOKENS = (
 
 
 def check(take):
-    """Whatever was in the file, a Take keeps its promises."""
+    """With any content of the file, a Take keeps its promises."""
     assert len(take.times) > 0
     assert take.times[0] == 0.0
     assert np.isfinite(take.times).all()

@@ -73,7 +73,7 @@ def damaged(chance):
 
 @pytest.mark.parametrize("number", range(ROUNDS))
 def test_damaged_scripts(number, tmp_path, scenes):
-    """Read or refused in one line; what is read has values, and is written back as it was."""
+    """Read or refused in one line; a script has values, and is written back as it was."""
     seed = SEED + number
     path = tmp_path / "damaged.toml"
     path.write_bytes(damaged(random.Random(seed)))

@@ -1,4 +1,4 @@
-"""Settings, the environment, and what the system refuses: space, memory, files, streams."""
+"""Settings, the environment, and refusals of the system: space, memory, files, streams."""
 
 import os
 import resource
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]
 COMMAND = "import sys; sys.argv[0] = 'risorius'; from risorius.__main__ import run; run()"
 STARTING = 60.0  # [s] a process of its own may have to compile first
-# What is set (None: taken away), the words of the command, and its exit code.
+# A variable (None: taken away), the words of the command, and its exit code.
 Row = tuple[dict[str, str | None], str, int]
 IMAGE = "capture --scene plane --set amplitude -o x.png --size 16x16 --quiet"
 FILM = "capture --scene plane --set amplitude -o x.mp4 --size 16x16 --quiet"
@@ -71,7 +71,7 @@ def surroundings(**changed):
 
 @pytest.mark.parametrize("name", ENVIRONMENTS)
 def test_environments(name, sandbox):
-    """It works on, or says in one line what is wrong."""
+    """It works on, or names the fault in one line."""
     changed, words, code = ENVIRONMENTS[name]
     before = contents(sandbox)
     ended = start(words, sandbox, surroundings(**changed))

@@ -1,4 +1,4 @@
-"""What the tests of refine/ share: forced splits, names of output points, generated meshes."""
+"""Shared by the tests of refine/: forced splits, names of output points, generated meshes."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What a refiner holds goes with it."""
+"""The memory of a refiner goes with it."""
 
 import gc
 import subprocess

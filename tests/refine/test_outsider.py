@@ -1,4 +1,4 @@
-"""What a stranger may do: any mesh with any options, judged by corners and sub-edges alone.
+"""The freedom of a stranger: any mesh with any options, judged by corners and sub-edges alone.
 
 The other properties look at one option each. Here all of them meet, in any numeric type and order
 in memory, and what comes out is judged in another way than by `refine.check`: the border of each

@@ -1,4 +1,4 @@
-"""Doubled vertices are one while refining; what they carry parts again, as if bound by corners."""
+"""Doubled vertices are one while refining; their values part again, as if bound by corners."""
 
 import numpy as np
 import numpy.typing as npt
@@ -32,7 +32,7 @@ def doubled(mesh, seed):
     options=st.sampled_from([{}, {"blend": False}, {"scheme": "loop", "criterion": "normal"}]),
 )
 def test_carried_as_if_bound(name, seed, options):
-    """`carry` gives what a refiner has that was bound with the values at every corner."""
+    """`carry` equals a refiner that was bound with the values at every corner."""
     mesh = meshes.NAMED[name]()
     points, faces = doubled(mesh, seed)
     values = np.random.default_rng(seed).random((len(points), 2))
@@ -137,7 +137,7 @@ def test_values_of_a_frame_are_its_attributes(seams):
 
 
 def test_words_come_from_an_end():
-    """What is no number cannot be mixed."""
+    """Words cannot be mixed."""
     assert set(one_triangle().carry(["a", "b", "c"])) == {"a", "b", "c"}
 
 
@@ -191,7 +191,7 @@ def vase():
 @pytest.mark.parametrize("kind", [np.float64, np.float32])
 @pytest.mark.parametrize("moved", [0.0, 3000.0])
 def test_seams_equal_but_for_the_last_bits(kind, moved):
-    """Whatever computed or stored them, both sides of a seam have one normal."""
+    """However they were stored, both sides of a seam have one normal."""
     turned = np.linalg.qr(np.random.default_rng(3).random((3, 3)))[0]
     points, faces = vase()
     points = (points @ turned + moved).astype(kind)

@@ -1,4 +1,4 @@
-"""What the tests of the card have in common."""
+"""Shared by the tests of the card."""
 
 from .agreement import exact_driver
 

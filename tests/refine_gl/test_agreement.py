@@ -207,7 +207,7 @@ def test_coherent_frames(frames, rules, head):
 
 @pytest.mark.parametrize("rules", ["two levels", "window's look"])
 def test_points_that_nothing_uses(rules):
-    """Far away, or no numbers: what the first point is does not matter."""
+    """Far away, or no numbers: the first point does not matter."""
     mesh = meshes.irregular(4)
     strays = np.array([[np.nan, 0.0, 0.0], [1e14, 0.0, 0.0]])
     rest = np.concatenate([strays, mesh.vertices])

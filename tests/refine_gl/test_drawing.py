@@ -69,7 +69,7 @@ def both(pipeline, look="paper"):
 
 
 def drawn_by(monkeypatch, kind):
-    """Let the driver, whatever it is, count as software or as hardware."""
+    """Let any driver count as software or as hardware."""
     is_software = kind == "software"
     monkeypatch.setattr(render.Surface, "is_software", property(lambda _: is_software))
 

@@ -1,4 +1,4 @@
-"""A picture is a value: the same frame gives the same picture, whatever was drawn before it."""
+"""A picture is a value: the same frame gives the same picture after any other."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -55,7 +55,7 @@ def frames_of(renderer):
 
 
 def picture(renderer, *frames):
-    """What is seen after one call."""
+    """The picture after one call."""
     renderer.draw(*frames)
     return renderer.surface.read()
 
@@ -90,7 +90,7 @@ def test_frames_of_one_picture_are_apart(renderer):
 
 
 def test_reading_numbers_is_no_part_of_an_order(renderer):
-    """Numbers of a frame are the same whatever was drawn or read before."""
+    """Numbers of a frame are the same after any other call."""
     frames = frames_of(renderer)
     alone = [renderer.read(frame) for frame in frames]
     for frame in reversed(frames):

@@ -11,7 +11,7 @@ from risorius.sim.state import State
 
 @pytest.fixture(scope="session")
 def model(head: Head) -> FaceModel:
-    """What the simulation of the built-in head is made of."""
+    """The model of the built-in head."""
     return build_face_model(head)
 
 

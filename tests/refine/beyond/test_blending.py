@@ -125,7 +125,7 @@ def test_outlines_do_not_pop(name, scheme):
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
 def test_any_change_of_needs_is_followed(scheme):
-    """Whatever three edges metric, and which of them appears: no jump in the triangle between them.
+    """With any metrics of three edges, whichever appears: no jump in the triangle between them.
 
     Largest seen: 0.8 of the change of the metrics. A diagonal that turns would be 0.1 at once.
     """

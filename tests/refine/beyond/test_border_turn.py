@@ -82,7 +82,7 @@ def test_a_slit_that_opens_in_its_plane():
 @settings(max_examples=40, deadline=None)
 @given(heights, heights)
 def test_symmetric_in_symmetric_out(height, lower):
-    """What is mirrored left and right is split alike there; and above and below, if opened so."""
+    """A mirrored border is split alike left and right; and above and below, if opened so."""
     for axis, sides in ((0, (height, lower)), (1, (height, height))):
         deformed = meshes.opened(SLIT, sides[0])
         is_below = deformed[:, 1] < 0.0

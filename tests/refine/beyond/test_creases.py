@@ -175,7 +175,7 @@ def test_angles_by_hand():
 
 
 def test_off_by_default_and_refused_in_words():
-    """None and 180 degrees change no bit; what is no angle is named."""
+    """None and 180 degrees change no bit; a value that is no angle is named."""
     mesh = meshes.irregular(3)
     bent = meshes.wrinkled(mesh, 4)
     frames = [

@@ -102,7 +102,7 @@ EYE = np.array([3.0, 2.0, 4.0])
 
 
 def plain_measure(kind, positions, normals, edges, most):
-    """What a criterion measures at every edge, written once more, plainly."""
+    """The measure of a criterion at every edge, written once more, plainly."""
     values = []
     for a, b in edges:
         cosine = float(normals[a] @ normals[b])
@@ -228,7 +228,7 @@ class Heat(refine.Criterion):
         self.frame = frame
 
     def measure(self, positions, normals, metric):
-        """Write what is no number from some frame on."""
+        """Write NaN from some frame on."""
         metric[:] = 0.5
         if self.frame <= 0:
             metric[self.at] = np.nan
@@ -264,7 +264,7 @@ def test_no_number_is_reported(blend, name, is_part):
 
 
 def test_check_reports_what_would_be_no_number():
-    """Of a criterion that decides by itself, `check` asks what it measures."""
+    """Of a criterion that decides by itself, `check` asks the measure."""
     mesh = meshes.irregular(3)
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Warmth(7))
     refined = refiner.refine(mesh.vertices)

@@ -67,7 +67,7 @@ def test_lies_on_the_finer_mesh(blend):
 
 
 def test_normals_of_the_surface_are_the_finer_ones():
-    """What the surface of all splits shows is far nearer to the finer normals than a mean is."""
+    """The surface of all splits is far nearer to the finer normals than a mean is."""
     fine_normals = vertex_normals(FINE.vertices, FINE.faces)
     off = {}
     for normals in ("linear", "refined"):
@@ -130,7 +130,7 @@ def test_turns_with_the_mesh(seed):
     blend=st.booleans(),
 )
 def test_equals_plain_twin(mesh, seed, normals, blend):
-    """What is seen at rest moves as the plain twin says, for any splits and geomorph weights."""
+    """Relief at rest moves as the plain twin says, for any splits and geomorph weights."""
     generator = np.random.default_rng(seed)
     lift = 0.05 * generator.standard_normal(mesh.vertices.shape)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)

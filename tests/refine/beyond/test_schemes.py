@@ -81,7 +81,7 @@ def test_equals_plain_twin(normals, scheme, blend, name):
     blend=st.booleans(),
 )
 def test_soups_equal_twin(soup, data, scheme, normals, blend):
-    """Any triangles with any metrics: the fast kernels do what the plain twin does."""
+    """Any triangles with any metrics: the fast kernels agree with the plain twin."""
     positions, faces = soup
     edge_count = len(refine.connect(faces, len(positions)).edges)
     strategy = st.floats(-1, 3, width=32)

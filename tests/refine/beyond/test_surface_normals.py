@@ -1,4 +1,4 @@
-"""Normals of the refined surface: true, steady, and the same whatever is split."""
+"""Normals of the refined surface: true, steady, and the same with any splits."""
 
 import numpy as np
 import numpy.typing as npt
@@ -124,7 +124,7 @@ def test_normals_do_not_pop(scheme):
     at=st.sampled_from([0.0, 0.25, 1.0, 1.25]),
 )
 def test_geomorph_has_no_steps(seed, scheme, edge, at):
-    """Whatever is split around it, an edge that passes a threshold turns no shading at once.
+    """With any splits around it, an edge that passes a threshold turns no shading at once.
 
     What is left is that normals between more points are interpolated otherwise: 3 degrees where
     they turn by 80.

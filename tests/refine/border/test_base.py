@@ -70,7 +70,7 @@ class Middles(refine.BaseRefiner):
 
 @pytest.mark.parametrize("name", meshes.NAMED)
 def test_named_meshes(name):
-    """Whatever the mesh, the few lines of a subclass make a proper refinement of it."""
+    """On any mesh, the few lines of a subclass make a proper refinement of it."""
     mesh = meshes.NAMED[name]()
     deformed = meshes.wrinkled(mesh, 3)
     refiner = Middles(mesh.faces, mesh.vertices, raised=0.1)
@@ -99,7 +99,7 @@ def test_seams_and_attributes():
 
 
 def test_base_refiner_fills_nothing():
-    """Alone it is abstract, and says what a subclass needs."""
+    """Alone it is abstract, and names the needs of a subclass."""
     mesh = meshes.octahedron()
     with pytest.raises(TypeError, match=r"abstract methods '?fill'?, '?triangle"):
         refine.BaseRefiner(mesh.faces, mesh.vertices)

@@ -1,4 +1,4 @@
-"""The checker must notice what it promises to notice: each test breaks one relation."""
+"""The checker must keep its promises: each test breaks one relation."""
 
 import copy
 from types import SimpleNamespace
@@ -234,7 +234,7 @@ def test_points_anywhere(place, inside):
 
 @pytest.mark.parametrize("place", [1 / 2, 1 / 3, 3 / 8, 5 / 512, 3 / 7, 2 / 9])
 def test_single_precision_is_forgiven(place):
-    """What the weights of whole parts lose on their way makes no other place of them."""
+    """Rounding of the weights of whole parts makes no other place of them."""
     assert (place * PARTS) % 1.0 == pytest.approx(0.0, abs=1e-9)
     refine.check(*cut_at((place, place + 2e-7), INSIDE[0]))
 

@@ -148,7 +148,7 @@ NO_FACES = np.zeros((0, 3), int)
 )
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 def test_bad_binding(name, changes, text):
-    """Arrays that do not fit together are refused with what, where, and what is allowed."""
+    """Arrays that do not fit together are refused with fault, place, and the allowed values."""
     arguments = {"faces": FINE.faces, "rest_positions": FINE.vertices}
     arguments |= changes
     with pytest.raises(ValueError, match=text):
@@ -190,7 +190,7 @@ def test_no_triangles_in_none_out(name, faces):
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
 @pytest.mark.parametrize("unit", [1e-6, 5e7])
 def test_units_of_length(unit, scheme):
-    """Whatever the unit, between the limits that binding sets, the same triangles come out."""
+    """In any unit between the limits of binding, the same triangles come out."""
     grid = meshes.irregular(3)
     deformed = meshes.wrinkled(grid, 4)
 
@@ -248,7 +248,7 @@ def test_frames_can_be_kept():
     ],
 )
 def test_bad_options(options, text):
-    """What is of another kind, does not exist or does not fit together is refused with what is."""
+    """Values of another kind, unknown, or at odds are refused with the right ones."""
     with pytest.raises(ValueError, match=text):
         kahler(FINE, **options)
 

@@ -31,7 +31,7 @@ def stream_for(refiner, spare=0):
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 @pytest.mark.parametrize("textured", [False, True])
 def test_lent_stream(name, options, textured, spare):
-    """A lent stream gets what the own stream would get, and the mesh views it."""
+    """A lent stream gets the same as the own stream, and the mesh views it."""
     tube = meshes.tube(10, 6)
     texture = {"uv": tube.uv, "face_uv": tube.face_uv} if textured else {}
     deformed = meshes.wrinkled(tube, 3)
@@ -96,7 +96,7 @@ def test_stream_that_becomes_read_only(name):
 
 
 def test_any_row_of_streams():
-    """Whoever was written to before, a frame goes where it should, and nowhere else."""
+    """After any other stream, a frame goes where it should, and nowhere else."""
     mesh = meshes.irregular(3)
     refiner = kahler(mesh)
     frames = [mesh.vertices + amount * (meshes.wrinkled(mesh, 4) - mesh.vertices)
@@ -162,7 +162,7 @@ def test_nothing_is_allocated(name, options, textured):
     "positions", [np.zeros((5, 3)), np.zeros((6, 2)), np.zeros(18), np.zeros((6, 3), dtype=int)]
 )
 def test_bad_positions(positions):
-    """Positions of another mesh, or integers, are refused with what was expected."""
+    """Positions of another mesh, or integers, are refused with the expected kind."""
     mesh = meshes.octahedron()
     refiner = refine.create("none", mesh.faces, mesh.vertices)
     with pytest.raises(ValueError, match=r"positions must be floats of shape \(6, 3\) .*, got"):
@@ -170,7 +170,7 @@ def test_bad_positions(positions):
 
 
 def test_masked_positions():
-    """What is masked is not known, and is not taken from under the mask."""
+    """Masked values are not known, and are not taken from under the mask."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh)
     expected = refiner.refine(mesh.vertices).positions.copy()

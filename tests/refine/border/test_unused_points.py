@@ -1,4 +1,4 @@
-"""Points that no triangle uses change nothing of what the triangles become, wherever they lie."""
+"""Points that no triangle uses change no triangle, wherever they lie."""
 
 import numpy as np
 import numpy.typing as npt

@@ -146,7 +146,7 @@ def test_offsets_keep_their_length_or_are_stretched():
 
 
 def test_inputs_stay_and_values_are_carried():
-    """Not a byte of what is given changes; values at coarse vertices are linear in triangles."""
+    """Not a byte of the given arrays changes; values at coarse vertices are linear in triangles."""
     mesh = meshes.ball(1)
     fine = around(mesh)
     before = [each.tobytes() for each in (mesh.vertices, mesh.faces, fine)]

@@ -54,7 +54,7 @@ def test_entries(length):
 
 @pytest.mark.parametrize("length", range(7))
 def test_splitting_turns_no_line(length):
-    """Whatever is split further, every line inside the triangle stays; nothing is out of order."""
+    """With any further split, every line inside the triangle stays; nothing is out of order."""
     for state in states_of(length):
         has = coherence.splits_in(TABLES.sequences[state])
         for splits in ALL_SPLITS:

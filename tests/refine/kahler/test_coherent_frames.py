@@ -53,7 +53,7 @@ def turned(before, now, rows):
 
 
 def history_of(refiner):
-    """What the refiner remembers."""
+    """The memory of the refiner."""
     assert isinstance(refiner, refine.Kahler)
     assert refiner.history is not None
     return refiner.history
@@ -110,7 +110,7 @@ def test_geomorph_turns_no_line(seed):
 @settings(max_examples=25)
 @given(seed=st.integers(0, 1000), history=st.lists(st.integers(0, 2**16), min_size=1, max_size=6))
 def test_any_history_is_crack_free(seed, history):
-    """Whatever was split and taken back, in any order, the mesh passes the checker."""
+    """After any splits, taken back in any order, the mesh passes the checker."""
     mesh = meshes.irregular(seed % 20, 4, 4, 1)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
     criterion = Forced(np.zeros(edge_count))

@@ -158,7 +158,7 @@ def test_a_view_decides_as_well():
     ],
 )
 def test_mistakes_are_reported(splits, error):
-    """Splits of another mesh, shape, type or size are refused by a line that says what is right."""
+    """Splits of another mesh, shape, type or size are refused by a line with the right ones."""
     with pytest.raises(ValueError, match=error):
         kahler(meshes.octahedron(), splits=splits)
 

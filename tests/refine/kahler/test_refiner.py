@@ -45,7 +45,7 @@ def test_named_meshes(name, amplitude):
 @settings(max_examples=200, deadline=None)
 @given(soup=soups(), data=st.data())
 def test_soups(soup, data):
-    """Any triangles with any splits: proper, and the twin's; whatever meets at an edge agrees."""
+    """Any triangles with any splits: proper, and the twin's; neighbours agree at every edge."""
     positions, faces = soup
     mesh = meshes.Mesh(positions, faces)
     edge_count = len(refine.connect(faces, len(positions)).edges)

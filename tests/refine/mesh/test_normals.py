@@ -1,4 +1,4 @@
-"""Normals are of length one or exactly zero, whatever is done to a mesh."""
+"""Normals are of length one or exactly zero, on any mesh."""
 
 import numpy as np
 import pytest

@@ -54,7 +54,7 @@ def test_bits_do_not_depend_on_threads(mesh, name, monkeypatch):
 
 
 def test_every_item_once(monkeypatch):
-    """Parts make up the whole, whoever takes them; what fails in one fails for the caller."""
+    """Parts make up the whole in any thread; an error in one is raised for the caller."""
     force_threads(monkeypatch, 3)
     for count in (0, 1, 31, 32, 1000):
         done = np.zeros(count, np.int64)
