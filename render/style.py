@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from types import MappingProxyType
+from typing import Self
 
 Colour = tuple[float, float, float]
 
@@ -32,6 +33,13 @@ class ColourBy(Enum):
     NONE = "none"  # the texture, or the albedo of the style
     SPLITS = "splits"  # how many splits the edges of its source triangle have: 0..6
     SPLIT_WIRES = "split wires"  # the same, of its outline alone, which others do not have
+
+    @classmethod
+    def of(cls, *, splits: bool, wires: bool) -> Self:
+        """The colours of two switches; colours by splits hide wires."""
+        if splits:
+            return cls.SPLITS
+        return cls.SPLIT_WIRES if wires else cls.NONE
 
 
 # Albedos, chosen by eye under this package's light.

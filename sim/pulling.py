@@ -11,12 +11,13 @@ on average; j over all others, with areas a against that under the finger. A wea
 distances along the line of sight, which a mouse does not set. Prices keep controls moderate. They
 are few: the one that mends most is taken first, then the one that mends most beside it, by slopes
 at the start. So targets alone decide which, not the way of the finger: the pose that is seen while
-it moves is the pose that stays. Targets farther than the few strongest controls reach that way are
+it moves is the pose that stays. Targets farther than the strongest control reaches that way are
 brought in to there: prices are in proportion to d, and beyond that no control would be worth them.
 
-Prices, and skin that is to stay, keep the skin from coming all the way to the mouse. So each round
-adds to all targets the distance that is left in the finger's middle, until none is left or muscles
-are at their limits.
+Prices, and skin that is to stay, keep the skin from coming all the way to the mouse. So all changes
+grow by one factor at the end, until the finger's middle is as near to the mouse as this mixture
+brings it, or until a control is at its limit. One factor keeps the mixture: a smile that is drawn
+too far is a smile.
 
 Solved by Gauss and Newton. p is a clone of the face, at rest; its slopes are measured on a second
 clone, by moving one control a little and letting the skin come to rest. A clone's muscles have no
@@ -25,7 +26,7 @@ lips that stick and part, lids on their eyeballs, muscles that stiffen the skin.
 
 Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. Prices make it the
 elastic net (Zou, Hastie 2005), solved along one control after the other (Friedman et al. 2007);
-the rest is added back as by Bregman's iteration (Osher et al. 2005).
+the factor at the end makes it a relaxed one (Meinshausen 2007).
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ Names = tuple[str, ...]
 class Pull:
     """A finger on the skin, and the controls that move the skin as it does."""
 
-    MOST_CONTROLS = 3  # that are used; and so many strongest decide how far targets can be
+    MOST_CONTROLS = 3  # that are used
     ROUND_TOLERANCE = 0.01  # a change that counts as none, between rounds
 
     targets: Floats64  # where the finger draws each of its vertices [head units], shape (n, 3)
@@ -85,6 +86,7 @@ class Pull:
         self.candidates = list[Names]()
         self._value = self._start = np.zeros(0)
         self._drawn = 0.0  # mean square of the way to the aims
+        self._mends = False
 
     def _look(self) -> bool:
         """Before the first answer, find the controls that matter, and slopes; whether any does."""
@@ -122,9 +124,8 @@ class Pull:
 
     @property
     def mends(self) -> bool:
-        """Whether the answer comes nearer by more than a trace."""
-        least_gain = 0.25  # of the squared distances: an answer that mends less is no answer
-        return self._off(self._base.positions) < (1.0 - least_gain) * self._drawn
+        """Whether the answer comes nearer to the aims by more than a trace."""
+        return self._mends
 
     @property
     def short(self) -> float:
@@ -144,7 +145,6 @@ class Pull:
         self._slope[:] = self._first
         self._value = self._start
         self._aim()
-        goal = self._aims
         needed = self._more(np.zeros(len(self._start), np.bool_))
         while (more := self._more(needed)).sum() > needed.sum():
             needed = more
@@ -152,22 +152,44 @@ class Pull:
         for _ in range(most_rounds):
             before = self._value
             self._value = before + self._system().least(needed)
-            values = zip(self._value.tolist(), self.candidates, strict=True)
-            _rest(self._base, {name: each for each, names in values for name in names})
+            self._take_values()
             if np.abs(self._value - before).max(initial=0.0) < self.ROUND_TOLERANCE:
                 break
-            self._aims = self._aims + self._left(goal, self._base.positions)
             self._measure(np.flatnonzero(self._value != self._start))
             needed = self._more(needed)
-        self._aims = goal
+        least_gain = 0.25  # of the squared distances: an answer that mends less is no answer
+        self._mends = self._off(self._base.positions) < (1.0 - least_gain) * self._drawn
+        if self._mends:
+            self._stretch()
+
+    def _take_values(self) -> None:
+        """Let the clone's skin come to rest under the solved values."""
+        values = zip(self._value.tolist(), self.candidates, strict=True)
+        _rest(self._base, {name: each for each, names in values for name in names})
+
+    def _stretch(self) -> None:
+        """Let all changes grow by one factor, to where the finger's middle is nearest the mouse."""
+        drawn = self._left(self.targets, self._from)
+        most_rounds = 6  # skin does not follow in proportion
+        for _ in range(most_rounds):
+            went = drawn - self._left(self.targets, self._base.positions)
+            changed = self._value - self._start
+            moved = changed != 0.0
+            ends = np.where(changed > 0.0, self._high, self._low) - self._start
+            to_limit = float((ends[moved] / changed[moved]).min(initial=np.inf))
+            factor = min(float(went @ drawn) / max(float(went @ went), 1e-12), to_limit)
+            if not factor > 1.0 + self.ROUND_TOLERANCE:
+                break
+            self._value = self._start + factor * changed
+            self._take_values()
 
     def _aim(self) -> None:
-        """Where the finger draws to, no farther than the strongest controls together reach."""
+        """Where the finger draws to, no farther than the strongest control reaches."""
         drawn = self.targets - self._from[self._vertices]
         seen = (self._share[:, None] * drawn) @ self._seen
         along = ((self._first[:, self._vertices] @ self._seen) * seen).sum(axis=(1, 2))
         room = np.where(along > 0.0, self._high, self._low) - self._start
-        reach = float(np.sort(along * room)[-self.MOST_CONTROLS :].sum())
+        reach = float((along * room).max())
         drawn *= min(reach / max(self._square(drawn), 1e-12), 1.0)
         self._aims = self._from[self._vertices] + drawn
         self._drawn = max(self._off(self._from), 1e-12)
@@ -217,7 +239,7 @@ class Pull:
             return needed
         system = self._system()
         # Share of the squared distances: a control that mends less beside others is not used.
-        least_worth = 0.015
+        least_worth = 0.025
         worth = least_worth * self._drawn
         costs = np.array([system.cost(needed | one) for one in np.eye(len(needed), dtype=bool)])
         best = needed | (np.arange(len(costs)) == costs.argmin())
@@ -238,7 +260,7 @@ class Pull:
         off = (((self._aims - now[self._vertices]) @ self._seen) * root).ravel()
         slope = self._slope.reshape(count, -1)
         # Weight of the rest of the face, against an equal area under the finger.
-        rest_weight = 0.0051
+        rest_weight = 0.02
         others = slope * np.repeat(rest_weight * self._area, 3)
         square_price = 0.034  # the same, as the square of its share: two equal controls share it
         effort = square_price * self._drawn

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, fields
 from importlib.resources import files
 from pathlib import Path
@@ -296,7 +296,7 @@ class Drawing(Subject):
         skin = wanted["skin"]
         return render.Style(
             wireframe=wanted["wireframe"],
-            colour_by=_colour_by(wanted),
+            colour_by=render.ColourBy.of(splits=wanted["splits"], wires=wanted["wires"]),
             textured=skin == "textured",
             albedo=render.CLAY if skin == "clay" else render.SKIN,
             bumps=wanted["wrinkles"],
@@ -311,15 +311,6 @@ class Drawing(Subject):
             return SKIN_ALONE
         structures, opacity, side = anatomy_in(self.anatomy)
         return AnatomyView(structures, OPACITY if opacity is None else opacity, side)
-
-
-def _colour_by(wanted: Mapping[str, Any]) -> render.ColourBy:
-    """What colours triangles, by the words of a style."""
-    from risorius import render
-
-    if wanted["splits"]:
-        return render.ColourBy.SPLITS
-    return render.ColourBy.SPLIT_WIRES if wanted["wires"] else render.ColourBy.NONE
 
 
 GAIN = click.option(

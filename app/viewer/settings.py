@@ -105,6 +105,7 @@ class Display(Record):
     shading: Annotated[str, OneOf([each.value for each in render.Shading])] = "pixel"
     wireframe: Flag = False
     splits: Flag = False  # colour triangles by them
+    wires: Flag = False  # outline the triangles that are split more than at rest
     skin: Annotated[str, OneOf(SKINS)] = "textured"
     skin_maps: Flag = True  # fine shape, and less light in folds, from maps over the skin
     wrinkles: Share = 1.0  # how deep they are where skin is compressed

@@ -301,6 +301,42 @@ def test_pulled_skin_stays_where_muscles_hold_it(viewer):
     assert until(viewer, lambda: moved(viewer) < 0.3)
 
 
+def test_a_corner_drawn_up_and_out_smiles_at_any_speed(viewer):
+    """Slow or at once, near or far: the same muscle, a smile; the line stays while it is held."""
+    session = viewer.session
+    corner = landmark(viewer, 54)
+    found = []
+    for steps in (6, 1, 1):
+        xdotool(viewer, "mousemove", *corner, "mousedown", 1)
+        for _ in range(steps):
+            by = 60 // steps
+            xdotool(viewer, "mousemove_relative", "--", by, -by)
+        if steps == 1:
+            xdotool(viewer, "mouseup", 1)
+        else:
+            viewer.messages.seconds_left = 0.01
+            settle(viewer)
+            assert viewer.messages.text.startswith("Smile muscle")
+            xdotool(viewer, "mouseup", 1)
+        found.append({name: value for name, value in session.values.items() if value})
+        press_keys(viewer, "ctrl+z")
+        assert until(viewer, lambda: moved(viewer) < 0.05)
+    assert found[0].keys() == {f"{MAJOR}_left", f"{MAJOR}_right"}
+    assert min(found[0].values()) > 0.9
+    for other in found[1:]:
+        assert other == pytest.approx(found[0], abs=0.05)
+
+
+def test_the_muscle_under_the_mouse_shows_softly(viewer):
+    """Over the skin its fibres light up, fainter than those of a control; beside it none does."""
+    xdotool(viewer, "mousemove", *landmark(viewer, 54))
+    view = viewer.face.view
+    assert until(viewer, lambda: view.hovered is not None)
+    assert view.hovered.endswith("_left")
+    xdotool(viewer, "mousemove", *on_screen(viewer, 880, 300))
+    assert until(viewer, lambda: view.hovered is None)
+
+
 def test_a_click_shows_the_muscle_in_the_panel(viewer):
     """Its group opens, and its slider is scrolled to."""
     viewer.context.wanted_tab = "Live"

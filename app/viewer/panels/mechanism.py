@@ -47,6 +47,7 @@ HINTS = {
     "coherent": "triangles are cut in the order in which their edges split, and no line turns; for "
     "flat shading",
     "Colour by splits": "of the edges of the simulated mesh's triangles ([Colour by splits])",
+    "Wires of splits": "outlines of simulated triangles that are split more than at rest",
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
     "Wireframe": "the edges of all triangles that are drawn ([Wireframe])",
     "Skin maps": "fine shape (with pixel shading), and less light in folds (with texture)",
@@ -58,7 +59,12 @@ HINTS = {
     "Dissect": "the side of the face whose skin is translucent",
 }
 # Rows of fields of the display, by their labels.
-FIELDS = {"Refine": "is_refined", "Skin tone": "tone", "Colour by splits": "splits"}
+FIELDS = {
+    "Refine": "is_refined",
+    "Skin tone": "tone",
+    "Colour by splits": "splits",
+    "Wires of splits": "wires",
+}
 FIELDS |= {each.name.capitalize().replace("_", " "): each.name for each in fields(Display)}
 
 
@@ -175,6 +181,8 @@ class MechanismPanel:
         imgui.same_line(self._rows.second)
         self._switch("Skin maps")
         self._switch("Colour by splits")
+        imgui.same_line(self._rows.second)
+        self._switch("Wires of splits")
 
     def _draw_light_and_person(self) -> None:
         scene = self._stage.scene

@@ -17,7 +17,7 @@ from risorius.geometry.arrays import Floats64
 
 from ..interface.gui import LEFT, MIDDLE, RIGHT, em
 from ..messages import Messages
-from .skin import Ray, SkinDrag, skin_under
+from .skin import Ray, SkinDrag, muscle_at, skin_under
 from .stage import SceneView, Stage
 
 Grab = Callable[..., SkinDrag]
@@ -49,7 +49,9 @@ class CameraMouse:
             self._drag(io)
             if not any(imgui.is_mouse_down(button) for button in (LEFT, RIGHT, MIDDLE)):
                 self._release(io)
-        elif not io.want_capture_mouse:
+        elif io.want_capture_mouse or not imgui.is_mouse_pos_valid():
+            self._view.hovered = None
+        else:
             self._hover(io)
             for button in (LEFT, RIGHT, MIDDLE):
                 if imgui.is_mouse_clicked(button):
@@ -66,6 +68,7 @@ class CameraMouse:
 
     def _press(self, io: Any, button: int) -> None:
         self._pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
+        self._view.hovered = None
         if button == MIDDLE or io.key_shift:
             self._doing = "pan"
         elif button == RIGHT or io.key_alt:
@@ -147,6 +150,17 @@ class Mouse(CameraMouse):
     def _hover(self, io: Any) -> None:
         if self._is_at_divider(io.mouse_pos.x):
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+            return
+        if io.mouse_delta.x or io.mouse_delta.y:
+            self._view.hovered = self._muscle_under(io)
+
+    def _muscle_under(self, io: Any) -> str | None:
+        """The muscle under the mouse, which a pull would take first; None beside the skin."""
+        face = self._stage.scene.face
+        point = None if face is None else self._skin_under(io)
+        if face is None or point is None:
+            return None
+        return muscle_at(face.simulation, point)
 
     def _take(self, io: Any) -> str:
         if self._is_at_divider(io.mouse_pos.x):

@@ -70,6 +70,11 @@ def skin_under(ray: Ray, positions: Floats64, faces: npt.NDArray[Any]) -> Floats
     return point
 
 
+def muscle_at(simulation: sim.Simulation, point: Floats64) -> str | None:
+    """The muscle at a point (3,) of the skin, if any."""
+    return simulation.anatomy.muscle_at(point, 14.0)  # [mm] from a fibre, at most
+
+
 class SkinDrag:
     """A finger that drags the skin."""
 
@@ -93,6 +98,7 @@ class SkinDrag:
         self.offset = np.zeros(3)
         self._solved = np.zeros(3)
         self._due = 0.0
+        self._line: Message = None  # of the last answer; shown as long as the finger is there
         poses = poses and not session.live_override.is_on  # which poses the face itself
         rest = self._simulation.rest_positions[self._vertices]
         is_aside = abs(rest[:, 0].mean() - session.scene.framing.focus[0]) > finger_radius
@@ -115,14 +121,14 @@ class SkinDrag:
         # A dense head takes long: at least half of the time is for the picture.
         begin = time.perf_counter()
         if begin < self._due or np.array_equal(offset, self._solved):
-            return None
-        line = self._solve()
+            return self._line
+        self._line = self._solve()
         self._due = 2.0 * time.perf_counter() - begin
-        return line
+        return self._line
 
     def muscle(self) -> str | None:
         """The muscle under the finger, if any."""
-        return self._simulation.anatomy.muscle_at(self.point, 14.0)  # [mm] from a fibre, at most
+        return muscle_at(self._simulation, self.point)
 
     def let_go(self) -> Message:
         """End the drag: skin stays where muscles hold it, or swings back; the solved controls."""

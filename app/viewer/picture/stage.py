@@ -36,11 +36,13 @@ class SceneView:
 
     area: the scene's part of the window: left, top, width, height [window units].
     pointed: the muscles of the control that the mouse is on, and how much each has to do with it.
+    hovered: the muscle under the mouse on the skin; None beside it.
     """
 
     camera: render.OrbitCamera
     area: tuple[float, float, float, float]
     pointed: Mapping[str, float]
+    hovered: str | None
 
     def __init__(self, session: Session, settings: Settings, surface: render.WindowSurface) -> None:
         self._session = session
@@ -48,6 +50,7 @@ class SceneView:
         self._surface = surface
         self.area = (0.0, 0.0, 1.0, 1.0)
         self.pointed = {}
+        self.hovered = None
         self.fit_scene()
 
     def fit_scene(self) -> None:
@@ -97,7 +100,8 @@ class SceneView:
         display = repr(asdict(self.display))
         camera = self.camera
         place = camera.yaw, camera.pitch, camera.distance, *camera.target.tolist()
-        return place, display, self._settings.theme, self.viewport, self.pointed
+        lit = self.pointed, self.hovered
+        return place, display, self._settings.theme, self.viewport, lit
 
     def divider(self) -> list[tuple[render.Rectangle, render.Colour]]:
         """The line between the two halves of a comparison, and the knob to drag it by."""
@@ -174,7 +178,7 @@ class Stage:
         timed = self._times.timed
         viewports = self.viewports(display, view.viewport)
         style = style_of(display, view.background)
-        overlays = [] if is_photo else pointed_lines(self.scene, view.pointed)
+        overlays = [] if is_photo else self._lit_muscles(view)
         self.pipeline.draw(
             view.camera, style, viewports, anatomy=display.anatomy, overlays=overlays, timer=timed
         )
@@ -192,6 +196,12 @@ class Stage:
         has_bar = view.display.splits and has_splits
         return labels(texts, places, has_bar=has_bar, least=view.letter)
 
+    def _lit_muscles(self, view: SceneView) -> list[render.Lines]:
+        """The muscles of a control under the mouse, or softly the one under it on the skin."""
+        if view.pointed or view.hovered is None:
+            return pointed_lines(self.scene, view.pointed)
+        return pointed_lines(self.scene, {view.hovered: 1.0}, clarity=0.35)
+
     def draw_image(self, view: SceneView) -> Image:
         """The picture without panels, in full detail, with captions and a colour bar."""
         self.surface.detail = FULL_DETAIL
@@ -205,10 +215,13 @@ class Stage:
         return captioned(frame, shown, [x - left for x, *_ in seen])
 
 
-def pointed_lines(scene: Drawable, shares: Mapping[str, float]) -> list[render.Lines]:
+def pointed_lines(
+    scene: Drawable, shares: Mapping[str, float], clarity: float = 0.9
+) -> list[render.Lines]:
     """The fibres of the muscles of a control under the mouse: the clearer the more each does.
 
-    shares: name -> how far it goes. One without sides stands for both.
+    shares: name -> how far it goes. One without sides stands for both. clarity: the opacity of the
+    one that does most.
     """
     face = scene.face if shares else None
     fibres = {} if face is None else face.simulation.anatomy.fibres()
@@ -221,7 +234,7 @@ def pointed_lines(scene: Drawable, shares: Mapping[str, float]) -> list[render.L
     drawn = []
     for name, share in seen.items():
         if share >= 0.2 * most:
-            opacity = 0.9 * share / most
+            opacity = clarity * share / most
             colours = np.tile((1.0, 0.66, 0.10), (len(fibres[name]), 1))  # sRGB
             drawn.append(render.Lines(fibres[name], colours, 2.5, opacity, opacity))
     return drawn
@@ -233,7 +246,7 @@ def style_of(display: Display, background: render.Background | None) -> render.S
     return render.Style(
         shading=render.Shading(display.shading),
         wireframe=display.wireframe,
-        colour_by=render.ColourBy.SPLITS if display.splits else render.ColourBy.NONE,
+        colour_by=render.ColourBy.of(splits=display.splits, wires=display.wires),
         textured=is_textured,
         skin_maps=display.skin_maps,
         albedo=albedo,
