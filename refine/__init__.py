@@ -45,6 +45,7 @@ from .beyond.options import create_kahler
 from .border.base import BaseRefiner
 from .border.checker import BrokenMeshError, check
 from .border.corner_values import Values
+from .border.option import Option
 from .border.plugin import GpuRefiner, GpuStream, Origins, RefinedMesh, Refiner, Stream, View
 from .border.registry import Registry, create, parameters, refiners, takes_attributes
 from .border.stream import StreamArrays
@@ -87,6 +88,7 @@ __all__ = [
     "Loop",
     "Maximum",
     "NormalDrop",
+    "Option",
     "Origins",
     "PassThrough",
     "RefinedMesh",

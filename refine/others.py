@@ -22,7 +22,7 @@ three points in its interior, and the second level smooths all vertices of the f
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Unpack
+from typing import Annotated, Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +30,7 @@ import numpy.typing as npt
 from ..geometry.arrays import Floats32, Integers32
 from .border.base import BaseRefiner
 from .border.corner_values import Values
+from .border.option import Option
 from .border.plugin import Origins, Stream, View
 from .border.rows import (
     GEOMETRY_COLUMNS,
@@ -45,8 +46,8 @@ from .mesh.rings import vertex_rings
 
 CHILD_TRIANGLES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """Of a triangle with corners 0 1 2 and middles 3 4 5 of its edges: the triangles it becomes."""
-MOST_LEVELS = 4
-"""Chosen: it makes 256 triangles of each, half a million of a face."""
+LEVELS = Option("how often all edges are split", 1, 4, name="levels", kind="integer")
+"""At most four, chosen: it makes 256 triangles of each, half a million of a face."""
 
 
 class Level:
@@ -86,13 +87,12 @@ class Loop(BaseRefiner):
         faces: npt.ArrayLike,
         rest_positions: npt.ArrayLike,
         *,
-        levels: int = 1,
+        levels: Annotated[int, LEVELS] = 1,
         **values: Unpack[Values],
     ) -> None:
         """Bind to a mesh (see `registry.create`). `levels`: 1 to 4, how often edges are split."""
         super().__init__(faces, rest_positions, **values)
-        if not isinstance(levels, int | np.integer) or not 1 <= levels <= MOST_LEVELS:
-            raise ValueError(f"levels must be 1 to {MOST_LEVELS}, got {levels!r}")
+        LEVELS.check(levels)
         self.edge_splits[:] = levels
         finest = _Refined.of(
             self.connectivity, None if self._values is None else self._values.values

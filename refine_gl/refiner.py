@@ -9,7 +9,7 @@ import functools
 import logging
 import operator
 from collections.abc import Mapping, Sequence
-from typing import Literal, Unpack, cast
+from typing import Annotated, Literal, Unpack, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,7 @@ from risorius.refine import (
     GpuStream,
     Kahler,
     NormalDrop,
+    Option,
     Origins,
     RefinedMesh,
     Stream,
@@ -37,9 +38,12 @@ from risorius.refine.kahler.refiner import points_on_edges
 from .context import GpuError, OwnContext, own_context
 from .frames import VECTOR_BYTES, Frames, programs_of
 from .refined import GpuBuffers, GpuMesh, Run
-from .rules import SCHEMES, Rules, Settings
+from .rules import Rules, Settings
 from .tables import tables_of
 
+Threshold = Annotated[
+    float, Option("drop of the normals' dot product above which an edge splits", least=0.0)
+]
 log = logging.getLogger(__name__)
 
 
@@ -47,8 +51,8 @@ def create_kahler_gl(
     faces: npt.ArrayLike,
     rest_positions: npt.ArrayLike,
     *,
-    threshold_once: float = THRESHOLD_ONCE,
-    threshold_twice: float = THRESHOLD_TWICE,
+    threshold_once: Threshold = THRESHOLD_ONCE,
+    threshold_twice: Threshold = THRESHOLD_TWICE,
     criterion: str | Criterion | Sequence[str | Criterion] = "normal",
     splits: npt.ArrayLike | None = None,
     scheme: Literal["loop", "cubic"] = "loop",
@@ -74,11 +78,6 @@ def create_kahler_gl(
     Where there is no OpenGL 4.3, too little room for the mesh, or a driver that refuses a shader,
     the log says so once, and the refiner `kahler` with the same options is returned.
     """
-    for name, flag in (("blend", blend), ("coherent", coherent)):
-        if flag not in (None, True, False):
-            raise ValueError(f"{name} must be True or False, got {flag!r}")
-    if scheme not in SCHEMES:
-        raise ValueError(f"scheme must be one of {SCHEMES} in kahler-gl, got {scheme!r}")
     if blend and (coherent or scheme == "loop"):
         raise ValueError('blend=True needs scheme="cubic" in kahler-gl, and coherent=False')
     if blend is None:

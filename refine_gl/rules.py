@@ -30,7 +30,6 @@ from risorius.refine.kahler.table import CONFIGURATIONS
 from risorius.refine.mesh.rings import vertex_rings
 from risorius.refine.mesh.vectors import ONE
 
-SCHEMES = "loop", "cubic"
 Arrays = Mapping[str, npt.NDArray[np.generic]]
 
 THREADS: Mapping[str, tuple[str, ...]] = {
@@ -238,7 +237,7 @@ def _limits(name: str, thresholds: Thresholds | None, unit: np.float32 = ONE) ->
     """Of a criterion that the card measures, in the unit of its measure; zeros for none."""
     limits = dict.fromkeys(("once", "twice", "width", "most"), 0.0)
     if thresholds is not None:
-        numbers = thresholds.once, thresholds.twice, thresholds.width
+        numbers = *thresholds.limits, thresholds.width
         limits = dict(zip(limits, [float(unit * number) for number in numbers], strict=False))
         limits["most"] = float(thresholds.most)
     return {f"{name}_{end}": limit for end, limit in limits.items()}

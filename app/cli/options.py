@@ -214,8 +214,7 @@ class Subject:
         multiple=True,
         metavar="NAME=VALUE",
         help="An option of the refiner, in place of the look's: scheme=cubic, "
-        "criterion=displacement, ... "
-        "(risorius doctor lists schemes and criteria).",
+        "criterion=displacement, rest.levels=1, ... ; --option help lists them with their values.",
     )
 
     @property
@@ -250,8 +249,11 @@ class Subject:
 
     def refinement(self) -> Refinement:
         """How the mesh is refined; UserError where there is no such refiner."""
-        from ..refining.refiners import parse_options
+        from ..refining.refiners import help_of_options, parse_options
 
+        if "help" in self.refiner_settings:
+            click.echo(help_of_options(Refinement(self.look, self.refiner).on("face")[0]))
+            raise click.exceptions.Exit(0)
         options = parse_options(self.refiner, self.refiner_settings)
         return Refinement(self.look, self.refiner, options)
 

@@ -92,7 +92,7 @@ class Refinement:
 
     def has_thresholds(self, scene: str) -> bool:
         """Whether the criterion is PAPERS_CRITERION, or contains it: then THRESHOLDS count."""
-        return PAPERS_CRITERION in self._criterion(scene).split("+")
+        return PAPERS_CRITERION in self.criterion_on(scene).split("+")
 
     def check(self, scene: str) -> None:
         """Raise UserError for options that would do nothing on the scene of this name."""
@@ -100,11 +100,12 @@ class Refinement:
         if unused and not self.has_thresholds(scene):
             raise UserError(
                 f"--option {unused[0]}: counts for the criterion {PAPERS_CRITERION} alone, and "
-                f"here it is {self._criterion(scene)}; leave it out, or add "
+                f"here it is {self.criterion_on(scene)}; leave it out, or add "
                 f"--option criterion={PAPERS_CRITERION}"
             )
 
-    def _criterion(self, scene: str) -> str:
+    def criterion_on(self, scene: str) -> str:
+        """The names of the criteria for the scene of this name, joined by +."""
         return str(self.on(scene)[1].get("criterion", PAPERS_CRITERION))
 
     @property

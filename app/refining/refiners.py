@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from types import MappingProxyType, NoneType
-from typing import Any, Literal, get_args, get_origin
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,13 +15,13 @@ from risorius.geometry.arrays import Floats64, Integers32
 from ..errors import UserError
 from ..scenes import Drawable
 from .plug_ins import culprit_of, error_in, plug_ins_of
-from .presets import PRESETS, STATIC, Refinement, named
+from .presets import PAPERS_CRITERION, PRESETS, STATIC, THRESHOLDS, Refinement, named
 
 Splits = npt.NDArray[np.uint8]
 
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
 NO_ATTRIBUTES: Mapping[str, npt.NDArray[np.float32]] = MappingProxyType({})
-AS_IT_SUITS = "automatic"  # the word for an option that is left open
+OF = "."  # between a criterion and its option
 SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
@@ -41,7 +41,8 @@ def refiner_for(
     plug_ins = plug_ins_of(name, options)
     try:
         if refinement.options:
-            _check(name, refinement.options)
+            _check(name, refinement.options, refinement.criterion_on(scene.name))
+            options = with_criteria(options)
         takes_detail = any(each.name == DETAIL for each in refine.parameters(name))
         if options.get("scheme") == DETAIL and "detail" not in options and takes_detail:
             options["detail"] = finer_mesh(scene)
@@ -72,69 +73,73 @@ def _presets_share(refinement: Refinement, options: Mapping[str, Any]) -> str:
     settings = [
         f"{name}={('off', 'on')[value] if isinstance(value, bool) else value}"
         for name, value in options.items()
-        if name not in refinement.options and name != DETAIL
+        if name not in refinement.options and isinstance(value, bool | int | float | str)
     ]
     is_mixed = settings and refinement.options
     return f"; the look {refinement.preset} has {', '.join(settings)}" if is_mixed else ""
 
 
-def options_of(name: str) -> dict[str, Any]:
-    """The options of a refiner that are numbers or words, with their defaults, as declared.
+def options_of(refiner: str, criterion: str) -> dict[str, refine.Option]:
+    """The options that can be set by words and sliders: those of a refiner, then of its criterion.
 
-    An option whose default is None is left out, unless it is a choice.
+    A criterion's are named after it, as `rest.levels`. Those that the refiner has itself count
+    there. Raises ValueError for a refiner that cannot be loaded.
     """
-    choices = open_choices(name)
-    return {
-        each.name: each.default
-        for each in refine.parameters(name)
-        if isinstance(each.default, bool | int | float | str) or each.name in choices
-    }
+    found = {option.name: option for option in refine.parameters(refiner)}
+    if "criterion" in found:
+        for part in criterion.split("+"):
+            if part in refine.criteria.available():
+                for option in refine.criteria.options(part):
+                    if option.name not in found:
+                        found[f"{part}{OF}{option.name}"] = option
+    return {name: option for name, option in found.items() if option.kind != "object"}
 
 
-def open_choices(name: str) -> dict[str, dict[str, bool | str | None]]:
-    """The options of a refiner that may be left open, and the values they may have, by words."""
-    values = {each.name: _values_of(each.annotation) for each in refine.parameters(name)}
-    return {option: {AS_IT_SUITS: None, **found} for option, found in values.items() if found}
+def _check(refiner: str, options: Mapping[str, Any], criterion: str) -> None:
+    """Raise UserError for an option that can be set neither in the refiner nor its criterion."""
+    there_are = options_of(refiner, criterion)
+    for option in options:
+        if option not in there_are:
+            takes = f"it takes {', '.join(there_are)}" if there_are else "it has no options"
+            raise UserError(f"refiner {refiner}: unknown option {option}; {takes}")
 
 
-def _values_of(annotation: object) -> dict[str, bool | str]:
-    """Of `bool | None`, on and off; of `Literal[...] | None`, its words; else none.
+def with_criteria(options: Mapping[str, Any]) -> dict[str, Any]:
+    """The options as `refine.create` takes them: criteria that have options become objects.
 
-    Not of any union with bool: numpy's ArrayLike may be one, too.
+    Raises ValueError for a value that a criterion refuses.
     """
-    rest = set(get_args(annotation)) - {NoneType}
-    if len(get_args(annotation)) != 2 or len(rest) != 1:
-        return {}
-    kind = rest.pop()
-    if kind is bool:
-        return {"on": True, "off": False}
-    return {word: word for word in get_args(kind)} if get_origin(kind) is Literal else {}
+    plain = {name: value for name, value in options.items() if OF not in name}
+    if len(plain) == len(options):
+        return plain
+    made: list[str | refine.Criterion] = []
+    for part in str(plain.get("criterion", PAPERS_CRITERION)).split("+"):
+        start = f"{part}{OF}"
+        own = {name.removeprefix(start): options[name] for name in options if start in name}
+        if own and part == PAPERS_CRITERION:  # whose thresholds are options of the refiner
+            own |= {name: plain[name] for name in THRESHOLDS if name in plain}
+        made.append(refine.criteria.make(part, **own) if own else part)
+    return {**plain, "criterion": made}
 
 
-def _check(name: str, options: Mapping[str, Any]) -> None:
-    """UserError for an option that the refiner does not offer, or of another kind."""
-    defaults = options_of(name)
-    open_ones = open_choices(name)
-    for option, value in options.items():
-        if option not in defaults:
-            takes = f"it takes {', '.join(defaults)}" if defaults else "it has no options"
-            raise UserError(f"refiner {name}: unknown option {option}; {takes}")
-        default = defaults[option]
-        if option in open_ones:  # 1 is not on
-            values = open_ones[option]
-            is_right = any(type(value) is type(each) and value == each for each in values.values())
-            wanted = " or ".join(word for word in values if word != AS_IT_SUITS)
-        elif isinstance(default, bool):
-            is_right = isinstance(value, bool)
-            wanted = "on or off"
-        elif isinstance(default, str):
-            is_right = isinstance(value, str)
-            wanted = "a word"
-        else:
-            is_right = isinstance(value, int | float) and not isinstance(value, bool)
-            wanted = "a number"
-        if not is_right:
-            raise UserError(f"refiner {name}: option {option} was {value}, must be {wanted}")
+def help_of_options(refiner: str) -> str:
+    """All options of a refiner, and of all criteria that it may have, a line each."""
+    every = "+".join(refine.criteria.available())
+    lines = [
+        f"  {name:<24}{option.wanted:<34}{_in_words(option):<14}{option.help}".rstrip()
+        for name, option in options_of(refiner, every).items()
+    ]
+    return "\n".join([f"Options of the refiner {refiner}: name, values, default", *lines])
+
+
+def _in_words(option: refine.Option) -> str:
+    """The default of an option, as it is written."""
+    if option.kind == "choice":
+        same = (word for word, value in option.choices.items() if value == option.default)
+        return next(same, "")
+    if option.kind == "switch":
+        return "on" if option.default else "off"
+    return str(option.default)
 
 
 def can_detail(scene: Drawable) -> bool:

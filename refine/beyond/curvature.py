@@ -17,10 +17,11 @@ import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64, Unsigned32
 from ...geometry.normals import cross_products
+from ..kahler.criterion import Levels
 from ..mesh.connectivity import Connectivity
 from ..mesh.creases import Sectors, sectors_of
 from .blending import RAMP_WIDTH
-from .measuring import Measuring
+from .measuring import Measuring, Once, Twice
 
 USUAL_LENGTH = 1.0 / 40.0
 """Length of the edge whose measure is its height, in sizes of the mesh: about that of a face."""
@@ -35,14 +36,14 @@ class RestCurvature(Measuring):
     uses_normals = False
     is_constant = True
 
-    def __init__(self, once: float = 0.00077, twice: float = 0.0053) -> None:
+    def __init__(self, once: Once = 0.00077, twice: Twice = 0.0053, levels: Levels = 2) -> None:
         """`once`, `twice`: measures in sizes of the mesh, so a fine mesh is left as it is.
 
         Chosen by eye on a head of 2030 triangles, 720 pixels high: of its outline, lower limits
         show no more. Splits have to reach everything that is round: beside one that was drawn
-        inward a vertex without splits sticks out.
+        inward a vertex without splits sticks out. `levels`: the most splits of an edge.
         """
-        super().__init__(once, twice, "heights in sizes of the mesh")
+        super().__init__(once, twice, "heights in sizes of the mesh", levels)
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
@@ -61,8 +62,8 @@ class RestCurvature(Measuring):
         along /= _diagonal(rest_positions[edges])
         heights = 0.125 * np.abs(np.einsum("ij,ij->i", turns, along))
         measures = heights * np.cbrt(np.linalg.norm(along, axis=1) / USUAL_LENGTH)
-        limits = self.thresholds
-        asked = (measures > limits.once).astype(np.uint8) + (measures > limits.twice)
+        once, twice = self.thresholds.limits
+        asked = (measures > once).astype(np.uint8) + (measures > twice)
         splits = np.zeros(len(edges), dtype=np.uint8)
         np.maximum.at(splits, edge_of, asked)
         # Metrics at which a blended point has grown: there is nothing that it could grow with.

@@ -7,18 +7,27 @@ measure both (`Scheme.measure`): those with curved edges, and all with `normals=
     size of an edge     hypot(displacement, turning x angle x length)      a distance
 """
 
+from typing import Annotated
+
 import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64
 from ...jit import njit
+from ..border.option import Option
+from ..kahler.criterion import Levels
 from ..kahler.smoothing import Scheme
 from ..mesh.connectivity import Connectivity
 from .blending import RAMP_WIDTH
-from .measuring import Measuring, mean_length
+from .measuring import Measuring, Once, Twice, mean_length
 
 GROWTH_SHARE = 0.6
 """Share of the first threshold in which a blended point grows. Chosen: a point that is half grown
 costs as much as a whole one; with less than this surfaces jump farther than their input moves."""
+
+
+Turning = Annotated[
+    float, Option("weight of a turn of the normal by a radian, in lengths of the edge", least=0.0)
+]
 
 
 class Displacement(Measuring):
@@ -29,13 +38,20 @@ class Displacement(Measuring):
 
     uses_normals = False
 
-    def __init__(self, once: float = 0.08, twice: float = 0.4, *, turning: float = 0.35) -> None:
+    def __init__(
+        self,
+        once: Once = 0.08,
+        twice: Twice = 0.4,
+        *,
+        turning: Turning = 0.35,
+        levels: Levels = 2,
+    ) -> None:
         """`once`, `twice`: distances in mean edge lengths of the mesh at rest.
 
         `turning`: weight of a turn of the normal by a radian, in lengths of the edge; 0 looks at
-        distances only.
+        distances only. `levels`: the most splits of an edge.
         """
-        super().__init__(once, twice, "distances in mean edge lengths")
+        super().__init__(once, twice, "distances in mean edge lengths", levels)
         self.turning = turning
 
     def set_scheme(self, scheme: Scheme) -> None:

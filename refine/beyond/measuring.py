@@ -14,13 +14,15 @@ needs a split, so that all of them can be blended (blending.py) and any of them 
 
 import reprlib
 from collections.abc import Sequence
+from typing import Annotated
 
 import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64, Unsigned8, Unsigned32
 from ...jit import njit
+from ..border.option import Option
 from ..border.plugin import View
-from ..kahler.criterion import Criterion, Thresholds
+from ..kahler.criterion import Criterion, Levels, Thresholds
 from ..kahler.smoothing import Scheme
 from ..mesh.connectivity import Connectivity
 from ..mesh.vectors import ONE
@@ -30,11 +32,15 @@ SILHOUETTE_BAND = 0.3
 """Cosine between normal and line of sight at which an edge is no silhouette: 17 degrees away."""
 
 
+Once = Annotated[float, Option("an edge splits once where its measure is above this", least=0.0)]
+Twice = Annotated[float, Option("the same for splitting twice", least=0.0)]
+
+
 class Measuring(Criterion):
     """A criterion that measures, and compares with two thresholds."""
 
-    def __init__(self, once: float, twice: float, meaning: str) -> None:
-        self.thresholds = Thresholds(once, twice, meaning)
+    def __init__(self, once: float, twice: float, meaning: str, levels: int = 2) -> None:
+        self.thresholds = Thresholds(once, twice, meaning, levels=levels)
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
@@ -99,9 +105,12 @@ class Silhouette(Measuring):
     on coarse meshes its points would pop out while the eye has hardly moved.
     """
 
-    def __init__(self, once: float = 0.005, twice: float = 0.03) -> None:
-        """`once`, `twice`: 1 - the cosine between the normals at both ends."""
-        super().__init__(once, twice, "1 - the cosine between two normals")
+    def __init__(self, once: Once = 0.005, twice: Twice = 0.03, levels: Levels = 2) -> None:
+        """`once`, `twice`: 1 - the cosine between the normals at both ends.
+
+        `levels`: the most splits of an edge.
+        """
+        super().__init__(once, twice, "1 - the cosine between two normals", levels)
 
     def set_view(self, view: View | None) -> None:
         """Take the view of this frame; raises ValueError if there is none, or no place for it."""

@@ -5,12 +5,21 @@ in place, by name or as objects, and blend new points in (`Blended`).
 """
 
 from collections.abc import Sequence
-from typing import Literal, Unpack
+from typing import Annotated, Literal, Unpack
 
 import numpy.typing as npt
 
 from ..border.corner_values import Values
-from ..kahler.criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, NormalDrop, criteria
+from ..border.option import Option
+from ..kahler.criterion import (
+    THRESHOLD_ONCE,
+    THRESHOLD_TWICE,
+    Criterion,
+    DropOnce,
+    DropTwice,
+    NormalDrop,
+    criteria,
+)
 from ..kahler.given_splits import GivenSplits
 from ..kahler.refiner import Kahler
 from ..kahler.smoothing import Scheme, schemes
@@ -19,20 +28,34 @@ from .detail import FinerMesh
 from .measuring import Maximum
 from .surface_normals import RefinedNormals
 
+CriterionLike = str | Criterion | Sequence[str | Criterion]
+WHICH_EDGES = Option(
+    "decides which edges split; normal: where the mesh bends (the paper's), rest: where it is "
+    "round at rest, so that outlines are, displacement: where the scheme moves edges"
+)
+GROWING = Option("new points grow out of the edge, and nothing pops")
+LIT_BY = Option(
+    "those that light uses; linear: of the mesh, in between (the paper's), refined: of the "
+    "refined surface"
+)
+IN_ORDER = Option(
+    "triangles are cut in the order in which their edges split, and no line turns; for flat shading"
+)
+
 
 def create_kahler(  # noqa: PLR0913 - one argument for each option
     faces: npt.ArrayLike,
     rest_positions: npt.ArrayLike,
     *,
-    threshold_once: float = THRESHOLD_ONCE,
-    threshold_twice: float = THRESHOLD_TWICE,
-    criterion: str | Criterion | Sequence[str | Criterion] = "normal",
+    threshold_once: DropOnce = THRESHOLD_ONCE,
+    threshold_twice: DropTwice = THRESHOLD_TWICE,
+    criterion: Annotated[CriterionLike, WHICH_EDGES] = "normal",
     splits: npt.ArrayLike | None = None,
-    scheme: str | Scheme = "loop",
+    scheme: Annotated[str | Scheme, Option("where the new points go")] = "loop",
     detail: FinerMesh | None = None,
-    blend: bool | None = None,
-    normals: Literal["linear", "refined"] | None = None,
-    coherent: bool = False,
+    blend: Annotated[bool | None, GROWING] = None,
+    normals: Annotated[Literal["linear", "refined"] | None, LIT_BY] = None,
+    coherent: Annotated[bool, IN_ORDER] = False,
     **values: Unpack[Values],
 ) -> Kahler:
     """Bind the paper's refiner, as the options change it, to a mesh (`registry.create`).
@@ -57,9 +80,6 @@ def create_kahler(  # noqa: PLR0913 - one argument for each option
     """
     chosen = with_normals(scheme_of(scheme, detail), normals)
     decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice), splits)
-    for name, flag in (("blend", blend), ("coherent", coherent)):
-        if flag not in (None, True, False):
-            raise ValueError(f"{name} must be True or False, got {flag!r}")
     if blend and coherent:
         raise ValueError(
             "coherent=True continues the triangulations of the frame before; with blend=True "
@@ -104,7 +124,7 @@ def with_normals(chosen: Scheme, normals: str | None) -> Scheme:
 
 
 def criterion_of(
-    chosen: str | Criterion | Sequence[str | Criterion],
+    chosen: CriterionLike,
     normal_drop: NormalDrop,
     splits: npt.ArrayLike | None = None,
 ) -> Criterion:

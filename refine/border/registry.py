@@ -7,11 +7,12 @@ or when names are listed; it is imported when its name is used.
 
 import functools
 import inspect
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, Unpack, get_args, get_origin
 
 import numpy.typing as npt
 
+from .option import Option, options_of, signature_of
 from .plugin import Refiner
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ class Registry(Generic[Product]):
 
     def __init__(self, kind: str, group: str) -> None:
         """`kind`: the product of the factories, for errors; `group`: of entry points."""
-        self._kind = kind
+        self.kind = kind
         self._group = group
         self._factories: dict[str, Callable[..., Product]] = {}
 
@@ -35,13 +36,13 @@ class Registry(Generic[Product]):
         It goes before an entry point of this name.
         """
         if not (isinstance(name, str) and name) or "+" in name:
-            raise ValueError(f"the name of a {self._kind} must be a word without +, got {name!r}")
+            raise ValueError(f"the name of a {self.kind} must be a word without +, got {name!r}")
         if name in self._factories:
             raise ValueError(
-                f"a {self._kind} named {name!r} exists already; taken are {self.available()}"
+                f"a {self.kind} named {name!r} exists already; taken are {self.available()}"
             )
         if not callable(factory):
-            raise ValueError(f"factory of {self._kind} {name!r} must be callable, got {factory!r}")
+            raise ValueError(f"factory of {self.kind} {name!r} must be callable, got {factory!r}")
         self._factories[name] = factory
 
     def available(self) -> tuple[str, ...]:
@@ -61,20 +62,30 @@ class Registry(Generic[Product]):
             return self._factories[name]
         point = self.installed().get(name)
         if point is None:
-            raise ValueError(f"{self._kind} {name!r} is unknown; there are {self.available()}")
+            raise ValueError(f"{self.kind} {name!r} is unknown; there are {self.available()}")
         try:
             factory: Callable[..., Product] = point.load()
         except Exception as error:  # a foreign module may raise anything when it is imported
             reason = " ".join(f"{type(error).__name__}: {error}".split())
             raise ValueError(
-                f"{self._kind} {name!r} of {point.value!r} cannot be loaded: {reason}"
+                f"{self.kind} {name!r} of {point.value!r} cannot be loaded: {reason}"
             ) from error
         if not callable(factory):
             raise ValueError(
-                f"{self._kind} {name!r} of {point.value!r} must be a class or a function, "
+                f"{self.kind} {name!r} of {point.value!r} must be a class or a function, "
                 f"got {factory!r}"
             )
         return factory
+
+    def options(self, name: str) -> tuple[Option, ...]:
+        """The options of what a name stands for, as its factory declares them."""
+        return tuple(options_of(signature_of(self.find(name))))
+
+    def make(self, name: str, **options: Any) -> Product:
+        """Make what a name stands for; raises ValueError for options that it does not have."""
+        factory = self.find(name)
+        _check_options(self.kind, name, factory, options)
+        return factory(**options)
 
 
 refiners: Registry[Refiner] = Registry("refiner", "risorius.refiners")
@@ -107,63 +118,59 @@ def create(
     refiner of an installed package that cannot be imported.
     """
     factory = refiners.find(name)
-    _check_options(name, factory, options)
+    _check_options(refiners.kind, name, factory, options)
     return factory(faces, rest_positions, uv=uv, face_uv=face_uv, **options)
 
 
-def parameters(name: str) -> tuple[inspect.Parameter, ...]:
-    """The options of a refiner that its factory declares, with their defaults and types.
-
-    Types are as they are written where that is text that cannot be looked up.
-    """
-    return tuple(_options(_signature(refiners.find(name))))
+def parameters(name: str) -> tuple[Option, ...]:
+    """The options of a refiner, as its factory declares them."""
+    return _options_of_refiner(signature_of(refiners.find(name)))
 
 
 def takes_attributes(name: str) -> bool:
     """Whether a refiner takes `attributes`, as all that hand on `Values` do."""
-    return "attributes" in _allowed(_signature(refiners.find(name)))
+    signature = signature_of(refiners.find(name))
+    values = (_names_of_values(each) for each in signature.parameters.values())
+    declared = (option.name for option in _options_of_refiner(signature))
+    return "attributes" in {*declared, *(name for names in values for name in names)}
 
 
-def _signature(factory: Callable[..., Refiner]) -> inspect.Signature:
-    try:
-        return inspect.signature(factory, eval_str=True)
-    except (NameError, AttributeError, SyntaxError, TypeError):  # of imports for type checkers only
-        return inspect.signature(factory)
+def _options_of_refiner(signature: inspect.Signature) -> tuple[Option, ...]:
+    """All but the mesh, which comes first, and its texture coordinates."""
+    options = options_of(signature, first=2)
+    return tuple(option for option in options if option.name not in ("uv", "face_uv"))
 
 
-def _options(signature: inspect.Signature) -> Iterator[inspect.Parameter]:
-    """What can be handed by name, but for the mesh and its texture coordinates."""
-    for place, parameter in enumerate(signature.parameters.values()):
-        is_of_mesh = place < 2 or parameter.name in ("uv", "face_uv")
-        is_named = parameter.kind in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD)
-        if is_named and not is_of_mesh:
-            yield parameter
+def _names_of_values(parameter: inspect.Parameter) -> set[str]:
+    """The names that `**values: Unpack[Values]` stands for."""
+    is_unpacked = get_origin(parameter.annotation) is Unpack
+    if parameter.kind is not parameter.VAR_KEYWORD or not is_unpacked:
+        return set()
+    (values,) = get_args(parameter.annotation)
+    return set(values.__annotations__) - {"uv", "face_uv"}
 
 
-def _check_options(name: str, factory: Callable[..., Refiner], options: dict[str, Any]) -> None:
-    signature = _signature(factory)
-    if any(_takes_anything(each) for each in signature.parameters.values()):
-        return
-    allowed = _allowed(signature)
-    unknown = sorted(set(options) - allowed)
-    if unknown:
-        takes = f"it takes {sorted(allowed)}" if allowed else "it takes none"
-        raise ValueError(f"unknown option {unknown[0]!r} for refiner {name!r}; {takes}")
-
-
-def _takes_anything(parameter: inspect.Parameter) -> bool:
-    is_open = parameter.kind is parameter.VAR_KEYWORD
-    return is_open and get_origin(parameter.annotation) is not Unpack
-
-
-def _allowed(signature: inspect.Signature) -> set[str]:
-    """The names of all options, those of `Values` too, but for texture coordinates."""
-    allowed = {parameter.name for parameter in _options(signature)}
+def _check_options(
+    kind: str, name: str, factory: Callable[..., Any], options: Mapping[str, Any]
+) -> None:
+    """Raise ValueError for options that a factory does not have, or whose values it refuses."""
+    signature = signature_of(factory)
+    of_refiner = kind == refiners.kind
+    found = _options_of_refiner(signature) if of_refiner else options_of(signature)
+    declared = {option.name: option for option in found}
+    allowed = set(declared)
+    takes_anything = False
     for parameter in signature.parameters.values():
-        if parameter.kind is parameter.VAR_KEYWORD and not _takes_anything(parameter):
-            (values,) = get_args(parameter.annotation)
-            allowed |= values.__annotations__.keys()
-    return allowed - {"uv", "face_uv"}
+        values = _names_of_values(parameter)
+        allowed |= values
+        takes_anything |= parameter.kind is parameter.VAR_KEYWORD and not values
+    unknown = sorted(set(options) - allowed)
+    if unknown and not takes_anything:
+        takes = f"it takes {sorted(allowed)}" if allowed else "it takes none"
+        raise ValueError(f"unknown option {unknown[0]!r} for {kind} {name!r}; {takes}")
+    for each, value in options.items():
+        if each in declared:
+            declared[each].check(value)
 
 
 @functools.cache

@@ -17,11 +17,13 @@ one metre away, still far below the default thresholds.
 
 import reprlib
 from numbers import Real
+from typing import Annotated
 
 import numpy as np
 
 from ...geometry.arrays import Flags, Floats32, Floats64, Unsigned8, Unsigned32
 from ...jit import njit
+from ..border.option import Option
 from ..border.plugin import View
 from ..border.registry import Registry
 from ..mesh.connectivity import Connectivity
@@ -44,6 +46,19 @@ LARGEST_LIMIT = 1e30
 """Largest threshold but infinity: single precision holds all measures."""
 UNDEFINED_NORMAL = 1e-6
 """A normal shorter than this fraction of the lengths that made it is rounding, not a direction."""
+
+
+INFINITE = np.float32(np.inf)
+Levels = Annotated[int, Option("most splits of an edge; 0: this criterion splits none", 0, 2)]
+DropOnce = Annotated[
+    float,
+    Option(
+        "an edge splits once where the normals at its ends have turned apart by more than this "
+        "since rest (drop of their dot product)",
+        least=0.0,
+    ),
+]
+DropTwice = Annotated[float, Option("the same for splitting twice", least=0.0)]
 
 
 class Criterion:
@@ -123,11 +138,18 @@ criteria: Registry[Criterion] = Registry("criterion", "risorius.criteria")
 class Thresholds:
     """Two values of a measure: above the first an edge is split once, above the second twice."""
 
-    def __init__(self, once: float, twice: float, meaning: str, *, least: float = 0.0) -> None:
+    def __init__(
+        self, once: float, twice: float, meaning: str, *, least: float = 0.0, levels: int = 2
+    ) -> None:
         """`meaning`: the quantity measured, for the error; `least`: values up to this never count.
 
-        Raises ValueError if the two are out of order.
+        `levels`: the most splits of an edge, 0 to 2. Raises ValueError if the two are out of order,
+        and for other levels.
         """
+        if levels not in (0, 1, 2):
+            raise ValueError(f"levels must be 0, 1 or 2 splits of an edge, got {levels!r}")
+        self.levels = levels
+        """The most splits of an edge; may be set at any time."""
         are_numbers = all(isinstance(n, Real) and not isinstance(n, bool) for n in (once, twice))
         is_right = are_numbers and 0.0 <= once <= twice
         if not is_right or any(LARGEST_LIMIT < limit < np.inf for limit in (once, twice)):
@@ -142,6 +164,12 @@ class Thresholds:
         """Above this an edge is split twice; may be set at any time."""
 
     @property
+    def limits(self) -> tuple[np.float32, np.float32]:
+        """Both, infinite where `levels` has no such split."""
+        once = self.once if self.levels > 0 else INFINITE
+        return once, self.twice if self.levels > 1 else INFINITE
+
+    @property
     def width(self) -> np.float32:
         """What lies between the two: the unit of the metric."""
         if np.isinf(self.twice):
@@ -151,21 +179,25 @@ class Thresholds:
     @property
     def most(self) -> np.float32:
         """The metric that cannot be exceeded: 1 where the second level is switched off."""
-        return np.float32(1.0 if np.isinf(self.twice) else np.inf)
+        return np.float32(1.0 if np.isinf(self.limits[1]) else np.inf)
 
     def scale(self, measures: Floats32, unit: np.float32 = ONE) -> None:
         """Turn measures of edges, shape (E,), into metrics; `unit`: of the thresholds."""
-        scale_metric(measures, self.once * unit, self.width * unit, self.most)
+        scale_metric(measures, self.limits[0] * unit, self.width * unit, self.most)
 
 
 class NormalDrop(Criterion):
     """The paper's criterion: drop of the dot product of the vertex normals along each edge."""
 
     def __init__(
-        self, threshold_once: float = THRESHOLD_ONCE, threshold_twice: float = THRESHOLD_TWICE
+        self,
+        threshold_once: DropOnce = THRESHOLD_ONCE,
+        threshold_twice: DropTwice = THRESHOLD_TWICE,
+        levels: Levels = 2,
     ) -> None:
+        meaning = "drops of a dot product"
         self.thresholds = Thresholds(
-            threshold_once, threshold_twice, "drops of a dot product", least=DROP_ROUNDING
+            threshold_once, threshold_twice, meaning, least=DROP_ROUNDING, levels=levels
         )
         """Drops above which an edge is split once and twice; may be replaced at any time."""
 
@@ -185,8 +217,7 @@ class NormalDrop(Criterion):
 
     def mark(self, positions: Floats64, normals: Floats32, splits: Unsigned8) -> None:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
-        once = self.thresholds.once
-        twice = self.thresholds.twice
+        once, twice = self.thresholds.limits
         mark_drops(normals, self._edges, self._rest_dots, once, twice, self._dots, splits)
 
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:

@@ -8,7 +8,7 @@ import pytest
 from risorius import refine
 from risorius.app.errors import UserError
 from risorius.app.refining.presets import Refinement
-from risorius.app.refining.refiners import open_choices, options_of, refiner_for
+from risorius.app.refining.refiners import options_of, refiner_for
 from risorius.app.scenes import PlaneScene
 from risorius.refine.border import registry
 
@@ -30,13 +30,20 @@ def test_only_switches_numbers_and_words_are_options(monkeypatch):
     monkeypatch.setattr(
         registry.refiners, "_factories", {"declared": declared, "loop": refine.Loop}
     )
-    assert options_of("declared") == {"grown": None, "share": 0.5}
-    assert options_of("loop") == {"levels": 1}
+    declared_ones = options_of("declared", "normal")
+    assert {name: each.default for name, each in declared_ones.items()} == {
+        "grown": None,
+        "share": 0.5,
+    }
+    (levels,) = options_of("loop", "normal").values()
+    assert (levels.name, levels.default, levels.least, levels.most) == ("levels", 1, 1, 4)
 
 
 def test_what_may_be_left_open_is_a_choice():
     """Words stand for values; another value, or a number in place of a switch, is refused."""
-    assert open_choices("kahler") == {
+    options = options_of("kahler", "normal")
+    choices = {name: dict(each.choices) for name, each in options.items() if each.choices}
+    assert choices == {
         "blend": {"automatic": None, "on": True, "off": False},
         "normals": {"automatic": None, "linear": "linear", "refined": "refined"},
     }
@@ -49,3 +56,44 @@ def test_what_may_be_left_open_is_a_choice():
     ):
         with pytest.raises(UserError, match=f"option {option} was {wrong}, must be {wanted}"):
             refiner_for(plane, Refinement(options={option: wrong}))
+
+
+@pytest.mark.parametrize("criterion", ["rest", "silhouette", "displacement+rest", "normal"])
+def test_levels_and_thresholds_of_criteria(criterion):
+    """Every criterion has its own, by its name; fewer levels split no edge more often than that."""
+    plane = PlaneScene()
+    plane.pose({"amplitude": 1.0, "phase": 0.3})
+    plane.step(0.5)
+    view = refine.View([1e6, 1e5, 0.0])  # along the plane: all of it is outline
+    options = options_of("kahler", criterion)
+    wholes = {"scheme": "cubic", "criterion": criterion}
+    for part in criterion.split("+"):
+        assert f"{part}.levels" in options
+        assert part == "normal" or {f"{part}.once", f"{part}.twice"} <= set(options)
+        if part != "normal":
+            wholes[f"{part}.once"] = 1e-5
+            wholes[f"{part}.twice"] = 1e-5
+    seen = []
+    for levels in (0, 1, 2):
+        chosen = {f"{part}.levels": levels for part in criterion.split("+")}
+        refiner = refiner_for(plane, Refinement(options={**wholes, **chosen}))
+        mesh = refiner.refine(plane.positions, view=view)
+        refine.check(refiner, mesh, plane.positions)
+        seen.append(int(refiner.splits.max()))
+    assert seen[0] == 0
+    assert seen[1] == (0 if criterion == "rest" else 1)  # a plane is flat at rest
+    assert seen[2] <= 2
+    assert criterion == "rest" or seen[2] == 2
+
+
+def test_options_of_criteria_that_do_not_fit():
+    """One that is not asked, one that there is not, and a value beyond its range."""
+    plane = PlaneScene()
+    for options, wanted in (
+        ({"rest.levels": 1}, "unknown option rest.levels; it takes .*normal.levels"),
+        ({"criterion": "rest", "rest.height": 1}, r"unknown option rest\.height; it takes"),
+        ({"criterion": "rest", "rest.levels": 3}, "levels was 3, must be a whole number from 0 to"),
+        ({"criterion": "rest", "rest.once": "x"}, "once was x, must be a number, 0 or more"),
+    ):
+        with pytest.raises(UserError, match=wanted):
+            refiner_for(plane, Refinement(options=options))

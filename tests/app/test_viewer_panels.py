@@ -123,8 +123,8 @@ def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
     assert viewer.context.stage.refined.label == "kahler-gl"
     assert not viewer.messages.text
     assert np.array_equal(*pictures)
-    in_panel(viewer, ("scheme", "detail"))
-    assert "scheme must be one of ('loop', 'cubic')" in viewer.messages.text
+    in_panel(viewer, ("scheme", "loop"))  # of those that it has; what does not go with the look
+    assert 'criterion "displacement" needs scheme="cubic"' in viewer.messages.text
     click(viewer, "Reset all")
     assert isinstance(viewer.context.stage.refined.stream, render.Stream)
 

@@ -185,7 +185,7 @@ class LabelledRows:
         """share: of the panel, that labels take. hints: by label."""
         self._gui = gui
         self._share = share
-        self._hints = hints
+        self.hints = dict(hints)
 
     @property
     def second(self) -> float:
@@ -202,7 +202,7 @@ class LabelledRows:
 
     def end(self, label: str) -> None:
         """Give the item drawn last the hint of its label."""
-        hint(self._gui.with_keys(self._hints.get(label, "")))
+        hint(self._gui.with_keys(self.hints.get(label, "")))
 
     def choose(self, label: str, present: str, choices: Iterable[str]) -> str | None:
         """Draw a row with a list; the choice made in this frame."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from functools import partial
@@ -16,7 +17,7 @@ from risorius.assets.identities import NAMED
 from ...anatomy import OPACITY, SIDES, STRUCTURES
 from ...control_names import readable
 from ...refining.presets import PRESETS, STATIC, THRESHOLDS, words_of_presets
-from ...refining.refiners import DETAIL, can_detail, open_choices, options_of
+from ...refining.refiners import DETAIL, OF, can_detail, options_of
 from ...scenes import BUILT_IN, COARSE, OWN, head_in_words
 from ..context import ApplicationContext
 from ..documents.file_drop import FileDrop
@@ -34,18 +35,6 @@ HINTS = {
     "itself where the mesh is large",
     "Compare": "the simulated mesh at the left, refined at the right, under one camera: wipe "
     "([Compare: wipe]) or side by side ([Compare: side by side])",
-    "threshold once": "an edge splits once where the normals at its ends have turned apart by more "
-    "than this since rest (drop of their dot product)",
-    "threshold twice": "the same for splitting twice",
-    "criterion": "decides which edges split; normal: where the face moves (the "
-    "paper's), rest: where it is round at rest, so that outlines are, displacement: where the "
-    "scheme moves edges, border: where a mouth opens",
-    "scheme": "where the new points go",
-    "normals": "those that light uses; linear: of the simulated mesh, in between (the paper's), "
-    "refined: of the refined surface",
-    "blend": "new points grow out of the edge, and nothing pops",
-    "coherent": "triangles are cut in the order in which their edges split, and no line turns; for "
-    "flat shading",
     "Colour by splits": "of the edges of the simulated mesh's triangles ([Colour by splits])",
     "Wires of splits": "outlines of simulated triangles that are split more than at rest",
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
@@ -119,9 +108,9 @@ class MechanismPanel:
         put = partial(display.choose_refiner, stage.scene)
         self._choose("Refiner", display.refiner_on(stage.scene), names, put)
         has_thresholds = display.refinement_on(stage.scene).has_thresholds(stage.scene.name)
-        for name, default in self._options().items():
+        for name, option in self._options().items():
             if name not in THRESHOLDS or has_thresholds:
-                self._draw_option(name, default)
+                self._draw_option(name, option)
         self._pick("Compare", COMPARISONS)
         base = len(stage.scene.faces)
         for drawn, *_ in stage.viewports(display, self._view.viewport):
@@ -130,45 +119,55 @@ class MechanismPanel:
             imgui.same_line()
             muted(self._gui, f"({count / base:.2f} x)")
 
-    def _options(self) -> dict[str, Any]:
-        """The options of the refiner; none of one that cannot be loaded, which was reported."""
+    def _options(self) -> dict[str, refine.Option]:
+        """The options of the refiner and its criterion; none of one that cannot be loaded."""
+        scene = self._stage.scene
+        display = self._display
+        criterion = display.refinement_on(scene).criterion_on(scene.name)
         try:
-            return options_of(self._display.refiner_on(self._stage.scene))
-        except (ValueError, TypeError):
+            return options_of(display.refiner_on(scene), criterion)
+        except (ValueError, TypeError):  # which was reported
             return {}
 
-    def _draw_option(self, name: str, default: Any) -> None:
-        """Draw a slider, a checkbox or a list for an option, by the type of its default."""
+    def _draw_option(self, name: str, option: refine.Option) -> None:
+        """Draw a slider, a checkbox or a list for an option, by its kind."""
         scene = self._stage.scene
         refiner = self._display.refiner_on(self._stage.scene)
         stored = self._display.options.setdefault(refiner, {})
-        preset = PRESETS[self._display.look][scene.name].options_for(refiner)
-        value = stored.get(name, preset.get(name, default))
-        label = name.replace("_", " ")
+        of_look = PRESETS[self._display.look][scene.name].options_for(refiner)
+        default = of_look.get(name, option.default)
+        value = stored.get(name, default)
+        label = name.replace("_", " ").replace(OF, " ")
+        if option.help:
+            self._rows.hints.setdefault(label, option.help)
         put = partial(stored.__setitem__, name)
-        if isinstance(default, bool):
+        if option.kind == "switch":
             self._check(label, bool(value), partial(put, not value))
-        elif isinstance(default, int):
+        elif option.kind == "integer":
             self._rows.begin(label)
             is_changed, chosen = imgui.input_int(f"##{label}", int(value))
             self._gui.remember(label)
-            if is_changed:
+            if is_changed and option.allows(chosen):
                 put(chosen)
-        elif isinstance(default, float):
-            limits = 0.0, max(0.25, 2.0 * default)
-            slid = self._rows.slide(label, name, float(value), limits, default, digits=3)
+        elif option.kind == "number":
+            limits = option.least or 0.0, 2.0 * float(default) or 1.0  # the look's is in the middle
+            digits = max(3, 1 - math.floor(math.log10(limits[1])))
+            slid = self._rows.slide(label, name, float(value), limits, default, digits=digits)
             if slid != value:
                 put(slid)
-                _keep_in_order(stored, name, slid, preset)
-        elif isinstance(default, str):
+                _keep_in_order(stored, name, slid, {**self._defaults(), **of_look})
+        elif option.kind == "word":
             has_finer = can_detail(scene)
             allowed = [word for word in _choices(name) if word != DETAIL or has_finer]
             if allowed:
                 self._choose(label, str(value), allowed, put)
-        elif default is None:
-            choices = open_choices(refiner)[name]
+        else:
+            choices = option.choices
             present = next(word for word, each in choices.items() if each == value)
             self._choose(label, present, list(choices), lambda word: put(choices[word]))
+
+    def _defaults(self) -> dict[str, Any]:
+        return {name: option.default for name, option in self._options().items()}
 
     def _draw_style(self) -> None:
         display = self._display
@@ -256,12 +255,13 @@ def _choices(option: str) -> tuple[str, ...]:
 
 
 def _keep_in_order(
-    stored: dict[str, Any], name: str, value: float, preset: Mapping[str, Any]
+    stored: dict[str, Any], name: str, value: float, defaults: Mapping[str, Any]
 ) -> None:
     """Splitting twice never begins before splitting once: the other threshold gives way."""
-    first, second = THRESHOLDS
-    defaults = {first: refine.THRESHOLD_ONCE, second: refine.THRESHOLD_TWICE, **preset}
-    if name == first:
+    start = name.removesuffix("once").removesuffix("twice")
+    first = f"{start}once"
+    second = f"{start}twice"
+    if name == first and second in defaults:
         stored[second] = max(value, stored.get(second, defaults[second]))
-    elif name == second:
+    elif name == second and first in defaults:
         stored[first] = min(value, stored.get(first, defaults[first]))
