@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import copy
 
+import numpy as np
+
 from risorius import sim
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
@@ -24,7 +26,8 @@ class DenseSkin:
     def __init__(self, vertices: Floats64, faces: Integers32, simulation: sim.Simulation) -> None:
         """Bind vertices (V, 3) of triangles (F, 3), at rest, to the mesh of `simulation`."""
         self.rest_positions = vertices
-        normals = vertex_normals(vertices, faces)  # an upper lip's stay with the upper lip
+        # By its normal an upper lip's vertex stays with the upper lip.
+        normals = _smooth_normals(vertices, faces)
         self._embedding = Embedding(
             simulation.faces, simulation.rest_positions, vertices, normals=normals
         )
@@ -46,3 +49,18 @@ class DenseSkin:
         twin._positions = self._positions.copy()
         twin.positions = read_only(twin._positions)
         return twin
+
+
+def _smooth_normals(vertices: Floats64, faces: Integers32) -> Floats64:
+    """Sums of unit normals around vertices, shape (V, 3).
+
+    A scan has folds of single triangles, where a vertex looks into the face: its neighbours do not.
+    """
+    normals = vertex_normals(vertices, faces)
+    corners = faces.ravel()
+    rounds = 2  # each takes the neighbours of neighbours in
+    for _ in range(rounds):
+        sums = np.repeat(normals[faces].sum(axis=1), 3, axis=0)
+        columns = [np.bincount(corners, each, len(vertices)) for each in sums.T]
+        normals = np.stack(columns, axis=1)
+    return normals

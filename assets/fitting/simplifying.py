@@ -18,8 +18,8 @@ from ..topology import decimated
 from .landmark_file import nearest_vertices
 from .mesh_validation import SkinPiece, check_manifold
 
-MOST_SIMULATED = 50_000  # triangles: a step of these takes a good half of a frame of 1/60 s
-SIMPLIFIED = 25_000  # triangles are left: these play at 20 frames a second on two cores
+MOST_SIMULATED = 20_000  # triangles: with more the picture is no better, and waits for physics
+SIMPLIFIED = 15_000  # triangles are left
 
 
 @dataclass(frozen=True)

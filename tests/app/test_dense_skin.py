@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 
+from risorius import sim
 from risorius.app.scenes import FaceScene
+from risorius.app.scenes.dense_skin import DenseSkin
 from risorius.assets.fitting import fit, simplifying
 from risorius.assets.meshes import Mesh
+from risorius.assets.sheets import make_grid
+from risorius.geometry.normals import vertex_normals
 from tests.heads import stranger
 
 
@@ -64,6 +68,27 @@ def test_lips_keep_their_own_vertices(dense):
     simulated = dense.simulation
     among = growth(simulated.faces, simulated.positions, simulated.rest_positions)
     assert growth(dense.faces, dense.positions, dense.rest_positions) < among
+
+
+def test_a_fold_of_the_scan_stays_on_its_own_side():
+    """Where a scan is folded a vertex looks the wrong way; it goes with its neighbours."""
+    sheet, triangles = make_grid(4, 4, 8.0)
+    gap = np.array([0.0, 0.0, 1.0])
+    coarse = Mesh(
+        np.vstack([sheet, sheet + gap]),
+        np.vstack([triangles[:, ::-1], triangles + len(sheet)]).astype(np.int32),
+    )
+    simulation = sim.create(coarse)
+    flat, faces = make_grid(16, 16, 2.0)
+    fine = flat + gap
+    folded = int(np.linalg.norm(fine - fine.mean(axis=0), axis=1).argmin())
+    ring = np.setdiff1d(faces[(faces == folded).any(axis=1)], [folded])
+    fine[ring, 0] = 2.0 * fine[folded, 0] - fine[ring, 0]
+    assert vertex_normals(fine, faces)[folded, 2] < 0.0
+    skin = DenseSkin(fine, faces, simulation)
+    apart = np.repeat([[0.0, 0.0, -5.0], [0.0, 0.0, 5.0]], len(sheet), axis=0)
+    skin.follow(simulation.rest_positions + apart)
+    np.testing.assert_allclose(skin.positions, fine + np.array([0.0, 0.0, 5.0]), atol=1e-6)
 
 
 def growth(faces, positions, rest):
