@@ -5,13 +5,16 @@ where the normal in its middle is not between those at its ends, so is its shadi
 measure both (`Scheme.measure`): those with curved edges, and all with `normals="refined"`.
 
     size of an edge     hypot(displacement, turning x angle x length)      a distance
+
+A border is an outline from wherever it is seen, and no light falls on its turns. There the turn of
+the border itself counts: an arc that stands out by s turns by 8 s / length between its ends.
 """
 
 from typing import Annotated
 
 import numpy as np
 
-from ...geometry.arrays import Floats32, Floats64
+from ...geometry.arrays import Floats32, Floats64, Unsigned32
 from ...jit import njit
 from ..border.option import Option
 from ..kahler.criterion import Levels
@@ -23,6 +26,9 @@ from .measuring import Measuring, Once, Twice, mean_length
 GROWTH_SHARE = 0.6
 """Share of the first threshold in which a blended point grows. Chosen: a point that is half grown
 costs as much as a whole one; with less than this surfaces jump farther than their input moves."""
+
+BORDER_WEIGHT = np.float32(8.0)
+"""How many times the size of an edge on a border counts."""
 
 
 Turning = Annotated[
@@ -66,10 +72,11 @@ class Displacement(Measuring):
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
-        """Store the unit of length."""
+        """Store the unit of length, and find the borders."""
         super().bind(connectivity, rest_positions, rest_normals)
         self._unit = mean_length(connectivity, rest_positions)
         self._turns = np.zeros(len(connectivity.edges), dtype=np.float32)
+        self._borders = np.flatnonzero(~connectivity.around.is_interior).astype(np.uint32)
 
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the refinement metric of every edge, shape (E,)."""
@@ -77,6 +84,7 @@ class Displacement(Measuring):
         self._scheme.measure(metric, self._turns)
         if self.turning > 0.0:
             count_turns(metric, self._turns, np.float32(self.turning))
+        weigh_borders(metric, self._borders)
         limits.scale(metric, self._unit)
         advance_metric(metric, np.float32(GROWTH_SHARE) * limits.once / limits.width, RAMP_WIDTH)
 
@@ -87,6 +95,13 @@ def count_turns(sizes: Floats32, turns: Floats32, scale: np.float32) -> None:
     for e in range(sizes.shape[0]):
         turn = scale * turns[e]
         sizes[e] = np.sqrt(sizes[e] * sizes[e] + turn * turn)
+
+
+@njit
+def weigh_borders(sizes: Floats32, borders: Unsigned32) -> None:
+    """Multiply the sizes, shape (E,), of edges on borders, numbers of shape (B,)."""
+    for k in range(borders.shape[0]):
+        sizes[borders[k]] *= BORDER_WEIGHT
 
 
 @njit

@@ -22,7 +22,9 @@ uint split_of(uint e, bool is_original) {
 #endif
 #endif
 #ifdef BY_DISPLACEMENT
-    float size = scaled(middles(e).w, size_once, size_width, size_most);
+    bool is_border = edge_points(4u * e + 2u) == edge_points(4u * e);
+    float weight = is_border ? 8.0 : 1.0;  // refine/beyond/displacement.py
+    float size = scaled(weight * middles(e).w, size_once, size_width, size_most);
     if (size_soon < size_ramp && 0.0 < size && size < 1.0) {  // refine/beyond/displacement.py
         if (size < size_soon) {
             precise float sooner = size * size_haste;

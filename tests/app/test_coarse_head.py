@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from numpy.linalg import norm
 from PIL import Image
 
 from risorius import refine, render
@@ -12,6 +13,7 @@ from risorius.app.refining.drawn_mesh import bind
 from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import FaceScene, called_head
+from risorius.assets.topology import boundary_loops
 from tests.app.command_line import refusal, risorius, succeeded
 
 STEPS = 40  # of 1/60 s, after which a pose is reached
@@ -129,3 +131,18 @@ def test_splits_beyond_rest_are_where_muscles_pull(scene):
         mouth = scene.rest_positions[scene.landmarks[48:68]].mean(axis=0)
         assert len(middles) > 3
         assert np.median(np.linalg.norm(middles - mouth, axis=1)) < 40.0
+
+
+def test_border_of_an_opened_mouth_is_refined(scene):
+    """By the look smooth: its edges turn, and would leave the lower lip a V."""
+    refiner = refiner_for(scene, Refinement())
+    refiner.refine(held(scene, jaw_open=1.0))
+    loops = boundary_loops(scene.faces)
+    centre = scene.rest_positions[scene.landmarks[60:68]].mean(axis=0)
+    mouth = min(
+        loops, key=lambda loop: norm(scene.rest_positions[list(loop)].mean(axis=0) - centre)
+    )
+    is_mouth = np.isin(refiner.edges, list(mouth)).all(axis=1)
+    splits = refiner.splits[is_mouth]
+    assert len(splits) == len(mouth)
+    assert (splits > 0).mean() > 0.5
