@@ -35,8 +35,8 @@ PATH = click.Path(path_type=Path)
 def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
     """Make the paper's figures and table anew, all or some, into a folder.
 
-    There are figure8, figure9, figure10, coarse and table1. index.html in the folder shows the results,
-    in the paper's order. The exit code is 1 where a tolerance is missed.
+    There are figure8, figure9, figure10, coarse and table1. index.html in the folder shows the
+    results, in the paper's order. The exit code is 1 where a tolerance is missed.
     """
     from risorius.app.files import check_file, save_text
     from risorius.app.pictures import save_png
