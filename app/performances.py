@@ -55,6 +55,11 @@ def script_for(
     return script
 
 
+def built_in_words() -> Script:
+    """The script of a few spoken words that comes along."""
+    return load_script(Path(str(files("risorius.assets") / "scripts" / "speech.toml")))
+
+
 def new_script(
     scene: str = "face", camera: str | None = None, values: Mapping[str, float] | None = None
 ) -> Script:

@@ -14,6 +14,7 @@ from .options import PATH, HeadName, option, packed
 
 if TYPE_CHECKING:
     from ..rig.avatar import Avatar
+    from ..script import Script
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,10 @@ class Rigging:
         show_default=True,
         help="Shapes of pairs whose sums are farthest off, at most so many.",
     )
+    take: Path | None = option(
+        type=PATH,
+        help="Compare sums of shapes with this recording or script; with a few words by default.",
+    )
     quiet: bool = option(is_flag=True, help="Print nothing but errors.")
 
 
@@ -77,14 +82,16 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
             "`risorius view --head HEAD.obj` helps to mark the landmarks"
         )
     is_folder = rigging.name == "obj"
-    _check_output(output, (file_path, rigging.landmarks), is_folder=is_folder)
+    _check_output(output, (file_path, rigging.landmarks, rigging.take), is_folder=is_folder)
+    kinds = tuple(rigging.shapes.split(","))
     request = RigRequest(
-        tuple(rigging.shapes.split(",")),
+        kinds,
         rigging.eyes,
         rigging.pieces,
         rigging.parts,
         rigging.correctives,
         not rigging.quiet,
+        _take_of(rigging, kinds),
     )
 
     def say(line: str) -> None:
@@ -104,6 +111,24 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     meshes = "1 mesh" if len(avatar.shapes) == 1 else f"{len(avatar.shapes)} meshes"
     shapes = counted(len(avatar.names), "shape")
     click.echo(f"{in_one_line(output)}: {shapes}, {meshes}, {size / 1e6:.1f} MB")
+
+
+def _take_of(rigging: Rigging, kinds: tuple[str, ...]) -> Script | None:
+    """The take to compare sums with; None where nobody reads that, or no shape is ARKit's."""
+    from ..performances import built_in_words, read_performance
+
+    if "arkit" not in kinds:
+        if rigging.take is not None:
+            raise UserError("--take goes with the shapes of ARKit; add arkit to --shapes")
+        return None
+    if rigging.quiet:
+        return None
+    if rigging.take is None:
+        return built_in_words()
+    script, _ = read_performance(rigging.take)
+    if script.scene != "face":
+        raise UserError(f"{rigging.take}: is for the scene '{script.scene}'; take one for a face")
+    return script
 
 
 def _check_output(output: Path, inputs: tuple[Path | None, ...], *, is_folder: bool) -> None:

@@ -14,12 +14,14 @@ from risorius.assets.meshes import read_mesh
 from risorius.assets.painted import PaintedMesh, read_painted
 
 from ..scenes import FaceScene, build_face, own_head
+from ..script import Script
 from .bodies import Body, Shaped, Skin, bodies_of_parts, moving, poses_of
 from .file_body import FileBody, merged_vertices, with_own_tongue
 from .linearity import corrected as corrected_shapes
 from .linearity import corrective_poses, table, worth_correcting
 from .pieces import FilePiece, corrected, described, find_pieces
 from .poses import shape_names
+from .take_linearity import difference_on, played_take
 
 GLTF = (".glb", ".gltf")
 
@@ -31,6 +33,7 @@ class RigRequest:
     kinds: of shapes, as in `poses.KINDS`. eyes: "nodes", "targets", or None as suits the file.
     corrections: of the roles of pieces. adds_parts: built-in eyes, teeth and tongue are added where
     the file has none. correctives: shapes of pairs, at most. progress: a bar is shown.
+    take: on which sums of ARKit's shapes are compared with the simulation; None: on none.
     """
 
     kinds: tuple[str, ...] = ("arkit",)
@@ -39,6 +42,7 @@ class RigRequest:
     adds_parts: bool = False
     correctives: int = 0
     progress: bool = True
+    take: Script | None = None
 
     def has_eye_nodes(self, *, is_gltf: bool) -> bool:
         """Whether eyeballs are left to nodes; those of a glTF file, which keeps its own, are not
@@ -115,6 +119,9 @@ def avatar_of(
         pairs = worth_correcting(scene, poses, request.correctives, progress=request.progress)
         poses.update(corrective_poses(scene, pairs))
         names = tuple(poses)
+    if request.take is not None and "arkit" in request.kinds:
+        found = difference_on(played_take(scene, request.take), scene, poses, pairs)
+        say(f"sum of shapes off the simulation: {found}")
     shapes = tuple(_without_sums(each, pairs, names) for each in moving(bodies, poses))
     return Avatar(scene, file, shapes, names, tuple(pairs), eyes_are_nodes)
 

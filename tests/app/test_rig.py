@@ -1,6 +1,7 @@
 """Avatars move as the simulation does: named shapes, on the vertices of the file."""
 
 import json
+import re
 import struct
 from dataclasses import dataclass
 from pathlib import Path
@@ -43,6 +44,7 @@ def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert result.exit_code == 0, result.output
     assert "52 shapes" in result.output
     assert "jawOpen + mouthPucker: at most" in result.output
+    assert re.search(r"Speech: at most \d+\.\d mm, RMS 0\.\d", result.output)
     return path
 
 
@@ -206,6 +208,27 @@ def test_correctives_make_sums_come_true(tmp_path, face):
         assert np.abs(summed - together).max() < 5 * SEEN
         plain = sum(shapes[name] for name in pair) / METRES
         assert np.abs(plain - together).max() > 3.0
+
+
+def test_a_take_shows_how_far_sums_are_off(tmp_path, face):
+    """A take of one shape is met; where two are at 1, the line has the distance of the pair."""
+    take = tmp_path / "take.toml"
+    still = 'title = "Still"\nduration = 1.0\n[[pose]]\ntime = 0.0\n'
+    off = {}
+    for words in ("jawOpen = 1.0\n", "jawOpen = 1.0\nmouthPucker = 1.0\n"):
+        take.write_text(still + words)
+        result = risorius("rig", "-o", tmp_path / "a.glb", "--take", take)
+        assert result.exit_code == 0, result.output
+        line = next(line for line in result.output.splitlines() if "Still" in line)
+        off[words] = float(re.search(r"at most (\d+\.\d) mm", line)[1])
+    alone, both = off.values()
+    assert alone < 0.2
+    shapes = [rest_in(face, {name: 1.0}).skin for name in ("jawOpen", "mouthPucker")]
+    together = rest_in(face, {"jawOpen": 1.0, "mouthPucker": 1.0}).skin
+    expected = np.linalg.norm(sum(shapes) - face.rest_positions - together, axis=1).max()
+    assert both == pytest.approx(expected, abs=0.2)
+    words = ("--shapes", "units", "--take", take)
+    assert "--shapes" in refusal(risorius("rig", "-o", tmp_path / "b.glb", *words))
 
 
 @pytest.mark.slow
