@@ -156,6 +156,7 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer):
     frown = {"browDownLeft": 0.3, "mouthFrownLeft": 0.2}
     hold(viewer, face, 0.6, **frown)
     assert session.current["browDownLeft"] > 0.2
+    assert {"live browDownLeft", "live mouthFrownLeft"} <= viewer.gui.places.keys()
     place = viewer.gui.places["calibrate"]
     assert place
     viewer.context.live.calibrate()

@@ -125,6 +125,11 @@ def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
     assert np.array_equal(*pictures)
     in_panel(viewer, ("scheme", "loop"))  # of those that it has; what does not go with the look
     assert 'criterion "displacement" needs scheme="cubic"' in viewer.messages.text
+    changed = viewer.settings.display
+    click(viewer, "Reset all")
+    assert viewer.settings.display == Display()
+    click(viewer, "Undo reset")
+    assert viewer.settings.display == changed
     click(viewer, "Reset all")
     assert isinstance(viewer.context.stage.refined.stream, render.Stream)
 

@@ -11,6 +11,7 @@ from ...control_names import sentence
 from ...live.live_face import LiveFace, State
 from ...live.protocols import ANYWHERE, LOOPBACK, PROTOCOLS
 from ...recordings.calibration import HIGHEST_GAIN
+from ...recordings.names import ANGLES
 from ..context import ApplicationContext
 from ..interface.commands import Command, command_button
 from ..interface.gui import colour
@@ -62,6 +63,7 @@ class LivePanel:
             calibrate = self._commands["Calibrate"]
             command_button(gui, messages, calibrate, label, name="calibrate", meaning=meaning)
             self._draw_taken(face)
+            self._draw_channels(face)
         else:
             imgui.pop_text_wrap_pos()
         imgui.end_child()
@@ -98,6 +100,17 @@ class LivePanel:
         before = face.calibration
         gain = self._rows.slide("Gain", "live Gain", before.default_gain, (0.0, MOST_GAIN), 1.0)
         face.calibration = replace(before, mirror=mirror, default_gain=gain)
+
+    def _draw_channels(self, face: LiveFace) -> None:
+        """Bars of the channels that have come, as the face takes them; angles are numbers."""
+        taken = face.calibration.apply(face.channels)
+        for name, value in sorted(taken.items()):
+            self._rows.begin(name)
+            if name in ANGLES:
+                imgui.text(f"{value:.1f} degrees")
+            else:
+                imgui.progress_bar(min(max(value, 0.0), 1.0), (-1.0, 0.0), f"{value:.2f}")
+            self._gui.remember(f"live {name}")
 
 
 def state_in_words(face: LiveFace | None) -> str:

@@ -69,6 +69,7 @@ class MechanismPanel:
         self._view = app.view
         self._times = app.times
         self._rows = LabelledRows(app.gui, share=0.45, hints=HINTS)
+        self._before_reset: Display | None = None
 
     @property
     def _display(self) -> Display:
@@ -77,10 +78,7 @@ class MechanismPanel:
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
         imgui.begin_child("mechanism")
-        imgui.begin_disabled(self._display == Display())
-        if button(self._gui, "Reset all", meaning="all of this as at first, except the person"):
-            self._settings.display = Display()
-        imgui.end_disabled()
+        self._draw_reset()
         rate = self._times.frames_per_second
         times_label = f"Milliseconds, {rate:.0f} frames a second" if rate else "Milliseconds"
         for title, label, draw in (
@@ -97,6 +95,21 @@ class MechanismPanel:
         display = self._display
         display.options = {name: chosen for name, chosen in display.options.items() if chosen}
         imgui.end_child()
+
+    def _draw_reset(self) -> None:
+        """A button that resets all; right after that, it takes the reset back."""
+        is_first = self._display == Display()
+        if not is_first:
+            self._before_reset = None
+        elif self._before_reset is not None:
+            if button(self._gui, "Undo reset", meaning="all of this as it was before"):
+                self._settings.display = self._before_reset
+            return
+        imgui.begin_disabled(is_first)
+        if button(self._gui, "Reset all", meaning="all of this as at first, except the person"):
+            self._before_reset = self._display
+            self._settings.display = Display()
+        imgui.end_disabled()
 
     def _draw_refinement(self) -> None:
         display = self._display
