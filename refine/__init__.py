@@ -30,12 +30,12 @@ all, and geometry/, which lie beside this folder:
     strain.py   how far the skin is stretched
     embedding/  a fine mesh that follows the smooth surface of a coarse one
     hosts.py    meshes as other programs keep them
+    port.py     tables and rules, for those who write the method anew
 
 Read border/plugin.py first, then kahler/. docs/refinement.md shows it with pictures.
 """
 
 from .beyond.blending import Blended
-from .beyond.border_turn import BorderTurn
 from .beyond.cubic import CubicScheme
 from .beyond.curvature import RestCurvature
 from .beyond.detail import DetailScheme
@@ -57,6 +57,7 @@ from .kahler.criterion import (
     THRESHOLD_TWICE,
     Criterion,
     NormalDrop,
+    Thresholds,
     criteria,
 )
 from .kahler.frame import FrameBuffers
@@ -73,7 +74,6 @@ __all__ = [
     "THRESHOLD_TWICE",
     "BaseRefiner",
     "Blended",
-    "BorderTurn",
     "BrokenMeshError",
     "Coherent",
     "Connectivity",
@@ -100,6 +100,7 @@ __all__ = [
     "Silhouette",
     "Stream",
     "StreamArrays",
+    "Thresholds",
     "Values",
     "View",
     "WeldedRefiner",
@@ -121,7 +122,6 @@ refiners.register("loop", Loop)
 refiners.register("none", PassThrough)
 criteria.register("normal", NormalDrop)
 criteria.register("rest", RestCurvature)
-criteria.register("border", BorderTurn)
 criteria.register("displacement", Displacement)
 criteria.register("silhouette", Silhouette)
 schemes.register("loop", LoopScheme)

@@ -31,9 +31,8 @@ from risorius.refine import (
     Values,
     View,
     create_kahler,
+    port,
 )
-from risorius.refine.beyond.options import criterion_of
-from risorius.refine.kahler.refiner import points_on_edges
 
 from .context import GpuError, OwnContext, own_context
 from .frames import VECTOR_BYTES, Frames, programs_of
@@ -82,7 +81,7 @@ def create_kahler_gl(
         raise ValueError('blend=True needs scheme="cubic" in kahler-gl, and coherent=False')
     if blend is None:
         blend = scheme == "cubic" and not coherent
-    decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice), splits)
+    decides = port.criterion_of(criterion, NormalDrop(threshold_once, threshold_twice), splits)
     settings = Settings(scheme, decides, blend, bool(coherent))
     if scheme == "cubic" and values.get("crease_angle") is not None:
         _warn_once("kahler-gl: cubic edges beside creases are refined by the processor (kahler)")
@@ -161,7 +160,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         mesh = self.connectivity
         splits = self.splits
         ends = mesh.edges[mesh.attribute_edges]
-        points = points_on_edges(ends, splits[mesh.attribute_edges])
+        points = port.points_on_edges(ends, splits[mesh.attribute_edges])
         origins = super().origins().followed_by(*points)
         if not self._rules.blends or self._frames is None:
             return origins

@@ -18,18 +18,12 @@ from risorius.refine import (
     Displacement,
     Maximum,
     NormalDrop,
+    Thresholds,
     View,
+    port,
 )
-from risorius.refine.beyond.blending import FANS, RAMP_WIDTH
-from risorius.refine.beyond.cubic import STEEPENING_SHARE, follow_borders, weigh_corners
-from risorius.refine.beyond.displacement import GROWTH_SHARE
-from risorius.refine.beyond.measuring import mean_length
-from risorius.refine.kahler.coherence import sequence_tables
-from risorius.refine.kahler.criterion import Thresholds, find_undefined_normals
-from risorius.refine.kahler.table import CONFIGURATIONS
-from risorius.refine.mesh.rings import vertex_rings
-from risorius.refine.mesh.vectors import ONE
 
+ONE = np.float32(1.0)
 Arrays = Mapping[str, npt.NDArray[np.generic]]
 
 THREADS: Mapping[str, tuple[str, ...]] = {
@@ -96,9 +90,9 @@ class Rules:
         for each in still:
             each.measure(rest_positions, rest_normals, metric)
             np.maximum(self.still, metric, out=self.still)
-        self._patterns = FANS if settings.blend else CONFIGURATIONS
+        self._patterns = port.FANS if settings.blend else port.CONFIGURATIONS
         if settings.coherent:
-            self._patterns = sequence_tables().patterns
+            self._patterns = port.sequence_tables().patterns
 
     @property
     def passes(self) -> list[str]:
@@ -132,16 +126,16 @@ class Rules:
     def limits(self) -> dict[str, float]:
         """Numbers that are not whole, as shaders name them."""
         by = self._displacement
-        unit = mean_length(self._mesh, self._rest)
+        unit = port.mean_length(self._mesh, self._rest)
         limits = _limits("drop", None if self._drop is None else self._drop.thresholds)
         limits |= _limits("size", None if by is None else by.thresholds, unit)
         soon = np.float32(0.0)
         if by is not None:
-            soon = np.float32(GROWTH_SHARE) * by.thresholds.once / by.thresholds.width
-        haste = RAMP_WIDTH / soon if soon > 0.0 else np.float32(0.0)
+            soon = np.float32(port.GROWTH_SHARE) * by.thresholds.once / by.thresholds.width
+        haste = port.RAMP_WIDTH / soon if soon > 0.0 else np.float32(0.0)
         limits |= {
             "size_soon": float(soon),
-            "size_ramp": float(RAMP_WIDTH),
+            "size_ramp": float(port.RAMP_WIDTH),
             "size_haste": float(haste),
         }
         return limits | {"turning": 0.0 if by is None else float(np.float32(by.turning))}
@@ -155,7 +149,7 @@ class Rules:
             "patterns": corners[..., 0] | corners[..., 1] << 8 | corners[..., 2] << 16,
         }
         if self.coherent:
-            tables = sequence_tables()
+            tables = port.sequence_tables()
             found["transitions"] = tables.transitions | tables.removals.astype(np.uint32) << 16
         return {**found, **(self._ring() if self.scheme == "loop" else self._curves())}
 
@@ -179,7 +173,7 @@ class Rules:
         Shape (E,).
         """
         undefined = np.empty(self._mesh.vertex_count, np.bool_)
-        find_undefined_normals(self._mesh.faces, self._rest, undefined)
+        port.find_undefined_normals(self._mesh.faces, self._rest, undefined)
         return np.asarray(undefined[self._mesh.edges].any(axis=1))
 
     def measure_others(self, positions: Floats64, normals: Floats32, view: View | None) -> Floats32:
@@ -197,7 +191,7 @@ class Rules:
 
     def _ring(self) -> Arrays:
         """The arrays of the paper's rule for vertices."""
-        rings = vertex_rings(self._mesh)
+        rings = port.vertex_rings(self._mesh)
         return {
             "wings": self._mesh.around.wings,
             "near": rings.near,
@@ -214,15 +208,15 @@ class Rules:
         valences = np.bincount(ends, minlength=mesh.vertex_count)
         order = np.argsort(ends, kind="stable")
         weights = np.zeros(mesh.faces.shape, np.float32)
-        weigh_corners(self._rest, mesh.faces, weights)
+        port.weigh_corners(self._rest, mesh.faces, weights)
         return {
             "corner_weights": weights,
             "triangle_edges": mesh.triangle_edges.view(np.uint32),
             "edge_sides": mesh.edge_sides,
-            "beyond": follow_borders(mesh, self._rest),
+            "beyond": port.follow_borders(mesh, self._rest),
             "neighbour_starts": np.concatenate([[0], np.cumsum(valences)]),
             "neighbours": mesh.edges[:, ::-1].ravel()[order],
-            "neighbour_share": (STEEPENING_SHARE / np.maximum(valences, 1)).astype(np.float32),
+            "neighbour_share": (port.STEEPENING_SHARE / np.maximum(valences, 1)).astype(np.float32),
         }
 
 

@@ -10,9 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from risorius.geometry.arrays import Floats32, Unsigned32
-from risorius.refine import Connectivity
-from risorius.refine.border.rows import GEOMETRY_COLUMNS, wedge_values
-from risorius.refine.kahler.table import CENTRE
+from risorius.refine import Connectivity, port
 
 from .rules import Arrays, Rules
 
@@ -62,7 +60,7 @@ def tables_of(mesh: Connectivity, values: Floats32, rules: Rules) -> Tables:
     lines = [
         *(f"#define {name}" for name in rules.switches),
         f"#define GROUP {GROUP}",
-        f"#define CENTRE {CENTRE}",
+        f"#define CENTRE {port.CENTRE}",
         "layout(std140, binding = 0) uniform Sizes {",
         *(f"float {name};" for name in limits),
         *(f"uint {name};" for name in sizes),
@@ -89,7 +87,7 @@ def _counts(mesh: Connectivity, value_count: int, arrays: Arrays, rules: Rules) 
         "attribute_edge_count": len(mesh.attribute_edges),
         "face_count": len(mesh.faces),
         "value_count": value_count,
-        "columns": GEOMETRY_COLUMNS + value_count,
+        "columns": port.GEOMETRY_COLUMNS + value_count,
         "attribute_edge_blocks": groups_of(len(mesh.attribute_edges)),
         "face_blocks": groups_of(len(mesh.faces)),
         "most_rows": rows + len(mesh.faces) * rules.blends,
@@ -132,6 +130,6 @@ def _arrays(mesh: Connectivity, values: Floats32) -> Arrays:
         "attribute_edges": mesh.attribute_edges,
         "triangle_attribute_edges": mesh.triangle_attribute_edges,
         "wedge_vertices": mesh.wedge_vertices,
-        "wedge_values": wedge_values(mesh, values),
+        "wedge_values": port.wedge_values(mesh, values),
         "edge_values": values[mesh.attribute_edge_uv],
     }

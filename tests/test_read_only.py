@@ -84,7 +84,7 @@ REFINERS = {
     "loop": ("loop", {"levels": 2}),
     "paper": ("kahler", {}),
     "coherent": ("kahler", {"coherent": True}),
-    "window": ("kahler", {"scheme": "cubic", "criterion": "displacement+rest+border"}),
+    "window": ("kahler", {"scheme": "cubic", "criterion": "displacement+rest+normal"}),
     "card": ("kahler-gl", {}),
 }
 

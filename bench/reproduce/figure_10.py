@@ -26,6 +26,7 @@ from risorius.geometry.arrays import Flags, Unsigned8
 
 from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table, parts_without_hair
 from ..subjects import SETTLE, Points, fine_simulation, settled_positions
+from .border_turn import BorderTurn
 from .experiments import Outcome
 
 FINER = 2  # pixels are drawn so many times as fine
@@ -42,13 +43,14 @@ class Variant:
     title: str
     refiner: str
     options: Mapping[str, Any] = field(default_factory=dict)
+    splits_borders: bool = False  # by `displacement` and a criterion of our own
 
 
 STATIC, PAPER, CUBIC, DETAIL = VARIANTS = (
     Variant("static", "none"),
     Variant("refined: paper", "kahler"),
-    Variant("refined: cubic", "kahler", {"scheme": "cubic", "criterion": "displacement+border"}),
-    Variant("refined: detail", "kahler", {"scheme": "detail", "criterion": "displacement+border"}),
+    Variant("refined: cubic", "kahler", {"scheme": "cubic"}, splits_borders=True),
+    Variant("refined: detail", "kahler", {"scheme": "detail"}, splits_borders=True),
 )
 """One column each, and the dense mesh after them."""
 
@@ -145,6 +147,8 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     for variant in VARIANTS:
         detail = {"detail": (fine.vertices, fine.faces)} if variant is DETAIL else {}
         options = {**variant.options, **detail}
+        if variant.splits_borders:
+            options["criterion"] = ["displacement", BorderTurn()]
         bound = refine.create(variant.refiner, head.faces, head.vertices, **options)
         refiners.append((variant.title, bound, len(head.vertices)))
     dense = refine.create("none", fine.faces, fine.vertices)

@@ -62,7 +62,7 @@ def create_kahler(  # noqa: PLR0913 - one argument for each option
 
     - `threshold_once`, `threshold_twice`: drop of the normals' dot product above which an edge is
       split once or twice, for the paper's criterion, "normal".
-    - `criterion`: "normal", "rest", "silhouette", "border", "displacement", another
+    - `criterion`: "normal", "rest", "silhouette", "displacement", another
       name of `refine.criteria`, an object, or a list of them, of which the one counts that asks for
       most; "normal+rest" is such a list.
     - `splits`: 0, 1 or 2 for every edge, shape (E,), in place of a criterion: all frames have the

@@ -16,7 +16,7 @@ LOOKS = {
     "coherent": {"coherent": True},
     "blended": {"blend": True},
     "window": {"scheme": "cubic", "criterion": "displacement+rest"},
-    "eye and border": {"scheme": "cubic", "criterion": "silhouette+border+normal"},
+    "eye": {"scheme": "cubic", "criterion": "silhouette+rest+normal"},
     "refined normals": {"normals": "refined", "criterion": "displacement"},
 }
 EYE = refine.View([50.0, 50.0, 90.0])

@@ -1,15 +1,18 @@
 """How the refiner on the graphics card is bound, lent to and asked; and its fallback without."""
 
+import ast
 import logging
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from risorius import refine, render
+from risorius import refine, refine_gl, render
+from risorius.refine import port
 from risorius.refine_gl import GpuError, frames, refiner, tables
 from risorius.refine_gl.refined import GpuBuffers
 from tests import meshes
@@ -182,3 +185,17 @@ def test_what_the_card_has_not(options, words):
     """Options that only `kahler` has are refused in words."""
     with pytest.raises(ValueError, match=re.escape(words)):
         refine.create("kahler-gl", MESH.faces, MESH.vertices, **options)
+
+
+def test_it_imports_what_an_outsider_may():
+    """Of refinement only `risorius.refine` and `refine.port`, by names that these export."""
+    folder = Path(refine_gl.__file__).parent
+    for file in folder.glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            module = node.module or "" if isinstance(node, ast.ImportFrom) else ""
+            if not module.startswith("risorius.refine"):
+                continue
+            assert module == "risorius.refine", (file.name, module)
+            assert {each.name for each in node.names} <= {*refine.__all__, "port"}, file.name
+    used = set(re.findall(r"\bport\.(\w+)", "".join(f.read_text() for f in folder.glob("*.py"))))
+    assert used <= set(port.__all__)

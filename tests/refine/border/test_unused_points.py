@@ -20,7 +20,7 @@ REFINERS = [
     ("none", {}),
     ("loop", {"levels": 2}),
     ("kahler", {}),
-    ("kahler", {"normals": "refined", "criterion": "displacement+border"}),
+    ("kahler", {"normals": "refined", "criterion": "displacement+rest"}),
     ("kahler", {"scheme": "cubic", "criterion": "displacement+rest"}),
     ("kahler", {"scheme": "cubic", "criterion": "silhouette+rest", "coherent": True}),
 ]

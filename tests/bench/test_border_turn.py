@@ -1,4 +1,4 @@
-"""The criterion `border`: mouths that open."""
+"""The criterion of Fig. 10, made of public names: mouths that open."""
 
 from collections import defaultdict
 from itertools import pairwise
@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from numpy.linalg import norm
 
 from risorius import refine
+from risorius.bench.reproduce.border_turn import BorderTurn
 from tests import meshes
 from tests.refine.cases import kahler, soups
 from tests.refine.plain_schemes import is_corner
@@ -21,9 +22,9 @@ SLIT = meshes.slit()
 EDGES = refine.connect(SLIT.faces, len(SLIT.vertices)).edges
 
 
-def splits_of(mesh, deformed, criterion="border"):
+def splits_of(mesh, deformed, criterion=None):
     """Splits of every edge."""
-    refiner = kahler(mesh, criterion=criterion)
+    refiner = kahler(mesh, criterion=BorderTurn() if criterion is None else criterion)
     refine.check(refiner, refiner.refine(deformed), deformed)
     return refiner.splits.copy()
 
@@ -32,7 +33,7 @@ def metrics_of(mesh, *poses):
     """Need of every edge in each pose."""
     connectivity = refine.connect(mesh.faces, len(mesh.vertices))
     none = refine.create("none", mesh.faces, mesh.vertices)
-    criterion = refine.BorderTurn()
+    criterion = BorderTurn()
     criterion.bind(connectivity, mesh.vertices, none.refine(mesh.vertices).normals.copy())
     metrics = []
     for pose in poses:
@@ -193,7 +194,7 @@ def outline(positions, triangles, middle, reach):
 def test_round_outline_of_a_slit(scheme):
     """Between its corners an opened slit turns less than half as much; by loop not beside them."""
     deformed = meshes.opened(SLIT, 1.2)
-    refiner = kahler(SLIT, criterion="border", scheme=scheme, blend=False)
+    refiner = kahler(SLIT, criterion=BorderTurn(), scheme=scheme, blend=False)
     mesh = refiner.refine(deformed)
     middle = np.zeros(3)
     coarse = outline(deformed, SLIT.faces, middle, 3.1)

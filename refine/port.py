@@ -1,0 +1,39 @@
+"""Tables and rules of the method, for those who write it anew: on a graphics card, in another
+language, or in a criterion that looks at borders.
+
+Kähler, Haber, Seidel 2003, sections 4.1 to 4.4. All of it is found once per mesh, and none of it is
+needed to use a refiner. `refine_gl` is made of `risorius.refine` and this module.
+"""
+
+from .beyond.blending import FANS, RAMP_WIDTH
+from .beyond.cubic import STEEPENING_SHARE, follow_borders, weigh_corners
+from .beyond.displacement import GROWTH_SHARE
+from .beyond.measuring import mean_length
+from .beyond.options import criterion_of
+from .border.rows import GEOMETRY_COLUMNS, wedge_values
+from .kahler.coherence import sequence_tables
+from .kahler.criterion import find_undefined_normals
+from .kahler.refiner import points_on_edges
+from .kahler.table import CENTRE, CONFIGURATIONS
+from .mesh.borders import border_neighbours
+from .mesh.rings import vertex_rings
+
+__all__ = [
+    "CENTRE",
+    "CONFIGURATIONS",
+    "FANS",
+    "GEOMETRY_COLUMNS",
+    "GROWTH_SHARE",
+    "RAMP_WIDTH",
+    "STEEPENING_SHARE",
+    "border_neighbours",
+    "criterion_of",
+    "find_undefined_normals",
+    "follow_borders",
+    "mean_length",
+    "points_on_edges",
+    "sequence_tables",
+    "vertex_rings",
+    "wedge_values",
+    "weigh_corners",
+]
