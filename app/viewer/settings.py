@@ -100,7 +100,8 @@ class Display(Record):
     # Options that replace those of the look, by the names of refiners.
     options: dict[str, dict[str, Option]] = field(default_factory=dict)
     is_refined: Flag = True
-    compare: Annotated[str, OneOf(COMPARISONS)] = "off"  # the mesh as it is, and refined
+    compare: Annotated[str, OneOf(COMPARISONS)] = "off"  # what is beside it, and refined
+    beside: Annotated[str, OneOf((STATIC, *PRESETS))] = STATIC  # a look, or the mesh as it is
     divider: Share = 0.5  # of a wipe, of the picture's width
     shading: Annotated[str, OneOf([each.value for each in render.Shading])] = "pixel"
     wireframe: Flag = False
@@ -146,6 +147,11 @@ class Display(Record):
         """How this scene is refined."""
         options = self.options.get(self.refiner_on(scene), {})
         return Refinement(self.look, self.refiner, dict(options))
+
+    @property
+    def refinement_beside(self) -> Refinement:
+        """How the left side of a comparison is refined."""
+        return Refinement(refiner=STATIC) if self.beside == STATIC else Refinement(self.beside)
 
     @property
     def share(self) -> float:

@@ -113,6 +113,21 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
     assert not viewer.surface.labels
 
 
+def test_any_look_stands_at_the_left(viewer):
+    """Chosen by the mouse beside the look of the right; the picture has both names."""
+    viewer.settings.display = Display(compare="side by side")
+    only_open(viewer, "Refinement")
+    in_panel(viewer, ("Beside", "paper"))
+    assert viewer.settings.display.beside == "paper"
+    assert until(viewer, lambda: viewer.schedule.is_idle)
+    stage = viewer.context.stage
+    assert stage.beside is not stage.static
+    sides = stage.viewports(viewer.settings.display, viewer.face.view.viewport)
+    assert [each.drawn.label for each in sides] == ["paper", "smooth"]
+    size = max(viewer.face.view.viewport[3] / 36.0, 15.0)
+    assert np.array_equal(viewer.surface.labels[0][2], plate("paper\n2030 triangles", size))
+
+
 def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
     """Chosen by the mouse it draws from the card, and the picture is as it was; set back, too."""
     only_open(viewer, "Refinement")

@@ -89,7 +89,7 @@ class Exporter:
             choices.size,
             choices.rate,
             display.refinement_on(self.session.scene) if is_refined else static,
-            (static,) if is_compared else (),
+            (display.refinement_beside,) if is_compared else (),
             camera=view.camera.copy(),
             style=style_of(display, None if is_clear else view.background),
             tone=TONES[display.tone],

@@ -33,8 +33,9 @@ HINTS = {
     "the refiner and all of its options",
     "Refiner": "kahler: the paper's; a look as it is goes to a graphics card (kahler-gl) by "
     "itself where the mesh is large",
-    "Compare": "the simulated mesh at the left, refined at the right, under one camera: wipe "
-    "([Compare: wipe]) or side by side ([Compare: side by side])",
+    "Compare": "the simulated mesh or a look at the left, refined at the right, under one camera: "
+    "wipe ([Compare: wipe]) or side by side ([Compare: side by side])",
+    "Beside": "at the left of a comparison: a look, or none, the simulated mesh as it is",
     "Colour by splits": "of the edges of the simulated mesh's triangles ([Colour by splits])",
     "Wires of splits": "outlines of simulated triangles that are split more than at rest",
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
@@ -125,6 +126,8 @@ class MechanismPanel:
             if name not in THRESHOLDS or has_thresholds:
                 self._draw_option(name, option)
         self._pick("Compare", COMPARISONS)
+        if display.compare != "off":
+            self._pick("Beside", (STATIC, *PRESETS))
         base = len(stage.scene.faces)
         for drawn, *_ in stage.viewports(display, self._view.viewport):
             count = drawn.triangle_count

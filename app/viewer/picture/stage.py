@@ -138,7 +138,9 @@ class Stage:
         self._tone: float | None = None
         # The mesh as it is, and as the refiner that is chosen has it drawn.
         self.refined = self.static = self.pipeline.bind(Refinement(refiner=STATIC))
+        self.beside = self.static  # at the left of a comparison
         self._asked: Refinement | None = None  # the one that is bound
+        self._asked_beside = Refinement(refiner=STATIC)
         self.bind(display)
 
     def bind(self, display: Display) -> None:
@@ -147,6 +149,11 @@ class Stage:
         if tone != self._tone:
             self.pipeline.set_tone(tone)
             self._tone = tone
+        beside = display.refinement_beside
+        if beside != self._asked_beside:
+            self._asked_beside = beside
+            is_static = beside.refiner == STATIC
+            self.beside = self.static if is_static else self.pipeline.bind(beside)
         chosen = display.refinement_on(self.scene)
         if chosen == self._asked:
             return
@@ -169,8 +176,8 @@ class Stage:
         first = (left, bottom, middle, height)
         second = (left + middle, bottom, width - middle, height)
         if display.compare == "wipe":
-            return [Viewport(self.static, area, first), Viewport(self.refined, area, second)]
-        return [Viewport(self.static, first), Viewport(self.refined, second)]
+            return [Viewport(self.beside, area, first), Viewport(self.refined, area, second)]
+        return [Viewport(self.beside, first), Viewport(self.refined, second)]
 
     def draw(self, view: SceneView, *, is_photo: bool = False) -> None:
         """Draw the scene as finely as the surface's `detail` says; a photo without the mouse's."""
