@@ -25,7 +25,7 @@ from ..mesh.validation import (
     take_positions_like_rest,
     used_vertices,
 )
-from ..mesh.vectors import cross, plus, row_of, times, write_row
+from ..mesh.vectors import Vector, cross, plus, row_of, times, write_row
 from .frames import FRAME_NUMBERS
 from .patches import FRAMES, SmoothSurface, place_on
 from .places import across_edges, has_area, nearest_places, settle
@@ -206,24 +206,29 @@ def _checked_labels(name: str, given: npt.ArrayLike, count: int) -> Integers64:
 
 
 @njit
-def rotation_at(
-    rows: Floats64, t: int, u: float, v: float, w: float
-) -> tuple[float, float, float, float, float]:
-    """Unit quaternion w, x, y, z and stretch at a place on patch t; no turn where it has none."""
+def turned_at(
+    rows: Floats64, t: int, u: float, v: float, w: float, vector: Vector
+) -> tuple[Vector, float]:
+    """A vector as the place on patch t turns it, and the stretch there.
+
+    The mean of the corners' quaternions need not have length one; zero is no turn.
+    """
+    row = rows[t]
     at = (u, v, w)
-    q0 = q1 = q2 = q3 = stretch = 0.0
+    q0 = x = y = z = stretch = 0.0
     for i in range(3):
         column = FRAMES + FRAME_NUMBERS * i
-        q0 += at[i] * rows[t, column]
-        q1 += at[i] * rows[t, column + 1]
-        q2 += at[i] * rows[t, column + 2]
-        q3 += at[i] * rows[t, column + 3]
-        stretch += at[i] * rows[t, column + 4]
-    squared = q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3
-    if squared == 0.0:
-        return 1.0, 0.0, 0.0, 0.0, stretch
-    scale = 1.0 / np.sqrt(squared)
-    return scale * q0, scale * q1, scale * q2, scale * q3, stretch
+        q0 += at[i] * row[column]
+        x += at[i] * row[column + 1]
+        y += at[i] * row[column + 2]
+        z += at[i] * row[column + 3]
+        stretch += at[i] * row[column + 4]
+    squared = q0 * q0 + x * x + y * y + z * z
+    scale = 2.0 / squared if squared > 0.0 else 0.0
+    axis = x, y, z
+    aside = cross(axis, vector)
+    change = times(scale, plus(times(q0, aside), cross(axis, aside)))
+    return plus(vector, change), stretch
 
 
 @njit
@@ -243,15 +248,9 @@ def place_points(
     """
     for k in range(first, last):
         t = numbers[k]
-        u = weights[k, 0]
-        v = weights[k, 1]
-        w = weights[k, 2]
+        u, v, w = row_of(weights, k)
         place = place_on(rows, t, u, v, w)
-        q0, x, y, z, stretch = rotation_at(rows, t, u, v, w)
-        offset = row_of(offsets, k)
-        axis = x, y, z
-        twice = times(2.0, cross(axis, offset))
-        turned = plus(plus(offset, times(q0, twice)), cross(axis, twice))
+        turned, stretch = turned_at(rows, t, u, v, w, row_of(offsets, k))
         size = 1.0 + stretched * (stretch - 1.0)
         write_row(moved, k, plus(place, times(size, turned)))
 
@@ -268,10 +267,6 @@ def turn_vectors(
 ) -> None:
     """Write vectors at fine points as the surface turns them, shape (N, 3)."""
     for k in range(first, last):
-        t = numbers[k]
-        q0, x, y, z, _ = rotation_at(rows, t, weights[k, 0], weights[k, 1], weights[k, 2])
-        axis = x, y, z
-        vector = row_of(vectors, k)
-        twice = times(2.0, cross(axis, vector))
-        result = plus(plus(vector, times(q0, twice)), cross(axis, twice))
+        u, v, w = row_of(weights, k)
+        result, _ = turned_at(rows, numbers[k], u, v, w, row_of(vectors, k))
         write_row(turned, k, result)

@@ -237,6 +237,7 @@ def write_patches(
 @njit
 def place_on(rows: Floats64, t: int, u: float, v: float, w: float) -> Vector:
     """The place on patch t with barycentric coordinates u, v, w."""
+    row = rows[t]
     uu = u * u
     vv = v * v
     ww = w * w
@@ -254,7 +255,7 @@ def place_on(rows: Floats64, t: int, u: float, v: float, w: float) -> Vector:
         6.0 * u * v * w,
     )
     for k in range(POINTS):
-        x += shares[k] * rows[t, 3 * k]
-        y += shares[k] * rows[t, 3 * k + 1]
-        z += shares[k] * rows[t, 3 * k + 2]
+        x += shares[k] * row[3 * k]
+        y += shares[k] * row[3 * k + 1]
+        z += shares[k] * row[3 * k + 2]
     return x, y, z

@@ -5,11 +5,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import refine
 from tests import meshes
+
+from .twin import Twin
 
 Points = npt.NDArray[np.float64]
 
@@ -78,6 +80,23 @@ def test_any_soup_is_carried(seed):
     )
     assert np.isfinite(embedding.evaluate(rng.normal(size=(8, 3))).positions).all()
     assert np.isfinite(embedding.evaluate(np.zeros((8, 3))).positions).all()
+
+
+@settings(max_examples=20)
+@given(st.integers(0, 2**32 - 1), st.sampled_from(["ball", "double cone"]))
+def test_equal_to_its_twin_in_plain_numpy(seed, name):
+    """Whatever a closed mesh is bent to, fine points are where plain numpy finds them."""
+    mesh = meshes.ball(1) if name == "ball" else meshes.double_cone(7)
+    rng = np.random.default_rng(seed)
+    rest = mesh.vertices + 0.05 * rng.normal(size=mesh.vertices.shape)
+    fine = around(meshes.Mesh(rest, mesh.faces), count=30, away=0.1)
+    embedding = refine.Embedding(mesh.faces, rest, fine)
+    bent = turned(rest * rng.uniform(0.6, 1.5, 3) + 0.1 * rng.normal(size=rest.shape))
+    places = embedding.triangles, embedding.weights, embedding.offsets
+    twin = Twin(mesh.faces, rest)
+    np.testing.assert_allclose(twin.evaluate(rest, *places), fine, atol=1e-9)
+    expected = twin.evaluate(bent, *places)
+    np.testing.assert_allclose(embedding.evaluate(bent).positions, expected, atol=1e-8)
 
 
 def test_continuous_over_coarse_edges():

@@ -1,0 +1,138 @@
+"""A twin of `Embedding.evaluate` in plain numpy, for closed meshes: slow, and as the pages say it.
+
+Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN triangles", with tangents and offsets that are
+carried along (refine/embedding/patches.py and frames.py).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial.transform import Rotation
+
+Points = npt.NDArray[np.float64]
+MOST_CARRIED = 0.5  # lengths of a tangent that a carried one may be off
+
+
+def unit(vector: Points) -> Points:
+    """A vector of length one."""
+    return np.asarray(vector / np.linalg.norm(vector))
+
+
+@dataclass
+class Fan:
+    """What the triangles around a vertex know of it at rest.
+
+    numbers: corners of each triangle, the vertex first, (k, 3). weights: of their cross products.
+    areas: shares of the triangles, (k,). edges: at rest, (k, 3, 2). directions: two that lie across
+    the normal, (3, 2).
+    """
+
+    numbers: npt.NDArray[np.int64]
+    weights: Points
+    areas: Points
+    edges: Points
+    directions: Points
+
+
+def edges_of(points: Points, numbers: npt.NDArray[np.int64]) -> Points:
+    """Both edges of triangles from their first corner, in columns, shape (k, 3, 2)."""
+    corners = points[numbers]
+    return np.asarray(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
+
+
+class Twin:
+    """A coarse closed mesh, and the surface over it."""
+
+    def __init__(self, faces: npt.NDArray[np.int32], rest: Points) -> None:
+        self.faces = faces
+        turns = np.concatenate([np.roll(faces, -corner, axis=1) for corner in range(3)])
+        self.fans = [self._fan(turns[turns[:, 0] == v], rest) for v in range(len(rest))]
+        self.rest_axes = [self._axes(fan, rest) for fan in self.fans]
+        self.slopes = {}  # how much of both directions an edge's tangent at rest is
+        for a, b in np.concatenate([turns[:, [0, 1]], turns[:, [0, 2]]]):
+            self.slopes[a, b] = self._slope(a, b, rest)
+
+    @staticmethod
+    def _fan(numbers: npt.NDArray[np.int64], rest: Points) -> Fan:
+        edges = edges_of(rest, numbers)
+        crosses = np.cross(edges[:, :, 0], edges[:, :, 1])
+        doubled = np.linalg.norm(crosses, axis=1)
+        angles = np.arctan2(doubled, (edges[:, :, 0] * edges[:, :, 1]).sum(axis=1))
+        weights = np.sqrt(angles / doubled)
+        normal = unit(weights @ crosses)
+        first = unit(np.cross(normal, np.eye(3)[np.abs(normal).argmin()]))
+        directions = np.stack([first, np.cross(normal, first)], axis=1)
+        return Fan(numbers, weights, doubled / doubled.sum(), edges, directions)
+
+    @staticmethod
+    def _axes(fan: Fan, points: Points) -> tuple[Points, Points]:
+        """The normal, and both directions where the triangles have carried them to, (3, 2)."""
+        edges = edges_of(points, fan.numbers)
+        normal = unit(fan.weights @ np.cross(edges[:, :, 0], edges[:, :, 1]))
+        moves = edges @ np.linalg.pinv(fan.edges)  # linear maps of the triangles' planes
+        carried = np.einsum("k,kij->ij", fan.areas, moves) @ fan.directions
+        return normal, carried - np.outer(normal, normal @ carried)
+
+    def _slope(self, a: int, b: int, rest: Points) -> Points:
+        normal, directions = self.rest_axes[a]
+        edge = rest[b] - rest[a]
+        flat = edge - (edge @ normal) * normal
+        return np.asarray(np.linalg.lstsq(directions, flat, rcond=None)[0])
+
+    @staticmethod
+    def _frame(axes: tuple[Points, Points]) -> Points:
+        """A right-handed frame in columns: the polar decomposition has no favourite direction."""
+        normal, directions = axes
+        along = unit(directions[:, 0] + np.cross(directions[:, 1], normal))
+        return np.stack([normal, along, np.cross(normal, along)], axis=1)
+
+    def evaluate(
+        self,
+        points: Points,
+        triangles: npt.NDArray[np.int64],
+        weights: Points,
+        offsets: Points,
+    ) -> Points:
+        """Where places of weights (N, 3) on `triangles`, (N,), are with their offsets, (N, 3)."""
+        axes = [self._axes(fan, points) for fan in self.fans]
+        quaternions = [
+            Rotation.from_matrix(self._frame(now) @ self._frame(rest).T).as_quat()
+            for now, rest in zip(axes, self.rest_axes, strict=True)
+        ]
+        found = []
+        for triangle, shares, offset in zip(triangles, weights, offsets, strict=True):
+            corners = self.faces[triangle]
+            turns = np.array([quaternions[corner] for corner in corners])
+            turns[turns @ turns[0] < 0.0] *= -1.0
+            turn = Rotation.from_quat(shares @ turns)
+            found.append(self._place(points, axes, corners, shares) + offset @ turn.as_matrix().T)
+        return np.array(found)
+
+    def _place(
+        self,
+        points: Points,
+        axes: list[tuple[Points, Points]],
+        corners: npt.NDArray[np.int32],
+        shares: Points,
+    ) -> Points:
+        """A place on the cubic patch over a triangle."""
+        place = shares**3 @ points[corners]
+        nears = np.zeros(3)
+        for i in range(3):
+            for j in range(3):
+                if i != j:
+                    near = self._tangent(points, axes, corners[i], corners[j]) / 3.0
+                    nears += near
+                    place += 3.0 * shares[i] ** 2 * shares[j] * (points[corners[i]] + near)
+        middle = points[corners].mean(axis=0) + 0.25 * nears
+        return np.asarray(place + 6.0 * shares.prod() * middle)
+
+    def _tangent(self, points: Points, axes: list[tuple[Points, Points]], a: int, b: int) -> Points:
+        normal, directions = axes[a]
+        edge = points[b] - points[a]
+        now = edge - (edge @ normal) * normal
+        change = directions @ self.slopes[a, b] - now
+        most = MOST_CARRIED * np.linalg.norm(now)
+        length = np.linalg.norm(change)
+        return np.asarray(now + (change if length <= most else change * most / length))
