@@ -100,6 +100,26 @@ def bench_motion(reference: Path) -> None:
     conclude(motion.report(*found), motion.targets(*found))
 
 
+@bench.command("avatar")
+@click.option("--makehuman", type=FOLDER, help="A folder with MakeHuman's base.obj and base.json.")
+@click.option("--reference", type=FOLDER, help="A folder of `risorius bench reference`.")
+def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
+    """Make heads into avatars: are their vertices in place, and how far are sums of shapes off?
+
+    Heads are the built-in one and a person, and those of the folders that are given.
+    """
+    from . import avatar
+
+    for name, folder in (("makehuman", makehuman), ("reference", reference)):
+        if folder is None:
+            click.echo(f"--{name} is not given: its head is left out", err=True)
+    rows = []
+    for row in avatar.measure(makehuman, reference):
+        say_progress(row.name)
+        rows.append(row)
+    conclude(avatar.report(rows), avatar.targets(rows))
+
+
 @bench.command("human")
 @needed_reference
 @click.option(

@@ -17,8 +17,8 @@ from ..scenes import FaceScene, build_face, own_head
 from ..script import Script
 from .bodies import Body, Shaped, Skin, bodies_of_parts, moving, poses_of
 from .file_body import FileBody, merged_vertices, with_own_tongue
+from .linearity import Difference, corrective_poses, table, worth_correcting
 from .linearity import corrected as corrected_shapes
-from .linearity import corrective_poses, table, worth_correcting
 from .pieces import FilePiece, corrected, described, find_pieces
 from .poses import shape_names
 from .take_linearity import difference_on, played_take
@@ -70,7 +70,7 @@ class Avatar:
     """A head with its named shapes.
 
     file: of a file; None: the built-in head or a person. shapes: the file's body or the skin first.
-    names: of the shapes, those of `pairs` last.
+    names: of the shapes, those of `pairs` last. sums: how far sums of shapes are off.
     """
 
     scene: FaceScene
@@ -79,6 +79,7 @@ class Avatar:
     names: tuple[str, ...]
     pairs: tuple[tuple[str, str], ...]
     eyes_are_nodes: bool
+    sums: tuple[Difference, ...]
 
     @property
     def extras(self) -> dict[str, Any]:
@@ -112,18 +113,18 @@ def avatar_of(
             )
     names = shape_names(scene, request.kinds)
     poses = dict(poses_of(scene, names, progress=request.progress))
-    for difference in table(scene, poses):
-        say(f"sum of shapes off the simulation: {difference}")
+    sums = table(scene, poses)
     pairs: list[tuple[str, str]] = []
     if request.correctives:
         pairs = worth_correcting(scene, poses, request.correctives, progress=request.progress)
         poses.update(corrective_poses(scene, pairs))
         names = tuple(poses)
     if request.take is not None and "arkit" in request.kinds:
-        found = difference_on(played_take(scene, request.take), scene, poses, pairs)
-        say(f"sum of shapes off the simulation: {found}")
+        sums.append(difference_on(played_take(scene, request.take), scene, poses, pairs))
+    for difference in sums:
+        say(f"sum of shapes off the simulation: {difference}")
     shapes = tuple(_without_sums(each, pairs, names) for each in moving(bodies, poses))
-    return Avatar(scene, file, shapes, names, tuple(pairs), eyes_are_nodes)
+    return Avatar(scene, file, shapes, names, tuple(pairs), eyes_are_nodes, tuple(sums))
 
 
 def _without_sums(shaped: Shaped, pairs: list[tuple[str, str]], names: tuple[str, ...]) -> Shaped:

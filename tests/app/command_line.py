@@ -49,11 +49,22 @@ def started(*words: object, **options: Any) -> subprocess.Popen[bytes]:
 
 def positions_in_blender(path: Path, folder: Path, rate: float, frames: int) -> Path:
     """Where Blender has the vertices of a file, frame by frame, as an .npz; skips without bpy."""
+    found = folder / "found.npz"
+    _in_blender("positions_in_blender.py", path, found, f"{rate:g}", frames)
+    return found
+
+
+def shape_keys_in_blender(path: Path, folder: Path) -> Path:
+    """The shape keys that Blender has of a file, as an .npz; skips without bpy."""
+    found = folder / "keys.npz"
+    _in_blender("shape_keys_in_blender.py", path, found)
+    return found
+
+
+def _in_blender(program: str, *arguments: object) -> None:
+    """Run a program beside this one by a Python that has bpy; skip without it."""
     python = os.environ.get("RISORIUS_BLENDER_PYTHON", sys.executable)
     if subprocess.run([python, "-c", "import bpy"], capture_output=True, check=False).returncode:
         pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")
-    found = folder / "found.npz"
-    program = Path(__file__).with_name("positions_in_blender.py")
-    command = [python, program, path, found, f"{rate:g}", str(frames)]
+    command = [python, Path(__file__).with_name(program), *map(str, arguments)]
     subprocess.run(command, check=True, capture_output=True)
-    return found

@@ -20,7 +20,7 @@ from risorius.assets.meshes import read_mesh
 
 from ..heads import TURN, stranger
 from ..meshes import ball
-from .command_line import refusal, risorius
+from .command_line import refusal, risorius, shape_keys_in_blender
 from .glb_player import Player
 from .rig_files import write_whole_head
 
@@ -83,6 +83,19 @@ def test_parts_have_the_shapes_that_move_them(built_in):
     turns = nodes["eye_left"]["extras"]["rotations"]
     assert set(turns) == {f"eyeLook{way}Left" for way in ("Up", "Down", "In", "Out")}
     assert turns["eyeLookDownLeft"][0] > 0.2  # forward over the x axis
+
+
+@pytest.mark.blender
+def test_blender_has_the_shapes_by_name(built_in, tmp_path):
+    """Shape keys with ARKit's names, each of which moves the vertices as the file says."""
+    found = shape_keys_in_blender(built_in, tmp_path)
+    shapes = Player(built_in).shapes("skin")
+    with np.load(found) as keys:
+        assert set(shapes) <= {name.partition("/")[2] for name in keys}
+        for name, shape in shapes.items():
+            # Blender's axes: z up.
+            x, y, z = shape.T
+            assert np.abs(keys[f"skin/{name}"] - np.column_stack([x, -z, y])).max() < 1e-5, name
 
 
 def test_most_of_a_shape_takes_no_room(built_in):

@@ -1,0 +1,192 @@
+"""Avatars of heads: do they keep the vertices of their files, and how far are sums of shapes off.
+
+Heads are the built-in one and a made person, and by options MakeHuman's base mesh and a scan. Each
+is made into an avatar as by `risorius rig`, and its file is read again.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.app.errors import UserError
+from risorius.app.performances import built_in_words
+from risorius.app.recordings.names import ARKIT
+from risorius.app.rig.avatar import Avatar, RigRequest, avatar_of, read_file_head
+from risorius.app.rig.gltf_copy import read_document
+from risorius.app.rig.linearity import Difference
+from risorius.app.rig.surface import METRES
+from risorius.app.rig.writing import avatar_glb
+from risorius.assets.fitting import FittedHead
+from risorius.assets.identities import person_called
+from risorius.assets.meshes import read_mesh
+
+from .report import Target, at_least, processor, table
+from .subjects import Scans
+
+Points = npt.NDArray[np.floating]
+PERSON = 7
+
+
+class HeadFile(NamedTuple):
+    """A head of a file, and the file of its landmarks."""
+
+    name: str
+    mesh: Path
+    landmarks: Path
+
+
+class Row(NamedTuple):
+    """One avatar.
+
+    vertices: of the file, of the skin where there is no file. in_place: how many of these the
+    avatar has, with their numbers. shapes: how many of ARKit's names are there, in Apple's order.
+    """
+
+    name: str
+    vertices: int
+    in_place: int
+    shapes: int
+    megabytes: float
+    seconds: float
+    sums: tuple[Difference, ...]
+
+
+def makehuman(folder: Path) -> HeadFile:
+    """The head of MakeHuman's base mesh in a folder; UserError where it is not there."""
+    head = HeadFile("MakeHuman hm08", folder / "base.obj", folder / "base.json")
+    for path in (head.mesh, head.landmarks):
+        if not path.is_file():
+            raise UserError(f"{path}: is not there; the folder needs base.obj and base.json")
+    return head
+
+
+def scan(scans: Scans, folder: Path) -> HeadFile:
+    """The neutral face of a folder of scans, written into another folder as a mesh file."""
+    head = HeadFile("ICT-FaceKit", folder / "scan.obj", folder / "scan.json")
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in scans.mesh.vertices]
+    lines += [f"f {a} {b} {c}" for a, b, c in scans.mesh.faces + 1]
+    head.mesh.write_text("\n".join(lines), encoding="utf-8")
+    landmarks = json.dumps({"landmarks": scans.landmarks.tolist()})
+    head.landmarks.write_text(landmarks, encoding="utf-8")
+    return head
+
+
+def measure(folder: Path | None, reference: Path | None) -> Iterator[Row]:
+    """Make an avatar of each head, one after the other.
+
+    folder: of MakeHuman's base mesh. reference: of scans. None: that head is left out.
+    """
+    avatar_of(None, _request(), _quiet)  # what is compiled once is not timed
+    yield measured(None)
+    yield measured(person_called(PERSON), f"person {PERSON}")
+    if folder is not None:
+        yield measured_file(makehuman(folder))
+    if reference is not None:
+        with tempfile.TemporaryDirectory() as scratch:
+            yield measured_file(scan(Scans.read(reference), Path(scratch)))
+
+
+def measured(head: FittedHead | None, name: str = "built-in") -> Row:
+    """The avatar of the built-in head or a person."""
+    begin = time.perf_counter()
+    avatar = avatar_of(head, _request(), _quiet)
+    content = avatar_glb(avatar, name)
+    seconds = time.perf_counter() - begin
+    points, names = mesh_called("skin", content)
+    # Where texture coordinates have seams, copies of a vertex follow it.
+    is_copy = (np.diff(points, axis=0) == 0.0).all(axis=1)
+    own = METRES * avatar.scene.rest_positions
+    return _row(name, own, points[~np.append(False, is_copy)], names, content, seconds, avatar)
+
+
+def measured_file(head: HeadFile) -> Row:
+    """The avatar of a head of a file."""
+    begin = time.perf_counter()
+    file = read_file_head(head.mesh, head.landmarks, _request(), _quiet)
+    avatar = avatar_of(file.head, _request(), _quiet, file=file)
+    content = avatar_glb(avatar, head.name)
+    seconds = time.perf_counter() - begin
+    points, names = mesh_called("head", content)
+    own = read_mesh(head.mesh).vertices
+    return _row(head.name, own, points, names, content, seconds, avatar)
+
+
+def _row(
+    name: str,
+    own: Points,
+    points: Points,
+    names: Sequence[str],
+    content: bytes,
+    seconds: float,
+    avatar: Avatar,
+) -> Row:
+    shapes = sum(found == expected for found, expected in zip(names, ARKIT, strict=False))
+    count = in_place(own, points)
+    return Row(name, len(own), count, shapes, len(content) / 1e6, seconds, avatar.sums)
+
+
+def in_place(own: Points, points: Points) -> int:
+    """How many of a file's vertices (V, 3) an avatar's mesh (n, 3) has with the same numbers."""
+    count = min(len(own), len(points))
+    same = own[:count].astype(np.float32) == points[:count].astype(np.float32)
+    return int(same.all(axis=1).sum())
+
+
+def mesh_called(name: str, content: bytes) -> tuple[Points, list[str]]:
+    """The vertices of a mesh of a binary glTF file, (n, 3), and the names of its shapes."""
+    document, numbers = read_document(content, Path())
+    mesh: dict[str, Any] = next(each for each in document["meshes"] if each["name"] == name)
+    accessor = document["accessors"][mesh["primitives"][0]["attributes"]["POSITION"]]
+    start = document["bufferViews"][accessor["bufferView"]]["byteOffset"]
+    points = np.frombuffer(numbers, np.float32, 3 * accessor["count"], start)
+    return points.reshape(-1, 3), list(mesh["extras"]["targetNames"])
+
+
+def _request() -> RigRequest:
+    return RigRequest(progress=False, take=built_in_words())
+
+
+def _quiet(_: str) -> None:
+    """Print no line on a head."""
+
+
+def report(rows: Sequence[Row]) -> str:
+    """The text to print."""
+    files = [
+        (row.name, row.vertices, row.in_place, row.shapes, row.megabytes, row.seconds)
+        for row in rows
+    ]
+    sums = [
+        (row.name, f" {' + '.join(each.names)}", each.most, each.mean)
+        for row in rows
+        for each in row.sums
+    ]
+    return "\n".join(
+        [
+            "Heads as avatars with ARKit's shapes, as `risorius rig` writes them.",
+            f"Processor: {processor()}",
+            "",
+            *table("head:<15|vertices:8d|in place:8d|shapes:6d|MB:6.1f|seconds:7.1f", files),
+            "",
+            "Sums of shapes against the simulation [mm]: pairs at 1, and a take.",
+            "",
+            *table("head:<15| sum:<46|at most:7.1f|RMS:5.1f", sums),
+        ]
+    )
+
+
+def targets(rows: Sequence[Row]) -> list[Target]:
+    """All vertices in their places, and all names."""
+    found = []
+    for row in rows:
+        found.append(at_least(f"{row.name}, vertices in place", row.in_place, row.vertices))
+        found.append(at_least(f"{row.name}, names", row.shapes, len(ARKIT)))
+    return found

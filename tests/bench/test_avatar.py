@@ -1,0 +1,33 @@
+"""The benchmark of avatars: vertices in place, names, and distances of sums."""
+
+import numpy as np
+import pytest
+
+from risorius.app.errors import UserError
+from risorius.bench import avatar
+
+
+def test_the_built_in_head_keeps_its_vertices():
+    """All are in place, with 52 names; four pairs and a take are compared with the simulation."""
+    row = avatar.measured(None)
+    assert row.in_place == row.vertices > 1000
+    assert row.shapes == 52
+    assert len(row.sums) == 5
+    assert all(0.1 < each.mean < each.most < 20.0 for each in row.sums)
+    assert all(target.is_met for target in avatar.targets([row]))
+    text = avatar.report([row])
+    assert "jawOpen + mouthPucker" in text and "Speech" in text
+
+
+def test_another_order_is_seen():
+    """Vertices that have changed places are not in place, nor are those that are missing."""
+    points = np.arange(30.0).reshape(10, 3)
+    assert avatar.in_place(points, points) == 10
+    assert avatar.in_place(points, points[[1, 0, *range(2, 10)]]) == 8
+    assert avatar.in_place(points, points[:6]) == 6
+
+
+def test_a_folder_without_the_mesh_is_refused(tmp_path):
+    """In one line that says what the folder needs."""
+    with pytest.raises(UserError, match="folder needs base"):
+        avatar.makehuman(tmp_path)
