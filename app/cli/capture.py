@@ -70,9 +70,11 @@ class Filming:
         metavar="NAME,...",
         help="Beside each picture: depth, normal, triangle, splits, segmentation, landmarks.",
     )
-    alive: bool = option(
-        is_flag=True,
-        help="Idle life: eyes blink and look at the camera, unless the script moves them.",
+    alive: bool | None = option(
+        "--alive/--not-alive",
+        default=None,
+        help="Idle life: eyes blink and look at the camera, and the head nods with speech, unless "
+        "the script moves them. By default: for recordings without a head.",
     )
     overwrite: bool = option(is_flag=True, help="Replace the frames in a folder.")
     quiet: bool = option(is_flag=True, help="No progress bar.")
@@ -100,7 +102,9 @@ class Filming:
             words.pop()
         return ",".join(words) or None, is_turntable
 
-    def options(self, script: Script, drawing: Drawing) -> CaptureOptions:
+    def options(
+        self, script: Script, drawing: Drawing, *, is_recorded: bool = False
+    ) -> CaptureOptions:
         """All options that decide a script's frames; UserError for options that cannot be."""
         from ..capture import CaptureOptions
         from ..refining.refiners import parse_comparison
@@ -108,6 +112,7 @@ class Filming:
         refinement = drawing.refinement()
         refinement.check(script.scene)
         camera, is_turntable = self.view()
+        has_head = any(name.startswith("head_") for name in script.names)
         return CaptureOptions(
             size=self.size,
             frames_per_second=self.fps,
@@ -119,7 +124,7 @@ class Filming:
             style=replace(drawing.style(), background=self.background),
             anatomy=drawing.anatomy_view(),
             head=drawing.fitted_head(),
-            is_alive=self.alive,
+            is_alive=is_recorded and not has_head if self.alive is None else self.alive,
             passes=() if self.passes is None else tuple(self.passes.split(",")),
         )
 
@@ -159,7 +164,9 @@ def capture(
     if sound is not None and (output is None or output.suffix.lower() not in HEARD):
         raise UserError(f"--sound {sound}: only a film is heard; end -o in {', '.join(HEARD)}")
     performance = played(script, scene, settings=settings, sound=sound, quiet=filming.quiet)
-    options = filming.options(performance, drawing)
+    is_recording = script is not None and script.suffix.lower() != ".toml"
+    is_still = output is not None and output.suffix.lower() == ".png"  # not amid a blink
+    options = filming.options(performance, drawing, is_recorded=is_recording and not is_still)
     most = film_of(
         performance,
         options,

@@ -10,6 +10,7 @@ from tqdm import tqdm
 from risorius.assets.fitting import FittedHead
 from risorius.geometry.arrays import Floats64
 
+from ..control_names.limits import ControlValues
 from ..scenes import Scene, build_scene
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
@@ -60,7 +61,9 @@ def play(
         """Set the values of the script and of the life beneath it at this time."""
         values = script.values(time, scene.limits)
         if idle is not None and viewer is not None:
-            values = scene.limits.pose(idle.beneath(moved, viewer, time), over=values)
+            opening = _opening_of_jaw(scene, values)
+            living = idle.beneath(moved, viewer, time, opening=opening)
+            values = scene.limits.pose(living, over=values)
         scene.take(values)
 
     scene.reset()
@@ -73,6 +76,15 @@ def play(
         if index:
             step(1.0 / frames_per_second)
         yield index / frames_per_second
+
+
+def _opening_of_jaw(scene: Scene, values: ControlValues) -> float:
+    """How far a pose opens the jaw, 0 to 1; 0 in a scene without one."""
+    if scene.face is None:
+        return 0.0
+    controls = scene.face.simulation.controls
+    sums = dict(zip(controls.lowest, controls.sums_of(values.numbers), strict=True))
+    return float(max(sums.get("jaw_open", 0.0), 0.0))
 
 
 def counted_frames(until: float, frames_per_second: float, *, progress: bool) -> Iterator[int]:

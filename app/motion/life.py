@@ -15,6 +15,8 @@ Sources (a head takes part in shifts of gaze of more than some 15 or 20 degrees:
         minute at rest, 26 in conversation.
     Trutoiu et al. 2011, "Modeling and animating eye blinks": lids shut fast and open slowly; blinks
         alike in both directions look unnatural.
+    Munhall et al. 2004, "Visual prosody and speech intelligibility": a speaker's head moves with
+        the loudness of speech.
     Lee, Badler, Badler 2002, "Eyes alive": how large saccades are, how long eyes stay with somebody
         and away from them, how long a saccade takes.
 """
@@ -39,6 +41,7 @@ EYE_RANGE = 30.0  # that gaze = 1 stands for
 # The head at rest: most that it strays [degrees], and the angle of its controls at 1.
 HEAD_STRAYS = {"head_yaw": 1.2, "head_pitch": 0.7, "head_roll": 0.6}
 HEAD_RANGES = {"head_yaw": 45.0, "head_pitch": 30.0, "head_roll": 30.0}
+NOD = 4.0  # [degrees] of the head downward for a jaw that is open
 HEAD_PERIODS = np.array([4.7, 7.9, 13.3])  # [s] of the sines, which never meet
 
 LID = "orbicularis_oculi_palpebral_upper"
@@ -155,11 +158,13 @@ class Idle:
         time: float,
         *,
         is_still: bool = False,
+        opening: float = 0.0,
     ) -> Values:
         """Amounts to add to the scene's controls at `time` [s] of its life.
 
         moved: lowest controls that are left alone. viewer: place of the viewer [mm], shape (3,).
-        is_still: the face looks at the viewer, and does nothing else.
+        is_still: the face looks at the viewer, and does nothing else. opening: of the jaw, 0 to 1:
+        a speaking head nods with it, and so on the stressed syllables.
         """
         face = self.scene.face
         if face is None:
@@ -169,6 +174,9 @@ class Idle:
             own = parts.get(part, {})
             sums = {name: own.get(name, 0.0) + value for name, value in values.items()}
             parts[part] = {**own, **sums}
+        if "head" in parts:
+            nod = NOD * min(opening, 0.5)  # no syllable opens the mouth farther
+            parts["head"]["head_pitch"] -= nod / HEAD_RANGES["head_pitch"]
         return {
             name: value
             for part in parts.values()

@@ -16,6 +16,8 @@ from risorius.app.motion.life import (
 from risorius.app.scenes import FaceScene
 from risorius.app.script import Channel, Key, Script
 
+from .command_line import succeeded
+
 NOBODY = frozenset[str]()
 
 
@@ -150,6 +152,41 @@ def test_what_others_move_is_left_to_them(scene):
         assert all(whole[name] == value for name, value in left.items())
     smiling = idle.beneath(scene.moved_by("AU12"), viewer, 5.6)
     assert smiling == whole
+
+
+def test_a_speaking_head_nods(scene):
+    """By two degrees at most, however wide the mouth; not where others move the head."""
+    viewer = np.array([100.0, 0.0, 900.0])
+    idle = Idle(scene)
+    silent = idle.beneath(NOBODY, viewer, 5.6)
+    for opening, degrees in ((0.2, 0.8), (0.5, 2.0), (1.0, 2.0)):
+        nodding = idle.beneath(NOBODY, viewer, 5.6, opening=opening)
+        nod = 30.0 * (silent["head_pitch"] - nodding["head_pitch"])
+        assert nod == pytest.approx(degrees)
+        assert {**nodding, "head_pitch": silent["head_pitch"]} == silent
+    assert "head_pitch" not in idle.beneath(frozenset({"head_yaw"}), viewer, 5.6, opening=1.0)
+
+
+@pytest.mark.slow
+def test_a_recording_without_a_head_lives(tmp_path):
+    """Its film blinks and nods by default; not with a head, nor with --not-alive."""
+    silent = {"jawOpen": 0.4}
+    for name, channels, options, lives in (
+        ("alone", silent, (), True),
+        ("refused", silent, ("--not-alive",), False),
+        ("with head", {**silent, "head_yaw": 8.0}, (), False),
+    ):
+        take = tmp_path / f"{name}.csv"
+        rows = [("time", *channels)]
+        for n in range(31):
+            rise = min(n / 15.0, 1.0)
+            rows.append((n / 30.0, *(rise * value for value in channels.values())))
+        take.write_text("\n".join(",".join(map(str, row)) for row in rows))
+        folders = [tmp_path / f"{name} {n}" for n in range(2)]
+        for folder, more in zip(folders, (options, ("--not-alive",)), strict=True):
+            succeeded("capture", take, "-o", folder, "--size", "64x64", "--fps", "10", *more)
+        last = [sorted(folder.glob("*.png"))[-1].read_bytes() for folder in folders]
+        assert (last[0] != last[1]) == lives, name
 
 
 @pytest.mark.slow
