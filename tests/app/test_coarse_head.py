@@ -1,6 +1,7 @@
 """The coarse head moves as the built-in one does, and every look refines it without a crack."""
 
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from numpy.linalg import norm
 from PIL import Image
 
 from risorius import refine, render
+from risorius.app import capture as capture_room
 from risorius.app.capture.drawing import camera_for
 from risorius.app.refining.drawn_mesh import bind
 from risorius.app.refining.presets import PRESETS, Refinement
@@ -146,3 +148,28 @@ def test_border_of_an_opened_mouth_is_refined(scene):
     splits = refiner.splits[is_mouth]
     assert len(splits) == len(mouth)
     assert (splits > 0).mean() > 0.5
+
+
+def test_demo_films_the_coarse_head_by_three_looks(monkeypatch):
+    """While it speaks, in clay, with wires; and its expressions on a sheet."""
+    drawn = []
+
+    def note(script, options, **outputs):
+        """In place of drawing, which takes half a minute."""
+        drawn.append((script.title, options, outputs))
+        return 1
+
+    monkeypatch.setattr(capture_room, "capture", note)
+    said = succeeded("demo")
+    (speech, filmed, film), (_, still, sheet) = drawn
+    assert speech == "Speech"
+    assert film == {"output": Path("out/demo.mp4")}
+    assert sheet == {"sheet": Path("out/demo.png")}
+    assert filmed.style.colour_by is render.ColourBy.SPLIT_WIRES
+    assert filmed.is_alive
+    for options in (filmed, still):
+        looks = [each.label for each in (*options.beside, options.refinement)]
+        assert looks == ["static", "paper", "smooth"]
+        assert options.head.called == "coarse"
+        assert not options.style.textured
+    assert "out/demo.mp4 (6.1 s) and out/demo.png" in said
