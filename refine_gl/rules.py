@@ -69,11 +69,6 @@ class Rules:
         parts = _parts(self.criterion)
         if settings.scheme == "loop" and any(isinstance(each, Displacement) for each in parts):
             raise ValueError('criterion "displacement" needs scheme="cubic" in kahler-gl')
-        if silent := [type(each).__name__ for each in parts if not each.measures]:
-            raise ValueError(
-                f"kahler-gl takes criteria that measure, and {silent[0]} has no method "
-                "measure(positions, normals, metric); the refiner kahler takes it"
-            )
         self._drop = next((each for each in parts if type(each) is NormalDrop), None)
         self._displacement = next((each for each in parts if type(each) is Displacement), None)
         still = [each for each in parts if each.is_constant]

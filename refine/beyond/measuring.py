@@ -85,11 +85,6 @@ class Maximum(Criterion):
             part.mark(positions, normals, self._splits)
             np.maximum(splits, self._splits, out=splits)
 
-    @property
-    def measures(self) -> bool:
-        """Only a whole of measuring parts measures; others decide in whole splits."""
-        return all(part.measures for part in self.parts)
-
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the largest metric of every edge, shape (E,)."""
         self.parts[0].measure(positions, normals, metric)

@@ -85,13 +85,8 @@ def create_kahler(  # noqa: PLR0913 - one argument for each option
             "coherent=True continues the triangulations of the frame before; with blend=True "
             "none ever turns a diagonal; ask for one of the two"
         )
-    if blend and not decides.measures:
-        raise ValueError(
-            f"blend=True needs a criterion that measures, but {type(decides).__name__} "
-            "has no method measure(positions, normals, metric)"
-        )
     if blend is None:
-        blend = chosen.interpolates and decides.measures and not coherent
+        blend = chosen.interpolates and not coherent
     if blend:
         return Blended(faces, rest_positions, criterion=decides, scheme=chosen, **values)
     return Kahler(

@@ -64,7 +64,7 @@ DropTwice = Annotated[float, Option("the same for splitting twice", least=0.0)]
 class Criterion:
     """Decides on splits: what every criterion derives from, the paper's as well as your own.
 
-    It writes `mark`; or else `measure`, from which `mark` follows, and which blending asks for. All
+    It writes `measure`, from which `mark` follows; one may write `mark` as well, to be faster. All
     other methods do nothing unless they are written. A refiner calls `set_scheme` and `bind` once,
     then in every frame `set_view` and `mark`, or `measure` where it blends.
     """
@@ -98,17 +98,12 @@ class Criterion:
         if splits_of_metric(self._metric, splits) > 0:
             raise ValueError(self.complaint(self._metric))
 
-    @property
-    def measures(self) -> bool:
-        """Whether it has a `measure`."""
-        return type(self).measure is not Criterion.measure
-
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the refinement metric of every edge, shape (E,): above 0 one split, above 1 two.
 
         It has to be a continuous function of the positions for blending to be one.
         """
-        raise NotImplementedError(f"{type(self).__name__} must have a method mark or measure")
+        raise NotImplementedError(f"{type(self).__name__} must have a method measure")
 
     def complaint(self, metric: Floats32) -> str:
         """Describe the edges whose metric is NaN; `metric`: of every edge, shape (E,)."""
@@ -124,8 +119,6 @@ class Criterion:
             complaint = part.find_complaint(positions, normals, edge_count)
             if complaint is not None:
                 return complaint
-        if not self.measures:
-            return None
         metric = np.zeros(edge_count, dtype=np.float32)
         self.measure(positions, normals, metric)
         return self.complaint(metric) if np.isnan(metric).any() else None

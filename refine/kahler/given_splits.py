@@ -54,10 +54,6 @@ class GivenSplits(Criterion):
                 f"(refiner.edges), got {len(self._splits)}"
             )
 
-    def mark(self, positions: Floats64, normals: Floats32, splits: Unsigned8) -> None:
-        """Write the given splits, shape (E,)."""
-        splits[:] = self._splits
-
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write a metric by which points have grown as far as they can, shape (E,)."""
         np.copyto(metric, self._splits)

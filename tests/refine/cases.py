@@ -53,6 +53,10 @@ class Forced(refine.Criterion):
         """Write the wanted splits."""
         splits[:] = self.wanted
 
+    def measure(self, positions: object, normals: object, metric: npt.NDArray[np.float32]) -> None:
+        """Write metrics by which points have grown."""
+        metric[:] = np.where(self.wanted > 0, self.wanted, -np.inf)
+
 
 def point_names(origins: refine.Origins) -> list[plain_twin.Name]:
     """Names, as the plain twin uses them, of the vertices of the last frame."""

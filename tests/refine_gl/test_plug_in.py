@@ -178,7 +178,6 @@ def test_shaders_take_eight_buffers():
         ({"blend": True}, 'blend=True needs scheme="cubic" in kahler-gl'),
         ({"blend": True, "scheme": "cubic", "coherent": True}, "and coherent=False"),
         ({"criterion": "displacement"}, 'criterion "displacement" needs scheme="cubic"'),
-        ({"criterion": refine.Criterion()}, "takes criteria that measure, and Criterion has no"),
     ],
 )
 def test_what_the_card_has_not(options, words):

@@ -212,8 +212,11 @@ def test_begins_at_the_unrefined_surface(scheme):
     assert abs(surface(0.5) - surface(-1.0)).max() > 0.01
 
 
-def test_needs_a_measure():
-    """A criterion that only counts splits cannot be blended."""
+def test_splits_as_a_measure():
+    """A criterion that wants whole splits measures them, and its blended points have grown."""
     mesh = meshes.octahedron()
-    with pytest.raises(ValueError, match="blend=True needs a criterion that measures, but Forced"):
-        kahler(mesh, blend=True, criterion=Forced(np.zeros(12)))
+    wanted = np.arange(12) % 3
+    refiner = kahler(mesh, blend=True, criterion=Forced(wanted))
+    refined = refiner.refine(mesh.vertices)
+    refine.check(refiner, refined, mesh.vertices)
+    assert refiner.splits.tolist() == wanted.tolist()
