@@ -42,8 +42,12 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         scale = _extent(target) / _extent(source)
         centre = target.mean(axis=0) + scale * (eye.centre - source.mean(axis=0))
         scale = float(np.sqrt(scale))
-        near = scipy.spatial.cKDTree(target).query(fitted.vertices)[0] < lid_depth
-        skin = np.vstack([target, fitted.vertices[near]])
+        away = fitted.vertices - centre
+        outward = (fitted.normals * away).sum(axis=1) / np.linalg.norm(away, axis=1)
+        # The wall of a socket faces its ball, and may be narrower than that is.
+        is_lid = outward > -0.5
+        is_lid &= scipy.spatial.cKDTree(target).query(fitted.vertices)[0] < lid_depth
+        skin = np.vstack([target, fitted.vertices[is_lid]])
         centre, radius = _behind_lids(centre, scale * eye.radius, target.mean(axis=0), skin)
         centre[2] += _way_forward(centre, radius + LID_CLEARANCE, skin)
         eyes.append(Eye(eye.name, centre, radius, radius / eye.radius * eye.iris_radius))

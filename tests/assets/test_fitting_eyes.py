@@ -1,5 +1,7 @@
 """The eyes of a head that somebody brings: nobody looks past the ball into the empty head."""
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -7,8 +9,11 @@ from numpy.linalg import norm
 
 from risorius import assets
 from risorius.assets.fitting import FittedHead, fit
+from risorius.assets.fitting.mouth_walls import FittedSkin
+from risorius.assets.fitting.organs import place_eyes
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops
+from risorius.geometry.normals import vertex_normals
 from tests.assets.checks import check_part
 from tests.heads import shape
 
@@ -72,3 +77,26 @@ def test_the_flesh_of_the_eyes_is_well_formed(fitted):
         to = flesh.vertices - eye.centre
         is_behind = (to[:, 2] < -2.0) & (norm(to, axis=1) < eye.radius)
         assert is_behind.sum() >= 20
+
+
+def test_the_wall_of_a_socket_moves_no_eye():
+    """A socket that is narrower than its ball faces it: it is no lid, and the ball stays before."""
+    head = assets.load("head")
+    normals = vertex_normals(head.vertices, head.faces)
+    points = head.vertices[head.landmarks]
+    skin = FittedSkin(head.vertices, normals, head.faces, points, head.mandible_weight)
+    walls = []
+    inward = []
+    for eye in head.eyes:
+        away = head.vertices[head.rings[f"eye_2_{eye.name}"]] - eye.centre
+        away /= norm(away, axis=1, keepdims=True)
+        walls.append(eye.centre + (eye.radius - 2.0) * away)
+        inward.append(-away)
+    narrow = replace(
+        skin,
+        vertices=np.vstack([head.vertices, *walls]),
+        normals=np.vstack([normals, *inward]),
+    )
+    for eye, other in zip(place_eyes(head, skin), place_eyes(head, narrow), strict=True):
+        assert norm(eye.centre - other.centre) < 0.1
+        assert abs(eye.radius - other.radius) < 0.1

@@ -92,3 +92,13 @@ def test_everything_can_be_guessed_from_landmarks(head):
     assert moved_landmarks(head, settled_displacement(simulation, blink), 37, 38, 43, 44)[1] < -5.0
     smile = settled_displacement(simulation, both_sides(simulation, {"zygomaticus_major": 1.0}))
     assert moved_landmarks(head, smile, 54)[1] > 4.0
+
+
+def test_a_guessed_jaw_opens_back_rather_than_down(head):
+    """By condyles near the ears the chin goes as far back as down, as in a scan and an artist's."""
+    simulation = sim.create(without(head, "jaw_axis", "mandible_weight"))
+    moved = settled_displacement(simulation, {"jaw_open": 1.0})
+    _, up, forward = moved_landmarks(head, moved, 8)
+    assert -33.0 < up < -25.0
+    assert abs(up / forward) < 1.1
+    assert moved_landmarks(head, moved, 66)[1] > -41.0

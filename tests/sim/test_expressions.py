@@ -91,6 +91,25 @@ def test_an_upper_lip_is_shrugged_up_and_rolled_back(simulation, head):
     assert norm(moved_landmarks(head, moved, 8)) < 0.5
 
 
+def test_a_frown_and_a_funnel_go_as_far_as_scanned_ones(simulation, head):
+    """Corners go down, little aside; lips come 7 mm forward in a scan, and open."""
+    moved = settled_displacement(simulation, {"mouthFrownLeft": 1.0, "mouthFrownRight": 1.0})
+    aside, up, _ = moved_landmarks(head, moved, 54)
+    assert up < -3.5
+    assert 0.0 < aside < -0.7 * up
+    moved = settled_displacement(simulation, {"mouthFunnel": 1.0})
+    assert 5.0 < moved_landmarks(head, moved, 51)[2] < 9.5
+    assert 2.0 < -moved_landmarks(head, moved, 54)[0] < 5.0
+    assert moved_landmarks(head, moved, 62)[1] - moved_landmarks(head, moved, 66)[1] > 6.0
+
+
+def test_lids_follow_the_gaze_up_a_little(simulation, head):
+    """They rise by less than 2 mm, and by more than 1."""
+    moved = settled_displacement(simulation, {"eyeLookUpLeft": 1.0, "eyeLookUpRight": 1.0})
+    for landmark in (37, 38, 43, 44):
+        assert 1.0 < moved_landmarks(head, moved, landmark)[1] < 2.0
+
+
 def test_joy_bares_the_teeth(simulation, head):
     """The upper lip bares the lower part of the teeth, along whose edge the lower one lies."""
     moved = settled_displacement(simulation, head.expressions["joy"])
