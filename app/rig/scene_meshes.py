@@ -69,6 +69,8 @@ def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats, share: Floats
     if surface.colours is not None:
         attributes["COLOR_0"] = of_vertices(to_linear(surface.colours))
     if share is not None:
+        # Refinement adds shares up, and rounding leaves their limits.
+        share = np.clip(share, 0.0, 1.0)
         none = np.zeros_like(share)
         joints = np.column_stack([none, share > 0.0, none, none]).astype(np.uint8)
         attributes["JOINTS_0"] = of_vertices(joints)

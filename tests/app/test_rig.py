@@ -12,11 +12,15 @@ import pytest
 import trimesh
 
 from risorius.app.recordings.names import ARKIT
+from risorius.app.rig.glb import Glb
 from risorius.app.rig.pieces import sphere_of
 from risorius.app.rig.poses import rest_in
+from risorius.app.rig.scene_meshes import Piece, add_mesh
+from risorius.app.rig.surface import MovingSurface
 from risorius.app.scenes import FaceScene
 from risorius.assets.fitting import simplifying
 from risorius.assets.meshes import read_mesh
+from risorius.geometry.normals import vertex_normals
 
 from ..heads import TURN, stranger
 from ..meshes import ball
@@ -58,6 +62,21 @@ def test_shapes_are_where_the_simulation_rests(built_in, face):
         moved = rest_in(face, {name: 1.0}).skin - face.rest_positions
         assert np.abs(moved).max() > 3.0
         assert np.abs(shapes[name] / METRES - moved).max() < SEEN, name
+
+
+def test_shares_of_bones_stay_within_their_limits(face):
+    """A share that rounding left above 1 is 1: validators refuse what is below 0."""
+    surface = MovingSurface("skin", face.rest_positions, face.faces)
+    none = np.zeros((0, *surface.rest.shape))
+    normals = vertex_normals(surface.rest, surface.faces)
+    piece = Piece(surface, None, normals, (), none, none, np.zeros((0, 0)))
+    glb = Glb()
+    add_mesh(glb, face, piece, np.zeros(3), np.full(len(surface.rest), 1.0 + 1e-7))
+    attributes = glb.parts["meshes"][0]["primitives"][0]["attributes"]
+    accessor = glb.parts["accessors"][attributes["WEIGHTS_0"]]
+    view = glb.parts["bufferViews"][accessor["bufferView"]]
+    weights = np.frombuffer(glb.data(), np.float32, 4 * accessor["count"], view["byteOffset"])
+    assert 0.0 <= weights.min() and weights.max() <= 1.0
 
 
 def test_mouth_close_shuts_an_open_jaw(built_in, face):
