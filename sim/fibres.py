@@ -94,8 +94,7 @@ def bent_to_skin(points: Floats64, surface: SkinSurface, share: float) -> Floats
     """Points (n, 3) of a line moved by a share of the way to the skin near them."""
     if surface.vertex_count < WRAP_NEIGHBOURS:
         return points
-    skin = over_skin(points, surface, surface.positions)
-    normal = over_skin(points, surface, surface.normals)
+    skin, normal = over_skin(points, surface, surface.positions, surface.normals)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
     correction = ((skin - points) * normal).sum(axis=1, keepdims=True) * normal
     for _ in range(2):  # single vertices must not put kinks into a fibre
@@ -105,15 +104,14 @@ def bent_to_skin(points: Floats64, surface: SkinSurface, share: float) -> Floats
     return bent
 
 
-def over_skin(points: Floats64, surface: SkinSurface, field: Floats64) -> Floats64:
-    """A field of the skin, shape (V, ...), at points (n, 3) near it: a mean of the nearest."""
+def over_skin(points: Floats64, surface: SkinSurface, *fields: Floats64) -> tuple[Floats64, ...]:
+    """Fields of the skin, shape (V, ...), at points (n, 3) near it: means of the nearest."""
     count = min(WRAP_NEIGHBOURS, surface.vertex_count)
     distance, vertices = surface.tree.query(points, k=range(1, count + 1))
     # The furthest neighbour gets no weight, so a tie for its place cannot bend a midline fibre.
     weight = (1.0 - (distance / np.maximum(distance[:, -1:], 1e-9)) ** 2) ** 2 + 1e-12
     weight /= weight.sum(axis=1, keepdims=True)
-    mean: Floats64 = np.einsum("nk,nk...->n...", weight, field[vertices])
-    return mean
+    return tuple(np.einsum("nk,nk...->n...", weight, field[vertices]) for field in fields)
 
 
 @dataclass(frozen=True)
@@ -129,27 +127,55 @@ def fibre_coordinates(
     points: Floats64, positions: Floats64, *, width: float, beyond: float
 ) -> FibreCoordinates:
     """Relate places (n, 3) to a fibre (k, 3): Gaussian falloff across it and past its end."""
-    start = points[:-1]
-    segment = np.diff(points, axis=0)
-    length = np.maximum(np.linalg.norm(segment, axis=1), 1e-9)
-    arc_start = np.concatenate([[0.0], np.cumsum(length)])
-    t = np.einsum("nkx,kx->nk", positions[:, None] - start, segment) / length**2
-    t = np.clip(t, 0.0, 1.0)
-    feet = start + t[:, :, None] * segment
-    away = positions[:, None] - feet
-    squared = np.einsum("nkx,nkx->nk", away, away)
-    row = np.arange(len(positions))
-    best = squared.argmin(axis=1)
-    foot = feet[row, best]
-    arc = (arc_start[best] + t[row, best] * length[best]) / arc_start[-1]
-    past = (positions - points[-1]) @ (segment[-1] / length[-1])
-    across = np.maximum(squared[row, best] - past**2, 0.0)
-    at_end = (arc >= 1.0 - 1e-12) & (past > 0.0)
-    squared_widths = squared[row, best] / width**2
-    reach = np.where(at_end, across / width**2 + (past / beyond) ** 2, squared_widths)
+    found = FibreCoordinates(
+        np.empty(len(positions)), np.empty(len(positions)), np.empty((len(positions), 3))
+    )
+    _relate(points, positions, np.array([width, beyond]), found.weight, found.arc, found.foot)
+    return found
+
+
+@njit
+def _relate(
+    points: Floats64,
+    positions: Floats64,
+    sizes: Floats64,
+    weight: Floats64,
+    arc: Floats64,
+    foot: Floats64,
+) -> None:
+    """Fill weight, arc and foot of `FibreCoordinates`; sizes: width and beyond [mm]."""
     cut_widths = 2.2  # widths at which the Gaussian (0.8 %) is cut to zero
-    weight = np.where(reach < cut_widths**2, np.exp(-reach), 0.0)
-    return FibreCoordinates(weight, arc, foot)
+    width = sizes[0]
+    count = len(points) - 1
+    segment = points[1:] - points[:-1]
+    reached = np.zeros(count + 1)
+    for k in range(count):
+        reached[k + 1] = reached[k] + max(np.sqrt((segment[k] ** 2).sum()), 1e-9)
+    last = segment[count - 1] / (reached[count] - reached[count - 1])
+    at = np.empty(3)
+    for n in range(len(positions)):
+        nearest = np.inf
+        for k in range(count):
+            length = reached[k + 1] - reached[k]
+            dot = 0.0
+            for axis in range(3):
+                dot += (positions[n, axis] - points[k, axis]) * segment[k, axis]
+            t = min(max(dot / length**2, 0.0), 1.0)
+            squared = 0.0
+            for axis in range(3):
+                at[axis] = points[k, axis] + t * segment[k, axis]
+                squared += (positions[n, axis] - at[axis]) ** 2
+            if squared < nearest:  # of equal ones the first counts
+                nearest = squared
+                arc[n] = (reached[k] + t * length) / reached[count]
+                foot[n] = at
+        past = 0.0
+        for axis in range(3):
+            past += (positions[n, axis] - points[count, axis]) * last[axis]
+        reach = nearest / width**2
+        if arc[n] >= 1.0 - 1e-12 and past > 0.0:
+            reach = max(nearest - past**2, 0.0) / width**2 + (past / sizes[1]) ** 2
+        weight[n] = np.exp(-reach) if reach < cut_widths**2 else 0.0
 
 
 @njit

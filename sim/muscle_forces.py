@@ -177,7 +177,7 @@ def _bundle(
             end = mandible_weight[surface.nearest(line.points[-1:])[0]]
             carried.append(np.linspace(start, end, FIBRE_POINTS))
         else:
-            carried.append(over_skin(line.points, surface, mandible_weight))
+            carried += over_skin(line.points, surface, mandible_weight)
         contraction.append(muscle.contraction if isinstance(muscle, LinearMuscle) else 0.0)
         fixed_at.append(muscle.fixed_at if isinstance(muscle, LinearMuscle) else 0.0)
     return FibreBundle(

@@ -69,11 +69,8 @@ def stack_muscles(
             if not beneath:
                 rows.append(len(found))
                 continue
-            places = AttachedPoints(
-                line.points,
-                over_skin(line.points, surface, surface.normals),
-                over_skin(line.points, surface, lip_side),
-            )
+            normals, sides = over_skin(line.points, surface, surface.normals, lip_side)
+            places = AttachedPoints(line.points, normals, sides)
             found += _entries(beneath, landmarks, places)
             rows.append(len(found))
     return _stack_of(rows, found)

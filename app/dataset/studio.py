@@ -43,7 +43,8 @@ class Shot:
 
     def save(self, picture: Path) -> None:
         """Write the picture, and the files that lie beside it; OSError where that fails."""
-        PIL.Image.fromarray(self.image).save(picture)
+        # A third of the time of the usual level 6, and 6 % more bytes.
+        PIL.Image.fromarray(self.image).save(picture, compress_level=4)
         self.known.save(picture)
 
 
@@ -129,11 +130,24 @@ class Studio:
             "hair": person.identity.cut,
             "measures": {code: round(value, 3) for code, value in person.measures.items()},
         }
-        head = in_colours(person, colours)
+        head = in_colours(person, colours, shrink=_shrink_for(self._request.size))
         scene = FaceScene(head)
         pipeline = Pipeline(scene, self._renderer)
         drawn = pipeline.bind(Refinement(refiner=self._request.refiner))
         return _Model(scene, pipeline, Passes(pipeline, drawn), labels)
+
+
+def _shrink_for(size: tuple[int, int]) -> int:
+    """How many texels of the skin, each way, become one for pictures of a size [pixels].
+
+    A face at zoom 1 has two thirds of the texels of the skin, and as many pixels as the picture
+    is high.
+    """
+    texels = 1280
+    shrink = 1
+    while shrink < 8 and texels // (2 * shrink) >= 2 * max(size):
+        shrink *= 2
+    return shrink
 
 
 def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.OrbitCamera:

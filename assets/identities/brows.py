@@ -61,6 +61,7 @@ def drawn_brows(is_man: bool, years: float, random: np.random.Generator) -> Brow
     return Brows(thickness, inner, rise, fall, peak, density, unruly, seed)
 
 
+@lru_cache(maxsize=1)
 def painted(brows: Brows, size: int) -> Floats32:
     """How much of each texel is covered by hairs of brows, 0 to 1, shape (size, size)."""
     random = np.random.default_rng(brows.seed)
@@ -68,6 +69,7 @@ def painted(brows: Brows, size: int) -> Floats32:
     for side in (-1.0, 1.0):
         hairs = _hairs(brows, random)
         _paint(cover, hairs, side, random.uniform(110.0, 230.0, len(hairs)))
+    cover.flags.writeable = False
     return cover
 
 

@@ -15,7 +15,7 @@ the 19 at 52 ("Proposed shade guide for human facial skin", IADR 2009, abstract 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache, partial
 
 import numpy as np
@@ -29,7 +29,6 @@ from ..data_files import Image, read_arrays, read_image
 from ..loading import load
 from ..model import Head, Part, Segment
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
-from ..smooth import smooth_step
 from .brows import Brows, drawn_brows, painted, stubble
 from .hair import CUTS, HAIR, OWN_CUT, Fall, Hairline, drawn_hairline, hair_of, scalp_of
 from .long_hair import falling_hair, tied_hair
@@ -104,27 +103,33 @@ def typology_angle(light: npt.ArrayLike) -> Floats64:
 
 
 def recoloured(
-    angle: float, *, blood: float = 1.0, features: Features = PLAIN, haired_as: float | None = None
+    angle: float,
+    *,
+    blood: float = 1.0,
+    features: Features = PLAIN,
+    haired_as: float | None = None,
+    shrink: int = 1,
 ) -> Image:
     """The skin of the built-in head in a tone, laid out as its `albedo`, (H, W, 3), uint8.
 
     angle: ITA [deg], DARKEST to LIGHTEST, else ValueError. blood: as a share of what such skin has;
     0.7 is pale, 1.3 flushed. haired_as: ITA of the skin with which hair goes that stands on
     it, so that no scalp shines through; None: hair is painted alone, from the built-in hairline on.
+    shrink: so many texels of the albedo, each way, become one, a power of 2 up to 16.
     """
     if not DARKEST <= angle <= LIGHTEST:
         raise ValueError(f"angle is {angle}; it must be {DARKEST:g} (dark) to {LIGHTEST:g} (light)")
-    tints = _tints()
+    tints = _tints() if shrink == 1 else _shrunk_tints(shrink)
     density, redness, _ = _changes(tints.melanin_of(angle), blood)
     hair = _hair_light(angle if haired_as is None else haired_as, features)
     grey_share = 0.12  # of how grey hair on the scalp is; lashes have the segment of brows
     grey = features.grey * np.where(tints.scalp > 0.01, np.float32(1.0), np.float32(grey_share))
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
-    kept = _kept_hair(tints, features)
+    kept = _kept_hair(tints, features, shrink)
     covered = np.zeros_like(tints.hair)
     if haired_as is not None:
         kept = np.where(tints.scalp > 0.01, np.float32(0.0), kept)
-        covered = _grown_over(tints, features)
+        covered = _grown_over(_behind(tints, features))
     root_light = 0.5  # share between hairs where they are dense
     shaded = 1.0 - (1.0 - root_light) * covered
     light = np.empty_like(tints.light)
@@ -154,25 +159,42 @@ def _hair_light(angle: float, features: Features) -> Floats64:
     return np.asarray(hair + features.fair * (to_linear(np.array(fair_hair)) - hair))
 
 
-def _kept_hair(tints: _Tints, features: Features) -> Floats32:
+def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
     """How much of hair's colour is on each texel, with a person's brows and lids."""
     kept = tints.hair
     if features.brows is not None:
         kept = np.where(tints.brow < 1.99, np.float32(0.0), kept)
-        np.maximum(kept, painted(features.brows, len(kept)), out=kept)
+        brows = painted(features.brows, shrink * len(kept))
+        np.maximum(kept, shrunk(brows, shrink), out=kept)
     if features.lid_line > 0.0:
         kept = np.maximum(kept, np.float32(features.lid_line) * tints.lids)
     if features.stubble > 0.0:
-        kept = np.maximum(kept, np.float32(features.stubble) * stubble(len(kept)) * tints.beard)
+        kept = np.maximum(
+            kept, np.float32(features.stubble) * _stubble(len(kept), shrink) * tints.beard
+        )
     return kept
 
 
-def _grown_over(tints: _Tints, features: Features) -> Floats32:
-    """The share of each texel that is covered by the hair standing on the scalp, (size, size)."""
-    behind = _behind(tints, features).astype(np.float64)
-    most_cover = 0.99  # share that dense hair covers
-    dense_depth = 22.0  # [mm] behind the hairline, where hair is dense
-    return np.asarray(most_cover * smooth_step(0.0, dense_depth, behind), np.float32)
+@lru_cache(maxsize=2)
+def _stubble(size: int, shrink: int) -> Floats32:
+    return shrunk(stubble(shrink * size), shrink)
+
+
+def shrunk(values: Floats32, shrink: int) -> Floats32:
+    """Means of values (H, W, ...), of so many each way; H and W are multiples of it."""
+    for axis in (0, 1):
+        count = values.shape[axis] // shrink
+        blocks = np.moveaxis(values, axis, 0).reshape(count, shrink, *np.delete(values.shape, axis))
+        values = np.moveaxis(blocks.mean(axis=1, dtype=np.float32), 0, axis)
+    return values
+
+
+def _grown_over(behind: Floats32) -> Floats32:
+    """The share of texels that is covered by hair; behind: how far behind the hairline [mm]."""
+    most_cover = np.float32(0.99)  # share that dense hair covers
+    dense_depth = np.float32(22.0)  # [mm] behind the hairline, where hair is dense
+    t = np.clip(behind / dense_depth, np.float32(0.0), np.float32(1.0))
+    return most_cover * t * t * (np.float32(3.0) - np.float32(2.0) * t)
 
 
 def coloured(
@@ -182,18 +204,22 @@ def coloured(
     blood: float = 1.0,
     irises: str | None = None,
     features: Features = PLAIN,
+    shrink: int = 1,
 ) -> Person:
     """A person with skin of a tone (ITA [deg]), eyes of a colour, and the hair of its cut.
 
-    The hair stays in other tones (`in_tone`). irises: None leaves them as they are.
+    The hair stays in other tones (`in_tone`). irises: None leaves them as they are. shrink: as of
+    `recoloured`, for small pictures; what is painted on the skin has so many texels less.
     """
     parts = person.parts if irises is None else _with_irises(person.parts, irises)
-    in_tone = partial(recoloured, blood=blood, features=features, haired_as=angle)
+    behind = _behind(_tints(), features)
+    in_tone = partial(recoloured, blood=blood, features=features, haired_as=angle, shrink=shrink)
     return replace(
         person,
         albedo=in_tone(angle),
-        parts=_with_hair(person, parts, angle, features),
-        segments=_haired_segments(person.segments, features),
+        ambient_occlusion=_occlusion(shrink),
+        parts=_with_hair(person, parts, angle, features, behind),
+        segments=_haired_segments(person.segments, features, behind),
         in_tone=in_tone,
     )
 
@@ -209,31 +235,35 @@ def _with_irises(parts: Sequence[Part], name: str) -> tuple[Part, ...]:
     )
 
 
-def _haired_segments(segments: Image, features: Features) -> Image:
+def _haired_segments(segments: Image, features: Features, behind: Floats32) -> Image:
     """What texels belong to, with brows and the hairline of a person."""
-    tints = _tints()
     brows = (Segment.RIGHT_BROW, Segment.LEFT_BROW)
-    is_bald = (segments == Segment.HAIR) & (_grown_over(tints, features) < 0.5)
-    found = np.where(is_bald, np.uint8(Segment.SKIN), segments)
+    found = segments.copy()
+    haired = np.flatnonzero(segments == Segment.HAIR)
+    found.flat[haired[_grown_over(behind.flat[haired]) < 0.5]] = Segment.SKIN
     if features.brows is not None:
-        found[np.isin(found, brows)] = Segment.SKIN
+        found[(found == brows[0]) | (found == brows[1])] = Segment.SKIN
+        hairs = painted(features.brows, len(found))
         blur = 3.0  # [texels]
-        covered = scipy.ndimage.gaussian_filter(painted(features.brows, len(found)), blur)
+        wide = round(5.0 * blur)
+        rows = np.flatnonzero(hairs.any(axis=1))
+        near = slice(max(rows[0] - wide, 0), rows[-1] + wide)  # rows of texels about brows
+        covered = scipy.ndimage.gaussian_filter(hairs[near], blur)
         left = np.arange(found.shape[1]) > found.shape[1] / 2
         sides = np.where(left, np.uint8(Segment.LEFT_BROW), np.uint8(Segment.RIGHT_BROW))
         least_cover = 0.12  # share of hairs from which skin is called brow
-        found = np.where((covered > least_cover) & (found == Segment.SKIN), sides, found)
+        is_brow = (covered > least_cover) & (found[near] == Segment.SKIN)
+        found[near] = np.where(is_brow, sides, found[near])
     return found
 
 
 def _with_hair(
-    person: Person, parts: Sequence[Part], angle: float, features: Features
+    person: Person, parts: Sequence[Part], angle: float, features: Features, behind: Floats32
 ) -> tuple[Part, ...]:
     """The parts of a person with the hair of its cut; angle: ITA [deg]."""
     others = tuple(part for part in parts if not part.name.startswith(HAIR))
     cut = CUTS[person.identity.cut]
     uv = person.uv.astype(np.float64)
-    behind = _behind(_tints(), features)
     scalp = scalp_of(person.vertices, person.faces, uv, behind)
     light = _hair_light(angle, features)
     length = person.identity.hair
@@ -252,10 +282,11 @@ def built_in_hair(head: Head) -> tuple[Part, ...]:
 
 def _behind(tints: _Tints, features: Features) -> Floats32:
     """How far texels lie behind somebody's hairline [mm]; half as far if the top is bald."""
-    lies = BEHIND * tints.scalp - IN_FRONT
+    scalp = tints.scalp
+    lies = np.float32(BEHIND) * scalp - np.float32(IN_FRONT)
     line = features.hairline
-    moved = (lies - line.shift(len(tints.scalp))) / (1.0 + line.crown)
-    return np.where(tints.scalp > 0.01, moved, lies).astype(np.float32)
+    moved = (lies - line.shift(len(scalp))) / np.float32(1.0 + line.crown)
+    return np.where(scalp > 0.01, moved, lies)
 
 
 def drawn_irises(
@@ -357,6 +388,27 @@ def _tints() -> _Tints:
         melanins=melanins,
         angles=typology_angle(tones),
     )
+
+
+@lru_cache(maxsize=1)
+def _shrunk_tints(shrink: int) -> _Tints:
+    """The maps with so many texels less each way."""
+    whole = _tints()
+    maps = {
+        each.name: shrunk(getattr(whole, each.name), shrink)
+        for each in fields(whole)
+        if each.name not in ("skin", "melanins", "angles")
+    }
+    return replace(whole, **maps)
+
+
+@lru_cache(maxsize=2)
+def _occlusion(shrink: int) -> Image:
+    """How much light from all around gets to the texels of the built-in head, (H, W), uint8."""
+    light = load("head").ambient_occlusion
+    found = np.rint(shrunk(light.astype(np.float32), shrink)).astype(np.uint8)
+    found.flags.writeable = False
+    return found
 
 
 @lru_cache(maxsize=1)

@@ -95,13 +95,15 @@ class Hairline:
     def shift(self, size: int) -> Floats32:
         """How far it lies behind the built-in head's [mm], (size, size)."""
         across = np.linspace(-0.5, 0.5, size)
-        up = np.linspace(1.0, 0.0, size)[:, None]
+        up = np.linspace(1.0, 0.0, size)
         row = self.front * np.exp(-((across / 0.17) ** 4))
         row += self.temples * np.exp(-(((np.abs(across) - 0.12) / 0.05) ** 2))
         ahead = 1.0 - smooth_step(0.74, 0.82, up)
-        top = np.exp(-((across / 0.14) ** 2) - ((up - 0.78) / 0.15) ** 2)
         bald_depth = 40.0  # [mm] to the hairline where the top is bald
-        return (row * ahead + self.crown * bald_depth * top).astype(np.float32)
+        beside = self.crown * bald_depth * np.exp(-((across / 0.14) ** 2))
+        top = np.exp(-(((up - 0.78) / 0.15) ** 2))
+        ahead, row, top, beside = np.array([ahead, row, top, beside], dtype=np.float32)
+        return np.multiply.outer(ahead, row) + np.multiply.outer(top, beside)
 
 
 def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> Hairline:

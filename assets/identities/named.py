@@ -71,14 +71,15 @@ def in_own_colours(
     return in_colours(person, own_colours(person.identity, seed, angle=angle, irises=irises))
 
 
-def in_colours(person: Person, colours: Colours) -> Person:
-    """A person with skin, eyes and hair of these colours."""
+def in_colours(person: Person, colours: Colours, *, shrink: int = 1) -> Person:
+    """A person with skin, eyes and hair of these colours; shrink: as of `coloured`."""
     return coloured(
         person,
         angle=colours.angle,
         blood=colours.blood,
         irises=colours.irises,
         features=colours.features,
+        shrink=shrink,
     )
 
 

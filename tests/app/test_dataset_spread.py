@@ -7,7 +7,6 @@ import os
 import random
 import re
 import shutil
-import signal
 import subprocess
 import sys
 import tarfile
@@ -31,8 +30,9 @@ from risorius.faces import UNITS, Faces
 
 from .test_dataset import content
 
-COUNT = 5
+COUNT = int(os.environ.get("SAMPLES", "5"))
 SHARD = 2
+KILLS = int(os.environ.get("KILLS", "3"))
 
 
 def request_for(folder: Path, shards: int | None = None) -> SetRequest:
@@ -241,30 +241,39 @@ def test_a_cluster_hands_bytes_back(loose, cluster, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_cluster_loses_nothing_with_its_workers(packed, cluster, tmp_path):
-    """Workers are killed at random moments; the set has the same bytes."""
+def test_a_cluster_loses_nothing_with_its_workers(packed, tmp_path):
+    """Computers are lost at random moments, and others join; the set has the same bytes."""
+    distributed = pytest.importorskip("distributed")
     folder = tmp_path / "set"
     is_made = threading.Event()
     moments = random.Random(1)
-    kills = 0
+    workers = []
+    with distributed.LocalCluster(n_workers=0, dashboard_address=None) as cluster:
+        address = cluster.scheduler_address
 
-    def kill() -> None:
-        nonlocal kills
-        while kills < 3 and not is_made.wait(moments.uniform(4.0, 9.0)):
-            known = cluster.scheduler.workers
-            # Dask gives a worker up that dies before it is known.
-            alive = [each for each in cluster.workers.values() if each.worker_address in known]
-            if alive:
-                os.kill(moments.choice(alive).pid, signal.SIGKILL)
-                kills += 1
+        def lose_computers() -> None:
+            while len(workers) < 2 + KILLS and not is_made.wait(moments.uniform(8.0, 16.0)):
+                moments.choice([each for each in workers if each.poll() is None]).kill()
+                workers.append(joined(address))
 
-    killer = threading.Thread(target=kill)
-    killer.start()
-    try:
-        request = request_for(folder, SHARD)
-        make_set(request, COUNT, scheduler=cluster.scheduler_address, progress=False)
-    finally:
-        is_made.set()
-        killer.join()
-    assert kills
+        workers += [joined(address), joined(address)]
+        loser = threading.Thread(target=lose_computers)
+        loser.start()
+        try:
+            request = request_for(folder, SHARD)
+            make_set(request, COUNT, scheduler=address, progress=False)
+        finally:
+            is_made.set()
+            loser.join()
+            for worker in workers:
+                worker.kill()
+                worker.wait()
+    assert len(workers) > 2
     assert content(folder) == content(packed)
+
+
+def joined(address):
+    """A process that works for the scheduler at an address."""
+    options = ("--nthreads", "1", "--no-nanny", "--no-dashboard")
+    command = [sys.executable, "-m", "dask", "worker", address, *options]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

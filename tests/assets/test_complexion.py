@@ -14,17 +14,19 @@ from risorius.assets.identities import (
     coloured,
     drawn_irises,
     features_of,
+    in_colours,
     in_own_colours,
     make_person,
+    own_colours,
     recoloured,
     sample_identity,
 )
 from risorius.assets.identities.brows import Brows
-from risorius.assets.identities.complexion import IRIS_SHARES, _tints, typology_angle
+from risorius.assets.identities.complexion import IRIS_SHARES, _tints, shrunk, typology_angle
 from risorius.assets.identities.hair import Hairline
 from risorius.assets.model import Segment
 from risorius.assets.pigments import OWN
-from risorius.geometry.colour import to_linear
+from risorius.geometry.colour import to_linear, to_screen
 
 TONES = (70.0, 55.0, 41.0, 28.0, 10.0, -10.0, -30.0, -55.0)
 ANGLES = st.floats(DARKEST, LIGHTEST)
@@ -188,3 +190,21 @@ def test_hair_turns_grey_as_in_the_survey():
     assert grey(-40.0, (45.0, 65.0)) < 0.6 * grey(50.0, (45.0, 65.0))
     assert grey(50.0, (20.0, 30.0)) == 0.0
     assert grey(50.0, (72.0, 75.0)) > 0.7
+
+
+@pytest.mark.parametrize("number", [3, 8])
+def test_small_pictures_have_the_same_colours_of_fewer_texels(number):
+    """Means of light over what was painted at full size, and the same hair and classes."""
+    person = make_person(sample_identity(number))
+    colours = own_colours(person.identity, number)
+    whole = in_colours(person, colours)
+    small = in_colours(person, colours, shrink=4)
+    assert small.albedo.shape == (320, 320, 3)
+    assert small.ambient_occlusion.shape == (320, 320)
+    light = shrunk(to_linear(whole.albedo / 255.0).astype(np.float32), 4)
+    off = np.abs(to_screen(light) - small.albedo / 255.0)
+    assert off.mean() < 0.004
+    assert np.percentile(off, 99.0) < 0.04
+    assert (whole.segments == small.segments).all()
+    for one, other in zip(whole.parts, small.parts, strict=True):
+        assert (one.vertices == other.vertices).all()
