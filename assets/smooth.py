@@ -1,9 +1,9 @@
-"""Small functions of arrays: a rise without a kink, and rows of length 1."""
+"""Small functions of arrays: a rise without a kink, rows of length 1, means of blocks."""
 
 import numpy as np
 import numpy.typing as npt
 
-from ..geometry.arrays import Floats64
+from ..geometry.arrays import Floats32, Floats64
 
 Points = npt.NDArray[np.float64]
 
@@ -18,3 +18,12 @@ def unit(vectors: Points) -> Points:
     """Scale rows to length 1; zero rows stay zero."""
     scaled: Points = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-12)
     return scaled
+
+
+def shrunk(values: Floats32, shrink: int) -> Floats32:
+    """Means of values (H, W, ...), of so many each way; H and W are multiples of it."""
+    for axis in (0, 1):
+        count = values.shape[axis] // shrink
+        blocks = np.moveaxis(values, axis, 0).reshape(count, shrink, *np.delete(values.shape, axis))
+        values = np.moveaxis(blocks.mean(axis=1, dtype=np.float32), 0, axis)
+    return values

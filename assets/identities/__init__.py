@@ -10,7 +10,6 @@ from .complexion import (
     Features,
     built_in_hair,
     coloured,
-    drawn_irises,
     features_of,
     recoloured,
 )
@@ -25,7 +24,7 @@ from .named import (
     person_in_words,
 )
 from .person import Person, make_person
-from .population import DARKEST, EVERYBODY, LIGHTEST, Population
+from .population import DARKEST, EVERYBODY, LIGHTEST, Population, drawn_irises
 from .space import Identity, Sex, sample_identity
 
 __all__ = [

@@ -14,9 +14,10 @@ the 19 at 52 ("Proposed shade guide for human facial skin", IADR 2009, abstract 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache, partial
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -29,14 +30,14 @@ from ..data_files import Image, read_arrays, read_image
 from ..loading import load
 from ..model import Head, Part, Segment
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
+from ..smooth import shrunk
 from .brows import Brows, drawn_brows, painted, stubble
 from .hair import CUTS, HAIR, OWN_CUT, Fall, Hairline, drawn_hairline, hair_of, scalp_of
 from .long_hair import falling_hair, tied_hair
 from .person import Person
-from .population import DARKEST, IRIS_SHARES, LIGHTEST
+from .population import DARKEST, IRIS_SHARES, LIGHTEST, ONLY_BROWN
 from .space import Identity, Sex
 
-ONLY_BROWN = 28.0  # ITA below which eyes are brown, as nearly all are there
 GREY_HAIR = (0.54, 0.52, 0.49)
 LOCKS_LIGHTER = 1.2  # than painted hair, which no other hair shades
 BEHIND = 30.0  # [mm] of the scalp, in the map of it: from the hairline back
@@ -170,23 +171,12 @@ def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
         kept = np.maximum(kept, np.float32(features.lid_line) * tints.lids)
     if features.stubble > 0.0:
         kept = np.maximum(
-            kept, np.float32(features.stubble) * _stubble(len(kept), shrink) * tints.beard
+            kept,
+            np.float32(features.stubble)
+            * shrunk(stubble(shrink * len(kept)), shrink)
+            * tints.beard,
         )
     return kept
-
-
-@lru_cache(maxsize=2)
-def _stubble(size: int, shrink: int) -> Floats32:
-    return shrunk(stubble(shrink * size), shrink)
-
-
-def shrunk(values: Floats32, shrink: int) -> Floats32:
-    """Means of values (H, W, ...), of so many each way; H and W are multiples of it."""
-    for axis in (0, 1):
-        count = values.shape[axis] // shrink
-        blocks = np.moveaxis(values, axis, 0).reshape(count, shrink, *np.delete(values.shape, axis))
-        values = np.moveaxis(blocks.mean(axis=1, dtype=np.float32), 0, axis)
-    return values
 
 
 def _grown_over(behind: Floats32) -> Floats32:
@@ -194,7 +184,7 @@ def _grown_over(behind: Floats32) -> Floats32:
     most_cover = np.float32(0.99)  # share that dense hair covers
     dense_depth = np.float32(22.0)  # [mm] behind the hairline, where hair is dense
     t = np.clip(behind / dense_depth, np.float32(0.0), np.float32(1.0))
-    return most_cover * t * t * (np.float32(3.0) - np.float32(2.0) * t)
+    return np.asarray(most_cover * t * t * (np.float32(3.0) - np.float32(2.0) * t), np.float32)
 
 
 def coloured(
@@ -287,15 +277,6 @@ def _behind(tints: _Tints, features: Features) -> Floats32:
     line = features.hairline
     moved = (lies - line.shift(len(scalp))) / np.float32(1.0 + line.crown)
     return np.where(scalp > 0.01, moved, lies)
-
-
-def drawn_irises(
-    random: np.random.Generator, angle: float, shares: Mapping[str, float] = IRIS_SHARES
-) -> str:
-    """The colour of somebody's eyes, by how often each is there; dark skin has brown ones."""
-    weights = np.array(list(shares.values()))
-    drawn = list(shares)[int(random.choice(len(weights), p=weights / weights.sum()))]
-    return drawn if angle >= ONLY_BROWN else "brown"
 
 
 def features_of(identity: Identity, angle: float, random: np.random.Generator) -> Features:
@@ -394,10 +375,11 @@ def _tints() -> _Tints:
 def _shrunk_tints(shrink: int) -> _Tints:
     """The maps with so many texels less each way."""
     whole = _tints()
-    maps = {
-        each.name: shrunk(getattr(whole, each.name), shrink)
-        for each in fields(whole)
-        if each.name not in ("skin", "melanins", "angles")
+    names = [each.name for each in fields(whole)]
+    maps: dict[str, Any] = {
+        name: shrunk(getattr(whole, name), shrink)
+        for name in names
+        if name not in ("skin", "melanins", "angles")
     }
     return replace(whole, **maps)
 

@@ -103,7 +103,8 @@ class Hairline:
         beside = self.crown * bald_depth * np.exp(-((across / 0.14) ** 2))
         top = np.exp(-(((up - 0.78) / 0.15) ** 2))
         ahead, row, top, beside = np.array([ahead, row, top, beside], dtype=np.float32)
-        return np.multiply.outer(ahead, row) + np.multiply.outer(top, beside)
+        whole = np.multiply.outer(ahead, row) + np.multiply.outer(top, beside)
+        return np.asarray(whole, np.float32)
 
 
 def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> Hairline:

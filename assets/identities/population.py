@@ -9,8 +9,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
+import numpy as np
+
 LIGHTEST = 70.0  # individual typology angle of skin, ITA [deg]
 DARKEST = -55.0
+ONLY_BROWN = 28.0  # ITA below which eyes are brown, as nearly all are there
 YOUNGEST = 20.0  # [years]
 OLDEST = 75.0
 IRIS_SHARES = MappingProxyType(
@@ -56,3 +59,12 @@ class Population:
 
 
 EVERYBODY = Population()
+
+
+def drawn_irises(
+    random: np.random.Generator, angle: float, shares: Mapping[str, float] = IRIS_SHARES
+) -> str:
+    """The colour of somebody's eyes, by how often each is there; dark skin has brown ones."""
+    weights = np.array(list(shares.values()))
+    drawn = list(shares)[int(random.choice(len(weights), p=weights / weights.sum()))]
+    return drawn if angle >= ONLY_BROWN else "brown"

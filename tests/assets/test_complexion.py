@@ -22,10 +22,12 @@ from risorius.assets.identities import (
     sample_identity,
 )
 from risorius.assets.identities.brows import Brows
-from risorius.assets.identities.complexion import IRIS_SHARES, _tints, shrunk, typology_angle
+from risorius.assets.identities.complexion import _tints, typology_angle
 from risorius.assets.identities.hair import Hairline
+from risorius.assets.identities.population import IRIS_SHARES
 from risorius.assets.model import Segment
 from risorius.assets.pigments import OWN
+from risorius.assets.smooth import shrunk
 from risorius.geometry.colour import to_linear, to_screen
 
 TONES = (70.0, 55.0, 41.0, 28.0, 10.0, -10.0, -30.0, -55.0)
