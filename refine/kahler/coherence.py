@@ -216,6 +216,7 @@ class Coherent:
 
     @states.setter
     def states(self, states: npt.ArrayLike) -> None:
+        """Go on from these; raises ValueError as above."""
         given = np.asarray(states)
         is_right = given.shape == self._states.shape and given.dtype.kind in "iu"
         if not is_right or ((given < 0) | (given >= SEQUENCE_COUNT)).any():
