@@ -52,7 +52,8 @@ def drawn_brows(is_man: bool, years: float, random: np.random.Generator) -> Brow
         np.array([(8.2, 10.5, 2.8, 5.6, 39.0, 0.95), (1.4, 1.6, 1.2, 1.6, 2.5, 0.22)]),
     )
     mean, deviation = drawn[is_man]
-    values = mean + deviation * np.clip(random.normal(size=len(mean)), -2.0, 2.0)
+    variety = 1.3  # of deviations that surveys give for one group of people
+    values = mean + variety * deviation * np.clip(random.normal(size=len(mean)), -2.0, 2.0)
     late = float(np.clip((years - 45.0) / 30.0, 0.0, 1.0))
     values[[0, 5]] *= 1.0 - late * np.array([0.0 if is_man else 0.15, 0.3])
     thickness, inner, rise, fall, peak, density = values.tolist()

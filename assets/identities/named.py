@@ -27,9 +27,9 @@ class _Known(NamedTuple):
 
 NAMED: Mapping[str, _Known] = MappingProxyType(
     {
-        "ada": _Known(112, Sex.WOMAN, 27.0, 34.0, "hazel", "parted"),
-        "kofi": _Known(102, Sex.MAN, 38.0, -38.0, "brown", "cropped"),
-        "maria": _Known(111, Sex.WOMAN, 66.0, 56.0, "blue", "aside"),
+        "ada": _Known(108, Sex.WOMAN, 27.0, 34.0, "hazel", "parted"),
+        "kofi": _Known(118, Sex.MAN, 38.0, -38.0, "brown", "cropped"),
+        "maria": _Known(118, Sex.WOMAN, 66.0, 56.0, "blue", "aside"),
     }
 )
 

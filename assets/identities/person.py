@@ -189,7 +189,9 @@ def _resting(known: Head, identity: Identity) -> Floats32:
     frown_radii = np.array([15.0, 18.0, 30.0])
     frowned = np.exp(-((off / frown_radii) ** 2).sum(axis=1))
     most_resting = {Sex.WOMAN: 0.45, Sex.MAN: 0.5}
-    return np.asarray(most_resting[identity.sex] * past * past * (1.0 - frowned), np.float32)
+    return np.asarray(
+        most_resting[identity.sex] * identity.furrows * past * past * (1.0 - frowned), np.float32
+    )
 
 
 def _named(known: Head) -> Integers32:

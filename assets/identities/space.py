@@ -4,12 +4,13 @@ A person is the mean with a weight for each mode; a weight of 1 is one deviation
 modes were fitted to those of ICT-FaceKit as the head's form was (docs/head.md), and turned so that
 the first ones move the face most (principal components). They know neither sex nor age.
 
-So weights are drawn under two laws at once: those of the modes, in which all have the mean 0 and
-the deviation 1, and those of a sex' published measures (`assets.norms`). Both are normal
-distributions, and so is their product (Bishop 2006, "Pattern recognition and machine learning",
-section 2.3.3). The modes correlate the measures with other forms: a person with a long face has
-a long nose. Sex and age push points as softly (brow ridge, jaw, chin of men; skin that sags); how
-far is chosen by eye, after anatomists.
+Weights are drawn freely, by the law of the modes, 1 to 1.2 times as wide as people's but for the
+size of the head. Sex and age move the middle of the draw in some directions: by what parts the
+published measures of women and men (`assets.norms`), and by points that go their way (brow ridge,
+jaw, chin of men; skin that sags); how far is chosen by eye, after anatomists. The norms are of
+Europeans. How near the middle of a draw comes to their means, rather than to that of all people
+whose modes these are, is drawn anew for each person, from not at all to wholly. Neither this nor
+the form knows the tone of the skin: that they are independent is an assumption.
 Source: Blanz, Vetter 1999, "A morphable model for the synthesis of 3D faces".
 
 Three widths were taken with calipers, which press on the skin over the bone (`norms`). A surface is
@@ -67,6 +68,7 @@ class Identity:
     covered: how much of the iris the upper lid covers [mm].
     corners: how far above the middle of the lips' line those of the mouth lie at rest [mm].
     brows: how far up the brows lie [mm].
+    furrows: how deep those of age are, beside the usual ones.
     """
 
     sex: Sex
@@ -78,6 +80,7 @@ class Identity:
     covered: float = 1.6
     corners: float = 0.0
     brows: float = 0.0
+    furrows: float = 1.0
 
     def scaled(self, share: float) -> Identity:
         """An identity with a share of all that is its own: 0 is the mean of people."""
@@ -119,8 +122,9 @@ class PersonSpace:
 
     def draw(self, sex: Sex, age: float, random: np.random.Generator) -> Floats64:
         """The weights of somebody of that sex and age [years], shape (k,)."""
-        rows, off = self._measured(sex)
-        measured = rows.T @ rows
+        chance = np.clip(random.normal(size=len(self.modes)), -MOST, MOST)
+        near_norms = float(random.uniform())
+        rows, off = self._measured(sex, near_norms)
         unit = np.eye(len(self.modes))
         # Higher, because noses come too far forward without it.
         firmness_of = MappingProxyType({"sn-prn": 5.0, "ft-ft": 1.5})
@@ -146,30 +150,26 @@ class PersonSpace:
         tolerance = 0.7  # [mm] in pushed points
         pushes = mean_firmness * rows.T @ scores + self.pushed.T @ far / tolerance**2
         mean += np.linalg.solve(unit + held + self.pushed.T @ self.pushed / tolerance**2, pushes)
-        chance = np.clip(random.normal(size=len(unit)), -MOST, MOST)
-        # Width of the draw in the first mode, and from the seventh on in all: persons of the plain
-        # law deviate less in their measures than published, and more in the size of the face.
-        narrow_share = 0.7
-        wide_share = 1.1
-        size_mode = 6
-        wide = np.interp(np.arange(len(unit)), (0, size_mode), (narrow_share, wide_share))
-        deviation_firmness = 0.25  # of published deviations
-        spread = np.linalg.cholesky(
-            np.linalg.inv(np.diag(wide**-2.0) + deviation_firmness * measured)
-        )
+        # Deviations of the first mode, which is the size of the head, of the second one, and from
+        # the seventh on.
+        widths = {0: 0.6, 1: 1.0, 6: 1.2}
+        width = np.interp(np.arange(len(unit)), list(widths), list(widths.values()))
         most_deviations = 4.0  # of any weight that is drawn
-        return np.clip(mean + spread @ chance, -most_deviations, most_deviations)
+        return np.clip(mean + width * chance, -most_deviations, most_deviations)
 
-    def _measured(self, sex: Sex) -> tuple[Floats64, Floats64]:
-        """The norms as equations for weights: rows (m, k), right side (m,), in deviations."""
+    def _measured(self, sex: Sex, near_norms: float) -> tuple[Floats64, Floats64]:
+        """The norms as equations for weights: rows (m, k), right side (m,), in deviations.
+
+        near_norms: 0 leaves the mean of people where it is, but for what parts the sexes; 1 asks
+        for the published means.
+        """
         found = measures_of(self.mean, self.anatomy)
         norms = norms_of(sex)
         off = []
-        sex_share = 1.0  # of the published difference between women and men
         for code, norm in NORMS.items():
             middle = 0.5 * (norm.women.mean + norm.men.mean)
-            asked = middle + sex_share * (norms[code].mean - middle)
-            off.append(asked + PRESSED.get(code, 0.0) - found[code])
+            beside = middle + PRESSED.get(code, 0.0) - found[code]
+            off.append(near_norms * beside + norms[code].mean - middle)
         deviations = np.array([sample.deviation for sample in norms.values()])
         return self.slopes / deviations[:, None], np.array(off) / deviations
 
@@ -219,6 +219,7 @@ def sample_identity(
     unevenness = 0.1  # deviations that the left side has of another person
     uneven = (0.0 if is_even else unevenness) * sides
     covered, corners, brows = np.clip(random.normal(size=3), -2.0, 2.0)
+    furrows = float(np.clip(1.0 + 0.35 * random.normal(), 0.3, 1.7))
     late = max(age - YOUNG, 0.0) / 10.0
     is_woman = sex is Sex.WOMAN
     return Identity(
@@ -228,9 +229,10 @@ def sample_identity(
         cut,
         tuple(weights.tolist()),
         tuple(uneven.tolist()),
-        covered=float(1.7 - 0.3 * is_woman + 0.35 * covered + 0.15 * late),
-        corners=float(0.7 + 0.3 * is_woman + 0.5 * corners - 0.08 * late),
-        brows=float((1.0 if is_woman else 0.0) + brows - 0.2 * late),
+        covered=float(1.7 - 0.3 * is_woman + 0.42 * covered + 0.15 * late),
+        corners=float(0.7 + 0.3 * is_woman + 0.65 * corners - 0.08 * late),
+        brows=float((1.0 if is_woman else 0.0) + 1.2 * brows - 0.2 * late),
+        furrows=furrows,
     )
 
 
