@@ -30,8 +30,6 @@ class MarkingView(SceneView):
         self._marking = marking
         self._settings = settings
         self._surface = surface
-        self.area = (0.0, 0.0, 1.0, 1.0)
-        self.pointed = {}
         self.fit_scene()
 
     def fit_scene(self) -> None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from types import MappingProxyType
 
 import numpy as np
 from imgui_bundle import imgui
@@ -40,17 +41,14 @@ class SceneView:
     """
 
     camera: render.OrbitCamera
-    area: tuple[float, float, float, float]
-    pointed: Mapping[str, float]
-    hovered: str | None
+    area: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 1.0)
+    pointed: Mapping[str, float] = MappingProxyType({})
+    hovered: str | None = None
 
     def __init__(self, session: Session, settings: Settings, surface: render.WindowSurface) -> None:
         self._session = session
         self._settings = settings
         self._surface = surface
-        self.area = (0.0, 0.0, 1.0, 1.0)
-        self.pointed = {}
-        self.hovered = None
         self.fit_scene()
 
     def fit_scene(self) -> None:
