@@ -21,6 +21,7 @@ import numpy as np
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.closest import SurfacePoints, closest_points
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.read_only import make_read_only
 
 from .data_files import read_toml
 from .fitting.head import FittedHead
@@ -45,6 +46,10 @@ class Annotation:
 
     inner: SurfacePoints
     lanes: SurfacePoints
+
+    def __post_init__(self) -> None:
+        make_read_only(self.inner)
+        make_read_only(self.lanes)
 
     def inner_points(self, positions: Floats64) -> Floats64:
         """Where the points 17 to 67 are, on vertices (V, 3), shape (51, 3)."""
