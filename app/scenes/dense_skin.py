@@ -14,7 +14,6 @@ from risorius import sim
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.read_only import read_only
-from risorius.refine import Embedding
 
 
 class DenseSkin:
@@ -25,6 +24,8 @@ class DenseSkin:
 
     def __init__(self, vertices: Floats64, faces: Integers32, simulation: sim.Simulation) -> None:
         """Bind vertices (V, 3) of triangles (F, 3), at rest, to the mesh of `simulation`."""
+        from risorius.refine import Embedding  # which few heads need
+
         self.rest_positions = vertices
         # By its normal an upper lip's vertex stays with the upper lip.
         normals = _smooth_normals(vertices, faces)

@@ -43,7 +43,7 @@ REFUSED = {
     f"{IMAGE} --fps 0": "is not in the range",
     f"{IMAGE} --style wrinkles={'9' * 5000}": "write a number from 0 to 1",
     f"{IMAGE} --style skin=red": "'red' is none of textured, plain, clay",
-    f"{IMAGE} --style shiny": "'shiny' is not there; it takes wireframe, splits, skin=textured|",
+    f"{IMAGE} --style shiny": "'shiny' is not there; it takes wireframe, splits, wires, skin=",
     f"{IMAGE} --time 1:2": "a picture has one time",
     # Options that commands had before.
     f"{IMAGE} --gain all=1": "--gain has left: convert the recording first: risorius convert",
@@ -105,7 +105,7 @@ REFUSED = {
     "convert nothing.csv -o c.png": "c.png: scripts are written as .toml",
     "convert good.toml -o out.toml": "is a script already",
     # Persons.
-    "capture --head 3 --landmarks marks.json -o x.png": "--head 3 is a person",
+    "capture --head 3 --landmarks marks.json -o x.png": "--head 3: its landmarks are known",
     "capture --head 3 --scene plane -o x.png": "--head goes with the scene face",
     # Recordings.
     "convert take.csv -o out.toml --neutral last": "--neutral last: allowed are",
@@ -127,7 +127,7 @@ REFUSED = {
     "export good.toml -o x.usdc --as npz": "numpy arrays is written as .npz",
     # More options and outputs.
     f"{IMAGE} --look paper --option threshold_once=0.2": "0 <= threshold_once <= threshold_twice",
-    f"{IMAGE} --refiner kahler-gl --option scheme=detail": "refiner kahler-gl: scheme must be one",
+    f"{IMAGE} --refiner kahler-gl --option scheme=detail": "option scheme was detail, must be",
     f"{IMAGE} --compare papre": "'papre' is neither a look (smooth, paper) nor a refiner (kahler, ",
     "capture good.toml -o notes.txt/x.mp4": "cannot be written: Not a directory",
 }
