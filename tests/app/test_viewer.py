@@ -185,8 +185,10 @@ def test_a_look_is_chosen(viewer):
     assert display.look == stage.refined.label == "paper"
     paper = stage.refined.triangle_count
     assert len(stage.scene.faces) < paper < 0.8 * smooth
+    click(viewer, "Advanced")
     click(viewer, "Refiner")
     click(viewer, "Refiner: loop")
+    click(viewer, "Advanced")
     display.options["loop"] = {"levels": 2}
     settle(viewer)
     assert stage.refined.label == "loop, changed"

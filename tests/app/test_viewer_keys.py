@@ -18,7 +18,7 @@ def test_escape_closes_one_thing_after_another(viewer):
     context = imgui.get_current_context()
     for opens, shown in (
         (lambda: click(viewer, "menu File"), "menu File: Quit"),
-        (lambda: click(viewer, "Refiner"), "Refiner: loop"),
+        (lambda: click(viewer, "Look"), "Look: paper"),
         (lambda: click(viewer, "speed"), "speed: 2 x"),
         (lambda: xdotool(viewer, "mousemove", x, y, "click", 3), "menu Keys: Set key"),
         (lambda: press_keys(viewer, "ctrl+o"), "path"),

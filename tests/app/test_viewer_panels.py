@@ -70,7 +70,7 @@ def in_panel(viewer, *rows):
 def only_open(viewer, title):
     """Fold all of the Mechanism panel but one heading, so that there is room for it."""
     viewer.context.wanted_tab = "Mechanism"
-    titles = ("Refinement", "Style", "Anatomy", "Light and person", "Milliseconds")
+    titles = ("Refinement", "Advanced", "Style", "Anatomy", "Light and person", "Milliseconds")
     viewer.settings.folds.update({each: each == title for each in titles})
     settle(viewer)
 
@@ -130,7 +130,7 @@ def test_any_look_stands_at_the_left(viewer):
 
 def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
     """Chosen by the mouse it draws from the card, and the picture is as it was; set back, too."""
-    only_open(viewer, "Refinement")
+    only_open(viewer, "Advanced")
     pictures = [viewer.context.stage.draw_image(viewer.face.view)]
     in_panel(viewer, ("Refiner", "kahler-gl"))
     assert isinstance(viewer.context.stage.refined.stream, render.GpuStream)

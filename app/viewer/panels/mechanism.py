@@ -48,6 +48,7 @@ HINTS = {
     "Skin opacity": "over muscles and skull; 0: no skin",
     "Dissect": "the side of the face whose skin is translucent",
 }
+NUMBERS = ("integer", "number")  # kinds of options that are sliders
 # Rows of fields of the display, by their labels.
 FIELDS = {
     "Refine": "is_refined",
@@ -84,6 +85,7 @@ class MechanismPanel:
         times_label = f"Milliseconds, {rate:.0f} frames a second" if rate else "Milliseconds"
         for title, label, draw in (
             ("Refinement", "", self._draw_refinement),
+            ("Advanced", "", self._draw_advanced),
             ("Style", "", self._draw_style),
             ("Anatomy", "", self._draw_anatomy),
             ("Light and person", "", self._draw_light_and_person),
@@ -118,12 +120,9 @@ class MechanismPanel:
         self._switch("Refine")
         look = display.preset_as_changed(stage.scene)
         self._choose("Look", look, tuple(PRESETS), display.choose_preset)
-        names = [name for name in refine.refiners.available() if name != STATIC]
-        put = partial(display.choose_refiner, stage.scene)
-        self._choose("Refiner", display.refiner_on(stage.scene), names, put)
         has_thresholds = display.refinement_on(stage.scene).has_thresholds(stage.scene.name)
         for name, option in self._options().items():
-            if name not in THRESHOLDS or has_thresholds:
+            if option.kind in NUMBERS and (name not in THRESHOLDS or has_thresholds):
                 self._draw_option(name, option)
         self._pick("Compare", COMPARISONS)
         if display.compare != "off":
@@ -134,6 +133,17 @@ class MechanismPanel:
             imgui.text(f"{drawn.label}: {count} triangles")
             imgui.same_line()
             muted(self._gui, f"({count / base:.2f} x)")
+
+    def _draw_advanced(self) -> None:
+        """Rows for settings that a look sets well: the refiner, its words and switches."""
+        scene = self._stage.scene
+        names = [name for name in refine.refiners.available() if name != STATIC]
+        put = partial(self._display.choose_refiner, scene)
+        self._choose("Refiner", self._display.refiner_on(scene), names, put)
+        for name, option in self._options().items():
+            if option.kind not in NUMBERS:
+                self._draw_option(name, option)
+        self._switch("Skin maps")
 
     def _options(self) -> dict[str, refine.Option]:
         """The options of the refiner and its criterion; none of one that cannot be loaded."""
@@ -193,8 +203,6 @@ class MechanismPanel:
             now = display.wrinkles
             display.wrinkles = self._rows.slide("Wrinkles", "wrinkles", now, (0.0, 1.0), 1.0)
         self._switch("Wireframe")
-        imgui.same_line(self._rows.second)
-        self._switch("Skin maps")
         self._switch("Colour by splits")
         imgui.same_line(self._rows.second)
         self._switch("Wires of splits")
