@@ -50,6 +50,7 @@ class Pull:
     MOST_CONTROLS = 3  # that are used
     ROUND_TOLERANCE = 0.01  # a change that counts as none, between rounds
 
+    mends: bool  # whether the answer comes nearer to the aims by more than a trace
     targets: Floats64  # where the finger draws each of its vertices [head units], shape (n, 3)
 
     def __init__(
@@ -86,7 +87,7 @@ class Pull:
         self.candidates = list[Names]()
         self._value = self._start = np.zeros(0)
         self._drawn = 0.0  # mean square of the way to the aims
-        self._mends = False
+        self.mends = False
 
     def _look(self) -> bool:
         """Before the first answer, find the controls that matter, and slopes; whether any does."""
@@ -123,11 +124,6 @@ class Pull:
         return {self.candidates[n]: float(self._value[n]) for n in order}
 
     @property
-    def mends(self) -> bool:
-        """Whether the answer comes nearer to the aims by more than a trace."""
-        return self._mends
-
-    @property
     def short(self) -> float:
         """How far the skin in the finger's middle stays from its target, as seen [head units]."""
         there = self._base.positions if self.mends else self._from
@@ -158,8 +154,8 @@ class Pull:
             self._measure(np.flatnonzero(self._value != self._start))
             needed = self._more(needed)
         least_gain = 0.25  # of the squared distances: an answer that mends less is no answer
-        self._mends = self._off(self._base.positions) < (1.0 - least_gain) * self._drawn
-        if self._mends:
+        self.mends = self._off(self._base.positions) < (1.0 - least_gain) * self._drawn
+        if self.mends:
             self._stretch()
 
     def _take_values(self) -> None:

@@ -135,9 +135,10 @@ class SkinDrag:
         self.drop()
         if self._pull is None:
             return None
-        line = self._solve()
+        if not np.array_equal(self.offset, self._solved):
+            self._line = self._solve()
         self._session.note()
-        return line
+        return self._line
 
     def drop(self) -> None:
         """Hold on to the skin no longer."""
