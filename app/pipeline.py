@@ -19,7 +19,7 @@ from risorius import render
 from .anatomy import SKIN_ALONE, Anatomy, AnatomyView, Dissection
 from .refining.drawn_mesh import DrawnMesh, bind
 from .refining.presets import Refinement
-from .refining.wrinkling import Amounts, Compression
+from .refining.wrinkling import Compression, Wrinkling
 from .scenes import Drawable
 
 Timer = Callable[[str], AbstractContextManager[Any]]
@@ -74,7 +74,7 @@ class Pipeline:
         self,
         camera: render.OrbitCamera,
         viewports: Sequence[Viewport],
-        wrinkling: Amounts | None = None,
+        wrinkling: Wrinkling | None = None,
     ) -> None:
         """Refine each mesh; a frame that nobody draws, too: the next one may remember it."""
         self.renderer.surface.make_current()  # where streams of the graphics card are
@@ -119,7 +119,7 @@ class Pipeline:
         """
         with timer("refinement"):
             compression = self._compression if style.shows_bumps else None
-            wrinkling = None if compression is None else compression.amounts(self.scene.positions)
+            wrinkling = None if compression is None else compression.measure(self.scene.positions)
             self.refine(camera, viewports, wrinkling)
         with timer("upload"):
             for viewport in viewports:

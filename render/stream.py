@@ -31,7 +31,15 @@ COMMAND_WORDS = 7
 LAYOUTS = {
     6: ("3f 3f", "in_position", "in_normal"),
     8: ("3f 3f 2f", "in_position", "in_normal", "in_uv"),
-    10: ("3f 3f 2f 2f", "in_position", "in_normal", "in_uv", "in_bumps"),
+    16: (
+        "3f 3f 2f 2f 3f 3f",
+        "in_position",
+        "in_normal",
+        "in_uv",
+        "in_bumps",
+        "in_u_gradient",
+        "in_v_gradient",
+    ),
 }  # of a vertex in OpenGL, by the columns of rows
 BUMPS = slice(8, 10)  # columns with the amounts of a bump map
 _Ranges = dict[Share, tuple[int, int]]  # first triangle and how many, in a buffer of indices
@@ -50,7 +58,7 @@ class UploadedMesh(Protocol):
 
     @property
     def vertices(self) -> Floats32:
-        """x y z, nx ny nz[, u v[, two amounts of bumps]], shape (vertex_count, columns)."""
+        """x y z, nx ny nz[, u v[, columns of bumps]], shape (vertex_count, columns)."""
 
     @property
     def triangles(self) -> Unsigned32:
@@ -75,8 +83,8 @@ class _Uploaded(NamedTuple):
 class MeshBuffers:
     """One mesh of at most so many vertices and triangles, rewritten every frame, to be drawn.
 
-    columns: of its rows, 6 (position, normal), 8 (and texture u, v) or 10 (and how much of a bump
-        map shows, 0..1 in either slot of it).
+    columns: of its rows, 6 (position, normal), 8 (and texture u, v) or 16 (and how much of a bump
+        map shows, 0..1 in either slot of it, and the gradients of u and v along the surface).
     mesh: the last one that was written into it, another object after each upload.
     has_bumps: whether the amounts of that mesh count.
     corners: of a box that holds its vertices, shape (8, 3), float64.
@@ -89,7 +97,7 @@ class MeshBuffers:
         if columns not in LAYOUTS:
             raise ValueError(
                 f"columns is {columns}; it must be 6 (position, normal), 8 (and texture u, v) or "
-                "10 (and two amounts of a bump map)"
+                "16 (and two amounts of a bump map, gradients of u and v)"
             )
         if vertex_capacity < 1 or triangle_capacity < 1:
             raise ValueError(
@@ -135,10 +143,10 @@ class MeshBuffers:
 
     def _check_bumps(self, has_bumps: bool) -> None:
         """Raise ValueError where amounts shall count that rows do not have."""
-        if has_bumps and self.columns != BUMPS.stop:
+        if has_bumps and self.columns < BUMPS.stop:
             raise ValueError(
                 f"bumps on a stream of {self.columns} columns; their amounts are columns 9 and 10: "
-                "lend a stream of 10 columns, or upload without bumps"
+                "lend a stream of 16 columns, or upload without bumps"
             )
 
     def _part_bumps(self) -> None:
@@ -205,7 +213,7 @@ class MeshBuffers:
 class Stream(MeshBuffers):
     """Arrays of such a mesh, lent to its maker, and uploaded.
 
-    vertices: x y z, nx ny nz[, u v[, two amounts of bumps]], shape (vertex_capacity, 6, 8 or 10),
+    vertices: x y z, nx ny nz[, u v[, columns of bumps]], shape (vertex_capacity, 6, 8 or 16),
         float32; the borrower writes.
     triangles: vertex numbers, shape (triangle_capacity, 3), uint32; the borrower writes.
     source: number of the triangle that each one comes from, shape (triangle_capacity,), int32; the

@@ -20,7 +20,7 @@ from ..scenes import Drawable
 from .plug_ins import PlugIn, plug_ins_of, reported
 from .presets import ON_CARD, Refinement
 from .refiners import refiner_for
-from .wrinkling import WRINKLES, Amounts
+from .wrinkling import GRADIENTS, WRINKLES, Wrinkling
 
 LARGE_MESH = 20_000  # triangles from which on a graphics card refines, where it may choose
 
@@ -43,17 +43,18 @@ class DrawnMesh:
         self,
         positions: Floats64,
         camera: render.OrbitCamera,
-        wrinkling: Amounts | None = None,
+        wrinkling: Wrinkling | None = None,
     ) -> None:
         """Fill the lent buffers with refined triangles, as the camera sees them.
 
-        `wrinkling`: how far the scene's vertices wrinkle. Raises PlugInError where somebody else's
-        code fails.
+        `wrinkling`: of the scene's skin. Raises PlugInError where somebody else's code fails.
         """
         view = refine.View(camera.eye)
         self.positions = positions
-        self.wrinkles = self.can_wrinkle and wrinkling is not None and bool(wrinkling.any())
-        more = {"values": {WRINKLES: wrinkling}} if self.wrinkles else {}
+        more = {}
+        if self.can_wrinkle and wrinkling is not None:
+            more["values"] = {WRINKLES: wrinkling.amounts, GRADIENTS: wrinkling.gradients}
+        self.wrinkles = bool(more)
         refiner: Any = self.refiner  # one without attributes need not know of values
         with reported(self.plug_ins):
             if isinstance(self.stream, render.GpuStream):
@@ -96,8 +97,8 @@ class DrawnMesh:
 
     @property
     def can_wrinkle(self) -> bool:
-        """Whether rows carry amounts of wrinkles, too."""
-        return self.refiner.vertex_columns == 10
+        """Whether rows carry wrinkles, too."""
+        return self.refiner.vertex_columns == 16
 
     @property
     def triangle_count(self) -> int:
@@ -133,10 +134,17 @@ def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> 
     return DrawnMesh(refinement.label, refiner, stream, plug_ins=plug_ins, resting=resting)
 
 
-def _attributes_of(scene: Drawable) -> dict[str, Amounts]:
-    """What rows carry beside texture coordinates: amounts of wrinkles, where the scene has any."""
-    has_wrinkles = scene.skin.wrinkles is not None and scene.skin.uv is not None
-    return {WRINKLES: np.zeros((len(scene.rest_positions), 2), np.float32)} if has_wrinkles else {}
+def _attributes_of(scene: Drawable) -> dict[str, Any]:
+    """What rows carry beside texture coordinates: wrinkles, where the scene has any."""
+    skin = scene.skin
+    if skin.wrinkles is None or skin.uv is None:
+        return {}
+    amounts = np.zeros((len(scene.rest_positions), 2), np.float32)
+    gradients = np.zeros((len(skin.uv), 6), np.float32)
+    return {
+        WRINKLES: amounts,
+        GRADIENTS: gradients if skin.face_uv is None else (gradients, skin.face_uv),
+    }
 
 
 def _stream_for(

@@ -8,16 +8,31 @@ The furrows stick to the skin, because their map does; only the amounts change f
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
 from risorius import refine
+from risorius.geometry.gradients import TextureGradients
 
 from ..scenes import Drawable
 
-WRINKLES = "wrinkles"  # the attribute of refined meshes
+WRINKLES = "wrinkles"  # attributes of refined meshes
+GRADIENTS = "texture_gradients"
 Amounts = npt.NDArray[np.float32]
 Points = npt.NDArray[np.float64]
+
+
+class Wrinkling(NamedTuple):
+    """How far the skin wrinkles, and which way its furrows run, in one frame.
+
+    amounts: of each vertex in either slot, 0 to 1, shape (V, 2).
+    gradients: of texture coordinates u and v along the skin [1/mm], shape (U, 6).
+    """
+
+    amounts: Amounts
+    gradients: Amounts
 
 
 class Compression:
@@ -26,9 +41,19 @@ class Compression:
     def __init__(self, scene: Drawable) -> None:
         wrinkles = scene.skin.wrinkles
         assert wrinkles is not None
+        assert scene.skin.uv is not None
+        face_uv = scene.faces if scene.skin.face_uv is None else scene.skin.face_uv
+        self._gradients = TextureGradients(scene.faces, scene.skin.uv, face_uv)
         self._readiness = np.linalg.norm(wrinkles.across, axis=2)
         self._resting = wrinkles.resting[:, None] * np.minimum(self._readiness, 1.0)
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
+
+    def measure(self, positions: Points) -> Wrinkling | None:
+        """Wrinkles of the skin where its vertices are now, shape (V, 3); None: there are none."""
+        amounts = self.amounts(positions)
+        if not amounts.any():
+            return None
+        return Wrinkling(amounts, self._gradients.measure(positions))
 
     def amounts(self, positions: Points) -> Amounts:
         """How far each vertex wrinkles in either slot, 0 (not at all) to 1, shape (V, 2).

@@ -196,9 +196,9 @@ def maps_in(
     light = np.full((SIZE, SIZE), 255, np.uint8)
     light[texels.rows, texels.columns] = sampled(plain_skin(known)[1], place)
     found = sampled(known.wrinkles.map, place)
-    change = rates(own.corners, theirs.corners)
+    change = texels.interpolate(_rates_at_corners(theirs, own)[own.face_uv]).reshape(-1, 2, 2)
     slope = (found[:, :2] - 128.0) * (known.wrinkles.steepest / 127.0)
-    slope = np.einsum("nij,nj->ni", change[texels.faces], slope)
+    slope = np.einsum("nij,nj->ni", change, slope)
     steepest_percentile = 99.9  # of slopes that a map of wrinkles holds as they are
     steepest = (
         max(float(np.percentile(abs(slope), steepest_percentile)), 1e-6) if len(slope) else 1.0
@@ -208,6 +208,23 @@ def maps_in(
     wrinkles[texels.rows, texels.columns] = np.column_stack([level, found[:, 2:]])
     light = np.asarray(PIL.Image.fromarray(light).resize(size[::-1]))
     return replace(known.wrinkles, map=wrinkles, steepest=steepest), segments, light
+
+
+def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
+    """How fast the built-in layout changes along another, shape (U, 4) for its coordinates `uv`.
+
+    Means of the triangles around each, by area: rates of triangles jump at their sides, and would
+    break a furrow into scraps.
+    """
+    corners = own.corners
+    ways = corners[:, 1:] - corners[:, :1]
+    area = np.abs(np.linalg.det(ways))
+    values = np.column_stack([rates(corners, theirs.corners).reshape(-1, 4), np.ones(len(area))])
+    values *= area[:, None]
+    rows = own.face_uv.ravel()
+    sums = [np.bincount(rows, np.repeat(each, 3), len(own.uv)) for each in values.T]
+    means: Floats64 = np.stack(sums[:4], axis=1) / np.maximum(sums[4], 1e-30)[:, None]
+    return means
 
 
 def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Image, Layout] | None:

@@ -1,8 +1,10 @@
 // Fine shape of a surface, from maps over the texture coordinates (Blinn 1978): with FINE one that is
 // always there, with BUMPS normals and albedo of furrows, as far as two amounts, interpolated from
 // vertices, let them show.
-// The gradient of a height on any surface, from screen-space derivatives: M. Mikkelsen, "Bump
-// mapping unparametrized surfaces on the GPU", 2010; here the maps know the slopes along u and v.
+// The gradient of fine shape comes from screen-space derivatives: M. Mikkelsen, "Bump mapping
+// unparametrized surfaces on the GPU", 2010; here the maps know the slopes along u and v. Those
+// derivatives jump from triangle to triangle where skin is shortened, and a furrow broke into
+// scraps. So furrows take the gradients of u and v from vertices.
 
 #if defined(FINE)
 uniform sampler2D fine_map;  // slope along u and v
@@ -15,12 +17,15 @@ uniform float bumps_slope;
 uniform float bumps_strength;
 const vec3 FURROW = vec3(0.40, 0.50, 0.52);  // how much darker the deepest is; light in it is red
 #define BUMP_AMOUNTS surface.bump_amounts
+#define GRADIENTS mat2x3(surface.u_gradient, surface.v_gradient)
 #else
 #define BUMP_AMOUNTS vec2(0.0)
+#define GRADIENTS mat2x3(0.0)
 #endif
 
 struct Bump {
-    vec2 slope;  // of the height along u and v
+    vec2 fine_slope;  // of fine shape along u and v
+    vec2 slope;       // of furrows along u and v
     float depth;
 };
 
@@ -30,26 +35,28 @@ vec2 slopes(vec2 texel, float steepest) {
 
 // The inner side of a surface has none.
 Bump bump_at(vec2 uv, vec2 amounts, bool is_front) {
-    Bump bump = Bump(vec2(0.0), 0.0);
+    Bump bump = Bump(vec2(0.0), vec2(0.0), 0.0);
     float share = is_front ? 1.0 : 0.0;
 #if defined(FINE)
-    bump.slope += share * fine_strength * slopes(texture(fine_map, uv).rg, fine_slope);
+    bump.fine_slope = share * fine_strength * slopes(texture(fine_map, uv).rg, fine_slope);
 #endif
 #if defined(BUMPS)
     vec4 texel = texture(bumps_map, uv);
     float amount = share * bumps_strength * mix(amounts.x, amounts.y, texel.a);
-    bump.slope += amount * slopes(texel.rg, bumps_slope);
+    bump.slope = amount * slopes(texel.rg, bumps_slope);
     bump.depth = amount * texel.b;
 #endif
     return bump;
 }
 
-// `normal` points out of the surface.
-vec3 bumped(vec3 normal, vec3 position, vec2 uv, Bump bump) {
+// `normal` points out of the surface; gradients: of u and v.
+vec3 bumped(vec3 normal, vec3 position, vec2 uv, Bump bump, mat2x3 gradients) {
     vec3 along_x = dFdx(position), along_y = dFdy(position);
-    float rise_x = dot(bump.slope, dFdx(uv)), rise_y = dot(bump.slope, dFdy(uv));
+    float rise_x = dot(bump.fine_slope, dFdx(uv)), rise_y = dot(bump.fine_slope, dFdy(uv));
     vec3 first = cross(along_y, normal), second = cross(normal, along_x);
     float area = dot(along_x, first);
     vec3 gradient = (rise_x * first + rise_y * second) / (abs(area) < 1e-12 ? 1e-12 : area);
+    vec3 furrow = gradients * bump.slope;
+    gradient += furrow - dot(furrow, normal) * normal;
     return normalize(normal - gradient);
 }

@@ -1,7 +1,8 @@
 // The surface in each pixel, as numbers: no light, no blending, one sample.
 // BUMPS, FINE: of the skin, as in surface.glsl.
 
-#define SURFACE vec3 normal; float depth; vec2 uv; vec3 position; vec2 bump_amounts; float dense;
+#define SURFACE vec3 normal; float depth; vec2 uv; vec3 position; vec2 bump_amounts; \
+    vec3 u_gradient; vec3 v_gradient; float dense;
 
 #if defined(VERTEX_STAGE)
 
@@ -10,6 +11,8 @@ in vec3 in_normal;
 in vec2 in_uv;      // of the skin; parts have none
 #if defined(BUMPS)
 in vec2 in_bumps;
+in vec3 in_u_gradient;
+in vec3 in_v_gradient;
 #endif
 in vec3 in_way;     // of shells; a part without it is solid
 in float in_dense;
@@ -25,6 +28,8 @@ void main() {
     surface.position = position.xyz;
 #if defined(BUMPS)
     surface.bump_amounts = in_bumps;
+    surface.u_gradient = mat3(model_view) * in_u_gradient;
+    surface.v_gradient = mat3(model_view) * in_v_gradient;
 #endif
     surface.dense = in_way == vec3(0.0) && in_dense == 0.0 ? 1.0 : in_dense;
     gl_Position = projection * position;
@@ -52,7 +57,7 @@ void main() {
     vec3 normal = side * surface.normal / max(length(surface.normal), 1e-20);
 #if defined(RELIEF)
     Bump bump = bump_at(surface.uv, BUMP_AMOUNTS, gl_FrontFacing);
-    normal = bumped(normal, surface.position, surface.uv, bump);
+    normal = bumped(normal, surface.position, surface.uv, bump, GRADIENTS);
 #endif
     normal.yz = -normal.yz;
     normal_and_depth = vec4(normal, surface.depth);

@@ -40,7 +40,7 @@ uniform float sharpness;
 #define TEXTURE_VARYING
 #endif
 #if defined(BUMPS)
-#define BUMP_VARYING vec2 bump_amounts;
+#define BUMP_VARYING vec2 bump_amounts; vec3 u_gradient; vec3 v_gradient;
 #else
 #define BUMP_VARYING
 #endif
@@ -74,6 +74,8 @@ in vec2 in_uv;
 #endif
 #if defined(BUMPS)
 in vec2 in_bumps;
+in vec3 in_u_gradient;  // of texture coordinates along the surface [1/mm]
+in vec3 in_v_gradient;
 #endif
 #if defined(FIBRES)
 in vec2 in_fibre;  // across and along the fibres [mm]
@@ -129,6 +131,8 @@ void main() {
 #endif
 #if defined(BUMPS)
     surface.bump_amounts = in_bumps;
+    surface.u_gradient = mat3(model_view) * in_u_gradient;
+    surface.v_gradient = mat3(model_view) * in_v_gradient;
 #endif
 #if defined(SHADOWS)
     float height = shadow_offset + shadow_reach * length(cross(normal, to_key));
@@ -187,6 +191,8 @@ void main() {
 #endif
 #if defined(BUMPS)
         drawn.bump_amounts = corner[i].bump_amounts;
+        drawn.u_gradient = corner[i].u_gradient;
+        drawn.v_gradient = corner[i].v_gradient;
 #endif
 #if defined(SHADOWS)
         drawn.light_place = corner[i].light_place;
@@ -313,7 +319,7 @@ void main() {
     vec3 normal = shading_normal();
 #if defined(RELIEF)
     Bump bump = bump_at(surface.uv, BUMP_AMOUNTS, gl_FrontFacing);
-    normal = bumped(normal, surface.position, surface.uv, bump);
+    normal = bumped(normal, surface.position, surface.uv, bump, GRADIENTS);
 #endif
 #if defined(FIBRES)
     Strand strand = strand_at(surface.fibre);

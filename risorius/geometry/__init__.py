@@ -2,6 +2,7 @@
 
 arrays.py       types of arrays
 closest.py      the closest points of a triangle mesh
+gradients.py    gradients of texture coordinates along a surface
 normals.py      cross products of triangles, normals of vertices
 sides.py        the sides of triangles, as pairs of vertices
 texels.py       the texels of a picture that triangles lie over

@@ -84,3 +84,16 @@ def test_left_and_right_are_not_alike(head):
     right = depth[:, :half][:, ::-1]
     assert 0.5 < left.sum() / right.sum() < 2.0
     assert np.abs(left - right).sum() > 0.3 * (left + right).sum()
+
+
+def test_the_fold_of_the_cheek_runs_whole(head):
+    """Its slopes change little from texel to texel: other heads have no triangle's side there."""
+    wrinkles = head.wrinkles
+    size = len(wrinkles.map)
+    slopes = (wrinkles.map[..., :2].astype(float) - 128.0) * (wrinkles.steepest / 127.0)
+    for landmark, outward in ((48, -1), (54, 1)):
+        column, row = (head.uv[head.landmarks[landmark]] * [size, -size] + [0.0, size]).astype(int)
+        left, right = sorted((column + 10 * outward, column + 60 * outward))
+        fold = slopes[row - 60 : row + 20, left:right]
+        steps = [np.abs(np.diff(fold, axis=axis)).max() for axis in (0, 1)]
+        assert max(steps) < 0.3 * np.abs(fold).max()

@@ -19,10 +19,11 @@ def furrowed(surface, texel, amounts, style=PLAIN):
     texels[:, 16:] = texel
     shape = square()
     renderer = render.Renderer(surface)
-    stream = lent(renderer, shape, columns=10)
+    stream = lent(renderer, shape, columns=16)
     stream.vertices[:, 6:8] = shape.positions[:, :2] / 100.0 + 0.5
     has_bumps = amounts is not None
-    stream.vertices[:, 8:] = amounts if has_bumps else 1.0
+    stream.vertices[:, 8:10] = amounts if has_bumps else 1.0
+    stream.vertices[:, 10:] = (0.01, 0.0, 0.0, 0.0, 0.01, 0.0)  # of u and v over 100 mm
     stream.upload(len(shape.positions), len(shape.triangles), has_bumps=has_bumps)
     bumps = render.BumpMap(renderer.surface, texels, STEEP)
     return draw(renderer, render.Skin(stream, render.SkinMaps(bumps=bumps)), style)
@@ -78,11 +79,11 @@ def test_per_pixel_shading_alone_has_them(surface, shading):
 def test_part_of_a_mesh_has_bumps_without_a_crack(renderer):
     """With a level map, a sphere half of whose vertices bump looks as it does without."""
     shape = sphere()
-    stream = lent(renderer, shape, columns=10)
+    stream = lent(renderer, shape, columns=16)
     level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
     frames = []
     for share in (0.0, 0.5):
-        stream.vertices[: int(share * len(shape.positions)), 8:] = 1.0
+        stream.vertices[: int(share * len(shape.positions)), 8:10] = 1.0
         stream.upload(len(shape.positions), len(shape.triangles), has_bumps=True)
         frames.append(draw(renderer, render.Skin(stream, render.SkinMaps(bumps=level))))
     assert np.abs(frames[0] - frames[1]).max() <= 1
@@ -94,8 +95,25 @@ def test_what_does_not_fit_is_refused(renderer):
         render.BumpMap(renderer.surface, np.zeros((4, 4, 3), np.uint8), STEEP)
     shape = square()
     stream = lent(renderer, shape)
-    with pytest.raises(ValueError, match=r"bumps on a stream of 6 columns.* lend a stream of 10"):
+    with pytest.raises(ValueError, match=r"bumps on a stream of 6 columns.* lend a stream of 16"):
         stream.upload(4, 2, has_bumps=True)
     level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
     with pytest.raises(ValueError, match="8 columns"):
         render.Skin(stream, render.SkinMaps(bumps=level))
+
+
+def test_a_furrow_runs_whole_over_unequal_triangles(renderer):
+    """Light on a slope does not jump where one triangle is stretched more than its neighbour."""
+    shape = square()
+    stream = lent(renderer, shape, columns=16)
+    stream.vertices[:, 6:8] = shape.positions[:, :2] / 100.0 + 0.5
+    stream.vertices[1, 6:8] = (0.6, 0.4)
+    stream.vertices[:, 8:10] = 1.0
+    stream.vertices[:, 10:] = (0.01, 0.0, 0.0, 0.0, 0.01, 0.0)
+    stream.upload(len(shape.positions), len(shape.triangles), has_bumps=True)
+    texels = np.full((32, 32, 4), (190, 128, 0, 0), np.uint8)
+    skin = render.Skin(stream, render.SkinMaps(bumps=render.BumpMap(renderer.surface, texels, 1e2)))
+    frame = draw(renderer, skin)
+    beside = np.abs(at(frame, 5, -5) - at(frame, -5, 5))
+    across = np.abs(at(frame, 10, 0) - at(frame, 5, -5))
+    assert beside.max() <= across.max() + 2

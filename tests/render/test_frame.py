@@ -27,7 +27,7 @@ def renderer(request: pytest.FixtureRequest) -> Iterator[render.Renderer]:
 def frames_of(renderer):
     """Frames that need everything: shadows, hidden triangles, opened skin, hair, maps, clips."""
     shape = joined(square(70.0, z=-45.0), sphere(2, 30.0))
-    stream = lent(renderer, shape, columns=10)
+    stream = lent(renderer, shape, columns=16)
     stream.vertices[:, 8:] = 1.0
     stream.upload(len(shape.positions), len(shape.triangles), has_bumps=True)
     bumps = render.BumpMap(renderer.surface, np.full((8, 8, 4), FURROWED, np.uint8), 100.0)

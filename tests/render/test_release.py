@@ -47,11 +47,11 @@ def draw_all(surface):
     """A picture that needs every program and buffer; nobody holds anything after it."""
     renderer = render.Renderer(surface)
     shape = sphere()
-    stream = renderer.lend_stream(len(shape.positions), len(shape.triangles), 10)
+    stream = renderer.lend_stream(len(shape.positions), len(shape.triangles), 16)
     stream.vertices[:, :3] = shape.positions
     stream.vertices[:, 3:6] = shape.normals
     stream.triangles[:] = shape.triangles
-    stream.vertices[:, 8:] = np.linspace(0.0, 1.0, 2 * len(shape.positions)).reshape(-1, 2)
+    stream.vertices[:, 8:10] = np.linspace(0.0, 1.0, 2 * len(shape.positions)).reshape(-1, 2)
     stream.upload(len(shape.positions), len(shape.triangles), has_bumps=True)
     texture = render.Texture(renderer.surface, np.full((8, 8, 3), 200, np.uint8))
     bumps = render.BumpMap(renderer.surface, np.full((8, 8, 4), 128, np.uint8), 1.0)
