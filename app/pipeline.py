@@ -49,7 +49,7 @@ class Pipeline:
         self._compression: Compression | None = None
         if (wrinkles := scene.skin.wrinkles) is not None:
             self._compression = Compression(scene)
-            bumps = render.BumpMap(renderer.surface, wrinkles.map, wrinkles.steepest)
+            bumps = renderer.bump_map(wrinkles.map, wrinkles.steepest)
             self.maps = render.SkinMaps(bumps=bumps)
         self.set_tone(None)
 
@@ -62,8 +62,10 @@ class Pipeline:
         skin = self.scene.skin
         if skin.albedo is not None:
             albedo = skin.albedo if tone is None or skin.in_tone is None else skin.in_tone(tone)
-            beside = skin.ambient_occlusion, skin.fine_shape
-            texture = render.Texture(self.renderer.surface, albedo, *beside)
+            fine = skin.fine_shape
+            bumps = None if fine is None else self.renderer.bump_map(*fine, channels=2)
+            surface = self.renderer.surface
+            texture = render.Texture(surface, albedo, skin.ambient_occlusion, bumps)
             self.maps = replace(self.maps, texture=texture)
 
     def step(self, seconds: float) -> None:

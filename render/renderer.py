@@ -7,6 +7,7 @@ Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the
 
 from collections.abc import Sequence
 from contextlib import nullcontext
+from weakref import WeakValueDictionary
 
 import moderngl
 import numpy as np
@@ -31,7 +32,7 @@ from .programs import compile_program, write_uniform
 from .shadow import Shadow, ShadowMap
 from .stream import GpuStream, Share, Stream
 from .style import ColourBy, Style
-from .surface import NEWEST_VERSION, Surface
+from .surface import NEWEST_VERSION, Image, Surface
 from .texture import BumpMap
 from .translucency import SUNK_DEPTH, blending, draw_nearest, fade_seen, set_cut, set_translucency
 
@@ -51,6 +52,7 @@ class Renderer:
         self.lends_gpu_streams = self._gl.version_code >= NEWEST_VERSION
         self._programs: dict[tuple[str, ...], moderngl.Program] = {}
         self._parts = PartStore(self._gl)
+        self._bump_maps: WeakValueDictionary[int, BumpMap] = WeakValueDictionary()
         self._backdrop = Backdrop(self._gl)
         self._shadow_map: ShadowMap | None = None
         self._geometry_buffer: GeometryBuffer | None = None
@@ -70,6 +72,17 @@ class Renderer:
         """
         self.surface.make_current()
         return GpuStream(self._gl, vertex_capacity, triangle_capacity, columns, margin)
+
+    def bump_map(self, texels: Image, steepest: float, channels: int = 4) -> BumpMap:
+        """The map of these texels (see BumpMap), which skins share: another call finds it.
+
+        It goes with the last skin that has it. Texels must not change.
+        """
+        known = self._bump_maps.get(id(texels))
+        if known is None or known.steepest != steepest:
+            known = BumpMap(self.surface, texels, steepest, channels)
+            self._bump_maps[id(texels)] = known
+        return known
 
     def draw(self, *frames: Frame) -> None:
         """Draw a picture of frames, each in its viewport; where there is none it is black.

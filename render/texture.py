@@ -15,7 +15,6 @@ from risorius.geometry.colour import to_linear
 from ..geometry.arrays import Floats32
 from .surface import Image, Surface, is_software
 
-Slopes = tuple[Image, float]  # a map (H, W, 2), and the slope of 255 in it, see `BumpMap`
 _SAMPLED_TEXELS = 10_000  # of an image, about, for the median of its redness
 LIGHTNESS = 0.3, 0.6, 0.1  # how light red, green and blue look
 # Texture units; 4 is for a window's enlargement.
@@ -55,14 +54,13 @@ class Texture(_Mipmaps):
         surface: Surface,
         image: Image,
         occlusion: Image | None = None,
-        fine_shape: Slopes | None = None,
+        fine_shape: "BumpMap | None" = None,
     ) -> None:
         """Hand an image to the OpenGL of a surface, (H, W, 3), uint8: sRGB, top row first.
 
         Texture coordinate v is 1 at the top.
         occlusion: how much of the light from all around gets there, 255 = all, (H, W), uint8.
-        fine_shape: slopes of its height along u and v (128 is level), (h, w, 2), uint8, and
-            that of 255 [mm for a whole texture coordinate]. Per-pixel shading alone has it.
+        fine_shape: of two channels. Per-pixel shading alone has it.
         Raises ValueError for an image of another shape or type, or beyond the driver's limit.
         """
         gl = surface.gl
@@ -84,7 +82,7 @@ class Texture(_Mipmaps):
         if gl.max_anisotropy > 1.0 and not is_software(gl.info["GL_RENDERER"]):
             self._texture.anisotropy = min(ANISOTROPY, gl.max_anisotropy)
         self._around = self._means(gl)
-        self.fine_shape = None if fine_shape is None else BumpMap(surface, *fine_shape, 2)
+        self.fine_shape = fine_shape
 
     def _means(self, gl: moderngl.Context) -> moderngl.Texture:
         """The lightness of the skin around each place: software reads one number, not four."""
@@ -110,7 +108,8 @@ class Texture(_Mipmaps):
 class BumpMap(_Mipmaps):
     """The fine shape of a surface: furrows that come and go, or relief (2 bytes) that always shows.
 
-    steepest: slope of a full byte [scene's unit for one unit of the texture coordinates].
+    texels: as they were given. steepest: slope of a full byte [scene's unit for one unit of the
+    texture coordinates].
     define: for programs that look it up.
     """
 
@@ -123,6 +122,7 @@ class BumpMap(_Mipmaps):
         """
         kind, more = ("fine shape", "") if channels == 2 else ("bump map", ", depth, slot")
         _check(texels, kind, channels, f"slopes along u and v{more}")
+        self.texels = texels
         self.steepest = steepest
         self.define, self._unit = ("FINE", _FINE_UNIT) if channels == 2 else ("BUMPS", _BUMP_UNIT)
         super().__init__(surface, texels)

@@ -27,7 +27,7 @@ import numpy as np
 from ..geometry.arrays import Flags, Floats64, Integers32, Unsigned32
 from ..jit import njit
 from .landmarks import Side
-from .rig import Fibre, LinearMuscle
+from .rig import Fibre
 from .skull import RigidMotion
 from .surface import SkinSurface
 
@@ -79,28 +79,28 @@ class LineMotion(NamedTuple):
         )
 
 
-def build_fibre(
-    fibre: Fibre, muscle: LinearMuscle, surface: SkinSurface, landmarks: Floats64, side: Side
-) -> Floats64:
-    """Points of one fibre [mm], shape (FIBRE_POINTS, 3), bent to the skin by the muscle's wrap."""
+def straight_fibre(fibre: Fibre, landmarks: Floats64, side: Side) -> Floats64:
+    """Points of one fibre [mm], shape (FIBRE_POINTS, 3), from its origin to its insertion."""
     along = np.linspace(0.0, 1.0, FIBRE_POINTS)[:, None]
     origin = fibre.origin.on(landmarks, side)
     insertion = fibre.insertion.on(landmarks, side)
-    points = origin * (1.0 - along) + insertion * along
-    return points if muscle.wrap == 0.0 else bent_to_skin(points, surface, muscle.wrap)
+    points: Floats64 = origin * (1.0 - along) + insertion * along
+    return points
 
 
-def bent_to_skin(points: Floats64, surface: SkinSurface, share: float) -> Floats64:
-    """Points (n, 3) of a line moved by a share of the way to the skin near them."""
-    if surface.vertex_count < WRAP_NEIGHBOURS:
-        return points
-    skin, normal = over_skin(points, surface, surface.positions, surface.normals)
+def bent_to_skin(lines: Floats64, surface: SkinSurface, shares: Floats64) -> Floats64:
+    """Lines (n, FIBRE_POINTS, 3) moved by shares (n,) of the way to the skin near their points."""
+    if surface.vertex_count < WRAP_NEIGHBOURS or not len(lines):
+        return lines
+    skin, normal = over_skin(lines.reshape(-1, 3), surface, surface.positions, surface.normals)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
-    correction = ((skin - points) * normal).sum(axis=1, keepdims=True) * normal
+    off = skin - lines.reshape(-1, 3)
+    correction = ((off * normal).sum(axis=1, keepdims=True) * normal).reshape(lines.shape)
     for _ in range(2):  # single vertices must not put kinks into a fibre
-        inner = 0.25 * correction[:-2] + 0.5 * correction[1:-1] + 0.25 * correction[2:]
-        correction[1:-1] = inner
-    bent: Floats64 = points + share * correction
+        before = correction[:, :-2]
+        after = correction[:, 2:]
+        correction[:, 1:-1] = 0.25 * before + 0.5 * correction[:, 1:-1] + 0.25 * after
+    bent: Floats64 = lines + shares[:, None, None] * correction
     return bent
 
 

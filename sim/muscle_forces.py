@@ -168,24 +168,24 @@ def _bundle(
     Origins are on their bone; insertions and sphincters are carried like the skin there.
     """
     lines = [(n, placed[n].muscle, line) for n in order for line in placed[n].lines]
-    carried = []
-    contraction = []
-    fixed_at = []
-    for _, muscle, line in lines:
+    points = np.array([line.points for _, _, line in lines]).reshape(-1, FIBRE_POINTS, 3)
+    (over,) = over_skin(points.reshape(-1, 3), surface, mandible_weight)
+    carried = over.reshape(-1, FIBRE_POINTS)
+    ends = mandible_weight[surface.nearest(points[:, -1])]
+    contraction = np.zeros(len(lines))
+    fixed_at = np.zeros(len(lines))
+    for b, (_, muscle, _) in enumerate(lines):
         if isinstance(muscle, LinearMuscle):
             start = 1.0 if muscle.bone == "mandible" else 0.0
-            end = mandible_weight[surface.nearest(line.points[-1:])[0]]
-            carried.append(np.linspace(start, end, FIBRE_POINTS))
-        else:
-            carried += over_skin(line.points, surface, mandible_weight)
-        contraction.append(muscle.contraction if isinstance(muscle, LinearMuscle) else 0.0)
-        fixed_at.append(muscle.fixed_at if isinstance(muscle, LinearMuscle) else 0.0)
+            carried[b] = np.linspace(start, ends[b], FIBRE_POINTS)
+            contraction[b] = muscle.contraction
+            fixed_at[b] = muscle.fixed_at
     return FibreBundle(
         muscle=np.array([n for n, _, _ in lines], dtype=np.int32),
-        points=np.array([line.points for _, _, line in lines]).reshape(-1, FIBRE_POINTS, 3),
-        mandible=np.array(carried).reshape(-1, FIBRE_POINTS),
-        contraction=np.array(contraction, dtype=np.float64),
-        fixed_at=np.array(fixed_at, dtype=np.float64),
+        points=points,
+        mandible=carried,
+        contraction=contraction,
+        fixed_at=fixed_at,
     )
 
 
@@ -220,16 +220,24 @@ def _carries(
     lies[np.repeat(np.arange(len(lies)), np.diff(stack.rows)), stack.point] = True
     parts: list[Part] = []
     least_carried = 0.05  # likewise those by which one muscle carries the skin on another
+    nothing = np.zeros(len(strength)), np.zeros(len(strength))
     for n in order:
+        lines = placed[n].lines
+        if not lies[len(parts) : len(parts) + len(lines)].any():
+            parts += [nothing] * len(lines)
+            continue
         k = placed[n].muscle.stiffness * strength
-        weights = np.stack([line.skin.weight for line in placed[n].lines])
+        weights = np.stack([line.skin.weight for line in lines])
         hangs_on = weights.argmax(axis=0)
-        for f, line in enumerate(placed[n].lines):
-            place = points_along(line, line.skin.arc)
-            before = np.minimum(place.astype(np.int64), FIBRE_POINTS - 2)
+        for f, line in enumerate(lines):
+            place = np.zeros(len(k))
+            on = np.flatnonzero((hangs_on == f) & (weights[f] > least_carried))
+            place[on] = points_along(line, line.skin.arc[on])
+            before = np.minimum(place[on].astype(np.int64), FIBRE_POINTS - 2)
             lies_there = lies[len(parts), before] | lies[len(parts), before + 1]
-            on = lies_there & (hangs_on == f) & (weights[f] > least_carried)
-            parts.append((k * weights[f] * on, place))
+            weight = np.zeros(len(k))
+            weight[on] = k[on] * weights[f][on] * lies_there
+            parts.append((weight, place))
     return parts
 
 

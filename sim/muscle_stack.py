@@ -23,15 +23,14 @@ Differs from it: a point hangs on a muscle by a smooth weight, which fades towar
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.arrays import Floats64
+from ..geometry.arrays import Floats64, Integers64
 from .fibres import FIBRE_POINTS, SAMPLES, Stack, over_skin
 from .muscles import AttachedPoints, Line, PlacedMuscle, attach
 from .surface import SkinSurface
-
-Entry = tuple[int, int, float, float, float, Floats64]  # a row of Stack, in its order
 
 
 def bottom_up(placed: Sequence[PlacedMuscle]) -> list[int]:
@@ -56,24 +55,21 @@ def stack_muscles(
     lip_side: Floats64,
 ) -> Stack:
     """Find the lines under each point of each line; numbered muscle by muscle in `order`."""
-    numbers = {}
-    count = 0
+    lines = [line for n in order for line in placed[n].lines]
+    points = np.array([line.points for line in lines]).reshape(-1, FIBRE_POINTS, 3)
+    normals, sides = over_skin(points.reshape(-1, 3), surface, surface.normals, lip_side)
+    owners = np.repeat(order, [len(placed[n].lines) for n in order])
+    first = 0
+    found = list[_Carried]()
     for n in order:
-        numbers[n] = count
-        count += len(placed[n].lines)
-    rows = [0]
-    found = list[Entry]()
-    for n in order:
-        beneath = {numbers[m]: placed[m] for m in numbers if _is_under(placed[m], placed[n])}
-        for line in placed[n].lines:
-            if not beneath:
-                rows.append(len(found))
-                continue
-            normals, sides = over_skin(line.points, surface, surface.normals, lip_side)
-            places = AttachedPoints(line.points, normals, sides)
-            found += _entries(beneath, landmarks, places)
-            rows.append(len(found))
-    return _stack_of(rows, found)
+        above = [m for m in order if _is_under(placed[n], placed[m])]
+        if above:
+            # Places are numbered through: FIBRE_POINTS of each line.
+            on = np.flatnonzero(np.repeat(np.isin(owners, above), FIBRE_POINTS))
+            places = AttachedPoints(points.reshape(-1, 3)[on], normals[on], sides[on])
+            found.append(_carried(placed[n], first, landmarks, places, on))
+        first += len(placed[n].lines)
+    return _stack_of(found, len(lines))
 
 
 def _is_under(below: PlacedMuscle, above: PlacedMuscle) -> bool:
@@ -82,30 +78,40 @@ def _is_under(below: PlacedMuscle, above: PlacedMuscle) -> bool:
     return below.muscle.name in above.muscle.lies_on and not is_beside
 
 
-def _entries(
-    beneath: dict[int, PlacedMuscle], landmarks: Floats64, places: AttachedPoints
-) -> list[Entry]:
-    """The lines under the points of a line, with shares that sum to at most 1 for each point.
+class _Carried(NamedTuple):
+    """What hangs on one muscle, in the columns of `Stack`."""
 
-    beneath: the muscles, by the number of their first line.
+    at: Integers64  # (n,) number of the point, FIBRE_POINTS of each line
+    line: Integers64  # (n,)
+    sample: Floats64  # (n,)
+    place: Floats64  # (n,)
+    weight: Floats64  # (n,)
+    steady: Floats64  # (n, 3)
+
+
+def _carried(
+    beneath: PlacedMuscle,
+    first: int,
+    landmarks: Floats64,
+    places: AttachedPoints,
+    at: Integers64,
+) -> _Carried:
+    """Hang points, of these numbers, on a muscle, each on the line that holds it most.
+
+    first: number of the muscle's first line.
     """
-    entries = list[Entry]()
-    held = np.zeros(FIBRE_POINTS)
-    for first, placed in beneath.items():
-        holds = [attach(placed, line, landmarks, places) for line in placed.lines]
-        strongest = np.argmax([hold.weight for hold in holds], axis=0)
-        for f, hold in enumerate(holds):
-            sample = hold.arc * (SAMPLES - 1)
-            place = points_along(placed.lines[f], hold.arc)
-            for p in np.flatnonzero(strongest == f).tolist():
-                weight = float(hold.weight[p])
-                row = p, first + f, float(sample[p]), float(place[p]), weight, hold.steady[p]
-                entries.append(row)
-                held[p] += weight
-    most = np.maximum(held, 1.0)
-    shared = [(*row[:4], row[4] / most[row[0]], row[5] / most[row[0]]) for row in entries]
-    least_share = 0.02  # of a displacement: less carries nothing
-    return [row for row in shared if row[4] > least_share]
+    holds = [attach(beneath, line, landmarks, places) for line in beneath.lines]
+    along = [points_along(line, hold.arc) for line, hold in zip(beneath.lines, holds, strict=True)]
+    strongest = np.argmax([hold.weight for hold in holds], axis=0)
+    each = strongest, np.arange(len(at))
+    return _Carried(
+        at,
+        first + strongest,
+        np.array([hold.arc for hold in holds])[each] * (SAMPLES - 1),
+        np.array(along)[each],
+        np.array([hold.weight for hold in holds])[each],
+        np.array([hold.steady for hold in holds])[each],
+    )
 
 
 def points_along(line: Line, arc: Floats64) -> Floats64:
@@ -116,15 +122,28 @@ def points_along(line: Line, arc: Floats64) -> Floats64:
     return places
 
 
-def _stack_of(rows: Sequence[int], found: Sequence[Entry]) -> Stack:
-    """Arrays of the entries that were found."""
-    point, line, sample, place, share, steady = zip(*found, strict=True) if found else [()] * 6
+def _stack_of(found: Sequence[_Carried], line_count: int) -> Stack:
+    """What was found, line by line, with shares that sum to at most 1 for each point."""
+    if not found:
+        none = np.zeros(0)
+        nobody = np.zeros(0, np.int64)
+        found = [_Carried(nobody, nobody, none, none, none, np.zeros((0, 3)))]
+    joined = _Carried(*(np.concatenate(column) for column in zip(*found, strict=True)))
+    held = np.zeros(line_count * FIBRE_POINTS)
+    np.add.at(held, joined.at, joined.weight)
+    most = np.maximum(held, 1.0)[joined.at]
+    share = joined.weight / most
+    least_share = 0.02  # of a displacement: less carries nothing
+    on = np.flatnonzero(share > least_share)
+    owner, point = np.divmod(joined.at[on], FIBRE_POINTS)
+    sorting = np.lexsort((point, joined.line[on], owner))
+    on = on[sorting]
     return Stack(
-        rows=np.array(rows, dtype=np.uint32),
-        point=np.array(point, dtype=np.uint32),
-        line=np.array(line, dtype=np.uint32),
-        sample=np.array(sample, dtype=np.float64),
-        place=np.array(place, dtype=np.float64),
-        share=np.array(share, dtype=np.float64),
-        steady=np.array(steady, dtype=np.float64).reshape(-1, 3),
+        rows=np.searchsorted(owner[sorting], np.arange(line_count + 1)).astype(np.uint32),
+        point=point[sorting].astype(np.uint32),
+        line=joined.line[on].astype(np.uint32),
+        sample=joined.sample[on],
+        place=joined.place[on],
+        share=share[on],
+        steady=joined.steady[on] / most[on, None],
     )

@@ -12,13 +12,14 @@ and bulge acts along the skin normal. Weights were fitted to scanned expressions
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from ..geometry.arrays import Floats64, Integers32
-from .fibres import FIBRE_POINTS, bent_to_skin, build_fibre, fibre_coordinates
+from .fibres import FIBRE_POINTS, bent_to_skin, fibre_coordinates, straight_fibre
 from .landmarks import Side, smoothstep
 from .rig import MOUTH, Fibre, LinearMuscle, Muscle, Rig, RingMuscle
 from .skull import LATERAL, UP, rotation
@@ -78,23 +79,43 @@ def place_muscles(
 ) -> tuple[PlacedMuscle, ...]:
     """Lay all linear and ring muscles of a rig into a face, in rig order, left before right."""
     skin = AttachedPoints(surface.positions, surface.normals, lip_side)
+    laid = _laid_lines(rig, surface, landmarks)
     placed = []
     for muscle in rig.muscles:
         for name, side in sides_of(muscle):
             if isinstance(muscle, LinearMuscle):
                 lines = []
                 for fibre in muscle.fibres:
-                    points = build_fibre(fibre, muscle, surface, landmarks, side)
+                    points = next(laid)
                     lines.append(
                         Line(points, fibre, attach_to_fibre(muscle, fibre, points, side, skin))
                     )
                 placed.append(PlacedMuscle(name, muscle, side, tuple(lines)))
             elif isinstance(muscle, RingMuscle):
-                points = _ring_line(muscle, surface, landmarks, side)
+                points = next(laid)
                 hold = attach_to_ring(muscle, points, landmarks, side, skin)
                 ring = _ring_vertices(muscle, surface.positions, landmarks, hold.weight, side)
                 placed.append(PlacedMuscle(name, muscle, side, (Line(points, None, hold),), ring))
     return tuple(placed)
+
+
+def _laid_lines(rig: Rig, surface: SkinSurface, landmarks: Floats64) -> Iterator[Floats64]:
+    """The lines of all muscles, on the skin as far as they wrap around it; in rig order.
+
+    The skin near all of them is looked up at once.
+    """
+    straight = []
+    wraps = []
+    for muscle in rig.muscles:
+        for _, side in sides_of(muscle):
+            if isinstance(muscle, LinearMuscle):
+                straight += [straight_fibre(each, landmarks, side) for each in muscle.fibres]
+                wraps += [muscle.wrap] * len(muscle.fibres)
+            elif isinstance(muscle, RingMuscle):
+                straight.append(_ring_line(muscle, landmarks, side))
+                wraps.append(1.0)
+    lines = np.array(straight, dtype=np.float64).reshape(-1, FIBRE_POINTS, 3)
+    return iter(bent_to_skin(lines, surface, np.array(wraps, dtype=np.float64)))
 
 
 def sides_of(muscle: Muscle) -> tuple[tuple[str, Side], ...]:
@@ -141,12 +162,15 @@ def attach_to_fibre(
         points, places.positions, width=muscle.width * factor, beyond=muscle.beyond * factor
     )
     weight = fibre.weight * at.weight * _gate(muscle, side, places)
-    drawn = fibre.gain * fibre.convergence * muscle.contraction * at.arc
+    on = np.flatnonzero(weight)  # a fibre reaches a tenth of the skin
+    arc = at.arc[on]
+    drawn = fibre.gain * fibre.convergence * muscle.contraction * arc
     bulge_spread = 0.3  # of the fibre's length (fitted)
-    bulge = muscle.bulge * np.exp(-(((at.arc - muscle.bulge_at) / bulge_spread) ** 2))
+    bulge = muscle.bulge * np.exp(-(((arc - muscle.bulge_at) / bulge_spread) ** 2))
     bulge += fibre.lift
-    steady = (weight * drawn)[:, None] * (at.foot - places.positions)
-    steady += (weight * bulge)[:, None] * places.normals
+    steady = np.zeros((len(weight), 3))
+    steady[on] = (weight[on] * drawn)[:, None] * (at.foot[on] - places.positions[on])
+    steady[on] += (weight[on] * bulge)[:, None] * places.normals[on]
     return Attachment(weight, at.arc, steady)
 
 
@@ -155,7 +179,25 @@ def attach_to_ring(
 ) -> Attachment:
     """Hang places on a sphincter: an elliptic ring around `shape`, drawn to `centre`."""
     x = places.positions
-    centre = muscle.centre.on(landmarks, side)
+    _, up, down = muscle.radii
+    rho, weight = _within_ring(muscle, landmarks, side, places)
+    on = np.flatnonzero(weight)  # most of the skin lies beside the arc or on the other lip
+    steady = np.zeros((len(x), 3))
+    held = AttachedPoints(*(each[on] for each in places))
+    steady[on] = weight[on, None] * _ring_pull(muscle, landmarks, side, held)
+    if (muscle.shape or muscle.centre) == MOUTH:  # between the lips both halves are as near
+        to_line = np.where(places.lip_side > 0.0, up, down) * np.maximum(1.0 - rho, 0.0)
+        x = x + (places.lip_side * to_line)[:, None] * UP
+    arc = np.zeros(len(x))
+    arc[on] = fibre_coordinates(points, x[on], width=1.0, beyond=1.0).arc
+    return Attachment(weight, arc, steady)
+
+
+def _within_ring(
+    muscle: RingMuscle, landmarks: Floats64, side: Side, places: AttachedPoints
+) -> tuple[Floats64, Floats64]:
+    """How far out places lie, 1 on the ellipse, and how firmly a sphincter holds them, (n,)."""
+    x = places.positions
     lateral, up, down = muscle.radii
     d = x - _middle(muscle, landmarks, side)
     rho = np.hypot(d[:, 0] / lateral, np.where(d[:, 1] > 0.0, d[:, 1] / up, d[:, 1] / down))
@@ -169,6 +211,15 @@ def attach_to_ring(
     face_depth = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
     weight *= x[:, 2] > landmarks[[36, 45], 2].mean() - face_depth
     weight *= _gate(muscle, side, places)
+    return rho, weight
+
+
+def _ring_pull(
+    muscle: RingMuscle, landmarks: Floats64, side: Side, places: AttachedPoints
+) -> Floats64:
+    """Where to a sphincter draws places at full activation [mm], shape (n, 3)."""
+    x = places.positions
+    centre = muscle.centre.on(landmarks, side)
     pull = np.array(muscle.contraction) * (centre - x)
     if muscle.opening != (0.0, 0.0):
         pull[:, :2] = _round_mouth(muscle, x, landmarks) - x[:, :2]
@@ -184,11 +235,7 @@ def attach_to_ring(
     flare_height = 3.0  # mm from the mouth line where the flare is three quarters of its full size
     pull[:, 1] += muscle.flare * np.tanh((x[:, 1] - seam) / flare_height) * across
     pull += muscle.bulge * places.normals
-    if (muscle.shape or muscle.centre) == MOUTH:  # between the lips both halves are as near
-        to_line = np.where(places.lip_side > 0.0, up, down) * np.maximum(1.0 - rho, 0.0)
-        x = x + (places.lip_side * to_line)[:, None] * UP
-    arc = fibre_coordinates(points, x, width=1.0, beyond=1.0).arc
-    return Attachment(weight, arc, weight[:, None] * pull)
+    return pull
 
 
 def _round_mouth(muscle: RingMuscle, x: Floats64, landmarks: Floats64) -> Floats64:
@@ -225,13 +272,11 @@ def _outline(muscle: RingMuscle, side: Side, half_deg: float, count: int) -> Flo
     return np.stack([across, height * np.sin(around), np.zeros(count)], axis=1)
 
 
-def _ring_line(
-    muscle: RingMuscle, surface: SkinSurface, landmarks: Floats64, side: Side
-) -> Floats64:
-    """The line along a sphincter as far as it reaches, on the skin, shape (FIBRE_POINTS, 3)."""
+def _ring_line(muscle: RingMuscle, landmarks: Floats64, side: Side) -> Floats64:
+    """The line along a sphincter's ellipse as far as it reaches, shape (FIBRE_POINTS, 3)."""
     _, half, fade = muscle.arc_deg
     outline = _outline(muscle, side, min(half + fade, 180.0), FIBRE_POINTS)
-    return bent_to_skin(_middle(muscle, landmarks, side) + outline, surface, 1.0)
+    return _middle(muscle, landmarks, side) + outline
 
 
 def _ring_vertices(

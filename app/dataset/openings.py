@@ -45,9 +45,16 @@ def opening(near: Array, edge: Array) -> float:
     # Vertical planes across the opening, in which lines of sight lie.
     columns = np.linspace(left + end_width, right - end_width, 40)
     heights = np.interp(columns, *edge[np.argsort(edge[:, 0]), :2].T)
+    x = near[:, :, 0]
+    is_crossed = (x.min(axis=1) < columns[:, None]) & (x.max(axis=1) > columns[:, None])
+    column, triangle = np.nonzero(is_crossed)
+    cut, meets = cut_by(near[triangle], columns[column, None])
+    low = np.where(meets, cut[:, :, 1], np.inf).min(axis=1)
+    high = np.where(meets, cut[:, :, 1], -np.inf).max(axis=1)
+    first = np.searchsorted(column, np.arange(len(columns) + 1)).tolist()
     return max(
-        _widest_opening(near, column, height)
-        for column, height in zip(columns, heights, strict=True)
+        _widest_gap(low[start:end], high[start:end], height)
+        for start, end, height in zip(first, first[1:], heights, strict=False)
     )
 
 
@@ -57,15 +64,11 @@ def around(triangles: Array, middle: Array, reach: float) -> Array:
     return near
 
 
-def _widest_opening(triangles: Array, x: float, middle: float) -> float:
-    """Greatest height [mm] of a gap between triangles, looked at along z in the plane at x.
+def _widest_gap(low: Array, high: Array, middle: float) -> float:
+    """Greatest height [mm] of a gap between the triangles that one plane cuts.
 
-    It begins within WINDOW of the height `middle`; triangles: corners, shape (n, 3, 3).
+    It begins within a window of the height `middle`. low, high: the ends of each cut, shape (n,).
     """
-    is_crossed = (triangles[:, :, 0].min(axis=1) < x) & (triangles[:, :, 0].max(axis=1) > x)
-    cut, meets = cut_by(triangles[is_crossed], x)
-    low = np.where(meets, cut[:, :, 1], np.inf).min(axis=1)
-    high = np.where(meets, cut[:, :, 1], -np.inf).max(axis=1)
     order = np.argsort(low)
     reached = np.maximum.accumulate(high[order])[:-1]
     open_above = low[order][1:] - reached
@@ -80,8 +83,11 @@ def to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
     return facing
 
 
-def cut_by(triangles: Array, x: float) -> tuple[Array, npt.NDArray[np.bool_]]:
-    """Where the plane at x meets the sides of triangles (n, 3, 3): points (n, 3, 3), whether."""
+def cut_by(triangles: Array, x: float | Array) -> tuple[Array, npt.NDArray[np.bool_]]:
+    """Where the plane at x meets the sides of triangles (n, 3, 3): points (n, 3, 3), whether.
+
+    x: of all, or of each, shape (n, 1).
+    """
     end = np.roll(triangles, -1, axis=1)
     run = end[:, :, 0] - triangles[:, :, 0]
     share = (x - triangles[:, :, 0]) / np.where(run == 0.0, np.inf, run)

@@ -125,17 +125,17 @@ def _fitted(shares: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
 def _rays(shares: Floats64) -> list[list[int]]:
     """The controls (L, C) in groups of those that do the same, from weak to strong in each."""
     strengths = np.linalg.norm(shares, axis=1)
+    lengths = np.maximum(np.outer(strengths, strengths), 1e-30)
+    does_the_same = shares @ shares.T / lengths > 1.0 - 1e-9  # but one more of it
     rays: list[list[int]] = []
-    for control in np.argsort(strengths, kind="stable"):
+    for control in np.argsort(strengths, kind="stable").tolist():
         for ray in rays:
-            cosine = shares[control] @ shares[ray[0]] / (strengths[control] * strengths[ray[0]])
-            # Two controls do the same, but one more of it.
-            if cosine > 1.0 - 1e-9:
-                ray.append(int(control))
+            if does_the_same[control, ray[0]]:
+                ray.append(control)
                 break
         else:
             if strengths[control] > 0.0:
-                rays.append([int(control)])
+                rays.append([control])
     return rays
 
 

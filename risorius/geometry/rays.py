@@ -53,9 +53,10 @@ def exits(
     middle /= np.maximum(np.linalg.norm(middle, axis=1, keepdims=True), PARALLEL)
     # A triangle lies in the cone around its middle that its corners span, unless that is blunt.
     cone = np.einsum("fik,fk->fi", ways, middle).min(axis=1)
-    cone_slack = 1e-9  # of a cosine, for rounding
-    cone = np.where(cone > 0.0, cone - cone_slack, -2.0)
-    ray, face = np.nonzero(directions @ middle.T >= cone)
+    cone_slack = 1e-6  # of a cosine, for rounding
+    cone = np.where(cone > 0.0, cone - cone_slack, -2.0).astype(np.float32)
+    cosines = directions.astype(np.float32) @ middle.T.astype(np.float32)
+    ray, face = np.nonzero(cosines >= cone)
     _, u, v, distance = crossings(np.zeros(3), directions[ray], corners[face])
     is_met = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (distance > 0.0)
     ray = ray[is_met]

@@ -10,11 +10,13 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 def read_only(array: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
-    """View an array so that it cannot be written through the view.
+    """View an array so that it cannot be written through the view; itself where it cannot be.
 
     Compiled code reads by numbers of vertices that were checked once. A change of one of them
     afterwards would let it read beyond the end of an array.
     """
+    if not array.flags.writeable:
+        return array
     view = array.view()
     view.flags.writeable = False
     return view

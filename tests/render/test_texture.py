@@ -1,5 +1,7 @@
 """Skin from a picture: where it lies, how bright it is, what goes over it."""
 
+import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -27,7 +29,8 @@ def textured(
     stream = lent(renderer, shape, columns=8)
     stream.vertices[:, 6:] = shape.positions[:, :2] / 100.0 + 0.5
     stream.upload(len(shape.positions), len(shape.triangles))
-    texture = render.Texture(renderer.surface, image, occlusion, fine_shape)
+    fine = None if fine_shape is None else renderer.bump_map(*fine_shape, channels=2)
+    texture = render.Texture(renderer.surface, image, occlusion, fine)
     skin = render.Skin(stream, render.SkinMaps(texture), values=values)
     return draw(renderer, skin, style, camera=camera)
 
@@ -201,6 +204,19 @@ def test_fine_shape_tilts_what_each_pixel_shows(surface, shading, is_textured):
 
 def test_fine_shape_that_is_none_is_refused(surface):
     """A map of wrinkles is none."""
-    maps = None, (np.zeros((4, 4, 4), np.uint8), 1.0)
     with pytest.raises(ValueError, match=r"the fine shape has shape \(4, 4, 4\)"):
-        render.Texture(surface, plain_image((180, 140, 120)), *maps)
+        render.BumpMap(surface, np.zeros((4, 4, 4), np.uint8), 1.0, 2)
+
+
+def test_maps_are_uploaded_once(surface):
+    """Persons share their maps of wrinkles and pores; one that nobody has goes."""
+    renderer = render.Renderer(surface)
+    texels = np.full((8, 8, 4), 128, np.uint8)
+    first = renderer.bump_map(texels, 1.0)
+    assert renderer.bump_map(texels, 1.0) is first
+    assert renderer.bump_map(texels.copy(), 1.0) is not first
+    assert renderer.bump_map(texels, 2.0) is not first
+    gone = weakref.ref(first)
+    del first
+    gc.collect()
+    assert gone() is None
