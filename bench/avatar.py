@@ -19,11 +19,12 @@ import numpy.typing as npt
 from risorius.app.errors import UserError
 from risorius.app.performances import built_in_words
 from risorius.app.recordings.names import ARKIT
-from risorius.app.rig.avatar import Avatar, RigRequest, avatar_of, read_file_head
+from risorius.app.rig.avatar import Avatar, RigRequest, avatar_of
 from risorius.app.rig.gltf_copy import read_document
 from risorius.app.rig.linearity import Difference
 from risorius.app.rig.surface import METRES
 from risorius.app.rig.writing import avatar_glb
+from risorius.app.scenes import own_head
 from risorius.assets.fitting import FittedHead
 from risorius.assets.identities import person_called
 from risorius.assets.meshes import read_mesh
@@ -110,8 +111,7 @@ def measured(head: FittedHead | None, name: str = "built-in") -> Row:
 def measured_file(head: HeadFile) -> Row:
     """The avatar of a head of a file."""
     begin = time.perf_counter()
-    file = read_file_head(head.mesh, head.landmarks, _request(), _quiet)
-    avatar = avatar_of(file.head, _request(), _quiet, file=file)
+    avatar = avatar_of(own_head(head.mesh, head.landmarks), _request(), _quiet)
     content = avatar_glb(avatar, head.name)
     seconds = time.perf_counter() - begin
     points, names = mesh_called("head", content)

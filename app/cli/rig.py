@@ -13,7 +13,6 @@ from ..text import counted, in_one_line
 from .options import PATH, HeadName, option, packed
 
 if TYPE_CHECKING:
-    from ..rig.avatar import Avatar
     from ..script import Script
 
 
@@ -72,8 +71,9 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     on the error stream report what each piece of the file was taken for, and how far sums of shapes
     are from the simulation.
     """
-    from ..rig.avatar import RigRequest, avatar_of, read_file_head
-    from ..scenes import called_head
+    from ..rig.avatar import RigRequest, avatar_of
+    from ..rig.writing import write_avatar
+    from ..scenes import called_head, own_head
 
     file_path = head if isinstance(head, Path) else None
     if (file_path is None) != (rigging.landmarks is None):
@@ -99,15 +99,16 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
         if not rigging.quiet:
             click.echo(in_one_line(line), err=True)
 
+    fitted = None
+    title = "head"
     if file_path is not None and rigging.landmarks is not None:
-        file = read_file_head(file_path, rigging.landmarks, request, say)
-        avatar = avatar_of(file.head, request, say, file=file)
+        fitted = own_head(file_path, rigging.landmarks)
         title = file_path.stem
-    else:
-        named = None if head is None or isinstance(head, Path) else called_head(head)
-        avatar = avatar_of(named, request, say)
-        title = "head" if named is None else f"head {head}"
-    size = _written(output, avatar, title, is_folder=is_folder)
+    elif head is not None and not isinstance(head, Path):
+        fitted = called_head(head)
+        title = f"head {head}"
+    avatar = avatar_of(fitted, request, say)
+    size = write_avatar(avatar, output, title, is_folder=is_folder)
     meshes = "1 mesh" if len(avatar.shapes) == 1 else f"{len(avatar.shapes)} meshes"
     shapes = counted(len(avatar.names), "shape")
     click.echo(f"{in_one_line(output)}: {shapes}, {meshes}, {size / 1e6:.1f} MB")
@@ -145,18 +146,3 @@ def _check_output(output: Path, inputs: tuple[Path | None, ...], *, is_folder: b
         check_folder(output, overwrite=False)
     else:
         check_file(output)
-
-
-def _written(output: Path, avatar: Avatar, title: str, *, is_folder: bool) -> int:
-    """Write the avatar, whole or not at all; return the size of its files [bytes]."""
-    from ..files import folder_atomically, written_atomically
-    from ..rig.obj_folder import OWN, write_obj_folder
-    from ..rig.writing import avatar_glb
-
-    if is_folder:
-        with folder_atomically(output, OWN, overwrite=False) as folder:
-            write_obj_folder(avatar, folder)
-        return sum(path.stat().st_size for path in output.iterdir())
-    with written_atomically(output) as part:
-        part.write_bytes(avatar_glb(avatar, title))
-    return output.stat().st_size

@@ -13,7 +13,7 @@ from risorius.assets.fitting import FittedHead
 from risorius.assets.meshes import read_mesh
 from risorius.assets.painted import PaintedMesh, read_painted
 
-from ..scenes import FaceScene, build_face, own_head
+from ..scenes import FaceScene, build_face
 from ..script import Script
 from .bodies import Body, Shaped, Skin, bodies_of_parts, moving, poses_of
 from .file_body import FileBody, merged_vertices, with_own_tongue
@@ -94,10 +94,15 @@ class Avatar:
 Say = Callable[[str], None]
 
 
-def avatar_of(
-    head: FittedHead | None, request: RigRequest, say: Say, *, file: FileHead | None = None
-) -> Avatar:
-    """The avatar of a head, None for the built-in one; lines on it go to `say`."""
+def avatar_of(head: FittedHead | None, request: RigRequest, say: Say) -> Avatar:
+    """The avatar of a head, None for the built-in one; lines on it go to `say`.
+
+    A head that was read from a file comes with the pieces of this file.
+    """
+    file = None
+    if head is not None and head.files:
+        file = file_head(head, request, say)
+        head = file.head
     scene = build_face(head)
     eyes_are_nodes = request.has_eye_nodes(is_gltf=file is not None and file.painted is None)
     bodies: list[Body] = []
@@ -131,15 +136,15 @@ def _without_sums(shaped: Shaped, pairs: list[tuple[str, str]], names: tuple[str
     return corrected_shapes(shaped, pairs, names) if pairs else shaped
 
 
-def read_file_head(path: Path, landmarks: Path, request: RigRequest, say: Say) -> FileHead:
-    """A head of a file, fitted, and its pieces.
+def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
+    """The file of a fitted head, and its pieces.
 
     Raises AssetError for files that cannot be used, and UserError for wrong options.
     """
+    path = head.files[0]
     is_gltf = path.suffix.lower() in GLTF
     painted = None if is_gltf else read_painted(path)
     mesh = read_mesh(path) if painted is None else painted.mesh
-    head = own_head(path, landmarks)
     rest = head.to_millimetres.points(mesh.vertices)
     same = merged_vertices(mesh, head)
     faces = same[mesh.faces].astype(np.int32)

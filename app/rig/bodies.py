@@ -11,6 +11,7 @@ from tqdm import tqdm
 
 from risorius.geometry.normals import vertex_normals
 
+from ..motion import tally
 from ..scenes import FaceScene
 from ..stopping import cleaned_up_if_stopped
 from .poses import CRANIUM, Pose, moved_part, rest_in, settings_of
@@ -156,6 +157,7 @@ def poses_of(
     with cleaned_up_if_stopped(bar.close):
         for name in bar:
             values, base = settings_of(scene, name)
+            tally.frames += 1  # which a window shows as progress
             key = tuple(base)
             if key not in bases:
                 bases[key] = rest_in(scene, base)

@@ -2,24 +2,45 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import scipy
 
+from risorius.assets.fitting import FittedHead
 from risorius.assets.gltf import stored_pieces
 
-from .avatar import Avatar, FileHead
+from ..files import folder_atomically, written_atomically
+from .avatar import Avatar, FileHead, RigRequest, Say, avatar_of
 from .bodies import EYES
 from .file_mesh import FileMeshWriter, root_matrix
 from .glb import Glb
 from .gltf_copy import GltfShapes, read_document
+from .obj_folder import OWN, write_obj_folder
 from .poses import rest_in
 from .scene_file import add_pieces, piece_of
 from .skeleton import Skeleton
 from .surface import METRES, Floats
 
 LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")  # of each eye, by its side
+
+
+def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -> int:
+    """Write an avatar, whole or not at all; return the size of its files [bytes]."""
+    if is_folder:
+        with folder_atomically(output, OWN, overwrite=False) as folder:
+            write_obj_folder(avatar, folder)
+        return sum(path.stat().st_size for path in output.iterdir())
+    with written_atomically(output) as part:
+        part.write_bytes(avatar_glb(avatar, title))
+    return output.stat().st_size
+
+
+def make_avatar(head: FittedHead | None, output: Path, request: RigRequest, say: Say) -> None:
+    """Make the avatar of a head, None for the built-in one, and write it."""
+    title = head.files[0].stem if head is not None and head.files else output.stem
+    write_avatar(avatar_of(head, request, say), output, title, is_folder=False)
 
 
 def avatar_glb(avatar: Avatar, title: str) -> bytes:

@@ -65,6 +65,7 @@ class FittedHead:
     notes: changes of the mesh that its owner should know, a line each.
     called: its name or number, "" where it has none.
     simplified: the mesh to simulate instead, where this one has too many triangles; else None.
+    files: of the mesh and its landmarks, where it was read from such.
     """
 
     vertices: Floats64
@@ -87,6 +88,7 @@ class FittedHead:
     fine_shape: FineShape | None = field(default=None, kw_only=True)
     called: str = field(default="", kw_only=True)
     simplified: simplifying.SimplifiedHead | None = field(default=None, kw_only=True)
+    files: tuple[Path, ...] = field(default=(), kw_only=True)
 
     def __post_init__(self) -> None:
         make_read_only(self)
@@ -123,16 +125,17 @@ def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
     Raises AssetError, one line that names the file, where a file is missing, broken or unusable.
     """
     found = read_mesh(mesh)
-    numbers, points = read_landmarks(Path(landmarks), found)
+    files = (Path(mesh), Path(landmarks))
+    numbers, points = read_landmarks(files[1], found)
     try:
         try:
-            return fit(found, numbers, points=points)
+            return replace(fit(found, numbers, points=points), files=files)
         except ShutMouthError:
             parted = lips_parted(found, found.vertices[numbers] if points is None else points)
             if parted is None:
                 raise
-            numbers, points = read_landmarks(Path(landmarks), parted)
-            return fit(parted, numbers, points=points)
+            numbers, points = read_landmarks(files[1], parted)
+            return replace(fit(parted, numbers, points=points), files=files)
     except AssetError as error:
         reason = error
         is_face = [_is_face(found.vertices[numbers - first]) for first in (0, 1)]

@@ -1,6 +1,8 @@
 """File > Export, driven with mouse and keys: films, motion, progress, cancel, errors."""
 
+import json
 import signal
+import struct
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,13 +14,25 @@ from risorius.app import workers
 from risorius.app.capture import CaptureOptions
 from risorius.app.capture import capture as film_of
 from risorius.app.capture.drawing import camera_for
+from risorius.app.recordings.names import ARKIT
 from risorius.app.refining.presets import Refinement
 from risorius.app.script.script_file import parse_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import ExportChoices
 from risorius.render import LIGHT, LIGHTS, Style
 
-from .driving import NEEDS_A_SCREEN, click, press_keys, settle, until, write
+from ..heads import stranger
+from .driving import (
+    NEEDS_A_SCREEN,
+    clear_search,
+    click,
+    press_keys,
+    put,
+    settle,
+    show_controls,
+    until,
+    write,
+)
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -145,3 +159,41 @@ def test_a_bad_folder_is_one_line(viewer, kind):
     assert "\n" not in viewer.messages.text
     assert viewer.exporter.job is None
     assert viewer.settings.export.kind == kind
+
+
+@pytest.mark.parametrize("words", ["blendshape", "morph", "shape key", "ARKit", "avatar"])
+def test_search_finds_the_avatar(viewer, words):
+    """Each word that people use shows a button that asks for the avatar's file."""
+    show_controls(viewer, words)
+    click(viewer, "found Avatar ...")
+    assert viewer.files.is_waiting
+    press_keys(viewer, "Escape")
+    clear_search(viewer)
+    assert "found Avatar ..." not in viewer.gui.places
+
+
+@pytest.mark.slow
+def test_a_head_of_the_user_becomes_an_avatar(viewer, tmp_path):
+    """File > Export > Avatar writes the file's vertices with ARKit's 52, and shows the progress."""
+    mesh, marks = stranger().write(tmp_path)
+    put(viewer, mesh, marks)
+    assert until(viewer, lambda: viewer.file_drop.making is None)
+    click(viewer, "menu File")
+    click(viewer, "menu File: Export")
+    click(viewer, "menu File: Avatar ...")
+    assert viewer.files.is_waiting
+    press_keys(viewer, "Return")
+    assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
+    job = viewer.exporter.job
+    assert job.target.name == f"{mesh.stem}-avatar.glb"
+    assert until(viewer, lambda: 0.2 < job.task.share < 1.0, LONG)
+    assert until(viewer, lambda: viewer.exporter.job is None, LONG)
+    assert not viewer.messages.is_error, viewer.messages.text
+    data = job.target.read_bytes()
+    (length,) = struct.unpack_from("<I", data, 12)
+    document = json.loads(data[20 : 20 + length])
+    head = next(each for each in document["meshes"] if each["name"] == "head")
+    assert tuple(head["extras"]["targetNames"]) == ARKIT
+    position = head["primitives"][0]["attributes"]["POSITION"]
+    assert document["accessors"][position]["count"] == len(stranger().mesh.vertices)
+    assert "teeth_lower" in {each["name"] for each in document["meshes"]}

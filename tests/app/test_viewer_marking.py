@@ -262,6 +262,7 @@ class TestInTheWindow:
         assert len(viewer.session.scene.faces) == len(stranger().mesh.faces)
         image = tmp_path / "joy.png"
         marks = mesh.with_name("marked.json")
+        assert viewer.exporter.head.files == (mesh, marks)  # of which an avatar can be made
         options = ("--set", "joy", "--size", "160x160", "-o", image)
         words = ("capture", "--head", mesh, "--landmarks", marks, *options)
         result = CliRunner().invoke(command(), [str(word) for word in words])

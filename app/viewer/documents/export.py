@@ -17,10 +17,15 @@ from imgui_bundle import imgui
 from risorius.assets.fitting import FittedHead
 
 from ...capture import CaptureOptions, capture
+from ...errors import UserError
 from ...export.formats import ExportRequest, check_request, export, format_for
-from ...files import check_file
+from ...files import check_apart, check_file
 from ...pictures import save_png
+from ...recordings.names import ARKIT
 from ...refining.presets import STATIC, Refinement
+from ...rig.avatar import RigRequest
+from ...rig.writing import make_avatar
+from ...text import as_text
 from ...workers import Task
 from ..interface.gui import NOTE_FLAGS, Gui, em, wake_up
 from ..interface.widgets import LabelledRows, button, dialog, muted, shortened
@@ -76,6 +81,37 @@ class Exporter:
             return None
         return "The script is exported; [Set key] puts the face as it is into it"
 
+    @property
+    def head(self) -> FittedHead | None:
+        """The head of the session; None for the built-in one, and where there is none."""
+        face = self.session.scene.face
+        return face.head if face is not None and isinstance(face.head, FittedHead) else None
+
+    def ask_avatar(self, files: FileDialogs) -> None:
+        """Ask for a file, and begin to make an avatar."""
+        head = self.head
+        name = "head"
+        if head is not None:
+            name = head.files[0].stem if head.files else head.called or name
+        ask = partial(files.ask, "Export avatar", self.start_avatar, saving=True)
+        ask(suffixes=(".glb",), proposed=f"{as_text(name)}-avatar.glb")
+
+    def start_avatar(self, target: Path) -> Message:
+        """Begin to write the head with named shapes, with the parts that its file has not.
+
+        UserError where the file cannot be written.
+        """
+        head = self.head
+        if target.suffix.lower() != ".glb":
+            raise UserError(f"{target.name}: avatars are written as .glb; choose such a name")
+        check_apart((target,), head.files if head is not None else ())
+        check_file(target)
+        request = RigRequest(adds_parts=True, progress=False)
+        work = partial(make_avatar, head, target, request, _say_nothing)
+        written = 8  # shapes that take as long as comparing and writing
+        self.job = ExportJob(target, Task(work, len(ARKIT) + written, wake_up))
+        return None
+
     def _options(self, head: FittedHead | None) -> CaptureOptions:
         """Options of `capture` that draw the window's picture, a comparison side by side."""
         choices = self.choices
@@ -105,8 +141,7 @@ class Exporter:
         """
         choices = self.choices
         script = self.session.script
-        face = self.session.scene.face
-        head = face.head if face is not None and isinstance(face.head, FittedHead) else None
+        head = self.head
         work: Callable[[], object]
         if self.kind.is_drawn:
             check_file(target / "frame.png" if choices.kind == FRAMES_KIND else target)
@@ -149,6 +184,10 @@ class Exporter:
         job, self.job = self.job, None
         if job is not None:
             job.task.stop(waits=True)
+
+
+def _say_nothing(_: str) -> None:
+    """Leave out the lines on a head, which the command prints."""
 
 
 Value = TypeVar("Value")

@@ -28,6 +28,7 @@ class Command:
     can_run: Callable[[], bool] = lambda: True
     submenu: Callable[[], Iterable[Command]] | None = None  # in place of doing something
     begins_section: bool = False  # of its menu, with a line above it
+    words: str = ""  # by which the search of controls finds it, too
 
     @property
     def displayed_keys(self) -> str:

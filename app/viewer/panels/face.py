@@ -23,6 +23,7 @@ from ...control_names import (
     words_of_group,
 )
 from ..context import ApplicationContext
+from ..interface.commands import Command, command_button
 from ..interface.gui import em, ink_of
 from ..interface.widgets import button, button_width, heading, hint, muted, slider, stay_in_line
 from ..messages import Task
@@ -240,11 +241,15 @@ class ControlRows:
 class FacePanel:
     """Buttons, search, and groups of rows."""
 
-    def __init__(self, app: ApplicationContext, selection: KeySelection) -> None:
-        """selection: of keys, which the menus of bars change."""
+    def __init__(
+        self, app: ApplicationContext, selection: KeySelection, commands: Sequence[Command]
+    ) -> None:
+        """selection: of keys, which the menus of bars change. commands: that a search finds."""
         self._gui = app.gui
         self._session = app.session
         self._settings = app.settings
+        self._messages = app.messages
+        self._commands = [command for command in commands if command.words]
         self.rows = ControlRows(app, selection)
         self.search = ""
         self._selected: str | None = None  # to be scrolled to
@@ -260,12 +265,25 @@ class FacePanel:
         """Draw everything, inside the window's panel."""
         self._draw_buttons()
         imgui.begin_child("controls")
+        has_command = self._draw_commands()
         groups = self._session.controls.groups
         counts = [self._draw_group(title, names) for title, names in groups.items()]
-        if not any(counts):
+        if not (has_command or any(counts)):
             muted(self._gui, "Nothing has such a name.")
         imgui.end_child()
         self._flash = max(self._flash - 1, 0)
+
+    def _draw_commands(self) -> bool:
+        """Draw buttons of the commands that are looked for; whether there are any."""
+        least_length = 3  # letters: fewer are in words of everything
+        if len(self.search) < least_length:
+            return False
+        found = [each for each in self._commands if is_found(self.search, each.words, ())]
+        for command in found:
+            name = f"found {command.label}"
+            label = f"{command.menu} > Export > {command.label}"
+            command_button(self._gui, self._messages, command, label, name=name, width=-1.0)
+        return bool(found)
 
     def _draw_buttons(self) -> None:
         gui = self._gui

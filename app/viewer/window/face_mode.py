@@ -44,6 +44,7 @@ class FaceMode:
         self.soundtrack = Soundtrack(session)
         self.time_axis = TimeAxis()
         self.selection = KeySelection(session)
+        self.exports = menus.export_menu(context.exporter, context.files)
         self.commands = self._commands(close)
         self.life = IdleLife(session, lambda: settings.is_alive, lambda: self.view.camera.eye)
         self.physics = Physics(session, context.times)
@@ -58,8 +59,9 @@ class FaceMode:
         session = context.session
         settings = context.settings
         scripts = context.scripts
+        exporter = context.exporter
         return (
-            *menus.file_menu(scripts, self._file_drop, context.exporter, settings, close),
+            *menus.file_menu(scripts, self._file_drop, exporter, self.exports, settings, close),
             *menus.edit_menu(session),
             *menus.time_menu(session, scripts, self.time_axis),
             *menus.keys_menu(session, self.selection),
@@ -78,7 +80,7 @@ class FaceMode:
         waveform = Waveform(context.gui, self.soundtrack, self.time_axis)
         dope_sheet = DopeSheet(context, self.selection, self.time_axis, menu_bar, waveform)
         self.timeline = Timeline(context, commands, dope_sheet)
-        self.face_panel = FacePanel(context, self.selection)
+        self.face_panel = FacePanel(context, self.selection, self.exports)
         mechanism = MechanismPanel(context, self._file_drop)
         live = LivePanel(context, {each.label: each for each in commands})
         first = "Face" if scene.name == "face" else f"{readable(scene.name)}###Face"

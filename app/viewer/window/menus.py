@@ -20,6 +20,7 @@ from ...scenes import BUILT_IN
 from ...script.easings import EASINGS
 from ...text import as_text
 from ..documents.export import Exporter
+from ..documents.file_dialogs import FileDialogs
 from ..documents.file_drop import FileDrop
 from ..documents.scripts import ScriptCommands
 from ..interface.commands import Command
@@ -53,10 +54,11 @@ def file_menu(
     scripts: ScriptCommands,
     file_drop: FileDrop,
     exporter: Exporter,
+    exports: Menu,
     settings: Settings,
     close: Task,
 ) -> Menu:
-    """Files that come and go, and the end."""
+    """Files that come and go, and the end. exports: the commands under Export."""
     command = partial(Command, "File")
 
     def recent() -> Iterator[Command]:
@@ -86,8 +88,29 @@ def file_menu(
         command("Save script as ...", "Ctrl+Shift+S", scripts.save_as),
         command("Save pose ...", "Ctrl+P", scripts.save_pose),
         command("Screenshot", "F12", exporter.screenshot, begins_section=True),
-        export("Export ...", "Ctrl+E, F10", exporter.ask),
+        export("Export", "Ctrl+E, F10", exporter.ask, submenu=lambda: exports),
         command("Quit", "Ctrl+Q", close, begins_section=True),
+    )
+
+
+def export_menu(exporter: Exporter, files: FileDialogs) -> Menu:
+    """All that is written of a face for other programs, under File."""
+    return (
+        Command(
+            "File",
+            "Film, pictures or motion ...",
+            "Ctrl+E, F10",
+            exporter.ask,
+            can_run=lambda: exporter.job is None,
+        ),
+        Command(
+            "File",
+            "Avatar ...",
+            "",
+            partial(exporter.ask_avatar, files),
+            can_run=lambda: exporter.job is None and exporter.session.scene.face is not None,
+            words="export avatar: blendshapes, morph targets, shape keys of ARKit; rig",
+        ),
     )
 
 
