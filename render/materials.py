@@ -15,7 +15,6 @@ from .style import SPLIT_PALETTE, ColourBy, Light, Style
 from .texture import BumpMap
 
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
-STRAND_PIXELS = 1.4  # that a strand is wide at least: a triangle seen from its side is narrower
 VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl reads it so
 _PALETTE = np.array([to_linear(colour) for colour in SPLIT_PALETTE], np.float32)
 
@@ -78,10 +77,10 @@ def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: P
     # A wet part is dark by itself, not for want of light; so is a part that is not enclosed.
     program["least_mirrored"] = shine * shine if part.is_enclosed else 1.0
     program["sharpness"] = 20.0 * 40.0**shine
-    if kind == "STRANDS":  # half their thickness, and the least half at distance 1
+    if kind == "STRANDS":  # half their thickness, and a pixel at distance 1
         _, _, width, height = view.viewport
         program["half_strand"] = part.strand_radius
-        program["least_half"] = 0.5 * STRAND_PIXELS / view.camera.focal(width / height, height)
+        program["pixel_size"] = 1.0 / view.camera.focal(width / height, height)
 
 
 def set_light(program: moderngl.Program, light: Light) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from risorius.geometry.colour import to_linear
 
-from ..geometry.arrays import Flags, Floats32, Floats64
+from ..geometry.arrays import Flags, Floats32, Floats64, Integers32
 from .camera import PlacedView, box_corners
 from .frame import DrawnPart, PlacedPart
 from .translucency import blending
@@ -46,6 +46,9 @@ class PartBuffers:
         if self._way is not None:
             self._thick = float(np.abs((self._way * part.normals).sum(axis=1)).max())
         self._layout = (f"3f 3f 3f{layout}", "in_position", "in_normal", "in_colour", *more)
+        self._breadth = np.ones((1, 1), np.float32)
+        if part.strand_radius:
+            self._breadth = _strand_breadths(part.faces, len(part.vertices))
         # Blended over earlier drawings by its opacity.
         self.is_mixed = self.kind in ("STRANDS", "SHELLS")
         self._vertices = gl.buffer(reserve=4 * (9 + columns) * len(part.vertices))
@@ -63,7 +66,8 @@ class PartBuffers:
             return
         self.corners = box_corners(vertices)
         more = [] if self._striation is None else [self._striation]
-        rows = np.hstack([vertices, placed.normals, to_linear(placed.colours), *more])
+        normals = placed.normals * self._breadth
+        rows = np.hstack([vertices, normals, to_linear(placed.colours), *more])
         self._vertices.write(rows.astype(np.float32).tobytes())
         self._uploaded = vertices
 
@@ -114,6 +118,20 @@ class PartBuffers:
             program["first"] = first
             with blending(self._gl, hides=first == 0):
                 self.draw(program, chosen=chosen, layers=count)
+
+
+def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
+    """How broad strands of three sides are at each vertex: 1, or at their tips 0, shape (n, 1).
+
+    Three triangles meet at a tip, and three edges; at an open end there are four edges.
+    """
+    following = np.roll(faces, -1, axis=1)
+    edges = np.stack([np.minimum(faces, following), np.maximum(faces, following)], axis=-1)
+    edges = np.unique(edges.reshape(-1, 2), axis=0)
+    edge_counts = np.bincount(edges.ravel(), minlength=vertex_count)
+    face_counts = np.bincount(faces.ravel(), minlength=vertex_count)
+    is_tip = (edge_counts == 3) & (face_counts == 3)
+    return np.where(is_tip, 0.0, 1.0)[:, None].astype(np.float32)
 
 
 class PlacedBuffers(NamedTuple):

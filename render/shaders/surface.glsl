@@ -1,8 +1,8 @@
 // Skin and rigid parts.
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
 // stage), SPLITS (colour by a count per triangle), SPLIT_WIRES (of its outline), COLOURED (vertex colours), TEXTURED (skin's albedo
-// from a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), STRANDS (thin cones,
-// never drawn thinner than a pixel: they fade instead), FIBRES (striation), TRANSLUCENT (skin that
+// from a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), STRANDS (thin cones of
+// three sides; pixels take as much of them as they cover), FIBRES (striation), TRANSLUCENT (skin that
 // shows the parts under it), SUNK (those parts, hidden where skin is opaque), FADED (skin that fades
 // toward a plane).
 
@@ -50,7 +50,7 @@ uniform float sharpness;
 #define SHADOW_VARYING
 #endif
 #if defined(STRANDS)
-#define STRAND_VARYING float coverage;
+#define STRAND_VARYING vec2 strand;  // half its thickness, and half of what is drawn [pixels]
 #else
 #define STRAND_VARYING
 #endif
@@ -95,7 +95,7 @@ uniform float cut_width;
 #endif
 #if defined(STRANDS)
 uniform float half_strand;   // of a strand's thickness
-uniform float least_half;  // half the least drawn thickness, at distance 1
+uniform float pixel_size;  // at distance 1
 #endif
 out Surface { VARYINGS } surface;
 
@@ -103,9 +103,14 @@ void main() {
     vec4 position = model_view * vec4(in_position, 1.0);
     vec3 normal = normalize(mat3(model_view) * in_normal);
 #if defined(STRANDS)
-    float seen = max(half_strand, -least_half * position.z);
-    position.xyz += normal * (seen - half_strand);
-    surface.coverage = half_strand / seen;
+    // Three sides hold a circle of half their radius: that is the strand, and a pixel around it.
+    bool is_tip = dot(in_normal, in_normal) == 0.0;
+    if (is_tip) normal = vec3(0.0);
+    vec3 middle = position.xyz - half_strand * normal;
+    float pixel = -pixel_size * position.z, drawn = 2.0 * (half_strand + pixel);
+    position.xyz = middle + drawn * normal;
+    // Seen from all around, three sides are 0.83 of a circle wide.
+    surface.strand = vec2(is_tip ? 0.0 : 0.83 * half_strand, drawn) / pixel;
 #endif
     surface.position = position.xyz;
 #if defined(PIXEL)
@@ -139,6 +144,10 @@ void main() {
     surface.light_place = (shadow_matrix * vec4(position.xyz + height * normal, 1.0)).xyz;
 #endif
     gl_Position = projection * position;
+#if defined(STRANDS)
+    vec4 own = projection * vec4(middle, 1.0);  // only as deep as it is
+    gl_Position.z = own.z / own.w * gl_Position.w;
+#endif
 #if defined(SUNK)
     // In its place, but as deep as if it were farther off.
     float beyond = clamp(dot(cut, position), 0.0, cut_width);
@@ -380,7 +389,14 @@ void main() {
     shown = mix(shown, wire.rgb, wire.a * surface.wire_strength * coverage);
 #endif
 #if defined(STRANDS)
-    pixel_colour = vec4(shown, solid * surface.coverage);
+    // A normal is a place in the strand's section, and changes only across the strand. Coverage falls
+    // off over a pixel (Gupta, Sproull 1981, "Filtering edges for gray-scale displays").
+    vec3 n = surface.normal, by_x = dFdx(n), by_y = dFdy(n), change = by_x * by_x + by_y * by_y;
+    vec2 across = change.x > change.y ? vec2(by_x.x, by_y.x) : vec2(by_x.y, by_y.y);
+    if (change.z > max(change.x, change.y)) across = vec2(by_x.z, by_y.z);
+    float aside = abs(dot(n.xy, across)) * surface.strand.y / max(length(across), 1e-9), wide = surface.strand.x;
+    float cover = min(2.0 * wide, 1.0) * clamp(max(wide, 0.5) + 0.5 - aside, 0.0, 1.0);
+    pixel_colour = vec4(shown, solid * cover);
 #elif defined(TRANSLUCENT)
     // Where it is seen from the side there is more of it: so the outline of the face reads.
     float from_cut = dot(cut, vec4(surface.position, 1.0));

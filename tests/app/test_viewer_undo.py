@@ -8,7 +8,13 @@ from risorius.app.scenes import FaceScene
 from risorius.app.script.keyframes import POSES, places_of
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.script.script_file import load_script
-from risorius.app.viewer.picture.stage import FULL_DETAIL, LEVELS, PATIENCE_FRAMES, LevelOfDetail
+from risorius.app.viewer.picture.stage import (
+    CALM_FRAMES,
+    FULL_DETAIL,
+    LEVELS,
+    PATIENCE_FRAMES,
+    LevelOfDetail,
+)
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.timeline.keys import KeySelection
 from risorius.assets.loading import read_words
@@ -123,19 +129,22 @@ def test_keys_are_pasted_in_another_script(session, scene):
 
 
 def test_detail_falls_once_and_does_not_flicker():
-    """Slow frames lower the level; fast ones raise it by one, and only as a motion begins."""
+    """Slow frames lower it to a level that fits; it rises by one, as a motion begins or later."""
     chosen = LevelOfDetail(is_software=False)
     assert chosen.detail == FULL_DETAIL
-    for _ in range(2 * PATIENCE_FRAMES):
-        chosen.note(0.08)
-    assert chosen.level == 2
-    for _ in range(100):
+    for _ in range(PATIENCE_FRAMES):
+        chosen.note(0.09)
+    assert chosen.detail.scale == 0.75
+    for _ in range(CALM_FRAMES - 1):
         chosen.note(0.01)
     assert chosen.level == 2
     chosen.begin_motion()
     assert chosen.level == 1
-    for _ in range(100):
-        chosen.note(0.08)
+    for _ in range(CALM_FRAMES):
+        chosen.note(0.01)
+    assert chosen.level == 0
+    for _ in range(PATIENCE_FRAMES):
+        chosen.note(0.3)
     assert chosen.detail == LEVELS[-1]
 
 

@@ -2,9 +2,10 @@
 
 Draws by `Pipeline.draw`, as films do, and keeps the time of each part of the paper's Figure 1. It
 draws if something has changed, and while it moves as finely as this machine can. A scene that
-stands still, a screenshot and a film are always drawn in full. While something moves, the detail
-may only fall, when frames were too slow for some time; it may rise by one level when a new motion
-begins, if there was ample time left. So it never swings to and fro.
+stands still, a screenshot and a film are always drawn in full. While something moves, frames that
+are too slow let the detail fall at once to the level that is expected to be fast enough. It rises
+by one level where a new motion begins, or after a second or two of ample time. Between slow and
+ample lies more than one level, so it does not swing to and fro.
 """
 
 from __future__ import annotations
@@ -262,15 +263,19 @@ def style_of(display: Display, background: render.Background | None) -> render.S
 
 
 # One sample, with smoothed edges (stretch.glsl); then a little blurred.
-# Two samples would not help: software draws four. Processor time of a whole frame at 1280 x 720,
-# as parts of the first: 1, 0.53, 0.47, 0.39 (measured 2026-11-21); with four samples at 0.75: 0.8.
+# Two samples would not help: software draws four. With four samples at 0.75 a frame takes 0.8.
 LEVELS = (
     FULL_DETAIL,
     render.Detail(samples=0, scale=1.0),
     render.Detail(samples=0, scale=0.75),
     render.Detail(samples=0, scale=0.6),
+    render.Detail(samples=0, scale=0.5),
 )
+# Processor time of a whole frame of the window at 1280 x 720, as parts of the first level
+# (measured 2026-11-28).
+COSTS = 1.0, 0.53, 0.42, 0.36, 0.33
 PATIENCE_FRAMES = 4  # frames in a row that decide
+CALM_FRAMES = 40  # frames in a row after which a picture may become finer while it moves
 
 
 class LevelOfDetail:
@@ -280,7 +285,7 @@ class LevelOfDetail:
 
     def __init__(self, *, is_software: bool) -> None:
         self.level = self.FIRST_SOFTWARE_LEVEL if is_software else 0
-        self._slow = 0
+        self._slow: list[float] = []  # [s] of the last frames, all too slow
         self._fast = 0
 
     @property
@@ -295,19 +300,34 @@ class LevelOfDetail:
 
     def begin_motion(self) -> None:
         """Note that a motion begins: the one moment at which more detail goes unnoticed."""
-        if self._fast >= PATIENCE_FRAMES and self.level > 0:
-            self.level -= 1
-        self._slow = self._fast = 0
+        if self._fast >= PATIENCE_FRAMES:
+            self._rise()
+        self._forget()
 
     def note(self, seconds: float) -> None:
         """Note the whole time of a frame of a moving scene [s]."""
         slow_seconds = 0.045  # [s] a frame; more than 20 a second are promised
-        self._slow = self._slow + 1 if seconds > slow_seconds else 0
         ample_seconds = 0.024  # [s] a frame at which the next finer level is safe
+        self._slow = [*self._slow, seconds] if seconds > slow_seconds else []
         self._fast = self._fast + 1 if seconds < ample_seconds else 0
-        if self._slow >= PATIENCE_FRAMES and self.level < len(LEVELS) - 1:
-            self.level += 1
-            self._slow = 0
+        if len(self._slow) >= PATIENCE_FRAMES:
+            allowed = COSTS[self.level] * slow_seconds / min(self._slow)
+            coarser = range(self.level + 1, len(LEVELS))
+            fitting = (each for each in coarser if COSTS[each] <= allowed)
+            self.level = next(fitting, len(LEVELS) - 1)
+            self._forget()
+        elif self._fast >= CALM_FRAMES:
+            self._rise()
+            self._forget()
+
+    def _rise(self) -> None:
+        """Draw finer by one level."""
+        self.level = max(self.level - 1, 0)
+
+    def _forget(self) -> None:
+        """Forget the frames of another level or motion."""
+        self._slow = []
+        self._fast = 0
 
 
 class Painter:

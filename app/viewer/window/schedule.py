@@ -90,7 +90,7 @@ class Schedule:
         """
         gui = self._context.gui
         live = self._context.live
-        life_wait = 1.0 / 30.0  # [s] from one frame to the next while the face only lives
+        life_wait = 1.0 / 15.0  # [s] from one frame to the next while the face only lives
         if self.is_idle:
             self.sleep()
         elif self.is_left_alone:
