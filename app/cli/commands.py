@@ -104,8 +104,9 @@ def view(
 ) -> None:
     """Open the window: a face with a slider for every muscle.
 
-    With --head and a mesh alone, you mark the landmarks of that mesh first. With --live the face
-    follows one that a phone or `risorius send` sends; --gain and --mirror are of that face.
+    With --head and a mesh alone, you mark the landmarks of that mesh first, unless its vertices are
+    known by their numbers. With --live the face follows one that a phone or `risorius send` sends;
+    --gain and --mirror are of that face.
     """
     listening = live.listening(gains, mirror)
     mesh = None
@@ -210,6 +211,8 @@ def open_window(
 
     performance: None for a new script of the face at rest.
     """
+    from risorius.assets.fitting.landmark_file import UnfinishedError
+
     from ..performances import new_script
     from ..viewer.settings import settings_path
     from ..viewer.window.splash_screen import SplashScreen
@@ -217,7 +220,12 @@ def open_window(
     def load() -> tuple[Script, FittedHead | None]:
         """All that takes long."""
         script = performance or new_script()
-        head = drawing.fitted_head() if mesh is None else None
+        head = None
+        try:
+            head = drawing.fitted_head()
+        except UnfinishedError:  # it is marked first
+            if mesh is None:
+                raise
         import risorius.app.viewer.window.window  # noqa: F401
 
         return script, head
@@ -229,8 +237,7 @@ def open_window(
     drawn = (drawing.refinement(), drawing.anatomy_view()) if drawing.is_given else None
     if drawn is not None:
         drawn[0].check("face" if performance is None else performance.scene)
-    if mesh is None:
-        drawing.check_head()
+    drawing.check_head()
     path = settings_path()
     with SplashScreen(size, path) as splash:
         script, head = splash.during(load)
@@ -249,7 +256,7 @@ def open_window(
                 line = viewer.context.live.start(listening)
                 if line and not viewer.messages.text:  # an error stays on screen
                     viewer.messages.say(line)
-            if mesh is not None:
+            if mesh is not None and head is None:
                 viewer.read(mesh)()
             viewer.run(playing=playing, once=once)
 

@@ -197,7 +197,10 @@ class Subject:
         help="A head of your own, any triangle mesh; or a person: each number is one, and ada, "
         "kofi and maria; or coarse, the built-in head with a quarter of its triangles.",
     )
-    landmarks: Path | None = option(type=PATH, help="The 68 iBug landmarks of --head, as JSON.")
+    landmarks: Path | None = option(
+        type=PATH,
+        help="The 68 iBug landmarks of --head, as JSON; MakeHuman and ICT-FaceKit need none.",
+    )
     look: str = option(
         type=click.Choice(list(PRESETS)),
         default=FIRST_PRESET,
@@ -227,10 +230,9 @@ class Subject:
         is_named = self.head is not None and not isinstance(self.head, Path)
         if is_named and self.landmarks is not None:
             raise UserError(f"--head {self.head}: its landmarks are known; leave --landmarks out")
-        if len(self.files) == 1:
+        if self.head is None and self.landmarks is not None:
             raise UserError(
-                "--head HEAD.obj and --landmarks LANDMARKS.json go together; "
-                "`risorius view --head HEAD.obj` helps to mark the landmarks"
+                f"--landmarks {self.landmarks}: goes with --head HEAD.obj, whose landmarks they are"
             )
 
     def fitted_head(self) -> FittedHead | None:
@@ -244,7 +246,6 @@ class Subject:
             return called_head(self.head)
         from ..scenes import own_head
 
-        assert self.landmarks is not None
         return own_head(self.head, self.landmarks)
 
     def refinement(self) -> Refinement:

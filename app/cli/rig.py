@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 class Rigging:
     """Options of rig alone."""
 
-    landmarks: Path | None = option(type=PATH, help="The 68 iBug landmarks of HEAD, as JSON.")
+    landmarks: Path | None = option(
+        type=PATH,
+        help="The 68 iBug landmarks of HEAD, as JSON; MakeHuman and ICT-FaceKit need none.",
+    )
     name: str = option(
         "--as",
         type=click.Choice(["glb", "obj"]),
@@ -76,11 +79,8 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     from ..scenes import called_head, own_head
 
     file_path = head if isinstance(head, Path) else None
-    if (file_path is None) != (rigging.landmarks is None):
-        raise UserError(
-            "a file as HEAD and --landmarks LANDMARKS.json go together; "
-            "`risorius view --head HEAD.obj` helps to mark the landmarks"
-        )
+    if file_path is None and rigging.landmarks is not None:
+        raise UserError(f"--landmarks {rigging.landmarks}: goes with a file as HEAD; add its name")
     is_folder = rigging.name == "obj"
     _check_output(output, (file_path, rigging.landmarks, rigging.take), is_folder=is_folder)
     kinds = tuple(rigging.shapes.split(","))
@@ -101,7 +101,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
 
     fitted = None
     title = "head"
-    if file_path is not None and rigging.landmarks is not None:
+    if file_path is not None:
         fitted = own_head(file_path, rigging.landmarks)
         title = file_path.stem
     elif head is not None and not isinstance(head, Path):

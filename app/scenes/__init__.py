@@ -89,8 +89,8 @@ def build_face(head: FittedHead | None = None) -> FaceScene:
         raise UserError(f"this head cannot be simulated: {error}") from None
 
 
-def own_head(head: Path, landmarks: Path) -> FittedHead:
-    """The user's own head, fitted."""
+def own_head(head: Path, landmarks: Path | None) -> FittedHead:
+    """The user's own head, fitted; landmarks: None for a head whose vertices are known."""
     fitted = fit_head(head, landmarks)
     for note in fitted.notes:
         LOG.warning("risorius: %s: %s", head, note)

@@ -34,7 +34,13 @@ from ..model import Eye, FineShape, Head, Layer, Part, Wrinkles
 from ..topology import boundary_loops
 from ..user_files import named
 from . import simplifying
-from .landmark_file import COUNT, check_lips, groups_in_disorder, read_landmarks
+from .landmark_file import (
+    COUNT,
+    UnfinishedError,
+    check_lips,
+    groups_in_disorder,
+    read_landmarks,
+)
 from .mesh_validation import (
     ShutMouthError,
     SkinPiece,
@@ -47,6 +53,7 @@ from .mesh_validation import (
 from .mouth_walls import FittedSkin
 from .organs import place_eyes, place_parts, with_eyelid_rims
 from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spread_uv
+from .topologies import recognised
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
 ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
@@ -119,12 +126,16 @@ class FittedHead:
         return (a, b, c, -bottom / height) if height > 0.0 else None
 
 
-def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
+def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHead:
     """Read a mesh and its landmark file (see landmark_file.py) and fit the built-in head to it.
 
-    Raises AssetError, one line that names the file, where a file is missing, broken or unusable.
+    landmarks: None for a mesh whose vertices are known by their numbers, see topologies.py.
+    Raises AssetError, one line that names the file, where a file is missing, broken or unusable;
+    its subclass UnfinishedError where landmarks are missing.
     """
     found = read_mesh(mesh)
+    if landmarks is None:
+        return _fit_known(found, Path(mesh))
     files = (Path(mesh), Path(landmarks))
     numbers, points = read_landmarks(files[1], found)
     try:
@@ -142,6 +153,22 @@ def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
         if points is None and is_face == [False, True]:
             reason = AssetError("landmarks count vertices from 1; count from 0: take 1 off each")
         raise AssetError(f"{named(mesh)}: {reason}") from None
+
+
+def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
+    """Fit a mesh whose landmarks are known; its errors are those of `fit_head`."""
+    known = recognised(mesh)
+    if known is None:
+        raise UnfinishedError(
+            f"{named(path)}: its vertices are those of no known head, so mesh and landmark file "
+            "go together; `risorius view --head MESH` helps to mark the landmarks"
+        )
+    note = f"its vertices are those of {known.name}, whose landmarks are known"
+    try:
+        fitted = fit(mesh, known.landmarks)
+    except AssetError as error:
+        raise AssetError(f"{named(path)}: {note}; but {error}") from None
+    return replace(fitted, files=(path,), notes=(note, *fitted.notes))
 
 
 def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:

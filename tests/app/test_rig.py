@@ -19,6 +19,7 @@ from risorius.app.rig.scene_meshes import Piece, add_mesh
 from risorius.app.rig.surface import MovingSurface
 from risorius.app.scenes import FaceScene
 from risorius.assets.fitting import simplifying
+from risorius.assets.fitting.topologies import recognised
 from risorius.assets.meshes import read_mesh
 from risorius.geometry.normals import vertex_normals
 
@@ -62,6 +63,15 @@ def test_shapes_are_where_the_simulation_rests(built_in, face):
         moved = rest_in(face, {name: 1.0}).skin - face.rest_positions
         assert np.abs(moved).max() > 3.0
         assert np.abs(shapes[name] / METRES - moved).max() < SEEN, name
+
+
+def test_an_avatar_of_ours_needs_no_landmarks(built_in, face):
+    """It is known by its vertices, of which seams of the texture have doubled some."""
+    mesh = read_mesh(built_in)
+    known = recognised(mesh)
+    assert known.name == "the built-in head"
+    places = np.abs(mesh.vertices[known.landmarks] - METRES * face.rest_positions[face.landmarks])
+    assert places.max() < 1e-6
 
 
 def test_shares_of_bones_stay_within_their_limits(face):

@@ -175,6 +175,7 @@ def test_search_finds_the_avatar(viewer, words):
 @pytest.mark.slow
 def test_a_head_of_the_user_becomes_an_avatar(viewer, tmp_path):
     """File > Export > Avatar writes the file's vertices with ARKit's 52, and shows the progress."""
+    before = viewer.session.scene
     mesh, marks = stranger().write(tmp_path)
     put(viewer, mesh, marks)
     assert until(viewer, lambda: viewer.file_drop.making is None)
@@ -184,6 +185,7 @@ def test_a_head_of_the_user_becomes_an_avatar(viewer, tmp_path):
     assert viewer.files.is_waiting
     press_keys(viewer, "Return")
     assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
+    viewer.show_scene(before)
     job = viewer.exporter.job
     assert job.target.name == f"{mesh.stem}-avatar.glb"
     assert until(viewer, lambda: 0.2 < job.task.share < 1.0, LONG)

@@ -3,6 +3,7 @@
 import os
 import subprocess
 from collections.abc import Iterator
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
@@ -13,6 +14,8 @@ from pytest import approx
 from risorius.app.script.script_file import load_script
 from risorius.app.sound import player
 from risorius.app.viewer import Viewer
+from risorius.assets.coarse import coarse_head
+from risorius.assets.meshes import Mesh
 from tests.heads import stranger
 
 from .driving import (
@@ -418,3 +421,18 @@ def test_a_name_that_is_no_utf8(viewer, tmp_path):
     press_keys(viewer, "Escape")
     press_keys(viewer, "F12")
     assert not viewer.messages.is_error
+
+
+@pytest.mark.slow
+def test_a_known_head_needs_no_marking(viewer, tmp_path):
+    """A mesh alone, whose vertices are those of a known head, is shown with its muscles."""
+    before = viewer.session.scene
+    head = coarse_head()
+    known = replace(stranger(), mesh=Mesh(head.vertices, head.faces), landmarks=head.landmarks)
+    mesh, _ = known.write(tmp_path)
+    put(viewer, mesh)
+    assert until(viewer, lambda: viewer.file_drop.making is None)
+    assert viewer.marking_mode is None
+    assert len(viewer.session.scene.faces) == len(head.faces)
+    assert viewer.exporter.head.files == (mesh,)
+    viewer.show_scene(before)

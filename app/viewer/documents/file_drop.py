@@ -125,10 +125,9 @@ class FileDrop:
         show = None
         remark = ""
         try:
-            if landmarks is not None:
-                scene = build_scene("face", own_head(mesh, landmarks))
-                show = partial(self._show_scene, scene)
-                remark = f" with {mesh.name}"
+            scene = build_scene("face", own_head(mesh, landmarks))
+            show = partial(self._show_scene, scene)
+            remark = f" with {mesh.name}"
         except UnfinishedError:
             pass  # it is marked further
         except assets.AssetError as error:

@@ -1,0 +1,156 @@
+"""Heads whose vertices are known by their numbers: their 68 landmarks need no file.
+
+A topology is recognised by its counts of vertices and triangles, by edges between vertices, and by
+lengths of these. The counts are those of a whole file or of one piece of it, so eyes, teeth and
+helpers may be there or not. topologies.toml has those that come along; everybody adds others in
+JSON files, one topology each:
+
+    {"name": "FLAME", "counts": [[5023, 9976]], "landmarks": [68 vertex numbers]}
+
+The built-in head and the coarse one, which all persons share, are recognised, too.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.schema import Record, Within, parsed_json, read
+
+from ...geometry.arrays import Integers32
+from ..data_files import read_toml
+from ..errors import AssetError
+from ..loading import load
+from ..meshes import Mesh
+from ..user_files import MOST_VERTICES, named, read_file
+from .mesh_validation import pieces_of
+
+Number = Annotated[int, Within(0, MOST_VERTICES)]
+Numbers = npt.NDArray[np.integer[Any]]
+COUNT = 68
+OUTER_EYE_CORNERS = (36, 45)  # landmarks
+
+
+@dataclass(frozen=True)
+class Topology(Record):
+    """Which vertices a known head has.
+
+    counts: of vertices and triangles, two numbers each, of the whole file or one piece.
+    landmarks: vertex numbers from 0, of the file or within the piece; 68 of them.
+    edges: two vertices, and the length between them as a share of that between the outer corners
+    of the eyes.
+    """
+
+    name: str
+    counts: list[tuple[Number, Number]]
+    landmarks: list[Number]
+    edges: list[tuple[Number, Number, float]] = field(default_factory=list)
+
+    def check(self, where: str) -> None:
+        """Raise AssetError where a file does not name 68 vertices that it has."""
+        fewest = min((vertices for vertices, _ in self.counts), default=0)
+        if len(self.landmarks) != COUNT:
+            raise AssetError(
+                f"{where}, 'landmarks': has {len(self.landmarks)} numbers, must have {COUNT}"
+            )
+        lists = {
+            "landmarks": self.landmarks,
+            "edges": [vertex for edge in self.edges for vertex in edge[:2]],
+        }
+        for key, numbers in lists.items():
+            highest = max(numbers, default=-1)
+            if highest >= fewest:
+                raise AssetError(
+                    f"{where}, '{key}': has vertex {highest}; 'counts' must have more "
+                    "vertices than this number, which counts from 0"
+                )
+
+
+@dataclass(frozen=True)
+class KnownHead:
+    """A topology that was found in a mesh. landmarks: vertices of the mesh, (68,)."""
+
+    name: str
+    landmarks: Integers32
+
+
+def topologies_folder() -> Path:
+    """The folder of a user's own topologies, which need not be there."""
+    folder = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config")
+    return folder / "risorius" / "topologies"
+
+
+def recognised(mesh: Mesh) -> KnownHead | None:
+    """The known head that a mesh is, or has as a piece; None for others.
+
+    Raises AssetError for a file of the user's topologies that cannot be used.
+    """
+    known = [*_own_topologies(), *_built_in_topologies()]
+    for numbers, triangles in _candidates(mesh):
+        for topology in known:
+            if (len(numbers), triangles) in topology.counts and _has_edges(mesh, numbers, topology):
+                found = numbers[topology.landmarks]
+                return KnownHead(topology.name, found.astype(np.int32))
+    return None
+
+
+def _candidates(mesh: Mesh) -> Iterator[tuple[Numbers, int]]:
+    """Vertices in their order, and the number of triangles: of each piece, then of all."""
+    piece = pieces_of(mesh.faces, len(mesh.vertices))
+    triangles = np.bincount(piece[mesh.faces[:, 0]], minlength=int(piece.max()) + 1)
+    used = np.unique(mesh.faces)
+    order = used[np.argsort(piece[used], kind="stable")]
+    starts = np.flatnonzero(np.diff(piece[order])) + 1
+    groups = np.split(order, starts)
+    for group in sorted(groups, key=len, reverse=True):
+        yield group, int(triangles[piece[group[0]]])
+    same = np.arange(len(mesh.vertices)) if mesh.same is None else np.asarray(mesh.same)
+    yield same, len(mesh.faces)
+
+
+def _has_edges(mesh: Mesh, numbers: Numbers, topology: Topology) -> bool:
+    """Whether all edges of a topology are sides of triangles, as long as its heads have them."""
+    if not topology.edges:
+        return True
+    first, second = numbers[[edge[:2] for edge in topology.edges]].T
+    share = np.array([edge[2] for edge in topology.edges])
+    right, left = numbers[topology.landmarks][list(OUTER_EYE_CORNERS)]
+    width = float(np.linalg.norm(mesh.vertices[right] - mesh.vertices[left]))
+    length = np.linalg.norm(mesh.vertices[first] - mesh.vertices[second], axis=1)
+    most_off = 3.0  # times longer or shorter: faces differ
+    is_like = (length < most_off * share * width) & (length * most_off > share * width)
+    count = len(mesh.vertices)
+    sides = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
+    keys = sides.min(axis=1).astype(np.int64) * count + sides.max(axis=1)
+    wanted = np.minimum(first, second).astype(np.int64) * count + np.maximum(first, second)
+    return bool(is_like.all() and np.isin(wanted, keys).all())
+
+
+@cache
+def _built_in_topologies() -> tuple[Topology, ...]:
+    """Those that come along."""
+    path = Path(__file__).parents[1] / "topologies.toml"
+    rows = read_toml(path)["topology"]
+    found = [read(Topology, row, path.name, error=AssetError) for row in rows]
+    head = load("head")
+    counts = [(len(head.vertices), len(head.faces))]
+    return (*found, Topology("the built-in head", counts, head.landmarks.tolist()))
+
+
+def _own_topologies() -> Iterator[Topology]:
+    """Those of the user; AssetError for a file that cannot be used."""
+    for path in sorted(topologies_folder().glob("*.json")):
+        try:
+            document = parsed_json(read_file(path, kind="topology", most=1))
+        except (AssetError, ValueError) as error:
+            raise AssetError(f"{named(path)}: {error}") from None
+        topology = read(Topology, document, named(path), error=AssetError)
+        topology.check(named(path))
+        yield topology

@@ -1,0 +1,125 @@
+"""Heads whose vertices are known by their numbers need no landmark file."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius import assets
+from risorius.assets.coarse import coarse_head
+from risorius.assets.data_files import read_toml
+from risorius.assets.fitting import fit_head
+from risorius.assets.fitting.landmark_file import UnfinishedError
+from risorius.assets.fitting.topologies import COUNT, recognised
+from risorius.assets.meshes import Mesh
+
+from ..heads import METRES, TURN, shape, stranger
+
+TABLE = read_toml(Path(assets.__file__).with_name("topologies.toml"))["topology"]
+
+
+@pytest.fixture(autouse=True)
+def _no_topologies(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The user's folder is one of the test's own."""
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+
+
+def lumps(points):
+    """Triangles with corners at points (n, 3), as eyes and teeth are: (n + 2 a point, F)."""
+    vertices = np.repeat(points, 3, axis=0) + np.tile(0.1 * np.eye(3), (len(points), 1))
+    return vertices, np.arange(3 * len(points), dtype=np.int32).reshape(-1, 3)
+
+
+def with_pieces_in_front(mesh):
+    """The mesh behind two other pieces."""
+    vertices, faces = lumps(np.array([[0.0, 0.0, -50.0], [9.0, 0.0, -50.0]]))
+    both = np.vstack([faces, mesh.faces + len(vertices)]).astype(np.int32)
+    return Mesh(np.vstack([vertices, mesh.vertices]), both)
+
+
+def as_another(head):
+    """The built-in head's vertices in another shape, unit and place."""
+    return Mesh(shape(head.vertices) @ TURN.T * METRES, head.faces)
+
+
+def test_our_own_heads_are_known_beside_other_pieces():
+    """Whatever their shape, and wherever their vertices begin."""
+    head = assets.load("head")
+    known = recognised(with_pieces_in_front(as_another(head)))
+    assert known.name == "the built-in head"
+    assert np.array_equal(known.landmarks, head.landmarks + 6)
+    coarse = coarse_head()
+    known = recognised(Mesh(coarse.vertices, coarse.faces))
+    assert known.name == "the coarse head"
+    assert np.array_equal(known.landmarks, coarse.landmarks)
+
+
+def test_a_known_head_is_fitted_without_a_landmark_file(tmp_path):
+    """As with one; a line names the head. Other meshes are refused by a line on landmarks."""
+    other = replace(stranger(), mesh=as_another(assets.load("head")))
+    mesh, marks = other.write(tmp_path)
+    fitted = fit_head(mesh)
+    assert np.array_equal(fitted.vertices, fit_head(mesh, marks).vertices)
+    assert "its vertices are those of the built-in head" in fitted.notes[0]
+    assert fitted.files == (mesh,)
+    unknown, _ = stranger().write(tmp_path)
+    with pytest.raises(UnfinishedError, match="no known head, so mesh and landmark"):
+        fit_head(unknown)
+
+
+def test_the_table_is_sound():
+    """68 vertices each, which are there, and edges that are a share of a face."""
+    assert len(TABLE) >= 3
+    for row in TABLE:
+        fewest = min(vertices for vertices, _ in row["counts"])
+        assert len(set(row["landmarks"])) == COUNT and max(row["landmarks"]) < fewest
+        for first, second, share in row.get("edges", ()):
+            assert max(first, second) < fewest and 0.0 < share < 0.2
+
+
+def test_edges_tell_meshes_of_the_same_counts_apart(tmp_path):
+    """A user's topology counts where its edges are those of the mesh, and only there."""
+    other = stranger()
+    mesh = other.mesh
+    right, left = mesh.vertices[other.landmarks[[36, 45]]]
+    width = np.linalg.norm(right - left)
+    first, second = mesh.faces[0, :2].tolist()
+    share = float(np.linalg.norm(mesh.vertices[first] - mesh.vertices[second]) / width)
+    folder = tmp_path / "config" / "risorius" / "topologies"
+    folder.mkdir(parents=True)
+    file = folder / "mine.json"
+    mine = {
+        "name": "mine",
+        "counts": [[len(mesh.vertices), len(mesh.faces)]],
+        "landmarks": other.landmarks.tolist(),
+        "edges": [[first, second, share]],
+    }
+    file.write_text(json.dumps(mine))
+    known = recognised(mesh)
+    assert known.name == "mine" and np.array_equal(known.landmarks, other.landmarks)
+    file.write_text(json.dumps(mine | {"edges": [[first, second, 9.0 * share]]}))
+    assert recognised(mesh) is None
+    file.write_text(json.dumps(mine | {"edges": [[first, len(mesh.vertices) - 1, share]]}))
+    assert recognised(mesh) is None
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"landmarks": [1, 2]}, "mine.json, 'landmarks': has 2 numbers, must have 68"),
+        ({"counts": [[40, 9]]}, "'landmarks': has vertex 67; 'counts' must have more vertices"),
+        ({"counts": 7}, "mine.json, 'counts'"),
+        ({"edges": [[1, 900, 0.1]]}, "'edges': has vertex 900; 'counts' must have more vertices"),
+    ],
+)
+def test_a_wrong_topology_is_one_line(tmp_path, change, message):
+    """It names the file, the value and the allowed ones."""
+    folder = tmp_path / "config" / "risorius" / "topologies"
+    folder.mkdir(parents=True)
+    mine = {"name": "mine", "counts": [[100, 200]], "landmarks": list(range(COUNT))}
+    (folder / "mine.json").write_text(json.dumps(mine | change))
+    with pytest.raises(assets.AssetError, match=message) as raised:
+        recognised(stranger().mesh)
+    assert "\n" not in str(raised.value)
