@@ -21,6 +21,7 @@ from .errors import GLError
 from .frame import NO_MAPS, DrawnPart, Frame, PlacedPart, Plane, Skin, SkinMaps
 from .geometry_buffer import Geometry
 from .lines import Lines
+from .opening import Opening
 from .probe import Finding, probe
 from .render_target import Rectangle
 from .renderer import Renderer
@@ -72,6 +73,7 @@ __all__ = [
     "Light",
     "Lines",
     "OffscreenSurface",
+    "Opening",
     "OrbitCamera",
     "PlacedPart",
     "Plane",

@@ -12,6 +12,7 @@ from typing import Protocol, Self
 from ..geometry.arrays import Floats32, Floats64, Integers32, Unsigned8
 from .camera import CameraView
 from .lines import Lines
+from .opening import Opening
 from .stream import MeshBuffers, UploadedMesh
 from .style import Style
 from .texture import BumpMap, Texture
@@ -62,6 +63,7 @@ class PlacedPart:
     transform: from the part to the world, for column vectors, shape (4, 4).
     lies_beneath: whether it belongs under the skin: whole skin hides it, even where it comes out.
     throws_shadow: whether it throws a shadow on other parts and on the skin.
+    opening: through which light gets to it; None: light comes from all around.
     vertices, normals, colours: those of the part.
     """
 
@@ -69,6 +71,7 @@ class PlacedPart:
     transform: Floats64
     lies_beneath: bool = False
     throws_shadow: bool = False
+    opening: Opening | None = None
     vertices: Floats32 = field(init=False)
     normals: Floats32 = field(init=False)
     colours: Floats32 = field(init=False)
@@ -85,6 +88,7 @@ class PlacedPart:
         *,
         lies_beneath: bool = False,
         throws_shadow: bool = False,
+        opening: Opening | None = None,
     ) -> Self:
         """A part where its bone puts it, by the matrix of that bone; ValueError if it has none."""
         if part.bone not in transforms:
@@ -92,7 +96,7 @@ class PlacedPart:
                 f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
                 f"{', '.join(sorted(transforms)) or 'none'}"
             )
-        return cls(part, transforms[part.bone], lies_beneath, throws_shadow)
+        return cls(part, transforms[part.bone], lies_beneath, throws_shadow, opening)
 
 
 @dataclass(frozen=True, eq=False)

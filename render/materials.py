@@ -34,13 +34,17 @@ def mesh_shader(style: Style, has_texture: bool, maps: Iterable[BumpMap], fades:
     ]
 
 
-def part_shader(kind: str, has_shadow: bool, is_cut: bool) -> list[str]:
-    """The file and the defines of the program of parts of a kind, see `PartBuffers`."""
+def part_shader(kind: str, opening: str, has_shadow: bool, is_cut: bool) -> list[str]:
+    """The file and the defines of the program of parts of a kind, see `PartBuffers`.
+
+    opening: how `Opening.define` calls the one before them; empty where there is none.
+    """
     if kind == "SHELLS":
         return ["shells.glsl"]
     shadows = ["SHADOWS"] * (has_shadow and kind != "STRANDS")
     sunk = ["SUNK"] * (is_cut and kind != "STRANDS")
-    return ["surface.glsl", "PIXEL", "COLOURED", kind, *shadows, *sunk]
+    openings = [opening] if opening else []
+    return ["surface.glsl", "PIXEL", "COLOURED", kind, *openings, *shadows, *sunk]
 
 
 def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_scale: float) -> None:

@@ -246,19 +246,23 @@ class Renderer:
         if depths is not None:
             depths.choose_parts(parts)
         programs = {}
-        for kind in {each.buffers.kind for each in parts}:
-            names = part_shader(kind, shadow is not None, cut is not None)
-            programs[kind] = program = self._program(*names)
+        for kind, opening in {_kind_of(each, style) for each in parts}:
+            names = part_shader(kind, opening, shadow is not None, cut is not None)
+            programs[kind, opening] = program = self._program(*names)
             write_uniform(program, "projection", view.projection)
             set_light(program, style.light)
             if cut is not None and "cut" in program:
                 set_cut(program, view, cut, SUNK_DEPTH)
             if shadow is not None and "shadow_map" in program:
                 shadow.set_uniforms(program, _SHADOW_UNIT)
-        for buffers, part in sorted(parts, key=lambda each: each.buffers.is_mixed):
-            program = programs[buffers.kind]
+        for each in sorted(parts, key=lambda each: each.buffers.is_mixed):
+            buffers, part = each
+            kind, opening = _kind_of(each, style)
+            program = programs[kind, opening]
             write_uniform(program, "model_view", part.transform.T @ view.world_to_view)
             set_part(program, buffers, style.light, view)
+            if opening and part.opening is not None:
+                part.opening.set_uniforms(program, view)
             if buffers.kind == "SHELLS":
                 buffers.draw_shells(program, view, chosen=depths is not None)
                 continue
@@ -305,6 +309,15 @@ class Renderer:
         if is_seen := min(covered[2:]) > 0:
             self.surface.target.use_layer(view.viewport, covered)
         return is_seen
+
+
+def _kind_of(placed: PlacedBuffers, style: Style) -> tuple[str, str]:
+    """The kind of a part, and of the opening through which light gets to it, if any counts."""
+    kind = placed.buffers.kind
+    opening = placed.part.opening
+    if kind != "RIGID" or opening is None or not style.skin_maps:
+        return kind, ""
+    return kind, opening.define
 
 
 def _shares(skin: Skin, style: Style) -> list[tuple[Share, dict[BumpMap, float]]]:

@@ -6,6 +6,7 @@ are first asked for. `Dissection` has them, the face's own parts, and the opacit
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -17,6 +18,7 @@ from risorius.assets.identities import HAIR
 
 from ..scenes import Drawable, Face
 from ..scenes.mouth import BentPart
+from ..scenes.openings import opening_before
 from .muscle_bands import Muscles
 
 STRUCTURES = ("muscles", "skull")
@@ -71,17 +73,28 @@ class Anatomy:
         place = render.PlacedPart.of
         if face is None or not view.structures or view.opacity >= 1.0:
             parts = [part for part in scene.parts if has_hair or not part.name.startswith(HAIR)]
+            openings = self._openings()
             return Dissection(
-                tuple(place(each, bones, throws_shadow=each.name in OUTER_HAIR) for each in parts)
+                tuple(
+                    place(
+                        each,
+                        bones,
+                        throws_shadow=each.name in OUTER_HAIR,
+                        opening=openings.get(opening_before(each.name, each.bone)),
+                    )
+                    for each in parts
+                )
             )
         structures = [
             place(part, bones, lies_beneath=True, throws_shadow=True)
             for part in self._structures(face, view)
         ]
         stay = [part for part in scene.parts if not part.name.startswith((*SOFT, HAIR))]
+        openings = self._openings() if SIDES[view.side] else {}
         others = [
-            place(part, bones, throws_shadow=not part.strand_radius)
-            for part in stay + self._soft(face, view)
+            place(half, bones, throws_shadow=not part.strand_radius, opening=opening)
+            for part in (*stay, *self._soft(view))
+            for half, opening in self._lit(face, view, part, openings)
         ]
         hair = self._whole(face, view, (HAIR,)) if has_hair else []
         parts_of_hair = [place(part, bones) for part in hair]
@@ -114,26 +127,49 @@ class Anatomy:
         self._followed = now
         return self._muscles
 
-    def _soft(self, face: Face, view: AnatomyView) -> list[Any]:
-        """The parts that line the mouth; with bones alone, only those on the side of whole skin."""
-        if "muscles" not in view.structures:
-            return self._whole(face, view, SOFT)
-        return [part for part in self._scene.parts if part.name.startswith(SOFT)]
+    def _soft(self, view: AnatomyView) -> list[Any]:
+        """The parts that line the mouth, where anything of them is seen."""
+        is_seen = "muscles" in view.structures or SIDES[view.side]
+        return [part for part in self._scene.parts if is_seen and part.name.startswith(SOFT)]
 
     def _whole(self, face: Face, view: AnatomyView, names: tuple[str, ...]) -> list[Any]:
         """Parts, by how their names begin, on the side that is not opened; none if both are."""
         side = SIDES[view.side]
         parts = [part for part in self._scene.parts if side and part.name.startswith(names)]
-        for part in parts:
-            if (side, part.name) not in self._halves:
-                aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(face)[0]
-                self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < 0.0])
-            half = self._halves[side, part.name]
-            if isinstance(part, BentPart):
-                half.vertices = part.vertices
-                half.normals = part.normals
-                half.colours = part.colours
-        return [self._halves[side, part.name] for part in parts]
+        return [self._half(face, part, side) for part in parts]
+
+    def _half(self, face: Face, part: Any, side: float) -> Any:
+        """The half of a part, as it is now, that is not on a side."""
+        if (side, part.name) not in self._halves:
+            aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(face)[0]
+            self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < 0.0])
+        half = self._halves[side, part.name]
+        if isinstance(part, BentPart):
+            half.vertices = part.vertices
+            half.normals = part.normals
+            half.colours = part.colours
+        return half
+
+    def _openings(self) -> dict[str, render.Opening]:
+        """The openings of the skin now, by their names."""
+        return {name: render.Opening(*rim) for name, rim in self._scene.rims().items()}
+
+    def _lit(
+        self, face: Face, view: AnatomyView, part: Any, openings: Mapping[str, render.Opening]
+    ) -> list[tuple[Any, render.Opening | None]]:
+        """A part, in halves where skin is opened before one of them, and where light comes from.
+
+        With bones alone, what lines the mouth is left out on the side that is opened.
+        """
+        opening = openings.get(opening_before(part.name, part.bone))
+        if opening is None:
+            return [(part, None)]
+        side = SIDES[view.side]
+        lit = self._half(face, part, side), opening
+        halves: list[tuple[Any, render.Opening | None]] = [lit]
+        if "muscles" in view.structures or not part.name.startswith(SOFT):
+            halves.append((self._half(face, part, -side), None))
+        return [half for half in halves if len(half[0].faces)]
 
 
 def _middle(face: Face) -> Any:

@@ -16,6 +16,7 @@ from risorius import assets
 from risorius.geometry.arrays import Floats32, Integers32
 
 from .face_under_skin import Face
+from .openings import Rim
 
 Points = npt.NDArray[np.float64]
 Pixels = npt.NDArray[np.uint8]
@@ -88,6 +89,10 @@ class Drawable:
     def parts(self) -> tuple[Any, ...]:
         """What moves with bones or the skin, as it is now: eyes, teeth, lashes, ..."""
         return ()
+
+    def rims(self) -> Mapping[str, Rim]:
+        """The openings of its skin as they are now, by names of `openings.opening_before`."""
+        return {}
 
     def bone_transforms(self) -> Mapping[str, Points]:
         """Where the rigid parts are now: a (4, 4) matrix for each bone."""

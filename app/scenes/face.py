@@ -19,6 +19,7 @@ from ..control_names.limits import ControlValues, Limits
 from .drawable import Framing, SkinImages
 from .face_under_skin import Face
 from .mouth import MouthWalls, Tongue, shaded_mouth
+from .openings import Rim, rims_of
 from .scene import Scene
 from .surface_attachment import SurfaceAttachment
 
@@ -109,6 +110,9 @@ class FaceScene(Scene):
                     to_cranium = np.linalg.inv(bones["cranium"])
                     part.stretch(self.simulation.bones.jaw, to_cranium @ bones["mandible"])
         return self._parts
+
+    def rims(self) -> Mapping[str, Rim]:
+        return rims_of(self.face.marked)
 
     def bone_transforms(self) -> Mapping[str, Floats64]:
         return self.simulation.bones.transforms()

@@ -32,7 +32,7 @@ class Gloom(NamedTuple):
 # dark ones look like broken teeth, and rows that end before the corner of the mouth.
 REDDENED = (0.9, 1.2, 1.25)
 GUMS = Gloom(2.0, 34.0, 0.2)
-TONGUE = Gloom(-5.0, 53.0, 0.63, (0.92, 1.25, 1.3))
+TONGUE = Gloom(-5.0, 53.0, 0.48, (0.92, 1.25, 1.3))
 UPPER_TEETH = Gloom(4.0, 40.0, 0.15, REDDENED)
 LOWER_TEETH = Gloom(2.0, 36.0, 0.25, REDDENED)
 

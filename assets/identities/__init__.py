@@ -6,13 +6,8 @@
 Any of them goes where the built-in head goes: `sim.create(person)`, `FaceScene(person)`.
 """
 
-from .complexion import (
-    Features,
-    built_in_hair,
-    coloured,
-    features_of,
-    recoloured,
-)
+from .complexion import built_in_hair, coloured, recoloured
+from .features import Features, features_of
 from .hair import HAIR
 from .named import (
     NAMED,

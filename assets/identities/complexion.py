@@ -15,7 +15,7 @@ the 19 at 52 ("Proposed shade guide for human facial skin", IADR 2009, abstract 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache, partial
 from typing import Any
 
@@ -31,12 +31,13 @@ from ..loading import load
 from ..model import Head, Part, Segment
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
 from ..smooth import shrunk
-from .brows import Brows, drawn_brows, painted, stubble
-from .hair import CUTS, HAIR, OWN_CUT, Fall, Hairline, drawn_hairline, hair_of, scalp_of
+from .brows import painted, stubble
+from .eyes import beside_skin, with_irises
+from .features import PLAIN, Features
+from .hair import CUTS, HAIR, OWN_CUT, Fall, hair_of, scalp_of
 from .long_hair import falling_hair, tied_hair
 from .person import Person
-from .population import DARKEST, IRIS_SHARES, LIGHTEST, ONLY_BROWN
-from .space import Identity, Sex
+from .population import DARKEST, LIGHTEST
 
 GREY_HAIR = (0.54, 0.52, 0.49)
 LOCKS_LIGHTER = 1.2  # than painted hair, which no other hair shades
@@ -44,30 +45,6 @@ BEHIND = 30.0  # [mm] of the scalp, in the map of it: from the hairline back
 IN_FRONT = 10.0
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
 LEVELS = 4096  # of the table from light to bytes
-
-
-@dataclass(frozen=True)
-class Features:
-    """What sex and age make of the picture of a face; the default is the built-in head's.
-
-    brows: of a person, else the built-in head's. lid_line: how dark lashes make the edges of the
-    lids, 0 to 1. stubble: how much of the skin short hairs of a beard cover. beard, lips: density
-    of its shadow, and of blood in them, beside that of the built-in head. relief: of pores and
-    patches, beside its own. fair, grey: shares of such hair. hairline: where hair begins.
-    """
-
-    brows: Brows | None = None
-    lid_line: float = 0.0
-    stubble: float = 0.0
-    beard: float = 0.0
-    lips: float = 0.0
-    relief: float = 0.0
-    fair: float = 0.0
-    grey: float = 0.0
-    hairline: Hairline = field(default_factory=Hairline)
-
-
-PLAIN = Features()
 
 
 @dataclass(frozen=True)
@@ -201,7 +178,10 @@ def coloured(
     The hair stays in other tones (`in_tone`). irises: None leaves them as they are. shrink: as of
     `recoloured`, for small pictures; what is painted on the skin has so many texels less.
     """
-    parts = person.parts if irises is None else _with_irises(person.parts, irises)
+    parts = person.parts
+    if irises is not None:
+        parts = with_irises(parts, person.eyes, irises, features.iris)
+    parts = beside_skin(parts, person.eyes, _beside_light_skin(angle))
     behind = _behind(_tints(), features)
     in_tone = partial(recoloured, blood=blood, features=features, haired_as=angle, shrink=shrink)
     return replace(
@@ -214,15 +194,15 @@ def coloured(
     )
 
 
-def _with_irises(parts: Sequence[Part], name: str) -> tuple[Part, ...]:
-    """Parts with eyeballs in a colour of IRIS_SHARES, else ValueError."""
-    if name not in IRIS_SHARES:
-        raise ValueError(f"no eyes are {name!r}; allowed are {', '.join(IRIS_SHARES)}")
-    colours = iter(read_arrays(load("head").beside("_eyes.npz"))[name] / np.float32(255.0))
-    return tuple(
-        replace(part, colours=next(colours)) if part.name.startswith("eyeball") else part
-        for part in parts
-    )
+def _beside_light_skin(angle: float) -> Floats64:
+    """How much light skin of a tone [ITA] throws back beside light skin, up to 1, shape (3,)."""
+    tints = _tints()
+    light_skin = 41.0  # ITA from which on skin is called light
+    lost = np.zeros((2, 3))
+    for row, tone in enumerate((min(angle, light_skin), light_skin)):
+        density, redness, _ = _changes(tints.melanin_of(tone), 1.0)
+        lost[row] = tints.skin[3] * density + tints.skin[4] * redness
+    return np.asarray(np.exp(lost[1] - lost[0]))
 
 
 def _haired_segments(segments: Image, features: Features, behind: Floats32) -> Image:
@@ -277,45 +257,6 @@ def _behind(tints: _Tints, features: Features) -> Floats32:
     line = features.hairline
     moved = (lies - line.shift(len(scalp))) / np.float32(1.0 + line.crown)
     return np.where(scalp > 0.01, moved, lies)
-
-
-def features_of(identity: Identity, angle: float, random: np.random.Generator) -> Features:
-    """Brows, beard, lips, hair and relief of somebody of that sex and age, chosen by eye.
-
-    Women's eyes and lips are darker beside their skin (Russell 2009, "A sex difference in facial
-    contrast and its exaggeration by cosmetics", Perception 38:1211-1219).
-    """
-    is_man = identity.sex is Sex.MAN
-    years = identity.age
-    beard, lips, fair, grey, line, hairs = random.uniform(0.0, 1.0, 6)
-    fair_skin = 45.0  # ITA above which hair may be fair
-    shaved_density = 0.12  # of hair in the shipped picture
-    return Features(
-        brows=drawn_brows(is_man, years, random),
-        lid_line=0.2 * line if is_man else 0.5 + 0.4 * line,
-        stubble=float(is_man) * max(2.0 * hairs - 1.1, 0.0),
-        beard=0.1 + 0.8 * beard**1.3 if is_man else -shaved_density,
-        lips=-0.12 + 0.1 * lips
-        if is_man
-        else (0.25 + 0.45 * lips) * (1.0 - 0.006 * (years - 20.0)),
-        relief=(0.15 if is_man else -0.6) + 0.02 * (years - 30.0),
-        fair=fair if angle > fair_skin else 0.0,
-        grey=_share_of_grey(years, angle, grey),
-        hairline=drawn_hairline(is_man, years, random),
-    )
-
-
-def _share_of_grey(years: float, angle: float, early: float) -> float:
-    """The share of somebody's hair that is grey; early: how soon it turns, 0 to 1.
-
-    From 45 to 65 years it is 0.27 in the mean, with dark skin it comes later (Panhard, Lozano,
-    Loussouarn 2012, "Greying of the human hair", Br. J. Dermatology 167:865-873).
-    """
-    dark_skin = -30.0  # ITA below which hair turns grey later
-    delay = 10.0  # [years]
-    later = delay * float(np.clip((ONLY_BROWN - angle) / (ONLY_BROWN - dark_skin), 0.0, 1.0))
-    past = float(np.clip((years - 46.0 + 16.0 * early - later) / 34.0, 0.0, 1.0))
-    return min(past * past, 0.95)
 
 
 def _changes(melanin: float, blood: float) -> tuple[Floats64, Floats64, Floats64]:

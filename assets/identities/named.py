@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .complexion import Features, coloured, features_of
+from .complexion import coloured
+from .features import Features, features_of
 from .person import Person, make_person
 from .population import EVERYBODY, Population, drawn_irises
 from .space import Identity, Sex, sample_identity

@@ -4,9 +4,12 @@
 // from a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), STRANDS (thin cones of
 // three sides; pixels take as much of them as they cover), FIBRES (striation), TRANSLUCENT (skin that
 // shows the parts under it), SUNK (those parts, hidden where skin is opaque), FADED (skin that fades
-// toward a plane).
+// toward a plane), FILLED or BEHIND (parts to which light comes through an opening; opening.glsl).
 
 #include "lighting.glsl"
+#if defined(FILLED) || defined(BEHIND)
+#include "opening.glsl"
+#endif
 
 #if defined(BUMPS) || defined(FINE)
 #define RELIEF
@@ -59,8 +62,13 @@ uniform float sharpness;
 #else
 #define FIBRE_VARYING
 #endif
+#if defined(BEHIND)
+#define OPENING_VARYING vec3 let_in;
+#else
+#define OPENING_VARYING
+#endif
 #define VARYINGS vec3 position; NORMAL_VARYING LIT_VARYING COLOUR_VARYING TEXTURE_VARYING \
-    SHADOW_VARYING BUMP_VARYING STRAND_VARYING FIBRE_VARYING
+    SHADOW_VARYING BUMP_VARYING STRAND_VARYING FIBRE_VARYING OPENING_VARYING
 
 #if defined(VERTEX_STAGE)
 
@@ -127,6 +135,10 @@ void main() {
 #endif
 #if defined(COLOURED)
     surface.colour = in_colour;
+#endif
+#if defined(BEHIND)
+    // Not in each pixel: parts behind lips have many vertices, and few are seen at a time.
+    surface.let_in = reddened(light_let_in(surface.position, normal));
 #endif
 #if defined(FIBRES)
     surface.fibre = in_fibre;
@@ -368,6 +380,11 @@ void main() {
     lightness = mix(0.6, 1.0, lightness);
 #endif
     vec3 light = lit_colour(lit, front, lightness, subsurface, ambient_occlusion);
+#if defined(FILLED)
+    light *= reddened(light_let_in(surface.position));
+#elif defined(BEHIND)
+    light *= surface.let_in;
+#endif
 #if defined(COLOURED)
     light *= 0.96;  // parts sit in sockets and mouths, where less light gets in
 #else

@@ -23,6 +23,7 @@ from risorius.assets.identities import (
 )
 from risorius.assets.identities.brows import Brows
 from risorius.assets.identities.complexion import _tints, typology_angle
+from risorius.assets.identities.eyes import drawn_iris
 from risorius.assets.identities.hair import Hairline
 from risorius.assets.identities.population import IRIS_SHARES
 from risorius.assets.model import Segment
@@ -131,14 +132,47 @@ def test_colours_of_a_number(head):
     first, second = (in_own_colours(person, 5) for _ in range(2))
     assert (first.albedo == second.albedo).all()
     assert (first.parts[0].colours == second.parts[0].colours).all()
-    brown = coloured(person, angle=0.0, irises="brown").parts[0].colours
+    brown = coloured(person, angle=40.0, irises="brown").parts[0].colours
+    others = [coloured(person, angle=40.0, irises=name).parts[0].colours for name in IRIS_SHARES]
+    is_iris = (np.abs(others[0] - others[1]) > 0.01).any(axis=1)
+
+    def redness(colours):
+        """Of irises: red over blue."""
+        red, _, blue = colours[is_iris].mean(axis=0)
+        return red / blue
+
     tanned = 0
     for seed in range(12):
         one = in_own_colours(person, seed)
         if typology_angle(skin_of(head, one.albedo)) < 0.0:
             tanned += 1
-            assert (one.parts[0].colours == brown).all()
+            assert redness(one.parts[0].colours) > 0.6 * redness(brown) > 1.0
     assert 2 <= tanned <= 10
+
+
+def test_eyes_go_with_dark_skin():
+    """Flesh at the corners, wet edges and whites are darker, irises as they are."""
+    person = make_person(sample_identity(1))
+    light, dark = (
+        {part.name: part.colours for part in coloured(person, angle=angle).parts}
+        for angle in (45.0, -40.0)
+    )
+    for name in ("eye_corners", "wet_edges"):
+        assert dark[name].mean() < 0.6 * light[name].mean()
+    share = (dark["eyeball_left"] / light["eyeball_left"]).mean(axis=1)
+    assert 0.7 < share.min() < 0.9
+    assert share.max() == 1.0
+
+
+def test_no_two_irises_are_alike():
+    """Of one colour they differ in lightness and in the ring around the pupil."""
+    person = make_person(sample_identity(1))
+    random = np.random.default_rng(2)
+    drawn = [Features(iris=drawn_iris(random)) for _ in range(8)]
+    eyes = [coloured(person, angle=45.0, irises="blue", features=f).parts[0].colours for f in drawn]
+    assert np.ptp([each.mean() for each in eyes]) > 0.02
+    spread = np.std(eyes, axis=0).mean(axis=1)
+    assert (spread > 0.03).sum() > 100
 
 
 @pytest.mark.parametrize("angle", [60.0, 0.0, -50.0])

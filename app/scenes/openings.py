@@ -1,0 +1,56 @@
+"""The openings of a face, between lids and between lips, as they are now.
+
+Light gets in through them, to the eyeballs and into the mouth. Their rims run through the rig's
+landmarks: a lid is the cubic curve through its four.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from risorius.geometry.arrays import Floats64
+
+RIM_POINTS = 12  # of an opening, the upper half first, clockwise seen from outside
+LIPS = slice(60, 68)  # landmarks of the inner edges of the lips
+LIDS = {"eye_right": slice(36, 42), "eye_left": slice(42, 48)}  # by the eyeball's bone
+BEHIND_LIPS = ("teeth", "gums", "tongue", "oral_cavity")  # parts, by how their names begin
+
+
+class Rim(NamedTuple):
+    """The rim of an opening, (RIM_POINTS, 3) [mm]; is_filled: by what shows in it."""
+
+    points: Floats64
+    is_filled: bool
+
+
+def rims_of(landmarks: Floats64) -> dict[str, Rim]:
+    """The openings by the bones of the eyeballs, and "mouth"; landmarks: now, shape (68, 3)."""
+    rims = {bone: Rim(_through(6) @ landmarks[lids], True) for bone, lids in LIDS.items()}
+    return {**rims, "mouth": Rim(_through(8) @ landmarks[LIPS], False)}
+
+
+def opening_before(name: str, bone: str) -> str:
+    """The opening through which a part is seen; empty where it is seen otherwise."""
+    if name.startswith(BEHIND_LIPS):
+        return "mouth"
+    return bone if name.startswith("eyeball") else ""
+
+
+@cache
+def _through(count: int) -> Floats64:
+    """Weights of landmarks around an opening in the points of its rim, (RIM_POINTS, count).
+
+    Both halves begin and end in its corners: each is the polynomial through its landmarks.
+    """
+    of_half = count // 2
+    knots = np.linspace(0.0, 1.0, of_half + 1)
+    places = np.arange(RIM_POINTS // 2) / (RIM_POINTS // 2)
+    weights = np.vander(places, of_half + 1) @ np.linalg.inv(np.vander(knots, of_half + 1))
+    found = np.zeros((2, RIM_POINTS // 2, count))
+    for half in range(2):
+        columns = (half * of_half + np.arange(of_half + 1)) % count
+        found[half][:, columns] = weights
+    return found.reshape(RIM_POINTS, count)

@@ -1,0 +1,79 @@
+"""What sex, age and chance make of the picture of a face: brows, lids, lips, hair, irises."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .brows import Brows, drawn_brows
+from .eyes import USUAL_IRIS, Iris, drawn_iris
+from .hair import Hairline, drawn_hairline
+from .population import ONLY_BROWN
+from .space import Identity, Sex
+
+
+@dataclass(frozen=True)
+class Features:
+    """What sex and age make of the picture of a face; the default is the built-in head's.
+
+    brows: of a person, else the built-in head's. lid_line: how dark lashes make the edges of the
+    lids, 0 to 1. stubble: how much of the skin short hairs of a beard cover. beard, lips: density
+    of its shadow, and of blood in them, beside that of the built-in head. relief: of pores and
+    patches, beside its own. fair, grey: shares of such hair. hairline: where hair begins. iris: how
+    irises differ from most of their colour.
+    """
+
+    brows: Brows | None = None
+    lid_line: float = 0.0
+    stubble: float = 0.0
+    beard: float = 0.0
+    lips: float = 0.0
+    relief: float = 0.0
+    fair: float = 0.0
+    grey: float = 0.0
+    hairline: Hairline = field(default_factory=Hairline)
+    iris: Iris = USUAL_IRIS
+
+
+PLAIN = Features()
+
+
+def features_of(identity: Identity, angle: float, random: np.random.Generator) -> Features:
+    """Brows, beard, lips, hair and relief of somebody of that sex and age, chosen by eye.
+
+    Women's eyes and lips are darker beside their skin (Russell 2009, "A sex difference in facial
+    contrast and its exaggeration by cosmetics", Perception 38:1211-1219).
+    """
+    is_man = identity.sex is Sex.MAN
+    years = identity.age
+    beard, lips, fair, grey, line, hairs = random.uniform(0.0, 1.0, 6)
+    fair_skin = 45.0  # ITA above which hair may be fair
+    shaved_density = 0.12  # of hair in the shipped picture
+    return Features(
+        brows=drawn_brows(is_man, years, random),
+        lid_line=0.2 * line if is_man else 0.5 + 0.4 * line,
+        stubble=float(is_man) * max(2.0 * hairs - 1.1, 0.0),
+        beard=0.1 + 0.8 * beard**1.3 if is_man else -shaved_density,
+        lips=-0.12 + 0.1 * lips
+        if is_man
+        else (0.25 + 0.45 * lips) * (1.0 - 0.006 * (years - 20.0)),
+        relief=(0.15 if is_man else -0.6) + 0.02 * (years - 30.0),
+        fair=fair if angle > fair_skin else 0.0,
+        grey=_share_of_grey(years, angle, grey),
+        hairline=drawn_hairline(is_man, years, random),
+        iris=drawn_iris(random),
+    )
+
+
+def _share_of_grey(years: float, angle: float, early: float) -> float:
+    """The share of somebody's hair that is grey; early: how soon it turns, 0 to 1.
+
+    From 45 to 65 years it is 0.27 in the mean, with dark skin it comes later (Panhard, Lozano,
+    Loussouarn 2012, "Greying of the human hair", Br. J. Dermatology 167:865-873).
+    """
+    dark_skin = -30.0  # ITA below which hair turns grey later
+    delay = 10.0  # [years]
+    later = delay * float(np.clip((ONLY_BROWN - angle) / (ONLY_BROWN - dark_skin), 0.0, 1.0))
+    past = float(np.clip((years - 46.0 + 16.0 * early - later) / 34.0, 0.0, 1.0))
+    return min(past * past, 0.95)

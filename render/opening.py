@@ -1,0 +1,64 @@
+"""Openings in a skin, between lids or lips, which let light in to the parts behind them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+
+from ..geometry.arrays import Floats64
+from .camera import PlacedView
+from .programs import write_uniform
+
+RIM_POINTS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Opening:
+    """An opening in a skin, and how a part lies in it.
+
+    rim: points of the world around it, clockwise seen from outside, its upper half first, shape
+        (RIM_POINTS, 3).
+    is_filled: whether the part comes up to the rim, as an eyeball does between lids; else it lies
+        behind it, as teeth do behind lips.
+    """
+
+    rim: Floats64
+    is_filled: bool
+
+    @property
+    def define(self) -> str:
+        """How surface.glsl calls its kind."""
+        return "FILLED" if self.is_filled else "BEHIND"
+
+    def set_uniforms(self, program: moderngl.Program, view: PlacedView) -> None:
+        """Place it in the view."""
+        seen = np.column_stack([self.rim, np.ones(len(self.rim))]) @ view.world_to_view
+        if self.is_filled:
+            _set_lids(program, seen[:, :3])
+        else:
+            write_uniform(program, "rim", seen[:, :3])
+
+
+def _set_lids(program: moderngl.Program, rim: Floats64) -> None:
+    """Set both halves of a rim as curves over the way from corner to corner."""
+    half = RIM_POINTS // 2
+    first = rim[0]
+    last = rim[half]
+    middle = 0.5 * (first + last)
+    width = max(float(np.linalg.norm(last - first)), 1e-9)
+    along = (last - first) / width
+    off = rim - middle
+    outward = np.cross(np.roll(off, -1, axis=0), off).sum(axis=0)
+    up = np.cross(outward, along)
+    up /= max(float(np.linalg.norm(up)), 1e-9)
+    for name, axis in (("opening_x", along), ("opening_y", up)):
+        write_uniform(program, name, np.append(axis, -axis @ middle) / (0.5 * width))
+    x = off @ along / (0.5 * width)
+    y = off @ up / (0.5 * width)
+    halves = {"upper_lid": range(half + 1), "lower_lid": (*range(half, RIM_POINTS), 0)}
+    for name, points in halves.items():
+        at = list(points)
+        powers = np.vander(x[at], 4, increasing=True)
+        write_uniform(program, name, np.linalg.lstsq(powers, y[at])[0])

@@ -1,0 +1,69 @@
+"""Light through an opening in a skin: to a ball that fills it, and to one behind it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pytest import approx
+
+from risorius import render
+from risorius.render.opening import RIM_POINTS
+
+from .scenes import PLAIN, STILL, Ball, at, draw
+
+WHITISH = (0.8, 0.8, 0.8)
+
+
+def rim(width, height, z):
+    """A lens-shaped rim, clockwise from the viewer's left, the upper half first."""
+    t = np.arange(RIM_POINTS) / RIM_POINTS * 2.0 * np.pi
+    return np.stack([-0.5 * width * np.cos(t), 0.5 * height * np.sin(t), np.full(12, z)], axis=1)
+
+
+def light(renderer, opening, style=PLAIN):
+    """The picture of a ball of radius 20, as numbers; opening: None, or before it."""
+    placed = render.PlacedPart.of(Ball(colour=WHITISH), STILL, opening=opening)
+    return draw(renderer, style=style, parts=[placed]).sum(axis=2)[..., None]
+
+
+def test_an_eye_is_darkest_below_its_upper_lid(renderer):
+    """Most light is lost there, less in the corners, hardly any in the middle."""
+    opening = render.Opening(rim(30.0, 20.0, 15.0), is_filled=True)
+    plain = light(renderer, None)
+    share = light(renderer, opening) / plain
+    above, below, aside, middle = (
+        at(share, x, y).item() for x, y in ((0.0, 9.0), (0.0, -7.0), (13.0, 0.0), (0.0, -1.0))
+    )
+    assert max(above, aside) < 0.75
+    assert below > 0.9
+    assert middle > 0.93
+
+
+def test_a_mouth_lets_in_as_much_light_as_it_is_open(renderer):
+    """A slit leaves what is behind it dark, a wide opening does not; its edge is darker."""
+    plain = at(light(renderer, None), 0.0, 0.0).item()
+    heights = (1.0, 8.0, 40.0)
+    pictures = [
+        light(renderer, render.Opening(rim(50.0, height, 26.0), is_filled=False))
+        for height in heights
+    ]
+    middles = [at(picture, 0.0, 0.0).item() / plain for picture in pictures]
+    assert middles[0] < 0.62
+    assert middles[0] < middles[1] < middles[2]
+    assert middles[2] > 0.85
+
+
+def test_what_is_out_of_the_mouth_has_all_light(renderer):
+    """A tongue before the lips loses nothing."""
+    opening = render.Opening(rim(50.0, 20.0, 5.0), is_filled=False)
+    out = at(light(renderer, opening), 0.0, 0.0).item()
+    assert out == approx(at(light(renderer, None), 0.0, 0.0).item(), abs=3.0)
+
+
+@pytest.mark.parametrize("is_filled", [True, False])
+def test_without_skin_maps_openings_do_not_count(renderer, is_filled):
+    """The switch leaves out all light that is taken away."""
+    style = replace(PLAIN, skin_maps=False)
+    opening = render.Opening(rim(30.0, 10.0, 22.0), is_filled=is_filled)
+    assert (light(renderer, opening, style) == light(renderer, None, style)).all()
+    assert (light(renderer, opening) < light(renderer, None)).any()
