@@ -131,7 +131,7 @@ def _bound(subject: Subject, refiner: str, options: Mapping[str, Any]) -> Callab
     """The function that makes the mesh of a method from positions (V, 3)."""
     own = dict(options)
     if own.get("scheme") == "detail":
-        own["detail"] = subject.rest.dense, subject.dense_faces
+        own["scheme"] = refine.DetailScheme((subject.rest.dense, subject.dense_faces))
     if refiner == "sliding":
         own["criterion"] = own["criterion"]()
     if refiner == "everywhere":

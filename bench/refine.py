@@ -155,12 +155,11 @@ def _face_cases(load: Load) -> list[_Case]:
         "kahler, coherent": {"coherent": True},
         "cubic": {"scheme": "cubic"},
         "cubic, no blend": {"scheme": "cubic", "blend": False},
-        "detail": {"scheme": "detail"},
+        "detail": {"scheme": refine.DetailScheme((fine.vertices, fine.faces))},
         "window's look": WINDOWS_LOOK,
     }
     for method, options in methods.items():
-        more = {"detail": (fine.vertices, fine.faces)} if "detail" in method else {}
-        cases.append(_own(method, load, "kahler", **options, **more))
+        cases.append(_own(method, load, "kahler", **options))
     cases += [_fixed("kahler", load, {}), _fixed("window's look", load, WINDOWS_LOOK)]
     return [*cases, *(_own(f"uniform Loop {k}x", load, "loop", levels=k) for k in (1, 2))]
 

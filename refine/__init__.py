@@ -60,6 +60,7 @@ from .kahler.criterion import (
     Thresholds,
     criteria,
 )
+from .kahler.cutting import Cutting
 from .kahler.frame import FrameBuffers
 from .kahler.given_splits import splits_of_clip
 from .kahler.refiner import Kahler
@@ -78,6 +79,8 @@ __all__ = [
     "Coherent",
     "Connectivity",
     "Criterion",
+    "Cutting",
+    "DetailScheme",
     "Displacement",
     "EmbeddedPoints",
     "Embedding",

@@ -127,7 +127,7 @@ def test_one_in_place_addition_harms_nobody(head):
         refiner.triangle_edges,
         refiner.connectivity.corners,
         refiner.connectivity.around.points,
-        refiner.history.states,
+        refiner.cutting.states,
     ):
         with pytest.raises(ValueError, match="read-only"):
             array += 1

@@ -43,11 +43,11 @@ def refiner_for(
         if refinement.options:
             _check(name, refinement.options, refinement.criterion_on(scene.name))
             options = with_criteria(options)
-        takes_detail = any(each.name == DETAIL for each in refine.parameters(name))
-        if options.get("scheme") == DETAIL and "detail" not in options and takes_detail:
-            options["detail"] = finer_mesh(scene)
-            if options["detail"] is None:
+        if options.get("scheme") == DETAIL and _takes_own_schemes(name):
+            finer = finer_mesh(scene)
+            if finer is None:
                 raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
+            options["scheme"] = refine.DetailScheme(finer)
         if splits is not None:
             options.pop("criterion", None)
             options["splits"] = splits
@@ -140,6 +140,11 @@ def _in_words(option: refine.Option) -> str:
     if option.kind == "switch":
         return "on" if option.default else "off"
     return str(option.default)
+
+
+def _takes_own_schemes(refiner: str) -> bool:
+    """Whether the option `scheme` of a refiner is a word, or an object, instead of a choice."""
+    return any(each.name == "scheme" and each.kind == "word" for each in refine.parameters(refiner))
 
 
 def can_detail(scene: Drawable) -> bool:

@@ -50,7 +50,7 @@ STATIC, PAPER, CUBIC, DETAIL = VARIANTS = (
     Variant("static", "none"),
     Variant("refined: paper", "kahler"),
     Variant("refined: cubic", "kahler", {"scheme": "cubic"}, splits_borders=True),
-    Variant("refined: detail", "kahler", {"scheme": "detail"}, splits_borders=True),
+    Variant("refined: detail", "kahler", {}, splits_borders=True),
 )
 """One column each, and the dense mesh after them."""
 
@@ -145,8 +145,9 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     simulation = fine_simulation(head, fine)
     refiners = []
     for variant in VARIANTS:
-        detail = {"detail": (fine.vertices, fine.faces)} if variant is DETAIL else {}
-        options = {**variant.options, **detail}
+        options = dict(variant.options)
+        if variant is DETAIL:
+            options["scheme"] = refine.DetailScheme((fine.vertices, fine.faces))
         if variant.splits_borders:
             options["criterion"] = ["displacement", BorderTurn()]
         bound = refine.create(variant.refiner, head.faces, head.vertices, **options)

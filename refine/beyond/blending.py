@@ -39,19 +39,14 @@ diagonal from corner 2 becomes the one from corner 0, and their quadrangle is no
 Differs from the paper: "We don't generate any new vertices in the interior" (section 3).
 """
 
-from typing import Unpack
-
 import numpy as np
-import numpy.typing as npt
 
 from ...geometry.arrays import Floats32, Integers64, Unsigned8, Unsigned16, Unsigned32
 from ...jit import njit
-from ..border.corner_values import Values
-from ..border.plugin import Origins, View
 from ..border.rows import GEOMETRY_COLUMNS
 from ..kahler.criterion import Criterion
+from ..kahler.cutting import Cutting
 from ..kahler.frame import CENTRES, ROWS, TRIANGLES, FrameBuffers
-from ..kahler.refiner import Kahler
 from ..kahler.smoothing import Scheme, geomorph_of_split
 from ..kahler.table import (
     CENTRE,
@@ -99,59 +94,38 @@ FANS = table_of([fan(splits_of(configuration)) for configuration in range(CONFIG
 """The patterns of blended frames."""
 
 
-class Blended(Kahler):
-    """The paper's refiner, but that points grow out of their edges, and nothing pops."""
+class Blended(Cutting):
+    """Points grow out of their edges, triangles are fans, and nothing pops."""
 
-    def __init__(
-        self,
-        faces: npt.ArrayLike,
-        rest_positions: npt.ArrayLike,
-        *,
-        criterion: Criterion,
-        scheme: Scheme,
-        **values: Unpack[Values],
-    ) -> None:
-        """Bind to a mesh, as `Kahler`; the criterion has to measure."""
-        super().__init__(faces, rest_positions, criterion=criterion, scheme=scheme, **values)
-        self._look_up_in(FANS, self._frame.configurations)
-        self._metric = np.zeros(len(self.connectivity.edges), dtype=np.float32)
+    patterns = FANS
+    has_centres = True
 
-    @property
-    def _most_vertices(self) -> int:
-        """Most output vertices: one in the middle of every triangle, too."""
-        return super()._most_vertices + len(self.connectivity.faces)
+    def bind(self, connectivity: Connectivity, frame: FrameBuffers) -> Unsigned16:
+        """Take the mesh; return the configuration of each triangle, shape (F + 1,)."""
+        self._mesh = connectivity
+        self._metric = np.zeros(len(connectivity.edges), dtype=np.float32)
+        return frame.configurations
 
-    def _mark(self, view: View | None) -> None:
+    def mark(self, criterion: Criterion, frame: FrameBuffers, splits: Unsigned8) -> None:
         """Decide how far the points of every edge have grown, and so how often it is split."""
-        frame = self._frame
-        self._criterion.set_view(view)
-        self._criterion.measure(frame.positions, frame.normals, self._metric)
-        grown = frame.geomorph_once, frame.geomorph_twice
-        if weigh_geomorphs(self._metric, self.edge_splits, *grown) > 0:
-            raise ValueError(self.complaint() or self._criterion.complaint(self._metric))
+        metric = self._metric
+        criterion.measure(frame.positions, frame.normals, metric)
+        if weigh_geomorphs(metric, splits, frame.geomorph_once, frame.geomorph_twice) > 0:
+            culprit = criterion.find_complaint(frame.positions, frame.normals, len(metric))
+            raise ValueError(culprit or criterion.complaint(metric))
 
-    def _number(self) -> tuple[int, int]:
+    def number(
+        self, frame: FrameBuffers, vertex_count: int, triangle_count: int
+    ) -> tuple[int, int]:
         """Number the points in the middle of triangles after all others."""
-        super()._number()
-        counts = self._frame.counts
-        frame = self._frame
-        number_centres(frame.configurations, *self._patterns, frame.centre_triangles, counts)
-        return int(counts[ROWS] + counts[CENTRES]), int(counts[TRIANGLES])
+        counts = frame.counts
+        number_centres(frame.configurations, *self.patterns, frame.centre_triangles, counts)
+        return vertex_count + int(counts[CENTRES]), int(counts[TRIANGLES])
 
-    def _place(self, rows: Floats32) -> None:
-        """Write vertices and points on edges, then those in the middle of triangles."""
-        super()._place(rows)
-        share(place_centres, self._frame.centre_count, self.connectivity, self._frame)
-        self._scheme.place_centres(self._frame)
-
-    def _origins_among(
-        self, of_wedges: npt.NDArray[np.integer], of_ends: npt.NDArray[np.integer]
-    ) -> Origins:
-        """Add the points in the middle of triangles."""
-        centres = self._frame.centre_triangles[: self._frame.centre_count]
-        weights = self._frame.centre_weights[: self._frame.centre_count]
-        corners = of_wedges[self.connectivity.corners[centres]]
-        return super()._origins_among(of_wedges, of_ends).followed_by(corners, weights)
+    def place(self, scheme: Scheme, frame: FrameBuffers) -> None:
+        """Write the points in the middle of triangles, which the scheme corrects."""
+        share(place_centres, frame.centre_count, self._mesh, frame)
+        scheme.place_centres(frame)
 
 
 @njit

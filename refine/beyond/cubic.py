@@ -104,6 +104,7 @@ class CubicScheme(Scheme):
 
     interpolates = True
     uses_normals = False
+    measures = True
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32

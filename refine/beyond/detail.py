@@ -48,16 +48,20 @@ at rest do not take each other's points."""
 class DetailScheme(CubicScheme):
     """Cubic edges with the additional form of a finer mesh at rest."""
 
-    def __init__(self, finer: FinerMesh) -> None:
-        """`finer`: positions at rest, in the place of the coarse mesh, and triangles."""
+    def __init__(self, finer: FinerMesh | None = None) -> None:
+        """`finer`: positions at rest, in the place of the coarse mesh, and triangles.
+
+        Raises ValueError without one, as the name `detail` alone has none.
+        """
         if not isinstance(finer, tuple) or len(finer) != 2:
             raise ValueError(
-                "detail must be a pair (finer rest positions, finer triangles), "
+                "the scheme detail needs a finer mesh: pass "
+                "scheme=refine.DetailScheme((rest positions, triangles)), "
                 f"got {type(finer).__name__}"
             )
-        positions, faces = checked_mesh(*finer, ("detail[0]", "detail[1]"))
+        positions, faces = checked_mesh(*finer, ("finer[0]", "finer[1]"))
         if len(faces) == 0:
-            raise ValueError("detail[1] must have triangles, got none")
+            raise ValueError("finer[1] must have triangles, got none")
         self._finer = positions, faces
 
     def bind(

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ..border.corner_values import Values
 from ..border.option import Option
+from ..kahler.coherence import Coherent
 from ..kahler.criterion import (
     THRESHOLD_ONCE,
     THRESHOLD_TWICE,
@@ -20,11 +21,11 @@ from ..kahler.criterion import (
     NormalDrop,
     criteria,
 )
+from ..kahler.cutting import Cutting
 from ..kahler.given_splits import GivenSplits
 from ..kahler.refiner import Kahler
 from ..kahler.smoothing import Scheme, schemes
 from .blending import Blended
-from .detail import FinerMesh
 from .measuring import Maximum
 from .surface_normals import RefinedNormals
 
@@ -43,7 +44,7 @@ IN_ORDER = Option(
 )
 
 
-def create_kahler(  # noqa: PLR0913 - one argument for each option
+def create_kahler(
     faces: npt.ArrayLike,
     rest_positions: npt.ArrayLike,
     *,
@@ -52,7 +53,6 @@ def create_kahler(  # noqa: PLR0913 - one argument for each option
     criterion: Annotated[CriterionLike, WHICH_EDGES] = "normal",
     splits: npt.ArrayLike | None = None,
     scheme: Annotated[str | Scheme, Option("where the new points go")] = "loop",
-    detail: FinerMesh | None = None,
     blend: Annotated[bool | None, GROWING] = None,
     normals: Annotated[Literal["linear", "refined"] | None, LIT_BY] = None,
     coherent: Annotated[bool, IN_ORDER] = False,
@@ -67,9 +67,8 @@ def create_kahler(  # noqa: PLR0913 - one argument for each option
       most; "normal+rest" is such a list.
     - `splits`: 0, 1 or 2 for every edge, shape (E,), in place of a criterion: all frames have the
       same vertices and triangles (`splits_of_clip`).
-    - `scheme`: "loop", the paper's, "cubic", "detail", another name of `refine.schemes`, or an
-      object.
-    - `detail`: for "detail" the finer mesh at rest, its positions and its triangles.
+    - `scheme`: "loop", the paper's, "cubic", another name of `refine.schemes`, or an object, as
+      `DetailScheme((finer_positions, finer_faces))`.
     - `blend`: whether points grow out of their edges, so that nothing pops. None, the default,
       chooses True for the schemes that interpolate, and False for the paper's.
     - `normals`: "linear", between the ends of an edge, as in the paper; or "refined", those of the
@@ -78,7 +77,7 @@ def create_kahler(  # noqa: PLR0913 - one argument for each option
     - `coherent`: whether triangulations continue those of the frame before (section 4.4).
     - `values`: `uv`, `face_uv`, `attributes` and `crease_angle`, as `create` takes them.
     """
-    chosen = with_normals(scheme_of(scheme, detail), normals)
+    chosen = with_normals(scheme_of(scheme), normals)
     decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice), splits)
     if blend and coherent:
         raise ValueError(
@@ -87,22 +86,20 @@ def create_kahler(  # noqa: PLR0913 - one argument for each option
         )
     if blend is None:
         blend = chosen.interpolates and not coherent
+    cutting: Cutting | None = None
     if blend:
-        return Blended(faces, rest_positions, criterion=decides, scheme=chosen, **values)
+        cutting = Blended()
+    elif coherent:
+        cutting = Coherent()
     return Kahler(
-        faces, rest_positions, criterion=decides, scheme=chosen, coherent=bool(coherent), **values
+        faces, rest_positions, criterion=decides, scheme=chosen, cutting=cutting, **values
     )
 
 
-def scheme_of(chosen: str | Scheme, detail: FinerMesh | None) -> Scheme:
+def scheme_of(chosen: str | Scheme) -> Scheme:
     """Return the scheme of a name, or the object itself; raises ValueError for anything else."""
-    if (chosen == "detail") != (detail is not None):
-        raise ValueError(
-            'scheme="detail" and detail=(finer rest positions, finer triangles) go together, got '
-            f"scheme={chosen!r} and detail {'given' if detail is not None else 'not given'}"
-        )
     if isinstance(chosen, str):
-        chosen = schemes.find(chosen)(*([] if detail is None else [detail]))
+        chosen = schemes.find(chosen)()
     if not isinstance(chosen, Scheme):
         raise ValueError(
             f"scheme must be one of {schemes.available()} or a refine.Scheme, got {chosen!r}"

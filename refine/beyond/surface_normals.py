@@ -121,6 +121,8 @@ class WholeSurface:
 class RefinedNormals(Scheme):
     """A scheme, with the normals of the surface that it makes."""
 
+    measures = True
+
     def __init__(self, scheme: Scheme) -> None:
         """`scheme`: says where points go."""
         self.parts = (scheme,)

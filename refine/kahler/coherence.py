@@ -44,6 +44,9 @@ import numpy.typing as npt
 from ...geometry.arrays import Unsigned8, Unsigned16
 from ...geometry.read_only import read_only
 from ...jit import njit
+from ..mesh.connectivity import Connectivity
+from .cutting import Cutting
+from .frame import FrameBuffers
 from .table import (
     CONFIGURATION_COUNT,
     MOST_SPLITS,
@@ -190,20 +193,26 @@ def _length_of_inner_lines(sequence: Sequence) -> float:
     return float(np.sqrt(-(u * v + v * w + w * u)).sum())
 
 
-class Coherent:
+class Coherent(Cutting):
     """Table rows by sequence of splits, for the triangles of one mesh."""
 
-    def __init__(self, face_count: int) -> None:
-        """Start with no split anywhere in `face_count` triangles."""
+    has_memory = True
+
+    def __init__(self) -> None:
+        """Take the tables; the triangles come with `bind`."""
         tables = sequence_tables()
         # Copies: compiled code takes an array faster that it may write.
         self._steps = tables.transitions.copy(), tables.removals.copy()
         self.patterns = tables.patterns
         """A row for each sequence."""
-        self._states: Unsigned16 = np.zeros(face_count, dtype=np.uint16)
-        self._shown = read_only(self._states)
         self.removals_out_of_order = 0
         """Splits taken back while a later one stayed, in all frames; each may turn lines."""
+
+    def bind(self, connectivity: Connectivity, frame: FrameBuffers) -> Unsigned16:
+        """Start with no split anywhere; return the sequence of each triangle, shape (F,)."""
+        self._states: Unsigned16 = np.zeros(len(connectivity.faces), dtype=np.uint16)
+        self._shown = read_only(self._states)
+        return self._states
 
     @property
     def states(self) -> Unsigned16:
@@ -226,13 +235,13 @@ class Coherent:
             )
         self._states[:] = given
 
-    def follow(self, configurations: Unsigned16) -> Unsigned16:
-        """Move every triangle from its sequence to the next one; return these, shape (F,).
-
-        `configurations`: s0 + 3 s1 + 9 s2 of each triangle in the frame, shape (F + 1,).
-        """
-        self.removals_out_of_order += follow_splits(configurations, *self._steps, self._states)
-        return self._states
+    def number(
+        self, frame: FrameBuffers, vertex_count: int, triangle_count: int
+    ) -> tuple[int, int]:
+        """Move every triangle from its sequence to the next one; the numbers stay."""
+        removed = follow_splits(frame.configurations, *self._steps, self._states)
+        self.removals_out_of_order += removed
+        return vertex_count, triangle_count
 
 
 @njit

@@ -21,15 +21,15 @@ from typing import NamedTuple, Unpack
 import numpy as np
 import numpy.typing as npt
 
-from ...geometry.arrays import Floats32, Floats64, Integers32, Unsigned8, Unsigned16, Unsigned32
+from ...geometry.arrays import Floats32, Floats64, Integers32, Unsigned8, Unsigned32
 from ...geometry.read_only import read_only
 from ..border.base import BaseRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.stream import OwnStream, StreamArrays
 from ..mesh.threads import beside
-from .coherence import Coherent
 from .criterion import Criterion, NormalDrop
+from .cutting import Cutting
 from .frame import buffers_for
 from .look_up import (
     copy_along_attribute_edges,
@@ -38,7 +38,7 @@ from .look_up import (
     place_attributes,
 )
 from .smoothing import LoopScheme, Scheme
-from .table import CONFIGURATIONS, MOST_SPLITS, POINTS_OF_EDGE, Patterns
+from .table import MOST_SPLITS, POINTS_OF_EDGE
 
 
 class Topology(NamedTuple):
@@ -61,26 +61,31 @@ class Kahler(BaseRefiner):
         *,
         criterion: Criterion | None = None,
         scheme: Scheme | None = None,
-        coherent: bool = False,
+        cutting: Cutting | None = None,
         **values: Unpack[Values],
     ) -> None:
         """Bind to a mesh (see `registry.create`).
 
-        `criterion`, `scheme`: None for the paper's.
-        `coherent`: whether triangulations continue those of the frame before (section 4.4).
+        `criterion`, `scheme`, `cutting`: None for the paper's.
         """
         super().__init__(faces, rest_positions, **values)
         mesh = self._mesh
         self._criterion = NormalDrop() if criterion is None else criterion
         self._scheme = LoopScheme() if scheme is None else scheme
-        self.history = Coherent(len(mesh.faces)) if coherent else None
-        """What triangles remember of their splits, as they are walked; None unless `coherent`."""
+        self.cutting = Cutting() if cutting is None else cutting
+        """The way in which triangles are cut."""
         self._frame = buffers_for(mesh, self.positions, self.points, self.normals)
-        if self.history is not None:
-            self._look_up_in(self.history.patterns, self.history._states)
-        else:
-            self._look_up_in(CONFIGURATIONS, self._frame.configurations)
         frame = self._frame
+        patterns = self.cutting.patterns
+        self._of_look_up = (
+            mesh.corners,
+            mesh.triangle_attribute_edges,
+            frame.splits,
+            frame.first_points,
+            self.cutting.bind(self.connectivity, frame),
+            patterns.counts.copy(),  # compiled code takes an array faster that it may write
+            patterns.subtriangles.copy(),
+        )
         self._of_numbering = (
             mesh.edge_sides,
             mesh.more_sides,
@@ -95,6 +100,7 @@ class Kahler(BaseRefiner):
         )
         self.edge_splits = frame.splits[: len(mesh.edges)]
         self._own(self._criterion, *self._criterion.parts, self._scheme, *self._scheme.parts)
+        self._own(self.cutting)
         self._criterion.set_scheme(self._scheme)
         self.find_normals()
         self._criterion.bind(self.connectivity, self.rest_positions, self.normals)
@@ -102,18 +108,15 @@ class Kahler(BaseRefiner):
 
     @property
     def vertex_capacity(self) -> int:
-        """Most output vertices: every wedge, and three points on every attribute edge.
+        """Most output vertices: every wedge, three points on every attribute edge, and centres.
 
         Exactly those of a frame where the criterion never changes.
         """
         if self.topology is not None:
             return self.topology.vertex_count
-        return self._most_vertices
-
-    @property
-    def _most_vertices(self) -> int:
-        """Output vertices where every edge is split twice."""
-        return len(self.connectivity.wedge_vertices) + 3 * len(self.connectivity.attribute_edges)
+        mesh = self.connectivity
+        most_centres = len(mesh.faces) if self.cutting.has_centres else 0
+        return len(mesh.wedge_vertices) + 3 * len(mesh.attribute_edges) + most_centres
 
     @property
     def triangle_capacity(self) -> int:
@@ -123,7 +126,7 @@ class Kahler(BaseRefiner):
         """
         if self.topology is not None:
             return len(self.topology.triangles)
-        return int(self._patterns.subtriangles.shape[1] * len(self.connectivity.faces))
+        return int(self.cutting.patterns.subtriangles.shape[1] * len(self.connectivity.faces))
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         """Write the frame: one line for each step above."""
@@ -165,9 +168,9 @@ class Kahler(BaseRefiner):
     def topology(self) -> Topology | None:
         """Vertices and triangles of all frames, where the criterion never changes; None elsewhere.
 
-        None, too, where triangulations go on from earlier ones, which may be set at any time.
+        None, too, where a frame depends on those before it.
         """
-        if not self._criterion.is_constant or self.history is not None:
+        if not self._criterion.is_constant or self.cutting.has_memory:
             return None
         self._mark(None)
         vertex_count, triangle_count = self._number()
@@ -183,23 +186,10 @@ class Kahler(BaseRefiner):
             return OwnStream.with_triangles(self.vertex_columns, *self.topology)
         return super()._own_stream
 
-    def _look_up_in(self, patterns: Patterns, rows: Unsigned16) -> None:
-        """Take a table, and where each triangle says which row of it is its own."""
-        self._patterns = patterns
-        self._of_look_up = (
-            self._mesh.corners,
-            self._mesh.triangle_attribute_edges,
-            self._frame.splits,
-            self._frame.first_points,
-            rows,
-            patterns.counts.copy(),  # compiled code takes an array faster that it may write
-            patterns.subtriangles.copy(),
-        )
-
     def _mark(self, view: View | None) -> None:
         """Decide how often every edge is split (section 4.1)."""
         self._criterion.set_view(view)
-        self._criterion.mark(self._frame.positions, self._frame.normals, self.edge_splits)
+        self.cutting.mark(self._criterion, self._frame, self.edge_splits)
 
     def _number(self) -> tuple[int, int]:
         """Give new points their rows and triangles their row of the table; count both.
@@ -213,9 +203,7 @@ class Kahler(BaseRefiner):
                 f"{type(self._criterion).__name__}.mark must write 0, 1 or 2 for every edge, "
                 f"but edge {self.edge_splits.argmax()} got {most}"
             )
-        if self.history is not None:
-            self.history.follow(self._frame.configurations)
-        return vertex_count, triangle_count
+        return self.cutting.number(self._frame, vertex_count, triangle_count)
 
     def _place(self, rows: Floats32) -> None:
         """Write vertices and new points: positions, normals, attributes (section 4.2)."""
@@ -224,6 +212,7 @@ class Kahler(BaseRefiner):
             self.write_wedges(rows)
             copy_along_attribute_edges(self.connectivity.attribute_edges, self._frame)
             place_attributes(self.connectivity.attribute_edge_uv, self._frame, self._values.values)
+        self.cutting.place(self._scheme, self._frame)
 
     def _look_up(self, triangles: Unsigned32, source: Integers32) -> None:
         """Write the subtriangles of every triangle (section 4.3)."""
@@ -253,8 +242,12 @@ class Kahler(BaseRefiner):
         self, of_wedges: npt.NDArray[np.integer], of_ends: npt.NDArray[np.integer]
     ) -> Origins:
         """The origins where wedges, shape (W,), and ends of attribute edges, (R, 2), have these."""
+        frame = self._frame
         splits = self.edge_splits[self.connectivity.attribute_edges]
-        return Origins.at(of_wedges).followed_by(*points_on_edges(of_ends, splits))
+        origins = Origins.at(of_wedges).followed_by(*points_on_edges(of_ends, splits))
+        with_centre = frame.centre_triangles[: frame.centre_count]
+        corners = of_wedges[self.connectivity.corners[with_centre]]
+        return origins.followed_by(corners, frame.centre_weights[: frame.centre_count])
 
 
 def points_on_edges(

@@ -93,6 +93,8 @@ class Scheme:
     """Whether the original vertices stay where they are."""
     uses_normals = True
     """Whether it reads the normals of frames, which are not found where nobody does."""
+    measures = False
+    """Whether it has a `measure`, which the criterion `displacement` needs."""
     parts: tuple["Scheme", ...] = ()
     """Schemes that this one asks. Each of them, too, serves one refiner only."""
 
@@ -118,11 +120,6 @@ class Scheme:
 
     def place_centres(self, frame: FrameBuffers) -> None:
         """Correct the points in the middle of triangles, when blending has written them."""
-
-    @property
-    def measures(self) -> bool:
-        """Whether it has a `measure`."""
-        return type(self).measure is not Scheme.measure
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far a split would move the middle of each edge and turn its normal, (E,) each.

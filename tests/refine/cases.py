@@ -25,6 +25,13 @@ def kahler(mesh: meshes.Mesh, **options: Any) -> refine.Kahler:
     return bound
 
 
+def scheme_of(
+    name: str, finer_positions: npt.ArrayLike, finer_faces: npt.ArrayLike
+) -> str | refine.Scheme:
+    """The scheme of a name; `detail` with this finer mesh, which others do not need."""
+    return refine.DetailScheme((finer_positions, finer_faces)) if name == "detail" else name
+
+
 class GivenMetric(refine.Criterion):
     """A criterion that measures the given values."""
 

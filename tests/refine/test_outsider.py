@@ -119,7 +119,7 @@ def test_anything_goes(mesh, chosen, seed, precision, index, order, textured):
     corner_values = generator.random((4, 2))
     if chosen["scheme"] == "detail":
         ball = meshes.octahedron()
-        chosen = {**chosen, "detail": (ball.vertices + 0.1, ball.faces)}
+        chosen = {**chosen, "scheme": refine.DetailScheme((ball.vertices + 0.1, ball.faces))}
     if textured:
         chosen = {**chosen, "uv": corner_values, "face_uv": corner_rows}
         chosen["attributes"] = {"weight": generator.random((len(rest), 3))}

@@ -202,7 +202,7 @@ def test_coherent_frames(frames, rules, head):
         face.step(1 / 60)
         assert_same(processor, card, face.positions)
     assert isinstance(processor, refine.Kahler)
-    assert card.removals_out_of_order == processor.history.removals_out_of_order > 0
+    assert card.removals_out_of_order == processor.cutting.removals_out_of_order > 0
 
 
 @pytest.mark.parametrize("rules", ["two levels", "window's look"])

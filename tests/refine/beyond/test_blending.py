@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Forced, GivenMetric, kahler, surface_at
+from tests.refine.cases import Forced, GivenMetric, kahler, scheme_of, surface_at
 
 SCHEMES = ("loop", "cubic", "detail")
 QUICK_SCHEMES = [
@@ -33,8 +33,8 @@ def jumps(scheme, blend, criterion, mesh=None):
     """
     mesh = mesh or meshes.irregular(4, 4, 3, 0)
     wave = meshes.wrinkled(mesh, 5, 0.5) - mesh.vertices
-    detail = {"detail": (mesh.vertices + 0.02, mesh.faces)} if scheme == "detail" else {}
-    refiner = kahler(mesh, scheme=scheme, blend=blend, criterion=criterion, **detail)
+    scheme = scheme_of(scheme, mesh.vertices + 0.02, mesh.faces)
+    refiner = kahler(mesh, scheme=scheme, blend=blend, criterion=criterion)
     places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
     before = None
     most = 0.0
@@ -194,16 +194,14 @@ def test_begins_at_the_unrefined_surface(scheme):
     mesh = meshes.irregular(7, 5, 4, 0)
     deformed = meshes.wrinkled(mesh, 8)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
-    detail = {"detail": (mesh.vertices + 0.02, mesh.faces)} if scheme == "detail" else {}
     places = np.random.default_rng(9).dirichlet([1, 1, 1], 8)
 
     def surface(metric):
         refiner = kahler(
             mesh,
-            scheme=scheme,
+            scheme=scheme_of(scheme, mesh.vertices + 0.02, mesh.faces),
             blend=True,
             criterion=GivenMetric(np.full(edge_count, metric)),
-            **detail,
         )
         return surface_at(refiner, refiner.refine(deformed), mesh.faces, places)[..., :3]
 

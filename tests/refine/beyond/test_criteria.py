@@ -6,7 +6,7 @@ from numpy.linalg import norm
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Forced, kahler
+from tests.refine.cases import Forced, kahler, scheme_of
 
 
 def splits_of(mesh, deformed, criterion, **view):
@@ -163,11 +163,13 @@ def test_displacement(scheme):
     """
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3)
-    detail = {"detail": (mesh.vertices + 0.01, mesh.faces)} if scheme == "detail" else {}
     connectivity = refine.connect(mesh.faces, len(mesh.vertices))
     edges = connectivity.edges
     full = kahler(
-        mesh, scheme=scheme, blend=False, criterion=Forced(np.ones(len(edges))), **detail
+        mesh,
+        scheme=scheme_of(scheme, mesh.vertices + 0.01, mesh.faces),
+        blend=False,
+        criterion=Forced(np.ones(len(edges))),
     ).refine(deformed)
     middles = full.positions[len(mesh.vertices) :]
     heights = norm(middles - deformed[edges].mean(axis=1), axis=1)
@@ -176,9 +178,8 @@ def test_displacement(scheme):
     heights = np.where(connectivity.around.is_interior, heights, 8.0 * heights)
     refiner = kahler(
         mesh,
-        scheme=scheme,
+        scheme=scheme_of(scheme, mesh.vertices + 0.01, mesh.faces),
         criterion=[refine.Displacement(once / unit, twice / unit, turning=0.0)],
-        **detail,
     )
     refine.check(refiner, refiner.refine(deformed), deformed)
     expected = (heights > once).astype(int) + (heights > twice)

@@ -12,7 +12,14 @@ from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 from tests import meshes
 from tests.refine import plain_twin
-from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, kahler, point_names
+from tests.refine.cases import (
+    GivenMetric,
+    as_lists,
+    assert_equals_twin,
+    kahler,
+    point_names,
+    scheme_of,
+)
 from tests.refine.plain_detail import detail_rules
 from tests.refine.plain_normals import RefinedNormals
 
@@ -44,11 +51,9 @@ def angles(some, others):
 def refined(scheme, positions, **options):
     """The coarse grid with all edges split twice."""
     edge_count = len(refine.connect(COARSE.faces, len(COARSE.vertices)).edges)
-    if scheme == "detail":
-        options["detail"] = (FINE.vertices, FINE.faces)
-    refiner = kahler(
-        COARSE, scheme=scheme, criterion=GivenMetric(np.full(edge_count, 9.0)), **options
-    )
+    criterion = GivenMetric(np.full(edge_count, 9.0))
+    chosen = scheme_of(scheme, FINE.vertices, FINE.faces)
+    refiner = kahler(COARSE, scheme=chosen, criterion=criterion, **options)
     mesh = refiner.refine(positions)
     refine.check(refiner, mesh, positions)
     return mesh
@@ -91,10 +96,9 @@ def test_no_stars_in_folds():
     edge_count = len(refine.connect(flat.faces, len(folded)).edges)
     shown = {}
     off = {}
-    for scheme, detail in (("cubic", {}), ("detail", {"detail": (flat.vertices, flat.faces)})):
-        refiner = kahler(
-            flat, scheme=scheme, criterion=GivenMetric(np.full(edge_count, 9.0)), **detail
-        )
+    for scheme in ("cubic", "detail"):
+        chosen = scheme_of(scheme, flat.vertices, flat.faces)
+        refiner = kahler(flat, scheme=chosen, criterion=GivenMetric(np.full(edge_count, 9.0)))
         mesh = refiner.refine(folded)
         is_middle = refiner.origins().weights.max(axis=1) < 0.4
         shown[scheme] = mesh.normals[~is_middle].copy()
@@ -138,9 +142,8 @@ def test_equals_plain_twin(mesh, seed, normals, blend):
     def refiner_of(metric, blend):
         return kahler(
             mesh,
-            scheme="detail",
+            scheme=refine.DetailScheme((mesh.vertices + lift, mesh.faces)),
             blend=blend,
-            detail=(mesh.vertices + lift, mesh.faces),
             criterion=GivenMetric(metric),
             normals=normals,
         )
@@ -185,7 +188,20 @@ def test_many_vertices_in_one_place():
     positions = np.zeros((3000, 3))
     positions[:3] = np.eye(3)
     faces = random.integers(0, 3000, (4000, 3))
-    refiner = refine.create(
-        "kahler", faces[:500], positions, scheme="detail", detail=(positions, faces)
-    )
+    scheme = refine.DetailScheme((positions, faces))
+    refiner = refine.create("kahler", faces[:500], positions, scheme=scheme)
     assert np.isfinite(refiner.refine(positions).positions).all()
+
+
+@pytest.mark.parametrize(
+    ("finer", "text"),
+    [
+        (np.eye(3), "needs a finer mesh: pass scheme=.* got ndarray"),
+        ((np.eye(3), [[0, 1, 3]]), r"finer\[1\] must hold indices"),
+        ((np.eye(3), np.zeros((0, 3), int)), "must have triangles"),
+    ],
+)
+def test_bad_finer_meshes(finer, text):
+    """A finer mesh that is none is refused, and the error says how to pass one."""
+    with pytest.raises(ValueError, match=text):
+        refine.DetailScheme(finer)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from risorius import refine
 from tests import meshes
 from tests.refine import plain_schemes
-from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, kahler, soups
+from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, kahler, scheme_of, soups
 from tests.refine.plain_normals import RefinedNormals
 from tests.refine.plain_twin import PaperRules, edge_name
 from tests.refine.plain_twin import refine as refine_plainly
@@ -23,8 +23,7 @@ MESHES = {**meshes.NAMED, **VALENCES, "irregular": lambda: meshes.irregular(3, 6
 
 def bound(mesh, scheme, blend, metric, **options):
     """A refiner whose edges have given metrics; the finer mesh of `detail` is the mesh itself."""
-    if scheme == "detail":
-        options["detail"] = (mesh.vertices + np.array([0.0, 0.0, 0.01]), mesh.faces)
+    scheme = scheme_of(scheme, mesh.vertices + np.array([0.0, 0.0, 0.01]), mesh.faces)
     return kahler(mesh, scheme=scheme, blend=blend, criterion=GivenMetric(metric), **options)
 
 

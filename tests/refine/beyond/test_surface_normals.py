@@ -11,7 +11,7 @@ from scipy.spatial import KDTree
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import GivenMetric, kahler, surface_at
+from tests.refine.cases import GivenMetric, kahler, scheme_of, surface_at
 
 SCHEMES = ("loop", "cubic", "detail")
 STEPS = 800
@@ -21,15 +21,8 @@ Points = npt.NDArray[np.float64]
 
 def bound(mesh, scheme, criterion, normals="refined", blend=True):
     """A refiner; the finer mesh of `detail` is the mesh itself, a little higher."""
-    options = {"detail": (mesh.vertices + np.array([0.0, 0.0, 0.02]), mesh.faces)}
-    return kahler(
-        mesh,
-        scheme=scheme,
-        criterion=criterion,
-        normals=normals,
-        blend=blend,
-        **options if scheme == "detail" else {},
-    )
+    scheme = scheme_of(scheme, mesh.vertices + np.array([0.0, 0.0, 0.02]), mesh.faces)
+    return kahler(mesh, scheme=scheme, criterion=criterion, normals=normals, blend=blend)
 
 
 def metrics(mesh, seed=None, metric=0.0):

@@ -7,7 +7,7 @@ import pytest
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import GivenMetric, kahler, places_in_source
+from tests.refine.cases import GivenMetric, kahler, places_in_source, scheme_of
 
 REFINERS = [
     ("none", {}),
@@ -57,7 +57,6 @@ def test_any_type_and_order(scheme):
     mesh = meshes.irregular(6)
     rest = mesh.vertices.astype(np.float32)
     deformed = meshes.wrinkled(mesh, 7).astype(np.float32)
-    detail = {"detail": (rest, mesh.faces)} if scheme == "detail" else {}
     expected = None
     orders = (np.ascontiguousarray, np.asfortranarray, lambda a: np.repeat(a, 2, axis=0)[::2])
     kinds = itertools.product((np.float32, np.float64), (np.int32, np.int64, np.uint16), orders)
@@ -66,8 +65,7 @@ def test_any_type_and_order(scheme):
             "kahler",
             order(mesh.faces.astype(index)),
             order(rest.astype(number)),
-            scheme=scheme,
-            **detail,
+            scheme=scheme_of(scheme, rest, mesh.faces),
         )
         frame = [a.tobytes() for a in refiner.refine(order(deformed.astype(number)))[:4]]
         expected = expected or frame

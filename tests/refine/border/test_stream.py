@@ -11,7 +11,7 @@ import pytest
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import kahler
+from tests.refine.cases import kahler, scheme_of
 
 REFINERS = [("none", {}), ("kahler", {}), ("loop", {"levels": 1}), ("loop", {"levels": 2})]
 
@@ -211,8 +211,7 @@ def test_positions_that_are_no_numbers(name, number):
 def test_anything_below_the_limit_is_finite(scheme):
     """A mesh that has blown up comes out as finite numbers, so nothing downstream sees a NaN."""
     mesh = meshes.double_cone(60)
-    detail = {"detail": (mesh.vertices, mesh.faces)} if scheme == "detail" else {}
-    refiner = kahler(mesh, scheme=scheme, **detail)
+    refiner = kahler(mesh, scheme=scheme_of(scheme, mesh.vertices, mesh.faces))
     blown = np.random.default_rng(5).uniform(-0.99e15, 0.99e15, mesh.vertices.shape)
     refined = refiner.refine(blown)
     assert np.isfinite(refined.positions).all()

@@ -64,8 +64,8 @@ def test_welded_and_measured(stray):
     rest, renamed = with_strays(mesh.vertices, faces, STRAYS[stray])
     count = refine.WeldedRefiner(mesh.vertices, faces).refine(mesh.vertices).triangle_count
     assert refine.WeldedRefiner(rest, renamed).refine(rest).triangle_count == count
-    detail = {"scheme": "detail", "detail": (rest, renamed)}
-    assert refine.create("kahler", faces, mesh.vertices, **detail).refine(mesh.vertices)
+    scheme = refine.DetailScheme((rest, renamed))
+    assert refine.create("kahler", faces, mesh.vertices, scheme=scheme).refine(mesh.vertices)
     along = np.ones((len(rest), 1, 3))
     assert np.isfinite(refine.Shortening(renamed, rest, along).measure(rest)).all()
 

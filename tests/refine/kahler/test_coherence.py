@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from risorius.refine import Coherent
+from risorius import refine
 from risorius.refine.kahler import coherence, table
+from risorius.refine.kahler.frame import buffers_for
 from tests.refine.cases import configuration_of
 
 TABLES = coherence.sequence_tables()
@@ -130,13 +131,17 @@ def test_states_follow_the_tables():
     """The kernel moves all triangles as the tables say, counts, keeps its array, and forgets."""
     generator = np.random.default_rng(1)
     face_count = 500
-    coherent = Coherent(face_count)
-    configurations = np.zeros(face_count + 1, dtype=np.uint16)
+    points = np.zeros((3, 3))
+    mesh = refine.connect(np.tile([0, 1, 2], (face_count, 1)), len(points))
+    frame = buffers_for(mesh, points, points, points)
+    coherent = refine.Coherent()
+    rows = coherent.bind(mesh, frame)
     states = np.zeros(face_count, dtype=int)
     removed = 0
     for _ in range(12):
-        configurations[:-1] = wanted = generator.integers(0, 27, face_count)
-        rows = coherent.follow(configurations)
+        wanted = generator.integers(0, 27, face_count)
+        frame.configurations[:-1] = wanted
+        assert coherent.number(frame, 4, 5) == (4, 5)
         removed += int(TABLES.removals[states, wanted].sum())
         states = TABLES.transitions[states, wanted]
         assert np.shares_memory(rows, coherent.states)

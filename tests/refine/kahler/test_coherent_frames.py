@@ -55,8 +55,8 @@ def turned(before, now, rows):
 def history_of(refiner):
     """The memory of the refiner."""
     assert isinstance(refiner, refine.Kahler)
-    assert refiner.history is not None
-    return refiner.history
+    assert isinstance(refiner.cutting, refine.Coherent)
+    return refiner.cutting
 
 
 def turned_per_frame(refiner, frames):

@@ -31,7 +31,7 @@ def test_unit_or_zero(name):
     options = dict(OPTIONS[name])
     if options.get("scheme") == "detail":
         finer = refine.create("loop", mesh.faces, mesh.vertices).refine(mesh.vertices)
-        options["detail"] = (finer.positions, finer.triangles)
+        options["scheme"] = refine.DetailScheme((finer.positions, finer.triangles))
     refiner = kahler(mesh, threshold_once=0.0, threshold_twice=0.01, **options)
     for scale in SCALES:
         for flattened in FLATTENED:

@@ -1,0 +1,50 @@
+"""How triangles are cut where their edges are split: by the paper's table, or in another way.
+
+Kähler, Haber, Seidel 2003, section 4.3. `Cutting` is the paper's. Others derive from it: one cuts
+in the order of the splits (coherence.py), one lets points grow (beyond/blending.py).
+"""
+
+from ...geometry.arrays import Unsigned8, Unsigned16
+from ..mesh.connectivity import Connectivity
+from .criterion import Criterion
+from .frame import FrameBuffers
+from .smoothing import Scheme
+from .table import CONFIGURATIONS, Patterns
+
+
+class Cutting:
+    """The paper's way: every point is where it belongs, and the table has 27 patterns.
+
+    A refiner calls `bind` once, then in every frame `mark`, `number` and `place`. One object serves
+    one refiner.
+    """
+
+    patterns: Patterns = CONFIGURATIONS
+    """The table in which triangles are looked up."""
+    has_centres = False
+    """Whether triangles may have a point in the middle."""
+    has_memory = False
+    """Whether a frame depends on those before it."""
+
+    def bind(self, connectivity: Connectivity, frame: FrameBuffers) -> Unsigned16:
+        """Take the mesh; return the array with the row of each triangle in the table, shape (F,).
+
+        The array may be longer.
+        """
+        return frame.configurations
+
+    def mark(self, criterion: Criterion, frame: FrameBuffers, splits: Unsigned8) -> None:
+        """Write 0, 1 or 2 for every edge into `splits`, shape (E,), as the criterion decides."""
+        criterion.mark(frame.positions, frame.normals, splits)
+
+    def number(
+        self, frame: FrameBuffers, vertex_count: int, triangle_count: int
+    ) -> tuple[int, int]:
+        """Follow the splits of a frame, when points on edges are numbered.
+
+        Returns the numbers of all vertices and of all triangles.
+        """
+        return vertex_count, triangle_count
+
+    def place(self, scheme: Scheme, frame: FrameBuffers) -> None:
+        """Write the points that lie on no edge, when all others have been written."""
