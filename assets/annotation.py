@@ -21,6 +21,7 @@ import numpy as np
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.closest import SurfacePoints, closest_points
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.polylines import arc_lengths, evenly_spaced
 from risorius.geometry.read_only import make_read_only
 
 from .data_files import read_toml
@@ -102,9 +103,7 @@ def _mirror_image(uv: Floats64) -> Floats64:
 
 def _evenly(corners: Floats64, count: int) -> Floats64:
     """Points from corner to corner, as many between each pair, shape (count, k)."""
-    places = np.linspace(0.0, len(corners) - 1.0, count)
-    number = np.arange(len(corners))
-    return np.stack([np.interp(places, number, column) for column in corners.T], axis=1)
+    return evenly_spaced(corners, np.arange(float(len(corners))), count)
 
 
 def _on_texture(uv: Floats64) -> SurfacePoints:
@@ -159,8 +158,7 @@ def _along_brow(places: Floats64) -> Integers32:
         is_end = number in (0, last)
         wanted = np.median(y[inside]) if is_end else y[inside].max()
         edge.append(inside[np.abs(y[inside] - wanted).argmin()])
-    lengths = np.linalg.norm(np.diff(places[edge], axis=0), axis=1)
-    along = np.concatenate([[0.0], np.cumsum(lengths)])
+    along = arc_lengths(places[edge])
     stations = np.linspace(0.0, along[-1], 5)
     nearest = np.abs(along[:, None] - stations).argmin(axis=0)
     return np.asarray(np.array(edge)[nearest], dtype=np.int32)

@@ -29,6 +29,7 @@ from risorius.app.errors import UserError
 from risorius.app.extras import needed
 from risorius.app.pictures import Image
 from risorius.geometry.arrays import Flags, Floats64
+from risorius.geometry.polylines import arc_lengths, evenly_spaced
 from risorius.sim.landmarks import MIRRORED
 
 from .report import Target, at_most, table
@@ -187,10 +188,7 @@ def _half_of_mesh(mesh: Floats64, side: int) -> dict[int, Floats64]:
 
     def line(pairs: Sequence[tuple[int, int]], count: int) -> Floats64:
         corners = mesh[[pair[side] for pair in pairs]]
-        lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
-        along = np.concatenate([[0.0], np.cumsum(lengths)])
-        places = np.linspace(0.0, along[-1], count)
-        return np.stack([np.interp(places, along, column) for column in corners.T], axis=1)
+        return evenly_spaced(corners, arc_lengths(corners), count)
 
     jaw = [(127, 356), (234, 454), (93, 323), (132, 361), (58, 288), (172, 397), (136, 365),
            (150, 379), (149, 378), (176, 400), (148, 377), (152, 152)]  # fmt: skip

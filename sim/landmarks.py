@@ -84,12 +84,6 @@ class LandmarkPoint:
         return point + np.array(self.offset) * (side.sign, 1.0, 1.0)
 
 
-def arc_lengths(points: Floats64) -> Floats64:
-    """The way along a polyline (n, 3) to each of its points, shape (n,)."""
-    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    return np.concatenate([[0.0], np.cumsum(lengths)])
-
-
 def polyline_distance(points: Floats64, corners: Floats64) -> Floats64:
     """Distance [mm] of points (N, 3) to the polyline through `corners` (K, 3), shape (N,)."""
     start = corners[:-1]

@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Floats64, Integers32, Unsigned32
+from ..geometry.polylines import arc_lengths
 from ..jit import njit
 from .fibres import (
     FIBRE_POINTS,
@@ -35,7 +36,6 @@ from .fibres import (
     move_lines,
     over_skin,
 )
-from .landmarks import arc_lengths
 from .muscle_stack import bottom_up, points_along, stack_muscles
 from .muscles import Line, PlacedMuscle
 from .rig import LinearMuscle, Rig

@@ -28,6 +28,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Floats64, Integers64
+from ..geometry.polylines import arc_lengths
 from .fibres import FIBRE_POINTS, SAMPLES, Stack, over_skin
 from .muscles import AttachedPoints, Line, PlacedMuscle, attach
 from .surface import SkinSurface
@@ -116,8 +117,7 @@ def _carried(
 
 def points_along(line: Line, arc: Floats64) -> Floats64:
     """Places 0..1 along a line as places among its points, 0..FIBRE_POINTS - 1, shape (n,)."""
-    lengths = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
-    reached = np.concatenate([[0.0], np.cumsum(lengths)])
+    reached = arc_lengths(line.points)
     places: Floats64 = np.interp(arc * reached[-1], reached, np.arange(FIBRE_POINTS))
     return places
 

@@ -23,9 +23,10 @@ import numpy as np
 import scipy
 
 from ..geometry.arrays import Floats64, Integers64
+from ..geometry.polylines import arc_lengths
 from . import checked
 from .coordinates import FaceSpace
-from .landmarks import arc_lengths, smoothstep
+from .landmarks import smoothstep
 from .skull import RigidMotion
 
 SAMPLES = 65  # points of the spine

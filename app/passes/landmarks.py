@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from risorius.geometry.arrays import Flags, Floats32, Floats64
+from risorius.geometry.polylines import arc_lengths, evenly_spaced
 
 from ..scenes import Face
 from .camera import CameraLabels
@@ -106,10 +107,7 @@ def _smoothed(points: Floats64) -> Floats64:
 
 def _spread(points: Floats64, pixels: Floats64, count: int) -> Floats64:
     """Points of a line, (n, 3), as far from each other in the picture, shape (count, 3)."""
-    lengths = np.linalg.norm(np.diff(pixels, axis=0), axis=1)
-    along = np.concatenate([[0.0], np.cumsum(lengths)])
-    places = np.linspace(0.0, along[-1], count)
-    return np.stack([np.interp(places, along, column) for column in points.T], axis=1)
+    return evenly_spaced(points, arc_lengths(pixels), count)
 
 
 def _pupils(face: Face) -> Floats64:

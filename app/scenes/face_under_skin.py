@@ -14,7 +14,7 @@ import numpy as np
 
 from risorius import assets, sim
 from risorius.assets.annotation import Annotation, annotation_of
-from risorius.assets.fitting import FittedHead, SimplifiedHead
+from risorius.assets.fitting import FittedHead, SimulatedHead
 from risorius.geometry.arrays import Floats64
 
 from .dense_skin import DenseSkin
@@ -50,7 +50,7 @@ class Face:
         return twin
 
     @property
-    def simulated_head(self) -> assets.Head | FittedHead | SimplifiedHead:
+    def simulated_head(self) -> assets.Head | FittedHead | SimulatedHead:
         """The head on whose vertices the simulation runs."""
         simplified = self.head.simplified if isinstance(self.head, FittedHead) else None
         return simplified or self.head

@@ -8,6 +8,6 @@ Start reading at head.py.
 """
 
 from .head import FittedHead, fit, fit_head
-from .simplifying import SimplifiedHead
+from .simplifying import SimulatedHead
 
-__all__ = ["FittedHead", "SimplifiedHead", "fit", "fit_head"]
+__all__ = ["FittedHead", "SimulatedHead", "fit", "fit_head"]

@@ -17,20 +17,19 @@ from __future__ import annotations
 import contextlib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy
 
 from risorius.geometry.normals import vertex_normals
-from risorius.geometry.read_only import make_read_only
 
 from ...geometry.arrays import Floats32, Floats64, Integers32
 from ..data_files import Image
 from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh, read_mesh
-from ..model import Eye, FineShape, Head, Layer, Part, Wrinkles
+from ..model import Eye, FineShape, Head, Part, Wrinkles
 from ..topology import boundary_loops
 from ..user_files import named
 from . import simplifying
@@ -60,8 +59,8 @@ ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places els
 
 
 @dataclass(frozen=True)
-class FittedHead:
-    """A head that somebody brought, with all that `sim.create` and a renderer ask for.
+class FittedHead(simplifying.SimulatedHead):
+    """A head that somebody brought, with all that `sim.create` and a renderer read.
 
     The attributes are those of `Head`, in its millimetres and axes, but for the jaw's, which
     `sim.create` finds by the landmarks. What hangs together with no landmark (eyeballs, teeth of
@@ -75,30 +74,19 @@ class FittedHead:
     files: of the mesh and its landmarks, where it was read from such.
     """
 
-    vertices: Floats64
-    faces: Integers32
-    landmarks: Integers32
-    bone_depth: Floats64
-    eyes: tuple[Eye, ...]
-    parts: tuple[Part, ...]
     uv: Floats32
     face_uv: Integers32
     albedo: Image
     wrinkles: Wrinkles
     segments: Image
     ambient_occlusion: Image
-    rig: dict[str, Any]
-    layers: tuple[Layer, ...]
     to_millimetres: Similarity
     file_vertices: Integers32
     notes: tuple[str, ...] = field(default=(), kw_only=True)
     fine_shape: FineShape | None = field(default=None, kw_only=True)
     called: str = field(default="", kw_only=True)
-    simplified: simplifying.SimplifiedHead | None = field(default=None, kw_only=True)
+    simplified: simplifying.SimulatedHead | None = field(default=None, kw_only=True)
     files: tuple[Path, ...] = field(default=(), kw_only=True)
-
-    def __post_init__(self) -> None:
-        make_read_only(self)
 
     def fade(self) -> tuple[float, float, float, float] | None:
         """A x + b y + c z + d is 0 along the neck's edge, 1 FADE above; None: there is no edge.
@@ -222,7 +210,7 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
         count = len(coarse.faces)
         notes += (f"its {len(skin.faces)} triangles follow a simplified mesh of {count}",)
         carried = _carried_over(known, coarse, target)
-        simplified = simplifying.SimplifiedHead(
+        simplified = simplifying.SimulatedHead(
             vertices=coarse.vertices,
             faces=coarse.faces,
             landmarks=coarse.landmarks,

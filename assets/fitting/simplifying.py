@@ -23,11 +23,8 @@ SIMPLIFIED = 15_000  # triangles are left
 
 
 @dataclass(frozen=True)
-class SimplifiedHead:
-    """A mesh of fewer triangles with all that `sim.create` asks for.
-
-    Its attributes are those of `FittedHead`.
-    """
+class SimulatedHead:
+    """A mesh with all that `sim.create` reads; its attributes are those of `Head`."""
 
     vertices: Floats64
     faces: Integers32

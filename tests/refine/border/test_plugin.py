@@ -95,8 +95,8 @@ def test_unknown_name():
     [
         (
             "kahler",
-            r"it takes \['attributes', 'blend', 'coherent', 'crease_angle', 'criterion', 'normals', "
-            "'scheme', 's",
+            r"it takes \['attributes', 'blend', 'coherent', 'crease_angle', 'criterion', "
+            "'normals', 'scheme', 's",
         ),
         ("loop", r"it takes \['attributes', 'crease_angle', 'levels'\]"),
         ("none", r"it takes \['attributes', 'crease_angle'\]"),
