@@ -211,8 +211,6 @@ def open_window(
 
     performance: None for a new script of the face at rest.
     """
-    from risorius.assets.fitting.landmark_file import UnfinishedError
-
     from ..performances import new_script
     from ..viewer.settings import settings_path
     from ..viewer.window.splash_screen import SplashScreen
@@ -220,12 +218,7 @@ def open_window(
     def load() -> tuple[Script, FittedHead | None]:
         """All that takes long."""
         script = performance or new_script()
-        head = None
-        try:
-            head = drawing.fitted_head()
-        except UnfinishedError:  # it is marked first
-            if mesh is None:
-                raise
+        head = _fitted_head(drawing, may_be_marked=mesh is not None)
         import risorius.app.viewer.window.window  # noqa: F401
 
         return script, head
@@ -259,6 +252,18 @@ def open_window(
             if mesh is not None and head is None:
                 viewer.read(mesh)()
             viewer.run(playing=playing, once=once)
+
+
+def _fitted_head(drawing: Drawing, *, may_be_marked: bool) -> FittedHead | None:
+    """The head of the options; None, too, where its landmarks are missing and may be marked."""
+    from risorius.assets.fitting.landmark_file import UnfinishedError
+
+    try:
+        return drawing.fitted_head()
+    except UnfinishedError:
+        if not may_be_marked:
+            raise
+    return None
 
 
 @click.command()
