@@ -52,7 +52,8 @@ class StoredPiece:
 
     node, mesh, primitive: numbers, of the primitive within its mesh. count: of its vertices, which
     follow those of the pieces before. to_scene: how a change of stored places changes the places
-    in the scene, a matrix (3, 3) or one for each vertex, (V, 3, 3).
+    in the scene, a matrix (3, 3) or one for each vertex, (V, 3, 3). triangles: corners as the file
+    runs around them, numbers within the piece, shape (F, 3).
     """
 
     node: int
@@ -60,6 +61,7 @@ class StoredPiece:
     primitive: int
     count: int
     to_scene: Floats64
+    triangles: Integers64
 
 
 class _Piece(NamedTuple):
@@ -73,6 +75,7 @@ class _Piece(NamedTuple):
     seen: Floats64  # (V, 3) in the scene
     motion: Floats64  # (V, 4) of shapes and bones, mixed: alike where vertices move alike
     faces: Integers64  # (F, 3)
+    is_turned: bool  # whether the file runs around its triangles the other way
     picture: int  # its number, -1 for none
     uv: Floats64  # (V, 2), v up
     colours: Unsigned8 | None  # (V, 3)
@@ -125,7 +128,14 @@ def stored_pieces(content: bytes, folder: Path) -> list[StoredPiece]:
     """Where the vertices of `read_gltf` are in their file, in its order; errors as there."""
     pieces = _Reader(GltfFile(content, folder)).pieces()
     return [
-        StoredPiece(each.node, each.mesh, each.primitive, len(each.seen), each.to_scene)
+        StoredPiece(
+            each.node,
+            each.mesh,
+            each.primitive,
+            len(each.seen),
+            each.to_scene,
+            each.faces[:, ::-1] if each.is_turned else each.faces,
+        )
         for each in pieces
     ]
 
@@ -211,7 +221,18 @@ class _Reader:
         colours = self.painter.colours(attributes, factor)
         turned = np.ascontiguousarray(faces[:, ::-1]) if is_turned else faces
         return _Piece(
-            number, node.mesh, which, to_scene, stored, seen, motion, turned, picture, uv, colours
+            number,
+            node.mesh,
+            which,
+            to_scene,
+            stored,
+            seen,
+            motion,
+            turned,
+            is_turned,
+            picture,
+            uv,
+            colours,
         )
 
     def _bent(

@@ -86,3 +86,21 @@ def with_card(mesh: Mesh) -> Mesh:
     sides = count + np.array([[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]])
     faces = np.vstack([sides, mesh.faces]).astype(np.int32)
     return Mesh(np.vstack([mesh.vertices, card]), faces)
+
+
+def sealed() -> Stranger:
+    """The built-in head whose lips are one along the line where they meet; nothing behind them."""
+    head = assets.load("head")
+    vertices = head.vertices.copy()
+    same = np.arange(len(vertices))
+    half = len(head.rings["mouth_2_left"]) // 2
+    for side in ("left", "right"):
+        ring = head.rings[f"mouth_2_{side}"]
+        for upper, lower in zip(ring[:half], ring[:half:-1], strict=True):
+            vertices[upper] = 0.5 * (vertices[upper] + vertices[lower])
+            same[lower] = upper
+    inner = [head.rings[f"mouth_{ring}_{side}"] for ring in (0, 1) for side in ("left", "right")]
+    faces = head.faces[~np.isin(head.faces, np.concatenate(inner)).any(axis=1)]
+    used, number = np.unique(same[faces], return_inverse=True)
+    found = np.searchsorted(used, same[head.landmarks]).astype(np.int32)
+    return Stranger(Mesh(vertices[used], number.reshape(-1, 3).astype(np.int32)), found)

@@ -145,6 +145,9 @@ def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
     is_gltf = path.suffix.lower() in GLTF
     painted = None if is_gltf else read_painted(path)
     mesh = read_mesh(path) if painted is None else painted.mesh
+    if head.lip_cut is not None:
+        mesh = head.lip_cut.applied(mesh)
+        painted = painted and replace(painted, mesh=mesh)
     rest = head.to_millimetres.points(mesh.vertices)
     same = merged_vertices(mesh, head)
     faces = same[mesh.faces].astype(np.int32)

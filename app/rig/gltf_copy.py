@@ -21,6 +21,7 @@ from urllib.parse import unquote_to_bytes
 import numpy as np
 import numpy.typing as npt
 
+from risorius.assets.fitting.lips import LipCut
 from risorius.assets.fitting.warp import Similarity
 from risorius.assets.gltf import StoredPiece
 from risorius.assets.gltf_file import COMPONENTS
@@ -30,6 +31,7 @@ from .bodies import Shaped
 from .glb import Glb
 
 Singles = npt.NDArray[np.float32]
+Numbers = npt.NDArray[np.integer[Any]]
 TAKEN = ".risorius"  # behind names that the file has already
 
 
@@ -99,21 +101,31 @@ class _Changes:
 class GltfShapes:
     """Appends shapes to the meshes of a file."""
 
-    def __init__(self, glb: Glb, shaped: Shaped, to_millimetres: Similarity) -> None:
+    def __init__(
+        self, glb: Glb, shaped: Shaped, to_millimetres: Similarity, cut: LipCut | None
+    ) -> None:
+        """cut: between the lips, whose vertices the shapes have, too."""
+        doubled = np.zeros(0, np.int64) if cut is None else cut.sources
+        count = len(shaped.body.rest) - len(doubled)
+        self._sources = np.append(np.arange(count), doubled)  # vertices of the file
         self._glb = glb
         self._document = glb.parts
         self._shaped = shaped
         self._to_file = to_millimetres.inverse
 
     def append(
-        self, pieces: Sequence[StoredPiece], names: Sequence[str], extras: Mapping[str, Any]
+        self,
+        pieces: Sequence[StoredPiece],
+        vertices: Sequence[Numbers],
+        names: Sequence[str],
+        extras: Mapping[str, Any],
     ) -> None:
-        """Add the shapes to all meshes that they move. pieces: where their vertices are."""
+        """Add the shapes to all meshes that they move.
+
+        pieces: where their vertices are. vertices: of each piece, see `vertices_of`.
+        """
         changes: dict[int, dict[int, _Changes]] = {}
-        start = 0
-        for piece in pieces:
-            own = slice(start, start + piece.count)
-            start += piece.count
+        for piece, own in zip(pieces, vertices, strict=True):
             # A mesh that several nodes show has one set of shapes: those of the first node.
             of_mesh = changes.setdefault(piece.mesh, {})
             if piece.primitive not in of_mesh and self._shaped.targets[:, own].any():
@@ -122,10 +134,11 @@ class GltfShapes:
             if of_mesh:
                 self._append_to(mesh, of_mesh, names, extras)
 
-    def _changes(self, piece: StoredPiece, own: slice) -> _Changes:
+    def _changes(self, piece: StoredPiece, own: Numbers) -> _Changes:
         """The shapes of a piece as its primitive has them."""
         turn = self._to_file.rotation
         matrices = np.broadcast_to(piece.to_scene, (piece.count, 3, 3))
+        matrices = matrices[self._sources[own] - own[0]]
         back = np.linalg.pinv(matrices)
         scale = np.cbrt(np.abs(np.linalg.det(matrices)))[:, None, None]
         # A normal n of the scene is M^-T of a stored one.

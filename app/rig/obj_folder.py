@@ -2,8 +2,8 @@
 
 All have the same vertices in the same order: `neutral.obj` at rest, and each other where its shape
 is at 1. An OBJ that was brought keeps its lines, but for those of vertices that a shape moves. Any
-other head is written as triangles, body by body: in the unit of its file, the built-in one in
-metres.
+other head, and one whose lips were sealed, is written as triangles, body by body: in the unit of
+its file, the built-in one in metres.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ def write_obj_folder(avatar: Avatar, folder: Path) -> None:
     """Write all of them."""
     file = avatar.file
     text = None
-    if file is not None and file.path.suffix.lower() == ".obj":
+    is_kept = file is not None and file.head.lip_cut is None
+    if is_kept and file is not None and file.path.suffix.lower() == ".obj":
         text = file.path.read_bytes()
     for name, changes in _shapes(avatar):
         path = folder / f"{name}.obj"

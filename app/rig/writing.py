@@ -10,6 +10,7 @@ import scipy
 
 from risorius.assets.fitting import FittedHead
 from risorius.assets.gltf import stored_pieces
+from risorius.assets.gltf_file import GltfFile
 
 from ..files import folder_atomically, written_atomically
 from .avatar import Avatar, FileHead, RigRequest, Say, avatar_of
@@ -17,6 +18,7 @@ from .bodies import EYES
 from .file_mesh import FileMeshWriter, root_matrix
 from .glb import Glb
 from .gltf_copy import GltfShapes, read_document
+from .gltf_lips import cut_primitives, vertices_of
 from .obj_folder import OWN, write_obj_folder
 from .poses import rest_in
 from .scene_file import add_pieces, piece_of
@@ -64,8 +66,13 @@ def _copied(avatar: Avatar, file: FileHead, title: str) -> bytes:
     """A glTF file as it was, with the shapes, and built-in parts where these are wanted."""
     content = file.path.read_bytes()
     glb = Glb(None, *read_document(content, file.path.parent))
-    writer = GltfShapes(glb, avatar.shapes[0], file.head.to_millimetres)
-    writer.append(stored_pieces(content, file.path.parent), avatar.names, avatar.extras)
+    cut = file.head.lip_cut
+    pieces = stored_pieces(content, file.path.parent)
+    vertices = vertices_of(pieces, cut)
+    if cut is not None:
+        cut_primitives(glb, GltfFile(content, file.path.parent), pieces, vertices, cut)
+    writer = GltfShapes(glb, avatar.shapes[0], file.head.to_millimetres, cut)
+    writer.append(pieces, vertices, avatar.names, avatar.extras)
     roots = [_add_parts(glb, avatar, file)] if len(avatar.shapes) > 1 else []
     return glb.to_bytes(title, roots)
 

@@ -15,12 +15,13 @@ Differs from it: no mesh is fitted to scanned points; the mesh that is brought i
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import scipy
 
 from risorius.geometry.normals import vertex_normals
 
@@ -33,13 +34,13 @@ from ..model import Eye, FineShape, Head, Part, Wrinkles
 from ..topology import boundary_loops
 from ..user_files import named
 from . import simplifying
+from .face_place import ORIENTING, is_face, placed
 from .landmark_file import (
-    COUNT,
     UnfinishedError,
     check_lips,
-    groups_in_disorder,
     read_landmarks,
 )
+from .lips import LipCut, lip_cut, lips_parted
 from .mesh_validation import (
     ShutMouthError,
     SkinPiece,
@@ -54,8 +55,6 @@ from .organs import place_eyes, place_parts, with_eyelid_rims
 from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spread_uv
 from .topologies import recognised
 from .warp import Similarity, ThinPlateSpline, nearest_on
-
-ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
 
 
 @dataclass(frozen=True)
@@ -72,6 +71,7 @@ class FittedHead(simplifying.SimulatedHead):
     called: its name or number, "" where it has none.
     simplified: the mesh to simulate instead, where this one has too many triangles; else None.
     files: of the mesh and its landmarks, where it was read from such.
+    lip_cut: of a file whose lips are sealed; its mesh is cut there. None for others.
     """
 
     uv: Floats32
@@ -87,6 +87,7 @@ class FittedHead(simplifying.SimulatedHead):
     called: str = field(default="", kw_only=True)
     simplified: simplifying.SimulatedHead | None = field(default=None, kw_only=True)
     files: tuple[Path, ...] = field(default=(), kw_only=True)
+    lip_cut: LipCut | None = field(default=None, kw_only=True)
 
     def fade(self) -> tuple[float, float, float, float] | None:
         """A x + b y + c z + d is 0 along the neck's edge, 1 FADE above; None: there is no edge.
@@ -121,26 +122,47 @@ def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHea
     Raises AssetError, one line that names the file, where a file is missing, broken or unusable;
     its subclass UnfinishedError where landmarks are missing.
     """
-    found = read_mesh(mesh)
+    path = Path(mesh)
+    found = read_mesh(path)
     if landmarks is None:
-        return _fit_known(found, Path(mesh))
-    files = (Path(mesh), Path(landmarks))
-    numbers, points = read_landmarks(files[1], found)
+        return _fit_known(found, path)
+    file = Path(landmarks)
+    numbers, points = read_landmarks(file, found)
     try:
-        try:
-            return replace(fit(found, numbers, points=points), files=files)
-        except ShutMouthError:
-            parted = lips_parted(found, found.vertices[numbers] if points is None else points)
-            if parted is None:
-                raise
-            numbers, points = read_landmarks(files[1], parted)
-            return replace(fit(parted, numbers, points=points), files=files)
+        fitted = _fit_shut_or_not(found, partial(read_landmarks, file))
     except AssetError as error:
         reason = error
-        is_face = [_is_face(found.vertices[numbers - first]) for first in (0, 1)]
+        is_face = [is_face(found.vertices[numbers - first]) for first in (0, 1)]
         if points is None and is_face == [False, True]:
             reason = AssetError("landmarks count vertices from 1; count from 0: take 1 off each")
         raise AssetError(f"{named(mesh)}: {reason}") from None
+    return replace(fitted, files=(path, file))
+
+
+Marks = tuple[Integers32, Floats64 | None]  # landmarks as `read_landmarks` has them
+
+
+def _fit_shut_or_not(mesh: Mesh, marks: Callable[[Mesh], Marks]) -> FittedHead:
+    """Fit a mesh; where skin joins the lips, part them first.
+
+    marks: reads the landmarks of a mesh with those vertices.
+    """
+    numbers, points = marks(mesh)
+    try:
+        return fit(mesh, numbers, points=points)
+    except ShutMouthError:
+        places = mesh.vertices[numbers] if points is None else points
+        parted = lips_parted(mesh, places)
+        if parted is not None:
+            numbers, points = marks(parted)
+            with contextlib.suppress(ShutMouthError):
+                return fit(parted, numbers, points=points)
+        cut = lip_cut(mesh, numbers, places)
+        if cut is None:
+            raise
+    opened = cut.applied(mesh)
+    fitted = fit(opened, cut.landmarks, points=cut.points)
+    return replace(fitted, lip_cut=cut, notes=(*fitted.notes, cut.in_words))
 
 
 def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
@@ -153,37 +175,10 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
         )
     note = f"its vertices are those of {known.name}, whose landmarks are known"
     try:
-        fitted = fit(mesh, known.landmarks)
+        fitted = _fit_shut_or_not(mesh, lambda _: (known.landmarks, None))
     except AssetError as error:
         raise AssetError(f"{named(path)}: {note}; but {error}") from None
     return replace(fitted, files=(path,), notes=(note, *fitted.notes))
-
-
-def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
-    """The mesh with those vertices apart that its file doubles where the lips touch.
-
-    A file doubles vertices along seams of its texture, and the reader makes them one; between lips
-    they are not. landmarks: where they lie [unit of the mesh], shape (68, 3). None where no vertex
-    is doubled there.
-    """
-    if mesh.corners is None or mesh.same is None:
-        return None
-    upper_lip = (60, 61, 62, 63, 64)
-    lower_lip = (60, 67, 66, 65, 64)
-    line = (landmarks[list(upper_lip)] + landmarks[list(lower_lip)]) / 2.0
-    # Share of the way between the outer eye corners: lips that touch lie nearer to their line.
-    most_gap = 0.01
-    near = most_gap * float(np.linalg.norm(np.diff(landmarks[[36, 45]], axis=0)))
-    place_count = 33  # on each part of that line
-    steps = np.linspace(0.0, 1.0, place_count)[:, None, None]
-    places = (line[:-1] + steps * np.diff(line, axis=0)).reshape(-1, 3)
-    off = scipy.spatial.cKDTree(places).query(mesh.vertices)[0]
-    at_corner = scipy.spatial.cKDTree(line[[0, -1]]).query(mesh.vertices)[0] < near
-    is_lip = (off < near) & ~at_corner
-    same = np.where(is_lip, np.arange(len(mesh.vertices)), mesh.same)
-    if np.array_equal(same, mesh.same):
-        return None
-    return replace(mesh, faces=same[mesh.corners].astype(np.int32), same=same)
 
 
 def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) -> FittedHead:
@@ -197,7 +192,7 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
     faces, landmarks = with_seams_joined(mesh.vertices, mesh.faces, landmarks)
     skin = skin_of(mesh.vertices, faces, landmarks)
     check_manifold(faces[skin.file_faces], skin.file_faces)
-    similarity = _placed(points, known)
+    similarity = placed(points, known)
     skin = _sound(replace(skin, vertices=similarity.points(skin.vertices)))
     own = None
     if mesh.texture is not None:
@@ -323,46 +318,6 @@ def _painted(
     return built_in, picture, (known.wrinkles, known.segments, light)
 
 
-def _placed(points: Floats64, known: Head) -> Similarity:
-    """The similarity to millimetres and the face space; AssetError if this is no face."""
-    template = known.vertices[known.landmarks]
-    extent = np.ptp(points[ORIENTING], axis=0).max()
-    least_size = 1e-9  # between the outermost landmarks: below it, squares leave too few digits
-    if extent < least_size:
-        raise AssetError(
-            f"the landmarks lie within {extent:.3g} units; allowed are {least_size:g} and more: "
-            "give 68 different ones, in metres or millimetres"
-        )
-    similarity = Similarity.between(points[ORIENTING], template[ORIENTING])
-    off = np.linalg.norm(similarity.points(points) - template, axis=1)
-    disordered = groups_in_disorder(similarity.points(points), template)
-    farthest_from_a_face = 14.0  # [mm] mean distance of landmarks from those of the built-in head
-    is_far = off[ORIENTING].mean() > farthest_from_a_face
-    most_disordered = 3  # groups of landmarks: with more of them no order is meant
-    if disordered and not (is_far and len(disordered) > most_disordered):
-        _check_different(similarity.points(points), template)
-        raise AssetError(disordered[0].complaint)
-    if is_far:
-        raise AssetError(
-            f"the landmarks are no face: landmark {off.argmax()} lies {off.max():.0f} mm off, the "
-            f"mean one {off[ORIENTING].mean():.0f} mm; give the 68 iBug points in their order"
-        )
-    if similarity.is_mirrored:
-        raise AssetError(
-            "left and right are swapped in the landmarks, or the mesh is mirrored; landmarks 0-16 "
-            "run from the subject's right ear to the left one, 36-41 are the right eye"
-        )
-    _check_different(similarity.points(points), template)
-    return similarity
-
-
-def _is_face(points: Floats64) -> bool:
-    """Whether landmarks [unit of the mesh] are those of a face, in their order."""
-    with contextlib.suppress(AssetError):
-        return bool(_placed(points, load("head")))
-    return False
-
-
 def _check_size(skin: SkinPiece) -> None:
     """AssetError for a vertex [mm] that is nowhere near the face."""
     off = np.linalg.norm(skin.vertices, axis=1)
@@ -373,22 +328,6 @@ def _check_size(skin: SkinPiece) -> None:
             f"vertex {skin.file_vertices[where]} lies {off[where] / 1000.0:.3g} m off the face; "
             f"allowed are {most_distance / 1000.0:g} m: remove stray vertices and "
             "everything that is not the head"
-        )
-
-
-def _check_different(points: Floats64, template: Floats64) -> None:
-    """AssetError where landmarks [mm] that are far apart on any face are one place."""
-    ways, known = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (points, template))
-    # Landmarks so far apart on the built-in head cannot be one place: no muscle spans no way.
-    least_built_in_distance = 30.0  # [mm]
-    a, b = np.unravel_index(
-        (ways + np.where(known > least_built_in_distance, 0.0, np.inf)).argmin(), ways.shape
-    )
-    least_distance = 1.0  # [mm]
-    if ways[a, b] < least_distance:
-        raise AssetError(
-            f"landmarks {a} and {b} are {ways[a, b]:.2g} mm apart, on the built-in head "
-            f"{known[a, b]:.0f} mm; give each its own place"
         )
 
 

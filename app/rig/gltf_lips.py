@@ -1,0 +1,78 @@
+"""A glTF file whose lips are sealed: its primitives with the vertices that the cut doubles.
+
+All attributes of a doubled vertex are those of the one that it doubles, and so are the changes of
+the file's own shapes. A primitive that is cut gets arrays of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.assets.fitting.lips import LipCut
+from risorius.assets.gltf import StoredPiece
+from risorius.assets.gltf_file import GltfFile
+
+from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
+
+Numbers = npt.NDArray[np.integer[Any]]
+
+
+def vertices_of(pieces: Sequence[StoredPiece], cut: LipCut | None) -> list[Numbers]:
+    """The numbers in the mesh of the vertices of each piece, those that a cut doubles last."""
+    found: list[Numbers] = []
+    start = 0
+    total = sum(piece.count for piece in pieces)
+    for piece in pieces:
+        numbers = np.arange(start, start + piece.count)
+        if cut is not None:
+            is_own = (cut.sources >= start) & (cut.sources < start + piece.count)
+            numbers = np.append(numbers, total + np.flatnonzero(is_own))
+        found.append(numbers)
+        start += piece.count
+    return found
+
+
+def cut_primitives(
+    glb: Glb,
+    file: GltfFile,
+    pieces: Sequence[StoredPiece],
+    vertices: Sequence[Numbers],
+    cut: LipCut,
+) -> None:
+    """Double the vertices of the primitives that a cut crosses.
+
+    file: the same document, read. vertices: of each piece, see `vertices_of`.
+    """
+    done = set()
+    for piece, numbers in zip(pieces, vertices, strict=True):
+        place = (piece.mesh, piece.primitive)
+        if len(numbers) == piece.count or place in done:
+            continue
+        done.add(place)
+        primitive = glb.parts["meshes"][piece.mesh]["primitives"][piece.primitive]
+        start = int(numbers[0])
+        doubled = cut.sources[numbers[piece.count :] - sum(each.count for each in pieces)] - start
+        rows = np.append(np.arange(piece.count), doubled)
+        for attributes in (primitive["attributes"], *primitive.get("targets", [])):
+            for name, accessor in attributes.items():
+                attributes[name] = _rows_of(glb, file, accessor, rows, name)
+        triangles = piece.triangles.copy()
+        is_below = cut.is_below(triangles + start)
+        new = np.arange(piece.count)
+        new[doubled] = piece.count + np.arange(len(doubled))
+        triangles[is_below] = new[triangles[is_below]]
+        kind = np.uint16 if len(rows) <= np.iinfo(np.uint16).max else np.uint32
+        primitive["indices"] = glb.accessor(triangles.astype(kind).ravel(), ELEMENT_ARRAY_BUFFER)
+        primitive["mode"] = 4  # triangles, also where it was a strip or a fan
+
+
+def _rows_of(glb: Glb, file: GltfFile, accessor: int, rows: Numbers, name: str) -> int:
+    """A new accessor with some rows of one; names of bones stay whole numbers."""
+    values = file.values(accessor)[rows]
+    if not name.startswith("JOINTS"):
+        values = values.astype(np.float32)
+    return glb.accessor(values, ARRAY_BUFFER, is_bounded=name == "POSITION")

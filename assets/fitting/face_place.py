@@ -1,0 +1,72 @@
+"""Where 68 landmarks place a head: the similarity to the face space, or why they are no face."""
+
+from __future__ import annotations
+
+import contextlib
+
+import numpy as np
+
+from ...geometry.arrays import Floats64
+from ..errors import AssetError
+from ..loading import load
+from ..model import Head
+from .landmark_file import COUNT, groups_in_disorder
+from .warp import Similarity
+
+ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
+
+
+def placed(points: Floats64, known: Head) -> Similarity:
+    """The similarity to millimetres and the face space; AssetError if this is no face."""
+    template = known.vertices[known.landmarks]
+    extent = np.ptp(points[ORIENTING], axis=0).max()
+    least_size = 1e-9  # between the outermost landmarks: below it, squares leave too few digits
+    if extent < least_size:
+        raise AssetError(
+            f"the landmarks lie within {extent:.3g} units; allowed are {least_size:g} and more: "
+            "give 68 different ones, in metres or millimetres"
+        )
+    similarity = Similarity.between(points[ORIENTING], template[ORIENTING])
+    off = np.linalg.norm(similarity.points(points) - template, axis=1)
+    disordered = groups_in_disorder(similarity.points(points), template)
+    farthest_from_a_face = 14.0  # [mm] mean distance of landmarks from those of the built-in head
+    is_far = off[ORIENTING].mean() > farthest_from_a_face
+    most_disordered = 3  # groups of landmarks: with more of them no order is meant
+    if disordered and not (is_far and len(disordered) > most_disordered):
+        _check_different(similarity.points(points), template)
+        raise AssetError(disordered[0].complaint)
+    if is_far:
+        raise AssetError(
+            f"the landmarks are no face: landmark {off.argmax()} lies {off.max():.0f} mm off, the "
+            f"mean one {off[ORIENTING].mean():.0f} mm; give the 68 iBug points in their order"
+        )
+    if similarity.is_mirrored:
+        raise AssetError(
+            "left and right are swapped in the landmarks, or the mesh is mirrored; landmarks 0-16 "
+            "run from the subject's right ear to the left one, 36-41 are the right eye"
+        )
+    _check_different(similarity.points(points), template)
+    return similarity
+
+
+def is_face(points: Floats64) -> bool:
+    """Whether landmarks [unit of the mesh] are those of a face, in their order."""
+    with contextlib.suppress(AssetError):
+        return bool(placed(points, load("head")))
+    return False
+
+
+def _check_different(points: Floats64, template: Floats64) -> None:
+    """AssetError where landmarks [mm] that are far apart on any face are one place."""
+    ways, known = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (points, template))
+    # Landmarks so far apart on the built-in head cannot be one place: no muscle spans no way.
+    least_built_in_distance = 30.0  # [mm]
+    a, b = np.unravel_index(
+        (ways + np.where(known > least_built_in_distance, 0.0, np.inf)).argmin(), ways.shape
+    )
+    least_distance = 1.0  # [mm]
+    if ways[a, b] < least_distance:
+        raise AssetError(
+            f"landmarks {a} and {b} are {ways[a, b]:.2g} mm apart, on the built-in head "
+            f"{known[a, b]:.0f} mm; give each its own place"
+        )

@@ -1,0 +1,204 @@
+"""Lips that are one in a mesh, and must be two for muscles to part them.
+
+A file may double vertices along its lips, which the reader has made one: they become two again. Or
+the lips are sealed: skin runs over the mouth. It is cut along the line on which the landmarks of
+the inner lips, 60 to 67, lie: vertices on it are doubled, but for its two ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+from scipy import sparse
+from scipy.sparse import csgraph
+
+from ...geometry.arrays import Floats64, Integers32
+from ...geometry.sides import sides_of
+from ..meshes import Mesh
+
+Numbers = npt.NDArray[np.integer[Any]]
+UPPER_LIP = (60, 61, 62, 63, 64)
+LOWER_LIP = (60, 67, 66, 65, 64)
+OUTER_MIDDLES = (51, 57)  # of the upper and the lower lip's outer border
+
+
+def lips_line(landmarks: Floats64) -> Floats64:
+    """The line between the lips, from the right corner to the left one, shape (5, 3)."""
+    return (landmarks[list(UPPER_LIP)] + landmarks[list(LOWER_LIP)]) / 2.0
+
+
+def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
+    """The mesh with those vertices apart that its file doubles where the lips touch.
+
+    A file doubles vertices along seams of its texture, and the reader makes them one; between lips
+    they are not. landmarks: where they lie [unit of the mesh], shape (68, 3). None where no vertex
+    is doubled there.
+    """
+    if mesh.corners is None or mesh.same is None:
+        return None
+    line = lips_line(landmarks)
+    # Share of the way between the outer eye corners: lips that touch lie nearer to their line.
+    most_gap = 0.01
+    near = most_gap * float(np.linalg.norm(np.diff(landmarks[[36, 45]], axis=0)))
+    off = _distances(mesh.vertices, line)
+    at_corner = scipy.spatial.cKDTree(line[[0, -1]]).query(mesh.vertices)[0] < near
+    is_lip = (off < near) & ~at_corner
+    same = np.where(is_lip, np.arange(len(mesh.vertices)), mesh.same)
+    if np.array_equal(same, mesh.same):
+        return None
+    return replace(mesh, faces=same[mesh.corners].astype(np.int32), same=same)
+
+
+@dataclass(frozen=True)
+class LipCut:
+    """A cut between the lips of a mesh.
+
+    sources: the vertex of the file that each new one doubles; the new ones follow behind the last,
+    shape (n,). below: the triangles at the cut on the lower lip, which take the new ones, as the
+    file numbers their corners, the least number first, shape (k, 3).
+    landmarks: vertices of the mesh that is cut, shape (68,). points: where they lie, (68, 3).
+    """
+
+    sources: Numbers
+    below: Numbers
+    landmarks: Integers32
+    points: Floats64
+
+    @property
+    def in_words(self) -> str:
+        """A line for the owner of the mesh."""
+        return f"its lips were sealed: they are cut apart, {len(self.sources)} vertices are doubled"
+
+    def applied(self, mesh: Mesh) -> Mesh:
+        """The mesh of the file, cut."""
+        count = len(mesh.vertices)
+        corners = mesh.faces if mesh.corners is None else mesh.corners
+        rows = np.flatnonzero(self.is_below(corners))
+        place = np.arange(count)
+        place[self.sources] = count + np.arange(len(self.sources))
+        corners = corners.copy()
+        corners[rows] = place[corners[rows]]
+        same = np.arange(count) if mesh.same is None else np.asarray(mesh.same)
+        # Of the new ones, those that double the same place are one again.
+        _, first, number = np.unique(same[self.sources], return_index=True, return_inverse=True)
+        same = np.concatenate([same, count + first[number]])
+        faces = mesh.faces.copy()
+        faces[rows] = same[corners[rows]]
+        doubled = np.concatenate([np.arange(count), self.sources])
+        return replace(
+            mesh,
+            vertices=mesh.vertices[doubled],
+            faces=faces,
+            colours=None if mesh.colours is None else mesh.colours[doubled],
+            has_colour=None if mesh.has_colour is None else mesh.has_colour[doubled],
+            same=same,
+            corners=corners.astype(np.int32),
+        )
+
+    def is_below(self, triangles: Numbers) -> npt.NDArray[np.bool_]:
+        """Which of some triangles (F, 3), with the numbers of the file, take new vertices."""
+        known = set(map(tuple, self.below.tolist()))
+        touched = np.flatnonzero(np.isin(triangles, self.sources).any(axis=1))
+        found = np.zeros(len(triangles), np.bool_)
+        found[touched] = [tuple(sorted(row)) in known for row in triangles[touched].tolist()]
+        return found
+
+
+def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | None:
+    """The cut between lips that are sealed; None where no line of edges parts two lips, or they
+    are apart.
+
+    numbers: vertices at the landmarks, shape (68,). landmarks: where they lie [unit of the mesh],
+    shape (68, 3).
+    """
+    line = lips_line(landmarks)
+    gaps = landmarks[list(UPPER_LIP)] - landmarks[list(LOWER_LIP)]
+    most_gap = 0.12  # share of the way between the corners
+    width = np.linalg.norm(line[-1] - line[0])
+    if np.linalg.norm(gaps, axis=1).max() > most_gap * width:
+        return None
+    path = _path_along(mesh, line)
+    if path is None or len(path) < 5:  # a mouth of fewer edges has no form
+        return None
+    inner = path[1:-1]
+    parts = _sides_of_path(mesh.faces, path)
+    if len(parts) != 2:
+        return None
+    up = np.subtract(*landmarks[list(OUTER_MIDDLES)])
+    heights = [float(mesh.vertices[mesh.faces[part]].mean(axis=(0, 1)) @ up) for part in parts]
+    below = parts[int(np.argmin(heights))]
+    corners = mesh.faces if mesh.corners is None else mesh.corners
+    same = np.arange(len(mesh.vertices)) if mesh.same is None else np.asarray(mesh.same)
+    used = np.unique(corners[below])
+    sources = used[np.isin(same[used], inner)]
+    numbers = numbers.copy()
+    points = np.array(landmarks, np.float64)
+    new: dict[int, int] = {}
+    for place, source in enumerate(sources):
+        new.setdefault(int(same[source]), len(same) + place)
+    on_path = scipy.spatial.cKDTree(mesh.vertices[inner])
+    for upper, lower, place in zip(UPPER_LIP[1:4], LOWER_LIP[1:4], line[1:4], strict=True):
+        vertex = int(inner[on_path.query(place)[1]])
+        numbers[upper] = vertex
+        numbers[lower] = new[vertex]
+        points[[upper, lower]] = mesh.vertices[vertex]
+    for corner, vertex in ((UPPER_LIP[0], path[0]), (UPPER_LIP[-1], path[-1])):
+        numbers[corner] = vertex
+        points[corner] = mesh.vertices[vertex]
+    return LipCut(sources, np.sort(corners[below], axis=1), numbers, points)
+
+
+def _path_along(mesh: Mesh, line: Floats64) -> Numbers | None:
+    """Vertices that edges join to a path along a line (n, 3), from end to end; None for none."""
+    used = np.unique(mesh.faces)
+    ends = used[scipy.spatial.cKDTree(mesh.vertices[used]).query(line[[0, -1]])[1]]
+    edges = np.unique(np.sort(sides_of(mesh.faces), axis=1), axis=0)
+    points = mesh.vertices[edges]
+    lengths = np.linalg.norm(points[:, 0] - points[:, 1], axis=1)
+    off = _distances(points.mean(axis=1), line)
+    # Share of the line's length: an edge so far off counts as twice as long.
+    near = 0.01 * float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+    weights = np.maximum(lengths, 1e-12) * (1.0 + (off / near) ** 2)
+    count = len(mesh.vertices)
+    graph = sparse.csr_array((weights, edges.T), shape=(count, count))
+    before = csgraph.dijkstra(graph, directed=False, indices=ends[0], return_predecessors=True)[1]
+    path = [int(ends[1])]
+    while path[-1] != ends[0]:
+        if before[path[-1]] < 0:
+            return None
+        path.append(int(before[path[-1]]))
+    return np.array(path[::-1])
+
+
+def _sides_of_path(faces: Integers32, path: Numbers) -> list[Numbers]:
+    """The triangles at the inner vertices of a path, in parts that the path divides."""
+    strip = np.flatnonzero(np.isin(faces, path[1:-1]).any(axis=1))
+    sides = np.sort(sides_of(faces[strip]), axis=1)
+    owner = np.tile(np.arange(len(strip)), 3)
+    steps = {tuple(sorted(step)) for step in pairwise(path.tolist())}
+    links = []
+    first: dict[tuple[int, ...], int] = {}
+    for side, triangle in zip(map(tuple, sides.tolist()), owner.tolist(), strict=True):
+        if side in steps:
+            continue
+        if side in first:
+            links.append((first[side], triangle))
+        first[side] = triangle
+    count = len(strip)
+    joined = np.array(links or [(0, 0)])
+    graph = sparse.coo_array((np.ones(len(joined)), joined.T), shape=(count, count))
+    parts, label = csgraph.connected_components(graph, directed=False)
+    return [strip[label == part] for part in range(parts)]
+
+
+def _distances(points: Floats64, line: Floats64) -> Floats64:
+    """How far points (n, 3) are from a line (m, 3), shape (n,)."""
+    place_count = 33  # on each part of the line
+    steps = np.linspace(0.0, 1.0, place_count)[:, None, None]
+    places = (line[:-1] + steps * np.diff(line, axis=0)).reshape(-1, 3)
+    return np.asarray(scipy.spatial.cKDTree(places).query(points)[0])

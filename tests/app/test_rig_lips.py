@@ -1,0 +1,138 @@
+"""A head whose lips are sealed: cut along its landmarks, given back with a few vertices more."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from risorius import sim
+from risorius.assets.fitting import fit_head
+from risorius.assets.fitting.lips import lip_cut
+from risorius.assets.meshes import read_mesh
+
+from ..assets.gltf_files import GltfMaker
+from ..heads import METRES, Stranger, sealed
+from .command_line import risorius
+from .glb_player import Player
+
+UPPER = 62  # landmarks in the middle of the lips
+LOWER = 66
+
+
+@pytest.fixture(scope="module")
+def shut() -> Stranger:
+    """The built-in head, sealed [mm]."""
+    return sealed()
+
+
+def write_glb(shut, folder):
+    """The sealed head as a GLB, its left and right half with vertices of their own on the seam."""
+    vertices = shut.mesh.vertices
+    faces = shut.mesh.faces
+    is_left = vertices[faces, 0].mean(axis=1) > 0.0
+    other = np.intersect1d(faces[is_left], faces[~is_left])
+    number = np.arange(len(vertices))
+    number[other] = len(vertices) + np.arange(len(other))
+    corners = np.where(is_left[:, None], number[faces], faces)
+    doubled = np.vstack([vertices, vertices[other]])
+    uv = doubled[:, :2] / 400.0 + 0.5
+    uv[len(vertices) :] += 0.01
+    maker = GltfMaker()
+    uv_accessor = maker.accessor(uv)
+    primitive = maker.primitive(METRES * doubled, corners, attributes={"TEXCOORD_0": uv_accessor})
+    maker.shown({"name": "head", "mesh": maker.mesh(primitive)})
+    marks = folder / "marks.json"
+    marks.write_text(json.dumps({"landmarks": shut.landmarks.tolist()}))
+    return maker.write(folder / "sealed.glb"), marks, doubled, uv
+
+
+def test_sealed_lips_are_cut_and_part(shut, tmp_path):
+    """A line says how many vertices are doubled; an open jaw parts them, and the corners hold."""
+    head = fit_head(*shut.write(tmp_path))
+    (note,) = head.notes
+    added = len(head.vertices) - len(shut.mesh.vertices)
+    assert 8 < added < 30
+    assert note == f"its lips were sealed: they are cut apart, {added} vertices are doubled"
+    upper, lower = head.landmarks[[UPPER, LOWER]]
+    assert upper != lower
+    assert np.array_equal(head.vertices[upper], head.vertices[lower])
+    simulation = sim.create(head)
+    simulation.controls.set("jawOpen", 1.0)
+    for _ in range(60):
+        simulation.step(1.0 / 60.0)
+    places = simulation.positions
+    assert places[upper, 1] - places[lower, 1] > 15.0
+    assert np.abs(places - head.vertices).max() < 60.0
+
+
+def test_a_cut_runs_along_edges_of_the_mesh(shut):
+    """Whatever the unit; both lips keep all their triangles, and no other vertex is doubled."""
+    mesh = shut.mesh
+    tiny = replace(mesh, vertices=METRES * mesh.vertices)
+    cut = lip_cut(tiny, shut.landmarks, tiny.vertices[shut.landmarks])
+    opened = cut.applied(tiny)
+    assert len(opened.faces) == len(mesh.faces)
+    doubled = np.concatenate([np.arange(len(mesh.vertices)), cut.sources])
+    assert np.array_equal(doubled[opened.faces], mesh.faces)
+    line = np.unique(doubled[opened.faces[(opened.faces != mesh.faces).any(axis=1)]])
+    assert np.isin(cut.sources, line).all()
+    width = np.ptp(mesh.vertices[shut.landmarks[[60, 64]], 0])
+    middle = mesh.vertices[shut.landmarks[62]]
+    assert np.abs(mesh.vertices[cut.sources, 1] - middle[1]).max() < 0.15 * width
+
+
+def test_skin_across_an_open_mouth_is_not_cut(shut):
+    """Lips that are apart are not sealed: what fills the mouth is the owner's to remove."""
+    places = shut.mesh.vertices[shut.landmarks]
+    places[61:64, 1] += 5.0
+    places[65:68, 1] -= 5.0
+    assert lip_cut(shut.mesh, shut.landmarks, places) is None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["obj", "glb"])
+def test_an_avatar_has_the_files_vertices_and_few_more(shut, tmp_path, kind):
+    """The file's own come first, with all that paints them; jawOpen parts those that were one."""
+    if kind == "glb":
+        mesh, marks, own, uv = write_glb(shut, tmp_path)
+        unit = METRES
+    else:
+        mesh, marks = shut.write(tmp_path)
+        own = shut.mesh.vertices
+        unit = 1.0
+    path = tmp_path / "avatar.glb"
+    result = risorius("rig", mesh, "--landmarks", marks, "-o", path)
+    assert result.exit_code == 0, result.output
+    player = Player(path)
+    points = player.attribute("head", "POSITION") / unit
+    assert np.abs(points[: len(own)] - own).max() < 1e-4
+    more = points[len(own) :]
+    assert 8 < len(more) < 40
+    moved = player.shapes("head")["jawOpen"] / unit
+    parted = 0
+    for place, point in enumerate(more, start=len(own)):
+        same = np.flatnonzero(np.abs(points[: len(own)] - point).max(axis=1) < 1e-5)
+        parted = max(parted, np.abs(moved[same, 1] - moved[place, 1]).max())
+        if kind == "glb":
+            coordinates = player.attribute("head", "TEXCOORD_0")
+            assert np.abs(uv[same] - coordinates[place]).sum(axis=1).min() < 1e-6
+    assert parted > 15.0
+    corners = player.values(player.primitive("head").indices)
+    assert len(corners) == 3 * len(shut.mesh.faces)
+    assert set(range(len(points))) == set(corners.tolist())
+    assert len(read_mesh(path).vertices) == len(points)
+
+
+@pytest.mark.slow
+def test_a_folder_of_objs_has_the_cut(shut, tmp_path):
+    """All files have the same vertices, those of the file first."""
+    mesh, marks = shut.write(tmp_path)
+    folder = tmp_path / "shapes"
+    words = ("--as", "obj", "--shapes", "visemes", "--quiet", "-o", folder)
+    assert risorius("rig", mesh, "--landmarks", marks, *words).exit_code == 0
+    neutral = read_mesh(folder / "neutral.obj")
+    count = len(shut.mesh.vertices)
+    assert np.abs(neutral.vertices[:count] - shut.mesh.vertices).max() < 1e-5
+    opened = read_mesh(folder / "viseme_aa.obj")
+    assert len(opened.vertices) == len(neutral.vertices) > count
