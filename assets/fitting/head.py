@@ -132,8 +132,8 @@ def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHea
         fitted = _fit_shut_or_not(found, partial(read_landmarks, file))
     except AssetError as error:
         reason = error
-        is_face = [is_face(found.vertices[numbers - first]) for first in (0, 1)]
-        if points is None and is_face == [False, True]:
+        are_faces = [is_face(found.vertices[numbers - first]) for first in (0, 1)]
+        if points is None and are_faces == [False, True]:
             reason = AssetError("landmarks count vertices from 1; count from 0: take 1 off each")
         raise AssetError(f"{named(mesh)}: {reason}") from None
     return replace(fitted, files=(path, file))
