@@ -1,8 +1,8 @@
 """The background under a scene, and the picture of the scene in a window, under its panels.
 
-Software OpenGL pays for every sample, so a scene that moves may be drawn with fewer (`Detail`) and
-is enlarged here, or smoothed. The scene's own pixels stay as they are: when only a panel changes,
-the scene is laid under it again without being drawn again.
+Software OpenGL pays for every sample, so a scene that moves may be drawn with fewer (`Detail`). Its
+edges are smoothed then (edges.py), and it is enlarged here. The scene's own pixels stay as they
+are: when only a panel changes, the scene is laid under it again without being drawn again.
 """
 
 from collections.abc import Sequence
@@ -12,8 +12,9 @@ from typing import Any
 import moderngl
 
 from .camera import PlacedView
+from .edges import EdgeSmoother
 from .programs import compile_program
-from .render_target import Rectangle, RenderTarget
+from .render_target import Rectangle, RenderTarget, scaled
 from .style import Background
 
 _UNIT = 4  # texture unit while enlarging
@@ -42,9 +43,10 @@ class Compositor:
         self._gl = gl
         self._colour = gl.renderbuffer(size, 4)
         self.frame = gl.framebuffer([self._colour])
-        programs = [compile_program(gl, "stretch.glsl", *words) for words in ([], ["SMOOTH"])]
-        self._plain, self._smooth = (gl.vertex_array(program, []) for program in programs)
-        self._plain.program["scene"] = self._smooth.program["scene"] = _UNIT
+        program = compile_program(gl, "stretch.glsl")
+        program["scene"] = _UNIT
+        self._plain = gl.vertex_array(program, [])
+        self._smoother: EdgeSmoother | None = None
 
     def compose(
         self,
@@ -56,18 +58,34 @@ class Compositor:
         gl = self._gl
         target = target or self.frame
         scene.flush()
+        frame = scene.frame
+        colour = scene.colour
+        if not scene.samples:
+            smoother = self._smoother_of(scene.size)
+            smoother.smooth(scene, self._in_scene(scene, area))
+            frame = smoother.frame
+            colour = smoother.colour
         target.use()
         gl.viewport = (0, 0, *self.size)  # of the framebuffer that is bound
         gl.scissor = area
-        if scene.samples and scene.size == self.size:
-            gl.copy_framebuffer(target, scene.frame)
+        if scene.size == self.size:
+            gl.copy_framebuffer(target, frame)
         else:
             gl.disable(moderngl.DEPTH_TEST)
-            scene.colour.use(_UNIT)
-            stretch = self._smooth if scene.size == self.size else self._plain
-            stretch.render(moderngl.TRIANGLES, vertices=3)
+            colour.use(_UNIT)
+            self._plain.render(moderngl.TRIANGLES, vertices=3)
             gl.enable(moderngl.DEPTH_TEST)
         gl.scissor = None
+
+    def _smoother_of(self, size: tuple[int, int]) -> EdgeSmoother:
+        """The smoother of scenes of a size; the last one is kept."""
+        if self._smoother is None or self._smoother.size != size:
+            self._smoother = EdgeSmoother(self._gl, size)
+        return self._smoother
+
+    def _in_scene(self, scene: RenderTarget, area: Rectangle | None) -> Rectangle | None:
+        """An area of this frame, in pixels of the scene."""
+        return None if area is None else scaled(area, scene.size[0] / self.size[0])
 
     def lay(self, x: int, y: int, image: Any) -> None:
         """Lay a label on the bound framebuffer; see `WindowSurface.labels`."""

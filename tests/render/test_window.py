@@ -92,7 +92,10 @@ def test_probe_finds_the_window(window):
 
 
 def test_a_coarser_scene_fills_the_window(window):
-    """With fewer pixels and samples the same image is seen, enlarged; panels keep their own."""
+    """With fewer pixels and samples the same image is seen, enlarged; panels keep their own.
+
+    Smooth edges reach two pixels of the scene aside.
+    """
     renderer = render.Renderer(window)
     images = []
     for detail in (render.Detail(), render.Detail(samples=0, scale=0.5)):
@@ -103,8 +106,8 @@ def test_a_coarser_scene_fills_the_window(window):
         images.append(window.read().astype(int))
         assert window.read_scene().shape[:2] == (96 * detail.scale, 96 * detail.scale)
     assert images[0].shape == images[1].shape == (96, 96, 3)
-    assert np.abs(images[0] - images[1])[:, :46].max() < 4
-    assert not images[1][:, 50:].any()
+    assert np.abs(images[0] - images[1])[:, :44].max() < 4
+    assert not images[1][:, 52:].any()
 
 
 def test_the_scene_outlives_its_panels(window):

@@ -1,0 +1,62 @@
+"""Smooth edges of a scene that has one sample a pixel, in a pass of its own.
+
+A first pass finds the edges, a second smooths them. On software OpenGL that takes half of the time
+of one pass that does both everywhere: the second skips pixels by an early depth test.
+"""
+
+import moderngl
+
+from .programs import compile_program
+from .render_target import Rectangle, RenderTarget
+
+_UNIT = 4  # texture unit of the scene
+
+
+class EdgeSmoother:
+    """A copy of a scene of one size, with smooth edges.
+
+    colour: the copy. frame: a framebuffer that has it.
+    """
+
+    def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
+        self.size = size
+        self._gl = gl
+        self.colour = gl.texture(size, 4)
+        self.colour.repeat_x = self.colour.repeat_y = False
+        found = gl.depth_renderbuffer(size)
+        self.frame = gl.framebuffer([self.colour], found)
+        self._edges = gl.framebuffer(depth_attachment=found)
+        self._find = self._pass("FIND")
+        self._smooth = self._pass()
+        self._smoothed: tuple[RenderTarget, int] | None = None
+
+    def _pass(self, *defines: str) -> moderngl.VertexArray:
+        """A pass over the scene."""
+        program = compile_program(self._gl, "edges.glsl", *defines)
+        program["scene"] = _UNIT
+        return self._gl.vertex_array(program, [])
+
+    def smooth(self, scene: RenderTarget, area: Rectangle | None) -> None:
+        """Copy a scene and smooth the edges in an area (None: all), once for each frame of it."""
+        frame = scene, scene.frame_number
+        if self._smoothed == frame:
+            return
+        self._smoothed = frame
+        gl = self._gl
+        gl.scissor = None
+        gl.copy_framebuffer(self.frame, scene.frame)
+        scene.colour.use(_UNIT)
+        gl.enable_only(moderngl.DEPTH_TEST)
+        self._edges.use()
+        self._edges.clear(depth=1.0)
+        gl.viewport = 0, 0, *self.size
+        gl.scissor = area
+        self._find.render(moderngl.TRIANGLES, vertices=3)
+        self.frame.depth_mask = False
+        self.frame.use()
+        gl.viewport = 0, 0, *self.size
+        gl.scissor = area
+        gl.depth_func = "=="
+        self._smooth.render(moderngl.TRIANGLES, vertices=3)
+        gl.depth_func = "<="
+        gl.scissor = None
