@@ -115,6 +115,14 @@ class OrbitCamera:
         farthest = 100.0 * self.scene_radius
         self.distance = min(max(self.distance / factor, closest), farthest)
 
+    def change_lens(self, field_of_view: float) -> None:
+        """Take another lens, from a place where the target is as large; [degrees] top to bottom."""
+        if not 0.0 < field_of_view < 180.0:
+            raise ValueError(f"field_of_view is {field_of_view}; it must be above 0, below 180")
+        now = math.tan(math.radians(0.5 * self.field_of_view))
+        self.distance *= now / math.tan(math.radians(0.5 * field_of_view))
+        self.field_of_view = field_of_view
+
     def axes(self) -> tuple[Floats64, Floats64, Floats64]:
         """Unit vectors of the frame in the world: right, up, and from the target to the eye."""
         yaw = math.radians(self.yaw)

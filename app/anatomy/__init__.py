@@ -30,11 +30,12 @@ OUTER_HAIR = (HAIR, HAIR + "_tied")
 
 @dataclass(frozen=True)
 class AnatomyView:
-    """The structures to show under the skin, and the opacity of the skin."""
+    """The structures to show under the skin, the opacity of the skin, and whether hair is on it."""
 
     structures: tuple[str, ...] = ()
     opacity: float = OPACITY
     side: str = "both"
+    has_hair: bool = True
 
 
 SKIN_ALONE = AnatomyView()
@@ -67,6 +68,7 @@ class Anatomy:
         Hair throws its shadow on whole skin. Skin that is opened lets light through, and all solid
         parts throw theirs.
         """
+        has_hair = has_hair and view.has_hair
         scene = self._scene
         face = scene.face
         bones = scene.bone_transforms()

@@ -113,6 +113,7 @@ class Display(Record):
     light: Annotated[str, OneOf(render.LIGHTS)] = "studio"
     background: Annotated[str, OneOf(BACKGROUNDS)] = "theme"
     tone: Annotated[str, OneOf(TONES)] = "own"  # of textured skin
+    has_hair: Flag = True  # on the head, with textured skin
     overlays: list[Annotated[str, OneOf(STRUCTURES)]] = field(default_factory=list)
     # Of the skin over muscles and skull, and on which side of the face it lets them show.
     skin_opacity: Share = OPACITY
@@ -122,7 +123,12 @@ class Display(Record):
     def anatomy(self) -> AnatomyView:
         """The anatomy that is shown under the skin."""
         structures = tuple(name for name in STRUCTURES if name in self.overlays)
-        return AnatomyView(structures, self.skin_opacity, self.dissect)
+        return AnatomyView(structures, self.skin_opacity, self.dissect, self.has_hair)
+
+    def as_at_first(self) -> Display:
+        """As at first, but for the scene that is drawn."""
+        of_scene = ("light", "background", "tone", "has_hair")
+        return Display(**{name: getattr(self, name) for name in of_scene})
 
     def choose_preset(self, name: str) -> None:
         """Refine by a look, and by nothing but it."""

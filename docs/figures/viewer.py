@@ -53,7 +53,7 @@ def wipe(viewer: Viewer) -> None:
     viewer.context.wanted_tab = "Mechanism"
     viewer.settings.theme = "dark"
     # Of the panel show refinement and colours of the mesh.
-    viewer.settings.folds |= dict.fromkeys(("Anatomy", "Light and person", "Milliseconds"), False)
+    viewer.settings.folds |= dict.fromkeys(("Anatomy", "Milliseconds"), False)
     viewer.settings.display = Display(compare="wipe", wireframe=True, splits=True, skin="clay")
     viewer.face.view.camera = camera_for(viewer.session.scene, "front")
     viewer.face.view.camera.zoom(1.08)

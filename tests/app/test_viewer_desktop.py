@@ -14,12 +14,17 @@ from Xlib import X, display
 from Xlib.error import XError
 from Xlib.protocol import event
 
+from risorius.app.performances import script_for
+from risorius.app.viewer import Viewer
 from risorius.app.viewer.interface.gui import THEMES
+from risorius.app.viewer.settings import Display
 from risorius.app.viewer.window.splash_screen import COMPILING_TEXT, LOADING_TEXT, picture
 
 from .driving import (
     DEADLINE,
     NEEDS_A_SCREEN,
+    SIZE,
+    settle,
 )
 
 pytestmark = NEEDS_A_SCREEN
@@ -98,3 +103,21 @@ def test_a_line_is_seen_before_anything_is_compiled(start, tmp_path):
     for window in windows_of(process, display.Display()):
         ask_to_close(window.id)
     assert process.wait(DEADLINE) == 0
+
+
+@pytest.mark.slow
+def test_a_plane_has_no_settings_of_a_face():
+    """Neither in panels nor in menus; those of any scene are there."""
+    with Viewer(script_for(None, "plane"), SIZE, Display()) as viewer:
+        for tab, there, missing in (
+            ("Mechanism", {"Look", "Shading"}, {"Skin maps", "Wrinkles", "Muscles"}),
+            ("Scene", {"Light", "lens"}, {"Person", "Skin tone", "Hair"}),
+        ):
+            viewer.context.wanted_tab = tab
+            viewer.settings.folds["Advanced"] = True
+            settle(viewer)
+            shown = set(viewer.gui.places)
+            assert there <= shown
+            assert not missing & shown
+        cannot_run = {each.label for each in viewer.face.commands if not each.can_run()}
+        assert {"Texture", "Muscles", "Idle life"} <= cannot_run

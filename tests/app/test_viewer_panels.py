@@ -70,7 +70,7 @@ def in_panel(viewer, *rows):
 def only_open(viewer, title):
     """Fold all of the Mechanism panel but one heading, so that there is room for it."""
     viewer.context.wanted_tab = "Mechanism"
-    titles = ("Refinement", "Advanced", "Style", "Anatomy", "Light and person", "Milliseconds")
+    titles = ("Refinement", "Advanced", "Style", "Anatomy", "Milliseconds")
     viewer.settings.folds.update({each: each == title for each in titles})
     settle(viewer)
 
@@ -147,6 +147,30 @@ def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
     assert viewer.settings.display == changed
     click(viewer, "Reset all")
     assert isinstance(viewer.context.stage.refined.stream, render.Stream)
+
+
+def test_the_scene_has_light_lens_and_hair(viewer):
+    """Set by the mouse; a reset of the mechanism leaves them, F brings back the lens alone."""
+    viewer.context.wanted_tab = "Scene"
+    settle(viewer)
+    whole = viewer.context.stage.draw_image(viewer.face.view).astype(int)
+    in_panel(viewer, ("Light", "side"), ("Background", "white"))
+    click(viewer, "Hair")
+    display = viewer.settings.display
+    assert (display.light, display.background, display.has_hair) == ("side", "white", False)
+    bald = viewer.context.stage.draw_image(viewer.face.view)
+    assert (np.abs(bald - whole).max(axis=2) > 40).mean() > 0.1
+    camera = viewer.face.view.camera
+    far = camera.distance
+    click(viewer, "lens")
+    assert camera.field_of_view > 40.0
+    assert camera.distance < 0.6 * far
+    display.wireframe = True
+    click(viewer, "tab Mechanism")
+    click(viewer, "Reset all")
+    assert viewer.settings.display == Display(light="side", background="white", has_hair=False)
+    press_keys(viewer, "f")
+    assert viewer.face.view.camera.field_of_view == render.OrbitCamera.field_of_view
 
 
 def test_the_number_pad_looks_from_all_sides(viewer):

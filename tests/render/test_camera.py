@@ -97,3 +97,16 @@ def test_what_is_seen_can_be_found_again(seed):
     assert back[:, :3] / back[:, 3:] == approx(points, abs=1e-6)
     farther = seen(camera, points + 0.1 * (points - camera.eye), aspect)
     assert farther[:, :2] == approx(places[:, :2], abs=1e-6)
+
+
+def test_another_lens_keeps_the_target_as_large():
+    """A wide one stands nearer; one that no camera has is refused."""
+    camera = render.OrbitCamera.framing(HEAD)
+    above = camera.target + np.array([0.0, 0.1, 0.0])
+    before = seen(camera, above[None], 1.0)[0, 1]
+    far = camera.distance
+    camera.change_lens(70.0)
+    assert camera.distance < 0.5 * far
+    assert seen(camera, above[None], 1.0)[0, 1] == approx(before, rel=0.1)
+    with pytest.raises(ValueError, match=r"field_of_view is 180.0; it must be above 0, below 180"):
+        camera.change_lens(180.0)

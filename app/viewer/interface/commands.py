@@ -20,7 +20,7 @@ _KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
 class Command:
     """One command: its menu, label and key, its action, and whether it is switched on."""
 
-    menu: str
+    menu: str  # "" for none: keys alone do it
     label: str
     key: str  # "" for none; several with ", " between
     run: Task
@@ -49,7 +49,7 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
     # Ctrl keys that a line of text takes for itself while one writes.
     text_keys = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
     # Menus of commands that wait until the mouse lets go.
-    changing_menus = ("Edit", "Keys", "Expression")
+    changing_menus = ("Edit", "Keys", "")
     for command in commands:
         for key in command.keys:
             is_for_text = is_writing and ("Ctrl" not in key or key in text_keys)
@@ -83,7 +83,7 @@ class MenuBar:
         if not imgui.begin_main_menu_bar():
             return 0.0
         height = float(round(imgui.get_window_size().y))
-        for title in dict.fromkeys(command.menu for command in self._commands):
+        for title in dict.fromkeys(command.menu for command in self._commands if command.menu):
             is_open = imgui.begin_menu(title)
             self._gui.remember(f"menu {title}")
             if is_open:

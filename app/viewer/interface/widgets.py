@@ -93,9 +93,7 @@ def _draw_bar(gui: Gui, value: float, limits: tuple[float, float], mark: str, di
 
 
 # Headings that are open as long as nobody has folded them.
-OPEN_HEADINGS = frozenset(
-    {"Expressions", "Wave", "Refinement", "Style", "Anatomy", "Light and person"}
-)
+OPEN_HEADINGS = frozenset({"Expressions", "Wave", "Refinement", "Style", "Anatomy"})
 
 
 def heading(

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
+from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
@@ -12,19 +11,17 @@ import numpy as np
 from imgui_bundle import imgui
 
 from risorius import refine, render
-from risorius.assets.identities import NAMED
 
 from ...anatomy import OPACITY, SIDES, STRUCTURES
 from ...control_names import readable
 from ...refining.presets import PRESETS, STATIC, THRESHOLDS, words_of_presets
 from ...refining.refiners import DETAIL, OF, can_detail, options_of
-from ...scenes import BUILT_IN, COARSE, OWN, head_in_words
+from ...text import counted
 from ..context import ApplicationContext
-from ..documents.file_drop import FileDrop
-from ..interface.widgets import LabelledRows, button, heading, muted
-from ..messages import Message
+from ..interface.widgets import button, heading, muted
 from ..session.physics import PHASES
-from ..settings import BACKGROUNDS, COMPARISONS, SKINS, TONES, Display, switch
+from ..settings import COMPARISONS, SKINS, Display
+from .display_rows import DisplayRows
 
 # Hints for the mouse on a label, or on the item that has the label.
 HINTS = {
@@ -41,36 +38,24 @@ HINTS = {
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
     "Wireframe": "the edges of all triangles that are drawn ([Wireframe])",
     "Skin maps": "fine shape (with pixel shading), and less light in folds (with texture)",
-    "Skin tone": "by its typology angle; own: as this person has it",
-    "Person": "another head, on which script and pose go on (--head takes any number)",
     "Muscles": "under translucent skin; they bulge and redden as they contract ([Muscles])",
     "Skull": "under translucent skin, fitted to the head; the mandible moves with the jaw",
     "Skin opacity": "over muscles and skull; 0: no skin",
     "Dissect": "the side of the face whose skin is translucent",
 }
 NUMBERS = ("integer", "number")  # kinds of options that are sliders
-# Rows of fields of the display, by their labels.
-FIELDS = {
-    "Refine": "is_refined",
-    "Skin tone": "tone",
-    "Colour by splits": "splits",
-    "Wires of splits": "wires",
-}
-FIELDS |= {each.name.capitalize().replace("_", " "): each.name for each in fields(Display)}
 
 
 class MechanismPanel:
     """Everything about how the mesh becomes a picture."""
 
-    def __init__(self, app: ApplicationContext, file_drop: FileDrop) -> None:
+    def __init__(self, app: ApplicationContext) -> None:
         self._gui = app.gui
         self._settings = app.settings
-        self._messages = app.messages
-        self._file_drop = file_drop
         self._stage = app.stage
         self._view = app.view
         self._times = app.times
-        self._rows = LabelledRows(app.gui, share=0.45, hints=HINTS)
+        self._rows = DisplayRows(app, HINTS)
         self._before_reset: Display | None = None
 
     @property
@@ -81,19 +66,16 @@ class MechanismPanel:
         """Draw everything, inside the window's panel."""
         imgui.begin_child("mechanism")
         self._draw_reset()
-        rate = self._times.frames_per_second
-        times_label = f"Milliseconds, {rate:.0f} frames a second" if rate else "Milliseconds"
-        for title, label, draw in (
-            ("Refinement", "", self._draw_refinement),
-            ("Advanced", "", self._draw_advanced),
-            ("Style", "", self._draw_style),
-            ("Anatomy", "", self._draw_anatomy),
-            ("Light and person", "", self._draw_light_and_person),
-            ("Milliseconds", times_label, self._draw_times),
+        for title, draw in (
+            ("Refinement", self._draw_refinement),
+            ("Advanced", self._draw_advanced),
+            ("Style", self._draw_style),
+            ("Anatomy", self._draw_anatomy),
+            ("Milliseconds", self._draw_times),
         ):
             if title == "Anatomy" and self._stage.scene.face is None:
                 continue
-            if heading(self._gui, self._settings.folds, title, label):
+            if heading(self._gui, self._settings.folds, title):
                 draw()
         display = self._display
         display.options = {name: chosen for name, chosen in display.options.items() if chosen}
@@ -101,7 +83,8 @@ class MechanismPanel:
 
     def _draw_reset(self) -> None:
         """A button that resets all; right after that, it takes the reset back."""
-        is_first = self._display == Display()
+        at_first = self._display.as_at_first()
+        is_first = self._display == at_first
         if not is_first:
             self._before_reset = None
         elif self._before_reset is not None:
@@ -109,24 +92,24 @@ class MechanismPanel:
                 self._settings.display = self._before_reset
             return
         imgui.begin_disabled(is_first)
-        if button(self._gui, "Reset all", meaning="all of this as at first, except the person"):
+        if button(self._gui, "Reset all", meaning="all of this as at first"):
             self._before_reset = self._display
-            self._settings.display = Display()
+            self._settings.display = at_first
         imgui.end_disabled()
 
     def _draw_refinement(self) -> None:
         display = self._display
         stage = self._stage
-        self._switch("Refine")
+        self._rows.switch("Refine")
         look = display.preset_as_changed(stage.scene)
-        self._choose("Look", look, tuple(PRESETS), display.choose_preset)
+        self._rows.put("Look", look, tuple(PRESETS), display.choose_preset)
         has_thresholds = display.refinement_on(stage.scene).has_thresholds(stage.scene.name)
         for name, option in self._options().items():
             if option.kind in NUMBERS and (name not in THRESHOLDS or has_thresholds):
                 self._draw_option(name, option)
-        self._pick("Compare", COMPARISONS)
+        self._rows.pick("Compare", COMPARISONS)
         if display.compare != "off":
-            self._pick("Beside", (STATIC, *PRESETS))
+            self._rows.pick("Beside", (STATIC, *PRESETS))
         base = len(stage.scene.faces)
         for drawn, *_ in stage.viewports(display, self._view.viewport):
             count = drawn.triangle_count
@@ -139,11 +122,13 @@ class MechanismPanel:
         scene = self._stage.scene
         names = [name for name in refine.refiners.available() if name != STATIC]
         put = partial(self._display.choose_refiner, scene)
-        self._choose("Refiner", self._display.refiner_on(scene), names, put)
+        self._rows.put("Refiner", self._display.refiner_on(scene), names, put)
         for name, option in self._options().items():
             if option.kind not in NUMBERS:
                 self._draw_option(name, option)
-        self._switch("Skin maps")
+        skin = scene.skin
+        if skin.fine_shape is not None or skin.ambient_occlusion is not None:
+            self._rows.switch("Skin maps")
 
     def _options(self) -> dict[str, refine.Option]:
         """The options of the refiner and its criterion; none of one that cannot be loaded."""
@@ -168,7 +153,7 @@ class MechanismPanel:
             self._rows.hints.setdefault(label, option.help)
         put = partial(stored.__setitem__, name)
         if option.kind == "switch":
-            self._check(label, bool(value), partial(put, not value))
+            self._rows.check(label, bool(value), partial(put, not value))
         elif option.kind == "integer":
             self._rows.begin(label)
             is_changed, chosen = imgui.input_int(f"##{label}", int(value))
@@ -186,40 +171,30 @@ class MechanismPanel:
             has_finer = can_detail(scene)
             allowed = [word for word in _choices(name) if word != DETAIL or has_finer]
             if allowed:
-                self._choose(label, str(value), allowed, put)
+                self._rows.put(label, str(value), allowed, put)
         else:
             choices = option.choices
             present = next(word for word, each in choices.items() if each == value)
-            self._choose(label, present, list(choices), lambda word: put(choices[word]))
+            self._rows.put(label, present, list(choices), lambda word: put(choices[word]))
 
     def _defaults(self) -> dict[str, Any]:
         return {name: option.default for name, option in self._options().items()}
 
     def _draw_style(self) -> None:
         display = self._display
-        self._pick("Shading", [shading.value for shading in render.Shading])
-        self._pick("Skin", tuple(SKINS))
+        self._rows.pick("Shading", [shading.value for shading in render.Shading])
+        skin = self._stage.scene.skin
+        is_textured = skin.albedo is not None
+        possible = [name for name, (is_picture, _) in SKINS.items() if is_textured >= is_picture]
+        present = display.skin if display.skin in possible else possible[0]
+        self._rows.put("Skin", present, possible, partial(setattr, display, "skin"))
         if self._stage.scene.skin.wrinkles is not None:
             now = display.wrinkles
             display.wrinkles = self._rows.slide("Wrinkles", "wrinkles", now, (0.0, 1.0), 1.0)
-        self._switch("Wireframe")
-        self._switch("Colour by splits")
+        self._rows.switch("Wireframe")
+        self._rows.switch("Colour by splits")
         imgui.same_line(self._rows.second)
-        self._switch("Wires of splits")
-
-    def _draw_light_and_person(self) -> None:
-        scene = self._stage.scene
-        self._pick("Light", tuple(render.LIGHTS))
-        self._pick("Background", tuple(BACKGROUNDS))
-        if scene.skin.in_tone is not None:
-            self._pick("Skin tone", tuple(TONES))
-        if scene.called:
-            listed = (COARSE, *NAMED, *range(20))  # and some of those without names
-            people = {head_in_words(who): who for who in listed}
-            who = int(scene.called) if scene.called.isdecimal() else scene.called
-            present = scene.called if who in (BUILT_IN, OWN) else head_in_words(who)
-            show = lambda name: self._file_drop.show_person(people.get(name))  # noqa: E731
-            self._choose("Person", present, (BUILT_IN, *people), show)
+        self._rows.switch("Wires of splits")
 
     def _draw_anatomy(self) -> None:
         display = self._display
@@ -227,47 +202,31 @@ class MechanismPanel:
             if index:
                 imgui.same_line(self._rows.second)
             is_on = name in display.overlays
-            self._check(name.capitalize(), is_on, partial(display.toggle_overlay, name))
+            self._rows.check(name.capitalize(), is_on, partial(display.toggle_overlay, name))
         if display.anatomy.structures:
             now = display.skin_opacity
             label = "Skin opacity"
             name = "skin_opacity"
             display.skin_opacity = self._rows.slide(label, name, now, (0.0, 1.0), OPACITY)
-            self._pick("Dissect", tuple(SIDES))
+            self._rows.pick("Dissect", tuple(SIDES))
 
     def _draw_times(self) -> None:
-        """The median of each phase of the paper's Figure 1, of the frames in which it was done."""
-        for name in PHASES:
-            times = np.array(self._times.milliseconds[name])
-            imgui.text(readable(name))
+        """The medians of each phase of the paper's Figure 1, and of whole frames."""
+        times = self._times
+        steps = [each for each in times.steps if each]
+        phases = {readable(name): times.median(name) for name in PHASES}
+        rest = max(times.frame - sum(phases.values()), 0.0)
+        rows = {**phases, "Events and panels": rest, "Frame": times.frame}
+        for label, milliseconds in rows.items():
+            imgui.text(label)
             imgui.same_line(self._rows.second)
-            imgui.text(f"{np.median(times[times > 0.0]) if times.any() else 0.0:.2f}")
-
-    def _switch(self, label: str) -> None:
-        """A checkbox for a field of the display."""
-        name = FIELDS[label]
-        self._check(label, getattr(self._display, name), partial(switch, self._display, name))
-
-    def _check(self, label: str, is_on: bool, switch: Callable[[], None]) -> None:
-        is_clicked, _ = imgui.checkbox(readable(label), is_on)
-        self._gui.remember(label)
-        self._rows.end(label)
-        if is_clicked:
-            switch()
-
-    def _pick(self, label: str, choices: Sequence[str]) -> None:
-        """A row with a list for a field of the display."""
-        name = FIELDS[label]
-        put = partial(setattr, self._display, name)
-        self._choose(label, getattr(self._display, name), choices, put)
-
-    def _choose(
-        self, label: str, present: str, choices: Sequence[str], put: Callable[[str], Message]
-    ) -> None:
-        """A row with a list to choose from."""
-        chosen = self._rows.choose(label, present, choices)
-        if chosen is not None:
-            self._messages.carry_out(partial(put, chosen))
+            imgui.text(f"{milliseconds:.2f}")
+            if label == readable("simulation") and steps:
+                imgui.same_line()
+                muted(self._gui, f"({counted(round(np.median(steps)), 'step')})")
+            if label == "Frame" and milliseconds:
+                imgui.same_line()
+                muted(self._gui, f"({1e3 / milliseconds:.0f} a second)")
 
 
 def _choices(option: str) -> tuple[str, ...]:

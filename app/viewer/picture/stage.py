@@ -98,7 +98,8 @@ class SceneView:
         """Everything that the picture depends on, but for the motion of the scene."""
         display = repr(asdict(self.display))
         camera = self.camera
-        place = camera.yaw, camera.pitch, camera.distance, *camera.target.tolist()
+        lens = camera.field_of_view
+        place = camera.yaw, camera.pitch, camera.distance, lens, *camera.target.tolist()
         lit = self.pointed, self.hovered
         return place, display, self._settings.theme, self.viewport, lit
 
@@ -262,7 +263,7 @@ def style_of(display: Display, background: render.Background | None) -> render.S
     )
 
 
-# One sample, with smoothed edges (stretch.glsl); then a little blurred.
+# One sample, with smoothed edges (edges.glsl); then a little blurred.
 # Two samples would not help: software draws four. With four samples at 0.75 a frame takes 0.8.
 LEVELS = (
     FULL_DETAIL,

@@ -35,32 +35,51 @@ Life = Callable[[float], Mapping[str, float]]  # values to add to controls, so m
 
 
 class FrameTimes:
-    """Milliseconds by phase and by frame, and the rate of frames, for the window and benchmarks."""
+    """Milliseconds of the last frames that were drawn, for the window and benchmarks.
+
+    milliseconds: by phase. whole: of frames with events and panels, up to the frame after.
+    steps: of the simulation.
+    """
 
     def __init__(self) -> None:
-        kept_frames = 60  # of which the times are known
-        self.milliseconds = {name: deque([0.0] * kept_frames, kept_frames) for name in PHASES}
-        self.frames_per_second = 0.0
+        self.clear()
+
+    def clear(self) -> None:
+        """Forget all frames: those to come are of another scene."""
+        kept_frames = 60
+        self.milliseconds = {name: deque([0.0], kept_frames) for name in PHASES}
+        self.whole = deque([0.0], kept_frames)
+        self.steps = deque([0], kept_frames)
+        self._is_over = False  # the last frame
 
     @contextmanager
     def timed(self, phase: str) -> Iterator[None]:
         """Add the time that the block takes to the present frame's."""
+        if self._is_over:
+            for column in (*self.milliseconds.values(), self.whole):
+                column.append(0.0)
+            self.steps.append(0)
+            self._is_over = False
         start = time.perf_counter()
         yield
         self.milliseconds[phase][-1] += 1e3 * (time.perf_counter() - start)
 
-    def next_frame(self) -> None:
-        """Begin with the next frame."""
-        for column in self.milliseconds.values():
-            column.append(0.0)
+    def next_frame(self, elapsed: float) -> None:
+        """Begin with the next frame, `elapsed` seconds after the last; one without work is none."""
+        if not self._is_over:
+            self.whole[-1] = 1e3 * elapsed
+        self._is_over = True
 
-    def note_frame(self, elapsed: float) -> None:
-        """Note a frame `elapsed` seconds after the one before it; 0 where nothing moves."""
-        # The mean of times, not of rates: a few quick frames must not outweigh the slow ones.
-        mean = 1.0 / self.frames_per_second if self.frames_per_second else elapsed
-        smoothing = 0.9  # of the frame rate, from frame to frame
-        smooth = smoothing * mean + (1.0 - smoothing) * elapsed
-        self.frames_per_second = 1.0 / smooth if elapsed > 0.0 else 0.0
+    def median(self, phase: str) -> float:
+        """The median of a phase [ms], of the frames in which it was done; 0 before the first."""
+        times = [each for each in self.milliseconds[phase] if each > 0.0]
+        return float(np.median(times)) if times else 0.0
+
+    @property
+    def frame(self) -> float:
+        """The median of whole frames [ms]; 0 before the first."""
+        times = [each for each in self.whole if each > 0.0]
+        return float(np.median(times)) if times else 0.0
 
 
 class Clock:
@@ -94,6 +113,7 @@ class Physics:
 
     def begin_anew(self) -> None:
         """Begin with another scene, which may move at once."""
+        self._times.clear()
         self.has_moved = False  # since the last frame in which it had, as far as one can see
         self._seen = self._session.scene.positions.copy()  # in that frame
         self._seen_bones = self._session.scene.bone_transforms()
@@ -155,8 +175,8 @@ class Physics:
         session = self._session
         scene = self._session.scene
         before = scene.positions
-        self._times.next_frame()
         with self._times.timed("simulation"):
+            self._times.steps[-1] += steps
             try:
                 for _ in range(steps):
                     before = scene.positions.copy()

@@ -16,6 +16,7 @@ from ..panels.face import FacePanel
 from ..panels.layout import Layout
 from ..panels.live import LivePanel
 from ..panels.mechanism import MechanismPanel
+from ..panels.scene import ScenePanel
 from ..picture.mouse import Mouse
 from ..picture.skin import SkinDrag
 from ..picture.stage import Painter
@@ -65,8 +66,8 @@ class FaceMode:
             *menus.edit_menu(session),
             *menus.time_menu(session, scripts, self.time_axis),
             *menus.keys_menu(session, self.selection),
-            *menus.view_menu(settings, self.view),
-            *menus.expression_menu(session),
+            *menus.view_menu(settings, self.view, session),
+            *menus.expression_keys(session),
             *menus.live_menu(context.live),
             *menus.help_menu(),
         )
@@ -81,10 +82,16 @@ class FaceMode:
         dope_sheet = DopeSheet(context, self.selection, self.time_axis, menu_bar, waveform)
         self.timeline = Timeline(context, commands, dope_sheet)
         self.face_panel = FacePanel(context, self.selection, self.exports)
-        mechanism = MechanismPanel(context, self._file_drop)
+        mechanism = MechanismPanel(context)
+        scene_panel = ScenePanel(context, self._file_drop)
         live = LivePanel(context, {each.label: each for each in commands})
         first = "Face" if scene.name == "face" else f"{readable(scene.name)}###Face"
-        tabs = {first: self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
+        tabs = {
+            first: self.face_panel.draw,
+            "Mechanism": mechanism.draw,
+            "Scene": scene_panel.draw,
+            "Live": live.draw,
+        }
         self.layout = Layout(context, menu_bar, tabs, self.timeline)
 
     @property
@@ -123,6 +130,7 @@ class FaceMode:
         messages = self._context.messages
         live = self._context.live
         physics = self.physics
+        self._context.times.next_frame(elapsed)
         messages.attempt(self.soundtrack.refresh)
         seconds = self.soundtrack.elapsed(elapsed)
         is_skin_dragged = self.mouse.is_dragging_skin
@@ -131,12 +139,9 @@ class FaceMode:
         life = partial(self.life.after, is_held=is_held) if self.life.is_on else None
         advance = partial(physics.advance, seconds, is_skin_dragged=is_skin_dragged)
         messages.attempt(partial(advance, is_urgent=live.is_urgent, life=life))
-        has_changed = self.painter.paint(
+        return self.painter.paint(
             elapsed, has_moved=physics.has_moved, is_alive=physics.is_left_alone
         )
-        is_calm = physics.is_at_rest or physics.is_left_alone
-        self._context.times.note_frame(elapsed if has_changed or not is_calm else 0.0)
-        return has_changed
 
     def draw_panels(self) -> None:
         """Draw the panels, and give the picture its place."""

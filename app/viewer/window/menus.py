@@ -6,6 +6,7 @@ Menus, the keyboard and buttons are all made from these tables.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -186,8 +187,13 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
     )
 
 
-def view_menu(settings: Settings, view: SceneView) -> Menu:
+def view_menu(settings: Settings, view: SceneView, session: Session) -> Menu:
     """How the scene is drawn, and the panels around it."""
+
+    def has_face() -> bool:
+        """Whether the scene is a face: a plane has no texture, muscles and life."""
+        return session.scene.face is not None
+
     command = partial(Command, "View")
     display_switch = partial(switch_of, lambda: settings.display, "View")
     setting = partial(switch_of, lambda: settings, "View")
@@ -198,7 +204,8 @@ def view_menu(settings: Settings, view: SceneView) -> Menu:
         display.choose_preset(FIRST_PRESET if display.look == PAPERS_PRESET else PAPERS_PRESET)
         return f"Look: {display.look}"
 
-    muscles = partial(command, is_on=lambda: "muscles" in settings.display.overlays)
+    is_opened = lambda: "muscles" in settings.display.overlays  # noqa: E731
+    muscles = partial(command, is_on=is_opened, can_run=has_face)
     view_keys = {  # Alt: where there is no number pad
         "Front": "Keypad1, Alt+1",
         "Three-quarter": "Keypad2, Alt+2",
@@ -214,9 +221,9 @@ def view_menu(settings: Settings, view: SceneView) -> Menu:
         display_switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
         display_switch("Wireframe", "W", "wireframe", begins_section=True),
         display_switch("Colour by splits", "C", "splits"),
-        display_switch("Texture", "T", "skin", "textured", "plain"),
+        replace(display_switch("Texture", "T", "skin", "textured", "plain"), can_run=has_face),
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
-        setting("Idle life", "A", "is_alive", begins_section=True),
+        replace(setting("Idle life", "A", "is_alive", begins_section=True), can_run=has_face),
         setting("Curves", "G", "shows_curves"),
         command("Frame the face", "F", view.fit_scene, begins_section=True),
         *(command(name, key, partial(view.look_from, name)) for name, key in view_keys.items()),
@@ -227,13 +234,10 @@ def view_menu(settings: Settings, view: SceneView) -> Menu:
     )
 
 
-def expression_menu(session: Session) -> Menu:
-    """Keys 1 to 9 show the first expressions of the scene."""
-    command = partial(Command, "Expression")
-    show = session.toggle_alone
-    is_on = session.is_alone
+def expression_keys(session: Session) -> Menu:
+    """Keys 1 to 9 show the first expressions of the scene, which are bars of a panel."""
     return tuple(
-        command(readable(name), str(number), partial(show, name), partial(is_on, name))
+        Command("", readable(name), str(number), partial(session.toggle_alone, name))
         for number, name in enumerate(session.scene.expressions[:9], start=1)
     )
 
@@ -248,7 +252,7 @@ def live_menu(live: LiveCommands) -> Menu:
 
 
 def help_menu() -> Menu:
-    """The program and how to cite it; actions of the mouse, to be read."""
+    """The program and how to cite it; actions of mouse and digits, to be read."""
     command = partial(Command, "Help")
     gestures = tuple(
         command(f"{gesture.capitalize()}: {action}", "", lambda: None)
@@ -257,6 +261,7 @@ def help_menu() -> Menu:
             ("left beside, or right", "orbit"),
             ("middle, or Shift", "pan"),
             ("wheel", "zoom to where the mouse is"),
+            ("1 to 9", "show an expression alone"),
             ("double click a slider", "type a number"),
             ("right click a bar", "key it, delete its key, clear its track, reset it"),
             ("drag a key", "move all selected keys; Ctrl: anywhere"),

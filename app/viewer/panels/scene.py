@@ -1,0 +1,67 @@
+"""The scene: its light and background, the person and hair in it, and the lens that sees it."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from risorius import render
+from risorius.assets.identities import HAIR, NAMED
+
+from ...scenes import BUILT_IN, COARSE, OWN, head_in_words
+from ..context import ApplicationContext
+from ..documents.file_drop import FileDrop
+from ..settings import BACKGROUNDS, TONES
+from .display_rows import DisplayRows
+
+HINTS = {
+    "Light": "hangs on the camera; the shadow follows the key",
+    "Lens": "the angle of view from top to bottom [degrees]; the face keeps its size. Wide lenses "
+    "stand near and make noses large",
+    "Person": "another head, on which script and pose go on (--head takes any number)",
+    "Skin tone": "by its typology angle; own: as this person has it",
+    "Hair": "on the head; lashes and brows stay",
+}
+
+
+class ScenePanel:
+    """Everything in front of the camera but the face's motion."""
+
+    def __init__(self, app: ApplicationContext, file_drop: FileDrop) -> None:
+        self._file_drop = file_drop
+        self._stage = app.stage
+        self._view = app.view
+        self._rows = DisplayRows(app, HINTS)
+
+    def draw(self) -> None:
+        """Draw everything, inside the window's panel; of a plane only its rows."""
+        imgui.begin_child("scene")
+        rows = self._rows
+        scene = self._stage.scene
+        rows.pick("Light", tuple(render.LIGHTS))
+        rows.pick("Background", tuple(BACKGROUNDS))
+        camera = self._view.camera
+        widest = 5.0, 90.0  # [degrees]
+        now = camera.field_of_view
+        chosen = rows.slide("Lens", "lens", now, widest, render.OrbitCamera.field_of_view, digits=0)
+        if chosen != now:
+            camera.change_lens(chosen)
+        if scene.called:
+            self._draw_people(scene.called)
+        if scene.skin.in_tone is not None:
+            rows.pick("Skin tone", tuple(TONES))
+        if any(part.name.startswith(HAIR) for part in scene.parts):
+            rows.switch("Hair")
+        imgui.end_child()
+
+    def _draw_people(self, called: str) -> None:
+        """The list of heads, of which the one called so is seen."""
+        listed = (COARSE, *NAMED, *range(20))  # and some of those without names
+        people = {head_in_words(who): who for who in listed}
+        who = int(called) if called.isdecimal() else called
+        present = called if who in (BUILT_IN, OWN) else head_in_words(who)
+
+        def show(name: str) -> None:
+            """Make the head with this name."""
+            self._file_drop.show_person(people.get(name))
+
+        self._rows.put("Person", present, (BUILT_IN, *people), show)
