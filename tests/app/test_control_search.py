@@ -1,21 +1,39 @@
 """The search of the Face panel: words of the trade and everyday words find controls."""
 
+from collections.abc import Iterator
+
 import pytest
 
 from risorius.app.scenes import FaceScene
-from risorius.app.viewer.panels.face import rows_of, search_rows
+from risorius.app.viewer.panels.face import Row, rows_of, search_rows
 from risorius.app.viewer.session.document import SceneControls
+
+
+def rows_found(scene: FaceScene, words: str) -> Iterator[tuple[str, list[Row], list[Row]]]:
+    """Each group, with the rows that a search finds in it, and all of its rows."""
+    values = scene.limits.pose({})
+    for title, names in SceneControls(scene).groups.items():
+        rows = rows_of(tuple(names), values, linked=True)
+        yield title, search_rows(rows, words, group=title, actions=scene.actions), rows
 
 
 def groups_found(scene: FaceScene, words: str) -> set[str]:
     """The groups in which a search finds all rows."""
-    found = set()
-    values = scene.limits.pose({})
-    for title, names in SceneControls(scene).groups.items():
-        rows = rows_of(tuple(names), values, linked=True)
-        if len(search_rows(rows, words, group=title, actions=scene.actions)) == len(rows):
-            found.add(title)
-    return found
+    return {title for title, found, rows in rows_found(scene, words) if found == rows}
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ("smile", {"joy", "AU12", "mouthSmile", "zygomaticus_major"}),
+        ("frown", {"anger", "AU4", "mouthFrown", "corrugator_supercilii"}),
+        ("chew", {"AU26", "jawOpen", "jaw_open"}),
+    ],
+)
+def test_plain_words_find_controls(scene, words, expected):
+    """Everyday words find expressions, units, shapes and muscles, and not much else."""
+    labels = {row.label for _, found, _ in rows_found(scene, words) for row in found}
+    assert expected <= labels and len(labels) < 20
 
 
 @pytest.mark.parametrize(

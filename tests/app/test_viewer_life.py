@@ -49,19 +49,6 @@ def test_a_key_switches_it_off_and_on(viewer):
     assert until(viewer, lambda: moved(viewer) > 0.1)
 
 
-def test_a_script_moves_the_face_alone(viewer):
-    """While it plays, and where it is stopped; at its end the face is left to its life."""
-    session = viewer.session
-    session.toggle_playing()
-    assert not viewer.face.life.is_on
-    session.advance(0.1)
-    session.toggle_playing()
-    assert session.is_following
-    assert not viewer.face.life.is_on
-    session.seek(session.script.duration)
-    assert viewer.face.life.is_on
-
-
 def test_it_sleeps_when_nobody_is_there(viewer):
     """After some minutes without input the window rests; a key wakes the face."""
     viewer.face.life.after(SLEEP_DELAY, is_held=False)

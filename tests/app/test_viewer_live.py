@@ -10,15 +10,13 @@ from functools import partial
 import pytest
 from pytest import approx
 
-from risorius.app.errors import UserError
 from risorius.app.live.live_face import LiveFace, State
 from risorius.app.live.protocols import LOOPBACK, Listening
 from risorius.app.live.sender import Sender
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session import live_commands
-from risorius.app.viewer.session.live_commands import LiveCommands
 
-from .driving import NEEDS_A_SCREEN, click, moved, press_keys, until
+from .driving import NEEDS_A_SCREEN, click, moved, until
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "silent")]
 
@@ -85,9 +83,9 @@ def sending(face, file):
         process.wait()
 
 
-def hold(viewer, face, seconds, **channels):
+def hold(viewer, clock, seconds, **channels):
     """Send the same face with every frame of the window, for a while and until it leads."""
-    clock = face._clock
+    face = viewer.context.live.face
     end = clock() + seconds
     with Sender(LOOPBACK, face.port, "Ada") as sender:
 
@@ -129,23 +127,7 @@ def test_a_recording_that_is_sent_moves_the_face(viewer, tmp_path):
     assert not viewer.session.work.unsaved
 
 
-def test_live_leads_controls_it_names_and_sliders_keep_the_rest(viewer):
-    """A slider of a control that is led has its value again when the lead is over."""
-    session = viewer.session
-    face = listen(viewer)
-    session.set("jawOpen", 0.2)
-    session.set("AU9", 0.3)
-    hold(viewer, face, 1.0, jawOpen=0.8)
-    assert session.current["jawOpen"] == approx(0.8)
-    assert session.current["AU9"] == 0.3
-    assert session.values["jawOpen"] == 0.2
-    assert until(viewer, lambda: face.presence == 0.0)
-    assert session.current["jawOpen"] == 0.2
-    session.undo()
-    assert session.values["jawOpen"] == 0.0
-
-
-def test_buttons_listen_calibrate_mirror_and_stop(viewer):
+def test_buttons_listen_calibrate_mirror_and_stop(viewer, clock):
     """All by hand, in the panel; the neutral face does not move ours any more."""
     session = viewer.session
     click(viewer, "tab Live")
@@ -154,17 +136,17 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer):
     assert face is not None
     assert not viewer.context.live.is_receiving
     frown = {"browDownLeft": 0.3, "mouthFrownLeft": 0.2}
-    hold(viewer, face, 0.6, **frown)
+    hold(viewer, clock, 0.6, **frown)
     assert session.current["browDownLeft"] > 0.2
     assert {"live browDownLeft", "live mouthFrownLeft"} <= viewer.gui.places.keys()
     place = viewer.gui.places["calibrate"]
     assert place
     viewer.context.live.calibrate()
-    hold(viewer, face, 1.2, **frown)
+    hold(viewer, clock, 1.2, **frown)
     assert viewer.messages.text == "This face is neutral now"
     assert session.current["browDownLeft"] == approx(0.0, abs=1e-6)
     click(viewer, "mirror live")
-    hold(viewer, face, 0.5, **{**frown, "mouthSmileLeft": 0.6})
+    hold(viewer, clock, 0.5, **{**frown, "mouthSmileLeft": 0.6})
     assert session.current["mouthSmileRight"] == approx(0.6, abs=1e-6)
     click(viewer, "listen")
     assert viewer.context.live.face is None
@@ -182,19 +164,3 @@ def test_a_packet_wakes_an_idle_window(viewer):
         viewer.frame()
         assert face.silence < 60.0
         assert not viewer.schedule.is_idle
-
-
-def test_a_port_that_is_taken_is_a_message(viewer):
-    """The window goes on, and a line names the cure."""
-    other = LiveCommands(viewer.session, lambda: None, lambda: None)
-    other.start(Listening("livelink", port=0))
-    try:
-        viewer.context.live.wanted = Listening("livelink", port=other.face.port)
-        press_keys(viewer, "ctrl+l")
-        assert viewer.messages.is_error
-        assert "cannot listen" in viewer.messages.text
-        assert viewer.context.live.face is None
-        with pytest.raises(UserError):
-            viewer.context.live.start(viewer.context.live.wanted)
-    finally:
-        other.stop()

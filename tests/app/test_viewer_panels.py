@@ -36,30 +36,6 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 SMILE = "zygomaticus_major"
 
 
-def rows_shown(viewer):
-    """Labels of the rows in the panel."""
-    settle(viewer)
-    return {name.removeprefix("show ") for name in viewer.gui.places if name.startswith("show ")}
-
-
-def test_plain_words_find_controls(viewer):
-    """Everyday words find expressions, units, shapes and muscles."""
-    viewer.settings.zoom = 0.6  # room for all of them at once
-    settle(viewer)  # until all is in its place
-    try:
-        for words, found in (
-            ("smile", {"joy", "AU12", "mouthSmile", SMILE}),
-            ("frown", {"anger", "AU4", "mouthFrown", "corrugator_supercilii"}),
-            ("chew", {"AU26", "jawOpen", "jaw_open"}),
-        ):
-            show_controls(viewer, words)
-            shown = rows_shown(viewer)
-            assert found <= shown and len(shown) < 20, words
-            clear_search(viewer)
-    finally:
-        viewer.settings.zoom = 1.0
-
-
 def in_panel(viewer, *rows):
     """Choose in lists of the Mechanism panel."""
     for row, choice in rows:

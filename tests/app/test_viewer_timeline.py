@@ -101,27 +101,6 @@ def test_a_box_selects_keys_that_then_move_together(viewer):
     assert not session.work.script_is_unsaved
 
 
-def test_delete_and_paste(viewer):
-    """Delete takes selected keys, they are pasted at the time shown; both can be undone."""
-    press(viewer, key_at(viewer, JOY))
-    viewer.session.seek(2.0)
-    press_keys(viewer, "ctrl+c", "ctrl+v")
-    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
-    assert viewer.session.script.poses[2].name == "joy"
-    assert viewer.face.selection.places == {KeyPlace(POSES, 2.0)}
-    press_keys(viewer, "Delete")
-    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
-    assert "1 key deleted" in viewer.messages.text
-    press_keys(viewer, "ctrl+a", "Delete")
-    assert viewer.messages.is_error
-    assert "at least one key" in viewer.messages.text
-    press_keys(viewer, "ctrl+z")
-    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
-    assert not viewer.messages.text
-    press_keys(viewer, "ctrl+z")
-    assert not viewer.session.work.script_is_unsaved
-
-
 def test_the_face_becomes_a_key(viewer):
     """Go to a time, move a slider, press Shift+K: a pose is there that shows just this face."""
     session = viewer.session

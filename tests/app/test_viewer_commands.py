@@ -1,0 +1,216 @@
+"""Commands of the window on a session alone: files, scripts, sounds, keys, a live face."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest import approx
+
+from risorius.app.errors import UserError
+from risorius.app.live.protocols import Listening
+from risorius.app.script.keyframes import POSES
+from risorius.app.script.places import KeyPlace, Places
+from risorius.app.script.script_file import load_script
+from risorius.app.viewer.documents.file_dialogs import FileDialogs
+from risorius.app.viewer.documents.file_drop import FileDrop
+from risorius.app.viewer.documents.scripts import Question, ScriptCommands
+from risorius.app.viewer.messages import Messages
+from risorius.app.viewer.session.live_commands import LiveCommands
+from risorius.app.viewer.session.physics import IdleLife
+from risorius.app.viewer.session.session import Session
+from risorius.app.viewer.session.soundtrack import Soundtrack
+from risorius.app.viewer.timeline.keys import KeySelection
+
+from .sounds import noise, write_wav
+
+POSE = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
+SCRIPT = "duration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
+
+
+@dataclass
+class Desk:
+    """A session with its files and messages, as in a window."""
+
+    session: Session
+    files: FileDialogs = field(default_factory=FileDialogs)
+    messages: Messages = field(default_factory=Messages)
+
+    def __post_init__(self) -> None:
+        question = Question(self.session)
+        self.scripts = ScriptCommands(self.session, self.files, question, lambda *_: None)
+        self.file_drop = FileDrop(self.files, self.scripts, lambda _: None, lambda *_: lambda: None)
+
+    def drop(self, *paths: Path) -> str:
+        """Open dropped files; the line that is shown then."""
+        self.messages.carry_out(partial(self.file_drop.open, [str(path) for path in paths]))
+        return self.messages.text
+
+    def save(self) -> str:
+        """Save the script; the line that is shown then."""
+        self.messages.carry_out(self.scripts.save)
+        return self.messages.text
+
+
+@pytest.fixture
+def desk(session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Desk:
+    """It, in a folder of the test's own."""
+    monkeypatch.chdir(tmp_path)
+    return Desk(session)
+
+
+def test_a_bad_file_is_reported_and_survived(desk, tmp_path):
+    """Nonsense gives one line, and the script that was there stays."""
+    before = desk.session.script
+    bad = tmp_path / "bad.toml"
+    bad.write_text(POSE.replace("jaw_open", "no_such_muscle"))
+    line = desk.drop(bad)
+    assert desk.messages.is_error
+    assert "no_such_muscle" in line and "\n" not in line
+    bad.write_bytes(bytes(range(256)))
+    assert "cannot be read" in desk.drop(bad)
+    assert "one of them is enough" in desk.drop(bad, tmp_path)
+    assert desk.messages.is_error
+    assert desk.session.script is before
+    bad.write_text(POSE)
+    desk.drop(bad)
+    assert desk.session.values["jaw_open"] == 0.5
+
+
+def test_saving_asks_where_it_did_not_open(desk, tmp_path):
+    """New scripts and the program's own ask for a name; a file changed elsewhere is not lost."""
+    taken = tmp_path / "script.toml"
+    taken.write_text("precious")
+    desk.scripts.new()
+    desk.session.set_key()
+    desk.save()
+    assert desk.files.request.confirmed() is None  # the name is taken, as a line says
+    assert "is there already" in desk.files.request.complaint
+    assert taken.read_text() == "precious"
+    desk.files.request = None
+    example = Path(str(resources.files("risorius.assets"))) / "scripts" / "speech.toml"
+    desk.session.work.open(load_script(example))
+    desk.save()
+    assert desk.files.is_waiting
+    desk.files.request = None
+    script = tmp_path / "smile.toml"
+    script.write_text(SCRIPT)
+    desk.drop(script)
+    script.write_text(SCRIPT.replace("joy", "anger"))
+    desk.session.set_key()
+    assert "another program" in desk.save()
+    assert desk.files.is_waiting
+    assert "anger" in script.read_text()
+
+
+def test_the_sound_is_kept_with_the_script(desk, tmp_path):
+    """The file has it, undo and the menu take it away, a lost file is reported once."""
+    session = desk.session
+    soundtrack = Soundtrack(session)
+    script = tmp_path / "s.toml"
+    script.write_text(SCRIPT)
+    session.work.open(load_script(script))
+    sound = write_wav(tmp_path / "noise.wav", noise(2.5))
+    assert "noise.wav" in desk.drop(sound)
+    desk.save()
+    assert load_script(script).sound == sound
+    assert not session.work.unsaved
+    assert 'sound = "noise.wav"' in script.read_text()
+
+    def is_there() -> bool:
+        """Whether the window has it now."""
+        soundtrack.refresh()
+        return soundtrack.sound is not None
+
+    assert is_there()
+    session.undo()
+    assert session.script.sound is None and not is_there()
+    session.redo()
+    assert is_there()
+    desk.scripts.remove_sound()
+    assert not is_there() and not desk.scripts.has_sound
+    bad = tmp_path / "bad.mp3"
+    bad.write_text("no sound")
+    assert "there is no sound in it" in desk.drop(bad).lower() and desk.messages.is_error
+    sound.unlink()
+    session.work.open(load_script(script))
+    with pytest.raises(UserError, match="no such sound file; the script plays without"):
+        soundtrack.refresh()
+    soundtrack.refresh()
+    session.toggle_playing()
+    assert soundtrack.elapsed(0.2) == 0.2
+
+
+def times(session):
+    """When the script has poses [s]."""
+    return [pose.time for pose in session.script.poses]
+
+
+def test_delete_and_paste(session):
+    """Selected keys are pasted at the time shown, and deleted; both can be undone."""
+    selection = KeySelection(session)
+    selection.places = Places.of(KeyPlace(POSES, 1.0))
+    session.seek(2.0)
+    selection.copy()
+    selection.paste()
+    assert times(session) == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert session.script.poses[2].name == "joy"
+    assert selection.places == {KeyPlace(POSES, 2.0)}
+    assert "1 key deleted" in selection.delete()
+    assert times(session) == [0.0, 1.0, 3.0, 4.0]
+    selection.select_all()
+    with pytest.raises(UserError, match="at least one key"):
+        selection.delete()
+    session.undo()
+    assert times(session) == [0.0, 1.0, 2.0, 3.0, 4.0]
+    session.undo()
+    assert not session.work.script_is_unsaved
+
+
+def test_a_script_moves_the_face_alone(session):
+    """While it plays, and where it is stopped; at its end the face is left to its life."""
+    life = IdleLife(session, lambda: True, lambda: np.array([0.0, 0.0, 500.0]))
+    assert life.is_on
+    session.toggle_playing()
+    assert not life.is_on
+    session.advance(0.1)
+    session.toggle_playing()
+    assert session.is_following
+    assert not life.is_on
+    session.seek(session.script.duration)
+    assert life.is_on
+
+
+def test_live_leads_controls_it_names_and_sliders_keep_the_rest(session):
+    """A slider of a control that is led has its value again when the lead is over."""
+    session.set("jawOpen", 0.2)
+    session.set("AU9", 0.3)
+    session.live_override.take({"jawOpen": 0.8}, 1.0)
+    assert session.current["jawOpen"] == approx(0.8)
+    assert session.current["AU9"] == 0.3
+    assert session.values["jawOpen"] == 0.2
+    session.live_override.take({"jawOpen": 0.8}, 0.0)
+    assert session.current["jawOpen"] == 0.2
+    session.undo()
+    assert session.values["jawOpen"] == 0.0
+
+
+@pytest.fixture
+def listening(session: Session) -> Iterator[LiveCommands]:
+    """A window that listens on a free port."""
+    made = LiveCommands(session, lambda: None, lambda: None)
+    made.start(Listening("livelink", port=0))
+    yield made
+    made.stop()
+
+
+def test_a_port_that_is_taken_is_refused(session, listening):
+    """A line names it, and nobody listens."""
+    other = LiveCommands(session, lambda: None, lambda: None)
+    other.wanted = Listening("livelink", port=listening.face.port)
+    with pytest.raises(UserError, match="cannot listen"):
+        other.toggle()
+    assert other.face is None
