@@ -13,13 +13,14 @@ from typing import Any
 import numpy as np
 
 from risorius import refine
+from risorius.geometry.arrays import Floats32, Floats64, Integers32
 
 from ..errors import UserError
 from ..motion import play, scene_of
 from ..refining.plug_ins import plug_ins_of, reported
 from ..refining.presets import Refinement
 from ..refining.refiners import Splits, refiner_for
-from ..rig.surface import Floats, Indices, MovingSurface, Singles
+from ..rig.surface import MovingSurface
 from ..scenes import Scene
 from ..script import Script
 
@@ -38,9 +39,9 @@ class Clip:
     script: Script
     frames_per_second: float
     surfaces: tuple[MovingSurface, ...]
-    bones: Mapping[str, Floats]
-    controls: Mapping[str, Floats]
-    activations: Mapping[str, Floats]
+    bones: Mapping[str, Floats64]
+    controls: Mapping[str, Floats64]
+    activations: Mapping[str, Floats64]
 
     @property
     def skin(self) -> MovingSurface:
@@ -54,7 +55,7 @@ class Clip:
         return len(self.skin.shapes)
 
     @cached_property
-    def times(self) -> Floats:
+    def times(self) -> Floats64:
         """Of the frames [s], shape (N,)."""
         return np.arange(self.frame_count) / self.frames_per_second
 
@@ -97,11 +98,11 @@ def record(
     begin, end = span or (0.0, script.duration)
     most = round(end * frames_per_second) + 1
     positions = np.empty((most, *scene.positions.shape), np.float32)
-    bones: list[Mapping[str, Floats]] = []
-    shapes: list[list[Singles]] = [[] for _ in scene.parts]
+    bones: list[Mapping[str, Floats64]] = []
+    shapes: list[list[Floats32]] = [[] for _ in scene.parts]
     moved = None if scene.face is None else scene.face.simulation.controls
-    controls = list[Floats]()
-    activations = list[Floats]()
+    controls = list[Floats64]()
+    activations = list[Floats64]()
     for now in play(scene, script, frames_per_second, until=end, progress=progress):
         if now < begin - 0.5 / frames_per_second:
             continue
@@ -131,7 +132,9 @@ def record(
     )
 
 
-def _surface_of(part: Any, shapes: list[Singles], matrices: Mapping[str, Floats]) -> MovingSurface:
+def _surface_of(
+    part: Any, shapes: list[Floats32], matrices: Mapping[str, Floats64]
+) -> MovingSurface:
     """A part of a scene whose vertices were these, a new array where it was bent in another way."""
     is_rigid = all(each is shapes[0] for each in shapes)
     return MovingSurface(
@@ -154,12 +157,12 @@ class FrameSurface:
     is part of, shape (F,).
     """
 
-    points: Floats
-    normals: Floats
-    faces: Indices
-    uv: Singles | None
-    face_uv: Indices | None
-    source: Indices
+    points: Floats64
+    normals: Floats64
+    faces: Integers32
+    uv: Floats32 | None
+    face_uv: Integers32 | None
+    source: Integers32
 
 
 def frame_surfaces(

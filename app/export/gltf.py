@@ -17,6 +17,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.arrays import Floats64
+
 from ..recordings.names import ARKIT
 from ..rig.bodies import Body, PartBody, Shaped, Skin, moving, poses_of
 from ..rig.curves import nearest_weights, shape_curves
@@ -25,7 +27,7 @@ from ..rig.poses import CRANIUM, Pose, without_head_pose
 from ..rig.scene_file import add_pieces
 from ..rig.scene_meshes import Piece
 from ..rig.skeleton import Skeleton
-from ..rig.surface import Floats, MovingSurface, RefinedSurface
+from ..rig.surface import MovingSurface, RefinedSurface
 from ..scenes import FaceScene
 from ..text import as_text
 from .clip import Clip
@@ -92,7 +94,7 @@ def moving_pieces(clip: Clip, request: ExportRequest) -> Moving:
         poses = dict(poses_of(scene, ARKIT, progress=request.progress))
         weights = shape_curves(clip.scene, clip.times, clip.activations, clip.controls)
     pieces = []
-    off: dict[str, Floats] = {}
+    off: dict[str, Floats64] = {}
     for surface, part in zip(clip.surfaces, [None, *clip.scene.parts], strict=True):
         if surface.shapes is None:
             pieces.append(_rigid(surface, part))
@@ -134,7 +136,7 @@ def _body_of(surface: MovingSurface, part: Any) -> Body:
     return Skin(surface.rest, surface.faces)
 
 
-def _named(surface: MovingSurface, bone: str | None, shaped: Shaped, weights: Floats) -> Piece:
+def _named(surface: MovingSurface, bone: str | None, shaped: Shaped, weights: Floats64) -> Piece:
     """A surface with the named shapes that move it, if any does."""
     count = len(shaped.targets)
     return Piece(
@@ -148,7 +150,7 @@ def _named(surface: MovingSurface, bone: str | None, shaped: Shaped, weights: Fl
     )
 
 
-def _with_residual(piece: Piece, residual: Morphs, bends: Floats) -> Piece:
+def _with_residual(piece: Piece, residual: Morphs, bends: Floats64) -> Piece:
     """A piece with more targets, which hold the rest of its motion."""
     names = tuple(f"residual {index + 1}" for index in range(len(residual.targets)))
     return replace(
@@ -160,12 +162,12 @@ def _with_residual(piece: Piece, residual: Morphs, bends: Floats) -> Piece:
     )
 
 
-def _summed(piece: Piece, changes: npt.NDArray[np.floating]) -> Floats:
+def _summed(piece: Piece, changes: npt.NDArray[np.floating]) -> Floats64:
     """What the targets of a piece add up to in each frame, (N, V, 3), of changes (K, V, 3)."""
     return np.asarray(np.tensordot(piece.weights, changes, 1))
 
 
-def _bent(clip: Clip, surface: MovingSurface) -> Floats:
+def _bent(clip: Clip, surface: MovingSurface) -> Floats64:
     """How normals differ from those at rest in each frame, as the bone finds them, (N, V, 3)."""
     assert surface.shapes is not None
     shapes = surface.shapes.astype(np.float64)
@@ -178,7 +180,7 @@ def _bent(clip: Clip, surface: MovingSurface) -> Floats:
     return bent - surface.normals_of(surface.rest, None)
 
 
-def _take_pose_out(clip: Clip, shapes: Floats, *, are_places: bool = True) -> None:
+def _take_pose_out(clip: Clip, shapes: Floats64, *, are_places: bool = True) -> None:
     """Leave shapes of the skin, (N, V, 3), as the head's bone finds them.
 
     are_places: the bone moves and turns them; normals are turned only.

@@ -15,9 +15,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from risorius.geometry.arrays import Floats64
+
 TOLERANCE = 0.098  # [mm] off at most; with single precision it stays below 0.1
 NOTHING = 1e-6  # [mm] a target that moves no vertex so far is left out
 
@@ -31,12 +31,12 @@ class Morphs:
     error: of any vertex in any frame [unit of the targets].
     """
 
-    targets: Floats
-    weights: Floats
+    targets: Floats64
+    weights: Floats64
     error: float
 
 
-def decompose(moved: Floats, tolerance: float = TOLERANCE, most: int = 198) -> Morphs:
+def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) -> Morphs:
     """The fewest targets found whose weighted sum is never farther off than `tolerance`.
 
     moved: of each vertex from rest in each frame, shape (N, V, 3), in the unit of `tolerance`.
@@ -73,7 +73,7 @@ def decompose(moved: Floats, tolerance: float = TOLERANCE, most: int = 198) -> M
     return min(found, key=lambda each: (max(each.error, tolerance), len(each.targets)))
 
 
-def follow(weights: Floats, changes: Floats) -> Floats:
+def follow(weights: Floats64, changes: Floats64) -> Floats64:
     """Targets of other values of the vertices, such as normals, for the same weights.
 
     weights: shape (N, K). changes: from rest, shape (N, V, 3). Returns shape (K, V, 3).
@@ -81,13 +81,13 @@ def follow(weights: Floats, changes: Floats) -> Floats:
     return np.asarray(np.tensordot(np.linalg.pinv(weights, rcond=1e-6), changes, 1))
 
 
-def _farthest(moved: Floats, curves: Floats, shapes: Floats) -> Floats:
+def _farthest(moved: Floats64, curves: Floats64, shapes: Floats64) -> Floats64:
     """How far off the sum of the shapes is at most at each vertex, shape (V,)."""
     off = (curves @ shapes).reshape(moved.shape) - moved
     return np.asarray(np.sqrt(np.einsum("nvc,nvc->nv", off, off).max(axis=0)))
 
 
-def _shifted(moved: Floats, curves: Floats, shapes: Floats) -> Morphs:
+def _shifted(moved: Floats64, curves: Floats64, shapes: Floats64) -> Morphs:
     """The sum of shapes (k, 3 V) times curves (N, k), by weights from 0 to 1."""
     signs = np.where(curves.max(axis=0) >= -curves.min(axis=0), 1.0, -1.0)
     curves = curves * signs

@@ -15,7 +15,9 @@ import numpy as np
 import numpy.typing as npt
 import PIL.Image
 
-from ..rig.surface import METRES, Indices
+from risorius.geometry.arrays import Integers32
+
+from ..rig.surface import METRES
 from .clip import Clip, FrameSurface, frame_surfaces
 from .formats import FRAME, ExportRequest
 
@@ -99,7 +101,7 @@ def _rows(name: str, rows: npt.NDArray[np.floating]) -> str:
     return (line * len(rows)) % tuple(rows.ravel().tolist())
 
 
-def _faces(corners: Sequence[Indices]) -> str:
+def _faces(corners: Sequence[Integers32]) -> str:
     """Lines of triangles, whose corners are vertex/coordinate/normal."""
     line = "f" + " %d/%d/%d" * 3 + "\n"
     numbers = np.stack(corners, axis=-1)

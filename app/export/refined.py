@@ -13,13 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine
+from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 
 from ..errors import UserError
 from ..refining.plug_ins import plug_ins_of, reported
 from ..refining.presets import Refinement
 from ..rig.poses import Pose
-from ..rig.surface import Floats, Indices, RefinedSurface
+from ..rig.surface import RefinedSurface
 from .clip import Clip
 
 Places = npt.NDArray[np.void]
@@ -31,22 +32,22 @@ class RefinedSkin:
     name = "skin"
 
     def __init__(self, surface: RefinedSurface) -> None:
-        self.rest: Floats = surface.rest
-        self.faces: Indices = surface.faces
+        self.rest: Floats64 = surface.rest
+        self.faces: Integers32 = surface.faces
         self._refiner = surface.refiner
         # Where texture coordinates have seams, several vertices are one.
         rows = np.hstack([surface.rest, surface.rest_normals])
         _, first, same = np.unique(rows, axis=0, return_index=True, return_inverse=True)
         self._same = first[same.ravel()]
 
-    def at(self, pose: Pose) -> Floats:
+    def at(self, pose: Pose) -> Floats64:
         """Where its vertices are in a pose, shape (V, 3)."""
         return self._refiner.refine(pose.skin).positions.astype(np.float64)
 
-    def normals_at(self, points: Floats) -> Floats:
+    def normals_at(self, points: Floats64) -> Floats64:
         """Unit normals where its vertices are at `points`, shape (V, 3) each."""
         joined = self._same[self.faces].astype(np.int32)
-        normals: Floats = vertex_normals(points, joined)[self._same]
+        normals: Floats64 = vertex_normals(points, joined)[self._same]
         return normals
 
 

@@ -9,13 +9,13 @@ from typing import Any, Protocol
 import numpy as np
 from tqdm import tqdm
 
+from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 
 from ..motion import tally
 from ..scenes import FaceScene
 from ..stopping import cleaned_up_if_stopped
 from .poses import CRANIUM, Pose, moved_part, rest_in, settings_of
-from .surface import Floats, Indices, Singles
 
 EYES = ("eye_left", "eye_right")  # names of bones
 LEAST = 0.01  # [mm] a way that nobody sees: such vertices of a shape stand still
@@ -30,15 +30,15 @@ class Body(Protocol):
     @property
     def name(self) -> str: ...
     @property
-    def rest(self) -> Floats: ...
+    def rest(self) -> Floats64: ...
     @property
-    def faces(self) -> Indices: ...
+    def faces(self) -> Integers32: ...
 
-    def at(self, pose: Pose) -> Floats:
+    def at(self, pose: Pose) -> Floats64:
         """Where its vertices are in a pose, as the node finds them that it hangs on, (V, 3)."""
         ...
 
-    def normals_at(self, points: Floats) -> Floats:
+    def normals_at(self, points: Floats64) -> Floats64:
         """Unit normals where its vertices are at `points`, shape (V, 3) each."""
         ...
 
@@ -47,14 +47,14 @@ class Body(Protocol):
 class Skin:
     """The simulated skin of a scene."""
 
-    rest: Floats
-    faces: Indices
+    rest: Floats64
+    faces: Integers32
     name: str = "skin"
 
-    def at(self, pose: Pose) -> Floats:
+    def at(self, pose: Pose) -> Floats64:
         return pose.skin
 
-    def normals_at(self, points: Floats) -> Floats:
+    def normals_at(self, points: Floats64) -> Floats64:
         return vertex_normals(points, self.faces)
 
 
@@ -66,7 +66,7 @@ class PartBody:
     """
 
     part: Any
-    rest: Floats
+    rest: Floats64
     bone: str
 
     @property
@@ -74,15 +74,15 @@ class PartBody:
         return str(self.part.name)
 
     @property
-    def faces(self) -> Indices:
+    def faces(self) -> Integers32:
         return np.asarray(self.part.faces, np.int32)
 
-    def at(self, pose: Pose) -> Floats:
+    def at(self, pose: Pose) -> Floats64:
         if self.bone != CRANIUM:
             return pose.parts[self.name].astype(np.float64)
         return moved_part(self.part, pose)
 
-    def normals_at(self, points: Floats) -> Floats:
+    def normals_at(self, points: Floats64) -> Floats64:
         return vertex_normals(points, self.faces)
 
 
@@ -111,9 +111,9 @@ class Shaped:
     """
 
     body: Body
-    normals: Floats
-    targets: Singles
-    bends: Singles
+    normals: Floats64
+    targets: Floats32
+    bends: Floats32
 
 
 def moving(bodies: Iterable[Body], poses: Mapping[str, tuple[Pose, Pose]]) -> list[Shaped]:
@@ -141,7 +141,7 @@ def _shaped(body: Body, poses: Mapping[str, tuple[Pose, Pose]]) -> Shaped:
     return Shaped(body, normals, targets, bends)
 
 
-def bent_normals(body: Body, moved: Floats, before: Floats) -> Floats:
+def bent_normals(body: Body, moved: Floats64, before: Floats64) -> Floats64:
     """How unit normals change between two places of the vertices, shape (V, 3)."""
     bent = body.normals_at(moved) - body.normals_at(before)
     bent[np.linalg.norm(bent, axis=1) < 0.005] = 0.0  # a third of a degree

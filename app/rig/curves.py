@@ -11,15 +11,16 @@ from collections.abc import Mapping
 import numpy as np
 import scipy
 
+from risorius.geometry.arrays import Floats32, Floats64
+
 from ..motion.curves import ARKIT_SHAPES, solved
 from ..playback import LEAD
 from ..recordings.conversion import lead_of
 from ..recordings.names import ARKIT
 from ..scenes import Scene
-from .surface import Floats, Singles
 
 
-def as_seen(times: Floats, curves: Mapping[str, Floats]) -> dict[str, Floats]:
+def as_seen(times: Floats64, curves: Mapping[str, Floats64]) -> dict[str, Floats64]:
     """Values of controls, (N,) each at these times [s], as late as the face shows them."""
     return {
         name: np.interp(times - lead_of(name, LEAD), times, values)
@@ -28,8 +29,11 @@ def as_seen(times: Floats, curves: Mapping[str, Floats]) -> dict[str, Floats]:
 
 
 def shape_curves(
-    scene: Scene, times: Floats, activations: Mapping[str, Floats], controls: Mapping[str, Floats]
-) -> Floats:
+    scene: Scene,
+    times: Floats64,
+    activations: Mapping[str, Floats64],
+    controls: Mapping[str, Floats64],
+) -> Floats64:
     """How far each of ARKit's shapes is seen in N frames, in Apple's order, shape (N, 52).
 
     activations, controls: the sums and the set values of controls, (N,) each. Raises UserError for
@@ -40,7 +44,7 @@ def shape_curves(
     return np.stack([curves.get(name, still) for name in ARKIT], axis=1)
 
 
-def nearest_weights(targets: Singles, ways: Floats, curves: Floats) -> Floats:
+def nearest_weights(targets: Floats32, ways: Floats64, curves: Floats64) -> Floats64:
     """The weights from 0 to 1, (N, K), with which the targets come nearest to a motion.
 
     Many mixtures of shapes come equally near. Of these the one next to the curves is taken, so
@@ -59,5 +63,5 @@ def nearest_weights(targets: Singles, ways: Floats, curves: Floats) -> Floats:
     wanted = ways.reshape(len(ways), -1) @ rows.T + least * curves
     reduced = scipy.linalg.solve_triangular(corner, wanted.T, lower=True).T
     found = [scipy.optimize.lsq_linear(corner.T, each, (0.0, 1.0), "bvls").x for each in reduced]
-    weights: Floats = np.clip(found, 0.0, 1.0)
+    weights: Floats64 = np.clip(found, 0.0, 1.0)
     return weights

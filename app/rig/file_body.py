@@ -10,7 +10,6 @@ Source: for the bag, the Laplace equation with uniform weights on the mesh's edg
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +19,7 @@ from risorius.assets import Part
 from risorius.assets.fitting import FittedHead
 from risorius.assets.fitting.mesh_validation import pieces_of, with_seams_joined
 from risorius.assets.meshes import Mesh
+from risorius.geometry.arrays import Floats64, Integers, Integers32
 from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 
@@ -27,9 +27,7 @@ from ..scenes.surface_attachment import SurfaceAttachment
 from .bodies import EYES
 from .pieces import FilePiece, sphere_of
 from .poses import CRANIUM, Pose
-from .surface import Floats, Indices
 
-Numbers = npt.NDArray[np.integer[Any]]
 LIP_HEIGHT = (
     10.0  # [mm] of the mouth in which what lies between the jaws goes from one to the other
 )
@@ -55,9 +53,9 @@ class FileBody:
         *,
         eyes_are_nodes: bool,
     ) -> None:
-        self.rest: Floats = head.to_millimetres.points(mesh.vertices)
+        self.rest: Floats64 = head.to_millimetres.points(mesh.vertices)
         same = merged_vertices(mesh, head)
-        self.faces: Indices = same[mesh.faces].astype(np.int32)
+        self.faces: Integers32 = same[mesh.faces].astype(np.int32)
         self._place = places_in_skin(head, same)
         is_simulated = np.zeros(len(same), np.bool_)
         is_simulated[head.file_vertices] = True
@@ -84,7 +82,7 @@ class FileBody:
         self._bag = _Bag(self.in_bag, self.faces, self.rest) if len(self.in_bag) else None
         self._lashes = self._attached(head) if "on_skin" in self._pieces else None
 
-    def at(self, pose: Pose) -> Floats:
+    def at(self, pose: Pose) -> Floats64:
         """Where the vertices are in a pose, shape (V, 3)."""
         moved = self.rest.copy()
         moved[self._skin] = pose.skin[self._place[self._skin]]
@@ -107,15 +105,15 @@ class FileBody:
             deep = self._bag.deep
             moved[deep] = self._between_jaws(deep, mandible)
             self._bag.stretch(moved, self.rest)
-        spread: Floats = moved[self._same]
+        spread: Floats64 = moved[self._same]
         return spread
 
-    def normals_at(self, points: Floats) -> Floats:
+    def normals_at(self, points: Floats64) -> Floats64:
         """Unit normals where the vertices are at `points` (V, 3)."""
-        normals: Floats = vertex_normals(points, self.faces)[self._same]
+        normals: Floats64 = vertex_normals(points, self.faces)[self._same]
         return normals
 
-    def _between_jaws(self, numbers: Numbers, mandible: Floats) -> Floats:
+    def _between_jaws(self, numbers: Integers, mandible: Floats64) -> Floats64:
         """Where vertices are that go with the jaw the more, the lower they lie in the mouth, and
         the farther from the throat.
         """
@@ -123,7 +121,7 @@ class FileBody:
         share = np.clip((self._lip_height - points[:, 1]) / LIP_HEIGHT + 0.5, 0.0, 1.0)
         depth = points[:, 2] - points[:, 2].min()
         share *= np.clip(2.0 * depth / max(float(depth.max()), 1e-9), 0.0, 1.0)  # throat: skull
-        moved: Floats = points + share[:, None] * (_by(mandible, points) - points)
+        moved: Floats64 = points + share[:, None] * (_by(mandible, points) - points)
         return moved
 
     def _attached(self, head: FittedHead) -> SurfaceAttachment:
@@ -147,7 +145,7 @@ class FileBody:
 class _Bag:
     """Skin that is not simulated, behind the lips: its deep half goes with the jaws."""
 
-    def __init__(self, numbers: Numbers, faces: Indices, rest: Floats) -> None:
+    def __init__(self, numbers: Integers, faces: Integers32, rest: Floats64) -> None:
         depth = rest[numbers, 2]
         is_deep = depth < np.median(depth)
         self.deep = numbers[is_deep]
@@ -164,14 +162,14 @@ class _Bag:
             self._to_others = laplacian[:, self._others]
             self._solver = scipy.sparse.linalg.splu(laplacian[:, self._free].tocsc())
 
-    def stretch(self, moved: Floats, rest: Floats) -> None:
+    def stretch(self, moved: Floats64, rest: Floats64) -> None:
         """Write where the other half is, between all that is in its place in `moved` (V, 3)."""
         if self._solver is not None:
             ways = (moved - rest)[self._others]
             moved[self._free] = rest[self._free] - self._solver.solve(self._to_others @ ways)
 
 
-def merged_vertices(mesh: Mesh, head: FittedHead) -> Numbers:
+def merged_vertices(mesh: Mesh, head: FittedHead) -> Integers:
     """For each vertex of a file the one that stands for all in its place, shape (V,)."""
     same = np.arange(len(mesh.vertices)) if mesh.same is None else np.array(mesh.same, np.int64)
     landmarks = head.file_vertices[head.landmarks]
@@ -181,7 +179,7 @@ def merged_vertices(mesh: Mesh, head: FittedHead) -> Numbers:
     return first[same]
 
 
-def places_in_skin(head: FittedHead, same: Numbers) -> Numbers:
+def places_in_skin(head: FittedHead, same: Integers) -> Integers:
     """The place of each vertex of a file among those of the skin, -1 for others, shape (V,)."""
     place = np.full(len(same), -1, np.int64)
     place[head.file_vertices] = np.arange(len(head.file_vertices))
@@ -189,7 +187,7 @@ def places_in_skin(head: FittedHead, same: Numbers) -> Numbers:
 
 
 def with_own_tongue(
-    head: FittedHead, rest: Floats, numbers: Numbers, faces: Indices
+    head: FittedHead, rest: Floats64, numbers: Integers, faces: Integers32
 ) -> tuple[Part, ...]:
     """The parts of a head, its tongue that of the file: so it is bent as the built-in one is.
 
@@ -203,7 +201,7 @@ def with_own_tongue(
 
 
 def _part(
-    name: str, points: Floats, faces: Indices, bone: str, roots: npt.NDArray[np.int32] | None
+    name: str, points: Floats64, faces: Integers32, bone: str, roots: npt.NDArray[np.int32] | None
 ) -> Part:
     """Vertices of the file as a part."""
     colours = np.tile(np.array(TONGUE_COLOUR, np.float32), (len(points), 1))
@@ -211,7 +209,7 @@ def _part(
     return Part(name, points.astype(np.float32), normals, faces, colours, bone, 0.5, roots)
 
 
-def _by(matrix: Floats, points: Floats) -> Floats:
+def _by(matrix: Floats64, points: Floats64) -> Floats64:
     """Points (n, 3) moved by a matrix (4, 4)."""
-    moved: Floats = points @ matrix[:3, :3].T + matrix[:3, 3]
+    moved: Floats64 = points @ matrix[:3, :3].T + matrix[:3, 3]
     return moved

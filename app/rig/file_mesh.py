@@ -17,13 +17,13 @@ import numpy.typing as npt
 from risorius.assets.fitting.warp import Similarity
 from risorius.assets.painted import Material, PaintedMesh
 from risorius.assets.pictures import decoded
+from risorius.geometry.arrays import Floats64, Integers
 from risorius.geometry.colour import to_linear
 
 from .bodies import Shaped
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
-from .surface import METRES, Floats
+from .surface import METRES
 
-Numbers = npt.NDArray[np.integer[Any]]
 # Units that files have [mm], and how far off one may seem where a face is large or small.
 UNITS = (1.0, 10.0, 25.4, 100.0, 304.8, 1000.0)
 MOST_OFF = 1.25
@@ -39,10 +39,10 @@ class SplitVertices:
     corners: of the triangles, shape (F, 3).
     """
 
-    vertex: Numbers
-    uv: Numbers
-    normal: Numbers
-    corners: Numbers
+    vertex: Integers
+    uv: Integers
+    normal: Integers
+    corners: Integers
 
 
 def split_vertices(painted: PaintedMesh) -> SplitVertices:
@@ -99,7 +99,7 @@ class FileMeshWriter:
             mesh["extras"] = {"targetNames": list(names)}
         return self._glb.add("meshes", mesh)
 
-    def add_rigid(self, name: str, chosen: npt.NDArray[np.bool_], pivot: Floats) -> int:
+    def add_rigid(self, name: str, chosen: npt.NDArray[np.bool_], pivot: Floats64) -> int:
         """Add a mesh of chosen triangles (F,) alone, around a pivot (3,) of the file's."""
         split = self._split
         corners = split.corners[chosen]
@@ -136,7 +136,7 @@ class FileMeshWriter:
             **self._paint(np.arange(len(split.vertex))),
         }
 
-    def _painted_normals(self) -> Floats:
+    def _painted_normals(self) -> Floats64:
         """Unit normals at rest: those of the file, or smooth ones where it has none, (n, 3)."""
         split = self._split
         normals = (self._shaped.normals @ self._to_file.rotation.T)[split.vertex]
@@ -149,10 +149,10 @@ class FileMeshWriter:
             )
         length = np.linalg.norm(normals, axis=1)
         normals[length < 0.5] = (0.0, 0.0, 1.0)  # of vertices without a triangle
-        unit: Floats = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        unit: Floats64 = normals / np.linalg.norm(normals, axis=1, keepdims=True)
         return unit
 
-    def _paint(self, chosen: Numbers) -> dict[str, int]:
+    def _paint(self, chosen: Integers) -> dict[str, int]:
         """Texture coordinates, v down, and colours of chosen vertices, where the file has any."""
         painted = self._painted
         split = self._split
@@ -227,7 +227,7 @@ class FileMeshWriter:
         rough["baseColorTexture"] = info
 
 
-def root_matrix(to_millimetres: Similarity) -> Floats:
+def root_matrix(to_millimetres: Similarity) -> Floats64:
     """The matrix (4, 4) that brings the coordinates of a file to metres, y up, face along z.
 
     Axes are turned by right angles alone, and the unit is a usual one, where one is near.
@@ -256,5 +256,5 @@ def _kind_of(content: bytes) -> str | None:
     return "jpeg" if content.startswith(b"\xff\xd8") else None
 
 
-def _singles(values: Floats) -> npt.NDArray[np.float32]:
+def _singles(values: Floats64) -> npt.NDArray[np.float32]:
     return values.astype(np.float32)

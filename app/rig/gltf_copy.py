@@ -19,19 +19,17 @@ from typing import Any
 from urllib.parse import unquote_to_bytes
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius.assets.fitting.lips import LipCut
 from risorius.assets.fitting.warp import Similarity
 from risorius.assets.gltf import StoredPiece
 from risorius.assets.gltf_file import COMPONENTS
 from risorius.assets.user_files import beside, read_file
+from risorius.geometry.arrays import Floats32, Integers
 
 from .bodies import Shaped
 from .glb import Glb
 
-Singles = npt.NDArray[np.float32]
-Numbers = npt.NDArray[np.integer[Any]]
 TAKEN = ".risorius"  # behind names that the file has already
 
 
@@ -94,8 +92,8 @@ def _content(uri: str, folder: Path) -> bytes:
 class _Changes:
     """What our shapes change of one primitive, in the numbers of its file, (K, n, 3) each."""
 
-    places: Singles
-    normals: Singles
+    places: Floats32
+    normals: Floats32
 
 
 class GltfShapes:
@@ -116,7 +114,7 @@ class GltfShapes:
     def append(
         self,
         pieces: Sequence[StoredPiece],
-        vertices: Sequence[Numbers],
+        vertices: Sequence[Integers],
         names: Sequence[str],
         extras: Mapping[str, Any],
     ) -> None:
@@ -134,7 +132,7 @@ class GltfShapes:
             if of_mesh:
                 self._append_to(mesh, of_mesh, names, extras)
 
-    def _changes(self, piece: StoredPiece, own: Numbers) -> _Changes:
+    def _changes(self, piece: StoredPiece, own: Integers) -> _Changes:
         """The shapes of a piece as its primitive has them."""
         turn = self._to_file.rotation
         matrices = np.broadcast_to(piece.to_scene, (piece.count, 3, 3))

@@ -7,23 +7,20 @@ the file's own shapes. A primitive that is cut gets arrays of its own.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius.assets.fitting.lips import LipCut
 from risorius.assets.gltf import StoredPiece
 from risorius.assets.gltf_file import GltfFile
+from risorius.geometry.arrays import Integers
 
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
 
-Numbers = npt.NDArray[np.integer[Any]]
 
-
-def vertices_of(pieces: Sequence[StoredPiece], cut: LipCut | None) -> list[Numbers]:
+def vertices_of(pieces: Sequence[StoredPiece], cut: LipCut | None) -> list[Integers]:
     """The numbers in the mesh of the vertices of each piece, those that a cut doubles last."""
-    found: list[Numbers] = []
+    found: list[Integers] = []
     start = 0
     total = sum(piece.count for piece in pieces)
     for piece in pieces:
@@ -40,7 +37,7 @@ def cut_primitives(
     glb: Glb,
     file: GltfFile,
     pieces: Sequence[StoredPiece],
-    vertices: Sequence[Numbers],
+    vertices: Sequence[Integers],
     cut: LipCut,
 ) -> None:
     """Double the vertices of the primitives that a cut crosses.
@@ -70,7 +67,7 @@ def cut_primitives(
         primitive["mode"] = 4  # triangles, also where it was a strip or a fan
 
 
-def _rows_of(glb: Glb, file: GltfFile, accessor: int, rows: Numbers, name: str) -> int:
+def _rows_of(glb: Glb, file: GltfFile, accessor: int, rows: Integers, name: str) -> int:
     """A new accessor with some rows of one; names of bones stay whole numbers."""
     values = file.values(accessor)[rows]
     if not name.startswith("JOINTS"):

@@ -17,6 +17,7 @@ from itertools import combinations
 import numpy as np
 from tqdm import tqdm
 
+from risorius.geometry.arrays import Floats64
 from risorius.geometry.normals import vertex_areas
 
 from ..control_names import twin_of
@@ -24,7 +25,6 @@ from ..scenes import FaceScene
 from ..stopping import cleaned_up_if_stopped
 from .bodies import Shaped
 from .poses import Pose, rest_in
-from .surface import Floats
 
 PAIRS = (  # in each of which two motions share skin
     ("jawOpen", "mouthPucker"),
@@ -66,14 +66,14 @@ class Sums:
         way = together - self._scene.rest_positions
         return self._difference(tuple(names), self.sum(dict.fromkeys(names, 1.0)), way)
 
-    def sum(self, weights: Mapping[str, float]) -> Floats:
+    def sum(self, weights: Mapping[str, float]) -> Floats64:
         """The ways of the skin's vertices that weights add up to, shape (V, 3)."""
         total = np.zeros_like(self._scene.rest_positions)
         for name, weight in weights.items():
             total += weight * self._ways[name]
         return total
 
-    def _difference(self, names: tuple[str, ...], summed: Floats, way: Floats) -> Difference:
+    def _difference(self, names: tuple[str, ...], summed: Floats64, way: Floats64) -> Difference:
         off = np.linalg.norm(summed - way, axis=1)
         length = np.linalg.norm(way, axis=1)
         is_moved = length > 0.2 * length.max(initial=0.0)

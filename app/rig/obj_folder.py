@@ -14,8 +14,10 @@ from pathlib import Path
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats64
+
 from .avatar import Avatar, FileHead
-from .surface import METRES, Floats
+from .surface import METRES
 
 OWN = re.compile(r"\w[\w.]*\.obj")  # names of files in such a folder
 VERTEX = re.compile(rb"(?m)^[ \t]*v[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)")
@@ -36,7 +38,7 @@ def write_obj_folder(avatar: Avatar, folder: Path) -> None:
             path.write_bytes(_rewritten(text, file, changes[0]))
 
 
-def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats]]]:
+def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats64]]]:
     """Each file's name, and how far the vertices of each body are from rest [mm], (V, 3)."""
     still = [np.zeros_like(shaped.body.rest) for shaped in avatar.shapes]
     yield "neutral", still
@@ -50,7 +52,7 @@ def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats]]]:
         )
 
 
-def _rewritten(text: bytes, file: FileHead, change: Floats) -> bytes:
+def _rewritten(text: bytes, file: FileHead, change: Floats64) -> bytes:
     """An OBJ with other coordinates for the vertices that are moved [mm], (V, 3)."""
     assert file.painted is not None
     moved = file.head.to_millimetres.inverse.vectors(change)
@@ -68,7 +70,7 @@ def _rewritten(text: bytes, file: FileHead, change: Floats) -> bytes:
     return VERTEX.sub(line, text)
 
 
-def _triangles(avatar: Avatar, changes: list[Floats]) -> str:
+def _triangles(avatar: Avatar, changes: list[Floats64]) -> str:
     """All bodies as one OBJ, a group each."""
     lines = []
     first = 1

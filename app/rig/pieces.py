@@ -17,9 +17,9 @@ import scipy
 
 from risorius.assets.fitting import FittedHead
 from risorius.assets.fitting.mesh_validation import pieces_of
+from risorius.geometry.arrays import Floats64, Integers32
 
 from ..errors import UserError
-from .surface import Floats, Indices
 
 ROLES = {  # of a piece, and how it moves
     "eye_left": "eyeball, turns with the left eye",
@@ -51,11 +51,11 @@ class FilePiece:
     number: int
     vertices: npt.NDArray[np.integer]
     role: str
-    middle: Floats
+    middle: Floats64
 
 
 def find_pieces(
-    rest: Floats, faces: Indices, skin: npt.NDArray[np.integer], head: FittedHead
+    rest: Floats64, faces: Integers32, skin: npt.NDArray[np.integer], head: FittedHead
 ) -> list[FilePiece]:
     """The pieces of a file beside the one that the skin belongs to, in the order of the file.
 
@@ -82,7 +82,9 @@ def find_pieces(
     return found
 
 
-def _role_of(points: Floats, middle: Floats, head: FittedHead, near: scipy.spatial.cKDTree) -> str:
+def _role_of(
+    points: Floats64, middle: Floats64, head: FittedHead, near: scipy.spatial.cKDTree
+) -> str:
     """What a piece is taken for. points: its vertices [mm], shape (n, 3)."""
     for eye in head.eyes:
         if _is_eyeball(points, middle, eye.centre, eye.radius):
@@ -103,7 +105,7 @@ def _role_of(points: Floats, middle: Floats, head: FittedHead, near: scipy.spati
     return "hair"
 
 
-def _is_eyeball(points: Floats, middle: Floats, centre: Floats, radius: float) -> bool:
+def _is_eyeball(points: Floats64, middle: Floats64, centre: Floats64, radius: float) -> bool:
     """Whether a piece is an eyeball, or a layer of one, such as an iris or a cornea."""
     if len(points) < FEWEST:
         return False
@@ -116,7 +118,7 @@ def _is_eyeball(points: Floats, middle: Floats, centre: Floats, radius: float) -
     return bool(aside < 0.4 * radius and is_round and width > 0.3 * radius)
 
 
-def _role_in_mouth(points: Floats, middle: Floats, head: FittedHead) -> str | None:
+def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str | None:
     """What a piece is that lies where the built-in teeth and tongue do; None for others."""
     parts = {part.name: part.vertices for part in head.parts if part.name.startswith(IN_MOUTH)}
     if not {"teeth_upper", "teeth_lower", "tongue"} <= set(parts):
@@ -141,7 +143,7 @@ def _role_in_mouth(points: Floats, middle: Floats, head: FittedHead) -> str | No
     return "upper_teeth" if middle[1] > between else "lower_teeth"
 
 
-def _extent(values: Floats) -> float:
+def _extent(values: Floats64) -> float:
     """From the least to the greatest of some numbers; 0 for none."""
     return float(np.ptp(values)) if len(values) else 0.0
 
@@ -193,7 +195,7 @@ def described(pieces: Sequence[FilePiece]) -> list[str]:
     return lines
 
 
-def sphere_of(points: Floats, centre: Floats, radius: float) -> tuple[Floats, float]:
+def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats64, float]:
     """The sphere that fits points (n, 3) best, if they are a ball about there; else the given one.
 
     Source: linear least squares of |p|^2 = 2 p c + (r^2 - |c|^2).

@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats32, Floats64
+
 from ..errors import UserError
 from ..motion.curves import ACTION_UNITS, sided
 from ..recordings.names import ARKIT, VISEMES
 from ..scenes import FaceScene
-from .surface import Floats, Singles
 
 KINDS = ("arkit", "units", "visemes", "expressions")
 STILL = 0.001  # [mm] in a step: a face that moves less rests
@@ -28,9 +29,9 @@ class Pose:
     parts: the vertices of each part as its bone finds them, name -> (n, 3).
     """
 
-    skin: Floats
-    matrices: Mapping[str, Floats]
-    parts: Mapping[str, Singles]
+    skin: Floats64
+    matrices: Mapping[str, Floats64]
+    parts: Mapping[str, Floats32]
 
 
 def pose_of(scene: FaceScene) -> Pose:
@@ -45,7 +46,7 @@ def pose_of(scene: FaceScene) -> Pose:
     )
 
 
-def without_head_pose(skin: Floats, cranium: Floats, share: Floats) -> Floats:
+def without_head_pose(skin: Floats64, cranium: Floats64, share: Floats64) -> Floats64:
     """The skin (V, 3) as it is before the bone of the head, of which it has shares (V,), turns."""
     if np.array_equal(cranium, np.eye(4)):
         return skin
@@ -106,9 +107,9 @@ def settings_of(scene: FaceScene, name: str) -> tuple[dict[str, float], dict[str
     return {**base, name: 1.0}, base
 
 
-def moved_part(part: Any, pose: Pose) -> Floats:
+def moved_part(part: Any, pose: Pose) -> Floats64:
     """Where the vertices of a part are in a pose, seen from the cranium, shape (n, 3)."""
     matrix = pose.matrices[part.bone]
     points = pose.parts[part.name].astype(np.float64)
-    moved: Floats = points @ matrix[:3, :3].T + matrix[:3, 3]
+    moved: Floats64 = points @ matrix[:3, :3].T + matrix[:3, 3]
     return moved

@@ -9,12 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, render
+from risorius.geometry.arrays import Floats64
 from risorius.geometry.colour import to_linear
 from risorius.geometry.texels import Texels, rates
 
 from ..scenes import Scene
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
-from .surface import METRES, Floats, MovingSurface
+from .surface import METRES, MovingSurface
 
 
 @dataclass(frozen=True)
@@ -30,14 +31,14 @@ class Piece:
 
     surface: MovingSurface
     bone: str | None
-    normals: Floats
+    normals: Floats64
     names: tuple[str, ...]
     targets: npt.NDArray[np.floating]
     bends: npt.NDArray[np.floating]
-    weights: Floats
+    weights: Floats64
 
 
-def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats, share: Floats | None) -> int:
+def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats64, share: Floats64 | None) -> int:
     """Add a mesh whose vertices are relative to `origin`; return its number.
 
     share: of each vertex, how far it goes with the head, shape (V,); None: there is no head.

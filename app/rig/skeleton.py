@@ -15,10 +15,12 @@ from typing import Any
 import numpy as np
 import scipy
 
+from risorius.geometry.arrays import Floats64
+
 from ..scenes import Scene
 from .glb import Glb
 from .poses import CRANIUM
-from .surface import METRES, Floats
+from .surface import METRES
 
 NECK = "neck"  # name of a bone
 MANDIBLE = "mandible"  # name of a bone
@@ -36,7 +38,7 @@ class Skeleton:
         scene: Scene,
         used: set[str],
         glb: Glb,
-        motion: Mapping[str, Floats] | None = None,
+        motion: Mapping[str, Floats64] | None = None,
         *,
         skins: bool = True,
     ) -> None:
@@ -49,7 +51,7 @@ class Skeleton:
         count = len(next(iter(self._motion.values()), still))
         self._still = np.broadcast_to(still, (count, 4, 4))
         self._nodes: dict[str, dict[str, Any]] = {}
-        self._pivots: dict[str, Floats] = {}
+        self._pivots: dict[str, Floats64] = {}
         self.skin: int | None = None
         if scene.face is None:
             self.roots = [self._add(bone, None) for bone in sorted(used)]
@@ -69,7 +71,7 @@ class Skeleton:
         joints = {"joints": [*self.roots, head], "inverseBindMatrices": matrices}
         self.skin = glb.add("skins", joints)
 
-    def pivot(self, bone: str | None) -> Floats:
+    def pivot(self, bone: str | None) -> Floats64:
         """Where a bone's node stands at rest [mm], shape (3,); the origin for None."""
         return np.zeros(3) if bone is None else self._pivots.get(bone, np.zeros(3))
 
@@ -105,9 +107,9 @@ class Skeleton:
             self.hang(node, parent)
         return node
 
-    def _places(self, bone: str) -> Floats:
+    def _places(self, bone: str) -> Floats64:
         """Matrices (N, 4, 4) from a bone's node to the scene [mm]."""
         to_pivot = np.eye(4)
         to_pivot[:3, 3] = self.pivot(bone)
-        places: Floats = self._motion.get(bone, self._still) @ to_pivot
+        places: Floats64 = self._motion.get(bone, self._still) @ to_pivot
         return places

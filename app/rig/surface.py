@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import refine
+from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 
-Floats = npt.NDArray[np.float64]
-Singles = npt.NDArray[np.float32]
-Indices = npt.NDArray[np.int32]
 METRES = 0.001  # a millimetre; programs for animation take bare numbers for metres
 
 
@@ -31,37 +28,37 @@ class MovingSurface:
     """
 
     name: str
-    rest: Floats
-    faces: Indices
-    shapes: Singles | None = None
-    matrices: Floats | None = None
-    uv: Singles | None = None
-    face_uv: Indices | None = None
-    colours: Singles | None = None
+    rest: Floats64
+    faces: Integers32
+    shapes: Floats32 | None = None
+    matrices: Floats64 | None = None
+    uv: Floats32 | None = None
+    face_uv: Integers32 | None = None
+    colours: Floats32 | None = None
     shine: float = 0.0
 
-    def at(self, frame: int) -> Floats:
+    def at(self, frame: int) -> Floats64:
         """Where the vertices are in a frame, shape (V, 3)."""
         points = self.rest if self.shapes is None else self.shapes[frame].astype(np.float64)
         if self.matrices is None:
             return points
         matrix = self.matrices[frame]
-        moved: Floats = points @ matrix[:3, :3].T + matrix[:3, 3]
+        moved: Floats64 = points @ matrix[:3, :3].T + matrix[:3, 3]
         return moved
 
-    def normals_of(self, points: Floats, frame: int | None) -> Floats:
+    def normals_of(self, points: Floats64, frame: int | None) -> Floats64:
         """Unit normals of the vertices, shape (V, 3), where they are at `points` in a frame.
 
         frame: None at rest.
         """
         return vertex_normals(points, self.faces)
 
-    def carried(self, values: Floats) -> Floats:
+    def carried(self, values: Floats64) -> Floats64:
         """Values of the vertices of the scene's mesh, shape (n,), at these vertices, (V,)."""
         return values
 
     @property
-    def source(self) -> Indices:
+    def source(self) -> Integers32:
         """The triangle of the scene's mesh that each triangle is part of, shape (F,)."""
         return np.arange(len(self.faces), dtype=np.int32)
 
@@ -76,22 +73,22 @@ class RefinedSurface(MovingSurface):
     these triangles.
     """
 
-    rest_normals: Singles = field(kw_only=True)
-    normals: Singles = field(kw_only=True)
-    sources: Indices = field(kw_only=True)
+    rest_normals: Floats32 = field(kw_only=True)
+    normals: Floats32 = field(kw_only=True)
+    sources: Integers32 = field(kw_only=True)
     origins: refine.Origins = field(kw_only=True)
     refiner: refine.Refiner = field(kw_only=True)
 
-    def normals_of(self, points: Floats, frame: int | None) -> Floats:
+    def normals_of(self, points: Floats64, frame: int | None) -> Floats64:
         """The refiner's normals, shape (V, 3)."""
         normals = self.rest_normals if frame is None else self.normals[frame]
         return normals.astype(np.float64)
 
-    def carried(self, values: Floats) -> Floats:
+    def carried(self, values: Floats64) -> Floats64:
         """Values of the vertices of the scene's mesh, shape (n,), at these vertices, (V,)."""
         return np.asarray((values[self.origins.vertices] * self.origins.weights).sum(axis=1))
 
     @property
-    def source(self) -> Indices:
+    def source(self) -> Integers32:
         """The triangle of the scene's mesh that each triangle is part of, shape (F,)."""
         return self.sources

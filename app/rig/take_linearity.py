@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from risorius.geometry.arrays import Floats32, Floats64
 from risorius.geometry.normals import vertex_areas
 
 from ..motion import play
@@ -20,7 +21,6 @@ from ..script import Script
 from .curves import shape_curves
 from .linearity import Difference
 from .poses import Pose, pose_of
-from .surface import Floats, Singles
 
 FRAMES_PER_SECOND = 15.0  # few of a take are as good as all
 
@@ -34,8 +34,8 @@ class PlayedTake:
     """
 
     title: str
-    ways: Singles
-    curves: Floats
+    ways: Floats32
+    curves: Floats64
 
 
 def played_take(scene: FaceScene, script: Script) -> PlayedTake:

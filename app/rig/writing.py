@@ -11,6 +11,7 @@ import scipy
 from risorius.assets.fitting import FittedHead
 from risorius.assets.gltf import stored_pieces
 from risorius.assets.gltf_file import GltfFile
+from risorius.geometry.arrays import Floats64
 
 from ..files import folder_atomically, written_atomically
 from .avatar import Avatar, FileHead, RigRequest, Say, avatar_of
@@ -23,7 +24,7 @@ from .obj_folder import OWN, write_obj_folder
 from .poses import rest_in
 from .scene_file import add_pieces, piece_of
 from .skeleton import Skeleton
-from .surface import METRES, Floats
+from .surface import METRES
 
 LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")  # of each eye, by its side
 
@@ -144,7 +145,7 @@ def _add_parts(glb: Glb, avatar: Avatar, file: FileHead) -> int:
     return glb.add("nodes", node)
 
 
-def looks_of(avatar: Avatar, eye: str, turn: Floats) -> dict[str, Any]:
+def looks_of(avatar: Avatar, eye: str, turn: Floats64) -> dict[str, Any]:
     """How the node of an eye turns for each of its shapes at 1: quaternions x, y, z, w.
 
     turn: from the face's axes to those of the node, a matrix (3, 3).

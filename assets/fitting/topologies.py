@@ -17,14 +17,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius.schema import Record, Within, parsed_json, read
 
-from ...geometry.arrays import Integers32
+from ...geometry.arrays import Integers, Integers32
 from ..data_files import read_toml
 from ..errors import AssetError
 from ..loading import load
@@ -33,7 +32,6 @@ from ..user_files import MOST_VERTICES, named, read_file
 from .mesh_validation import pieces_of
 
 Number = Annotated[int, Within(0, MOST_VERTICES)]
-Numbers = npt.NDArray[np.integer[Any]]
 COUNT = 68
 OUTER_EYE_CORNERS = (36, 45)  # landmarks
 
@@ -101,7 +99,7 @@ def recognised(mesh: Mesh) -> KnownHead | None:
     return None
 
 
-def _candidates(mesh: Mesh) -> Iterator[tuple[Numbers, int]]:
+def _candidates(mesh: Mesh) -> Iterator[tuple[Integers, int]]:
     """Vertices in their order, and the number of triangles: of each piece, then of all."""
     piece = pieces_of(mesh.faces, len(mesh.vertices))
     triangles = np.bincount(piece[mesh.faces[:, 0]], minlength=int(piece.max()) + 1)
@@ -115,7 +113,7 @@ def _candidates(mesh: Mesh) -> Iterator[tuple[Numbers, int]]:
     yield same, len(mesh.faces)
 
 
-def _has_edges(mesh: Mesh, numbers: Numbers, topology: Topology) -> bool:
+def _has_edges(mesh: Mesh, numbers: Integers, topology: Topology) -> bool:
     """Whether all edges of a topology are sides of triangles, as long as its heads have them."""
     if not topology.edges:
         return True

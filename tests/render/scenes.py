@@ -9,9 +9,9 @@ import numpy.typing as npt
 import pytest
 
 from risorius import render
+from risorius.geometry.arrays import Floats32
 from tests.meshes import ball
 
-Floats = npt.NDArray[np.float32]
 SignedImage = npt.NDArray[np.int32]  # an image that can be subtracted from another, (H, W, 3)
 
 PLAIN = render.Style(background=render.WHITE, shadows=False)
@@ -29,8 +29,8 @@ STILL = {"cranium": np.eye(4), "eye_left": np.eye(4)}
 class Shape:
     """Positions (V, 3), normals (V, 3), triangles (M, 3)."""
 
-    positions: Floats
-    normals: Floats
+    positions: Floats32
+    normals: Floats32
     triangles: npt.NDArray[np.uint32]
 
 
@@ -145,15 +145,15 @@ class Ball:
     shape: Shape = field(default_factory=lambda: sphere(3, 20.0))
 
     @property
-    def striation(self) -> Floats | None:
+    def striation(self) -> Floats32 | None:
         return None
 
     @property
-    def vertices(self) -> Floats:
+    def vertices(self) -> Floats32:
         return self.shape.positions
 
     @property
-    def normals(self) -> Floats:
+    def normals(self) -> Floats32:
         return self.shape.normals
 
     @property
@@ -161,5 +161,5 @@ class Ball:
         return self.shape.triangles.astype(np.int32)
 
     @property
-    def colours(self) -> Floats:
+    def colours(self) -> Floats32:
         return np.tile(np.array(self.colour, np.float32), (len(self.shape.positions), 1))
