@@ -90,6 +90,38 @@ def bench_quality(reference: Path | None, expressions: tuple[str, ...]) -> None:
     conclude(quality.report(scores), quality.targets(scores))
 
 
+@bench.command("rivals")
+@click.option("--reference", type=FOLDER, help="A folder of `risorius bench reference`.")
+@click.option(
+    "--seconds",
+    type=FiniteRange(0.05, 600.0),
+    default=10.0,
+    show_default=True,
+    help="How long each surface is timed, at least five calls of each method.",
+)
+def bench_rivals(reference: Path | None, seconds: float) -> None:
+    """Compare refinement with other libraries: distance to true surfaces, and time.
+
+    They refine a sphere, the plane, the built-in head, and a scan with --reference. Each library
+    that is not installed is skipped with one line; pip install '.[rivals]' brings all.
+    """
+    from . import rivals, subjects
+
+    heads = [("head", subjects.built_in())]
+    if reference is not None:
+        heads.append(("scan", subjects.scanned(subjects.Scans.read(reference))))
+    methods, skipped = rivals.available()
+    rows = []
+    for case in rivals.cases(heads):
+        say_progress(case.surface)
+        found, refused = rivals.measure(case, methods, seconds)
+        rows += found
+        skipped += refused
+    for line in skipped:
+        click.echo(in_one_line(line), err=True)
+    click.echo(rivals.report(rows, methods))
+
+
 @bench.command("motion")
 @needed_reference
 def bench_motion(reference: Path) -> None:

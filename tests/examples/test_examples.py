@@ -27,7 +27,20 @@ def example(name: str) -> ModuleType:
 def test_every_example_is_tested():
     """A new program in the folder needs a test here."""
     found = {path.stem for path in tracked(FOLDER, "*.py") if path.parent == FOLDER}
-    assert found == {"plain_script", "own_refiner", "read_dataset"}
+    assert found == {"plain_script", "own_refiner", "read_dataset", "in_mujoco", "in_newton"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("library", ["mujoco", "newton"])
+def test_a_fine_mesh_on_a_coarse_cloth(library):
+    """The embedding is nearer to the finer simulation than the library's own flat binding.
+
+    No carried mesh can be nearer than the coarse vertices themselves are, but for a little.
+    """
+    pytest.importorskip(library, reason=f"needs the extra '{library}'")
+    flat, ours, least = example(f"in_{library}").main().values()
+    assert 0.9 * least < ours < 0.8 * flat
+    assert flat < 20.0  # mm, of a sheet that is 2 m wide
 
 
 def test_plain_script(tmp_path):

@@ -1,0 +1,190 @@
+"""Other libraries that refine triangle meshes, each behind the same two calls.
+
+A method is bound to triangles and rest positions once, and keeps all that its library lets it keep.
+A frame takes positions and, where the method has one, its limit. Of the settings of a library those
+stand here that came nearest to the true surfaces of rivals.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.assets.topology import boundary_loops
+
+Points = npt.NDArray[np.float64]
+Faces = npt.NDArray[np.int32]
+Surface = tuple[npt.NDArray[np.floating[Any]], npt.NDArray[np.integer[Any]]]
+"""Positions (N, 3) and triangles (M, 3)."""
+Frame = Callable[[Points, float], Surface]
+"""From positions and a limit to the refined mesh."""
+
+
+class Method(NamedTuple):
+    """One way of refining, of a library."""
+
+    title: str
+    package: str
+    """The distribution that brings it."""
+    module: str
+    bind: Callable[[Faces, Points], Frame]
+    has_limit: bool
+    """Whether the number of triangles follows a limit; the others make four of each."""
+
+
+def _manifold3d(faces: Faces, rest: Points, adaptive: bool) -> Frame:
+    """Smooth by tangents. It takes closed surfaces: holes get lids, which are taken off again."""
+    manifold3d = import_module("manifold3d")
+    lids: list[tuple[int, int, int]] = []
+    loops = boundary_loops(faces)
+    for number, loop in enumerate(loops):
+        middle = len(rest) + number
+        lids += [(b, a, middle) for a, b in zip(loop, [*loop[1:], loop[0]], strict=True)]
+    count = len(faces)
+    closed = np.concatenate([faces, np.array(lids, dtype=np.int32).reshape(-1, 3)])
+    closed = closed.astype(np.uint32)
+    names = np.arange(len(closed), dtype=np.uint32)
+    rims = list(range(3 * count, 3 * len(closed), 3))  # the first half edge of each lid's triangle
+
+    def frame(positions: Points, limit: float) -> Surface:
+        middles = np.array([positions[loop].mean(axis=0) for loop in loops]).reshape(-1, 3)
+        points = np.concatenate([positions, middles]).astype(np.float32)
+        mesh = manifold3d.Mesh(points, closed, face_id=names)
+        smooth = manifold3d.Manifold.smooth(mesh, rims, [0.0] * len(rims))
+        fine = smooth.refine_to_tolerance(limit) if adaptive else smooth.refine(2)
+        found = fine.to_mesh()
+        is_own = np.array(found.face_id) < count
+        return found.vert_properties[:, :3], found.tri_verts[is_own]
+
+    return frame
+
+
+def _meshlib(faces: Faces, rest: Points) -> Frame:
+    """Splits the edges that are curved most, and smooths the new points."""
+    mrmeshpy = import_module("meshlib.mrmeshpy")
+    mrmeshnumpy = import_module("meshlib.mrmeshnumpy")
+    kept = mrmeshnumpy.meshFromFacesVerts(faces, rest)
+
+    def frame(positions: Points, limit: float) -> Surface:
+        mesh = mrmeshpy.copyMesh(kept)
+        mesh.points = mrmeshnumpy.pointCloudFromPoints(positions).points
+        mesh.invalidateCaches()
+        settings = mrmeshpy.SubdivideSettings()
+        settings.maxEdgeLen = 0.0
+        settings.maxEdgeSplits = round(len(faces) / limit)
+        settings.smoothMode = True
+        settings.curvaturePriority = 1.0
+        mrmeshpy.subdivideMesh(mesh, settings)
+        mesh.pack()
+        return mrmeshnumpy.getNumpyVerts(mesh), mrmeshnumpy.getNumpyFaces(mesh.topology)
+
+    return frame
+
+
+def _pymeshlab(faces: Faces, rest: Points, rule: str) -> Frame:
+    """Splits edges that are longer than the limit, up to three times."""
+    pymeshlab = import_module("pymeshlab")
+
+    def frame(positions: Points, limit: float) -> Surface:
+        meshes = pymeshlab.MeshSet(verbose=False)
+        meshes.add_mesh(pymeshlab.Mesh(positions, faces))
+        split = getattr(meshes, f"meshing_surface_subdivision_{rule}")
+        split(threshold=pymeshlab.PureValue(limit), iterations=3)
+        mesh = meshes.current_mesh()
+        return mesh.vertex_matrix(), mesh.face_matrix()
+
+    return frame
+
+
+def _vtk(faces: Faces, rest: Points, rule: str) -> Frame:
+    """One of VTK's filters, which keeps its input and is run anew."""
+    modeling = import_module("vtkmodules.vtkFiltersModeling")
+    data = import_module("vtkmodules.vtkCommonDataModel")
+    core = import_module("vtkmodules.vtkCommonCore")
+    arrays = import_module("vtkmodules.util.numpy_support")
+    mesh = data.vtkPolyData()
+    points = core.vtkPoints()
+    cells = data.vtkCellArray()
+    corners = arrays.numpy_to_vtkIdTypeArray(faces.astype(np.int64).ravel(), deep=True)
+    cells.SetData(3, corners)
+    mesh.SetPoints(points)
+    mesh.SetPolys(cells)
+    subdivision = getattr(modeling, f"vtk{rule}SubdivisionFilter")()
+    subdivision.SetInputData(mesh)
+    if rule == "Adaptive":
+        subdivision.SetMaximumTriangleArea(np.inf)  # only lengths count
+
+    def frame(positions: Points, limit: float) -> Surface:
+        points.SetData(arrays.numpy_to_vtk(positions, deep=True))
+        points.Modified()
+        mesh.Modified()
+        if rule == "Adaptive":
+            subdivision.SetMaximumEdgeLength(limit)
+        else:
+            subdivision.SetNumberOfSubdivisions(1)
+        subdivision.Update()
+        fine = subdivision.GetOutput()
+        triangles = arrays.vtk_to_numpy(fine.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        return arrays.vtk_to_numpy(fine.GetPoints().GetData()), triangles
+
+    return frame
+
+
+def _libigl(faces: Faces, rest: Points) -> Frame:
+    """The matrix of one level of Loop subdivision, kept."""
+    igl = import_module("igl")
+    matrix, fine = igl.loop_matrix(faces.astype(np.int64), len(rest))
+    rows = matrix.tocsr()
+    return lambda positions, limit: (rows @ positions, fine)
+
+
+METHODS: Sequence[Method] = (
+    Method(
+        "manifold3d, smooth, refined to a tolerance",
+        *("manifold3d", "manifold3d"),
+        lambda faces, rest: _manifold3d(faces, rest, adaptive=True),
+        has_limit=True,
+    ),
+    Method(
+        "manifold3d, smooth, all edges",
+        *("manifold3d", "manifold3d"),
+        lambda faces, rest: _manifold3d(faces, rest, adaptive=False),
+        has_limit=False,
+    ),
+    Method("meshlib, smooth, by curvature", "meshlib", "meshlib.mrmeshpy", _meshlib, True),
+    Method(
+        "pymeshlab, Loop by length",
+        *("pymeshlab", "pymeshlab"),
+        lambda faces, rest: _pymeshlab(faces, rest, "loop"),
+        has_limit=True,
+    ),
+    Method(
+        "pymeshlab, butterfly by length",
+        *("pymeshlab", "pymeshlab"),
+        lambda faces, rest: _pymeshlab(faces, rest, "butterfly"),
+        has_limit=True,
+    ),
+    Method(
+        "VTK, adaptive by length",
+        *("vtk", "vtkmodules.vtkFiltersModeling"),
+        lambda faces, rest: _vtk(faces, rest, "Adaptive"),
+        has_limit=True,
+    ),
+    Method(
+        "VTK, Loop",
+        *("vtk", "vtkmodules.vtkFiltersModeling"),
+        lambda faces, rest: _vtk(faces, rest, "Loop"),
+        has_limit=False,
+    ),
+    Method(
+        "VTK, butterfly",
+        *("vtk", "vtkmodules.vtkFiltersModeling"),
+        lambda faces, rest: _vtk(faces, rest, "Butterfly"),
+        has_limit=False,
+    ),
+    Method("libigl, kept Loop matrix", "libigl", "igl", _libigl, has_limit=False),
+)

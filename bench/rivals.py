@@ -1,0 +1,233 @@
+"""Refinement beside other libraries: distance to the true surface, and time, at equal triangles.
+
+A coarse mesh whose vertices lie on a known surface is refined to four times its triangles: what
+one level of Loop subdivision makes. Methods with a limit (a length, a tolerance, a number of
+splits) get the limit that leads nearest to that number without going beyond it.
+
+    distance   from each point of the true surface the nearest point of the mesh is found, exactly;
+               root of the mean square, in millionths of the diagonal of the surface's box
+    first      from arrays of triangles and positions to arrays of the refined mesh [ms]
+    frame      the same for further positions, where all that a library lets keep is kept [ms]
+
+Times are the shortest of many calls: other work on the machine counts least so. Ours makes normals
+of the refined mesh, too; the others make none.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from importlib.metadata import version
+from typing import NamedTuple
+
+import numpy as np
+import trimesh
+
+from risorius import refine
+from risorius.app.errors import UserError
+from risorius.app.extras import needed
+from risorius.app.scenes import PlaneScene
+from risorius.assets.sheets import CELL, COLUMNS, ROWS, make_grid
+from risorius.geometry.closest import closest_points
+from risorius.refine.kahler.criterion import Thresholds
+
+from .report import processor, table
+from .rival_libraries import METHODS, Faces, Frame, Method, Points, Surface
+from .subjects import Subject
+
+TIMES = 4.0
+"""Triangles of the refined mesh over those of the coarse one."""
+
+
+class Case(NamedTuple):
+    """A coarse mesh, moved, and points of the surface that it stands for."""
+
+    surface: str
+    faces: Faces
+    rest: Points
+    positions: Points
+    truth: Points
+
+
+class Row(NamedTuple):
+    """One method on one surface."""
+
+    surface: str
+    coarse_triangles: int
+    method: str
+    triangles: int
+    """Of the refined mesh."""
+    distance: float
+    """Root mean square [millionths of the diagonal]."""
+    first: float
+    """Set-up and a frame, shortest of all calls [ms]."""
+    frame: float
+    """A further frame, the same [ms]."""
+
+
+class _Frame:
+    """A frame of a refiner: positions and triangles of the mesh that it makes."""
+
+    def __init__(self, refiner: refine.Refiner, criterion: refine.Displacement | None) -> None:
+        self._refiner = refiner
+        self._criterion = criterion
+
+    def __call__(self, positions: Points, limit: float) -> Surface:
+        """Refine with the thresholds of the criterion scaled by `limit`."""
+        if self._criterion is not None:
+            self._criterion.thresholds = Thresholds(limit, 5.0 * limit, "measures")
+        mesh = self._refiner.refine(positions)
+        return mesh.positions, mesh.triangles
+
+
+def _adaptive(faces: Faces, rest: Points) -> Frame:
+    criterion = refine.Displacement()
+    refiner = refine.create("kahler", faces, rest, scheme="cubic", blend=False, criterion=criterion)
+    return _Frame(refiner, criterion)
+
+
+def _everywhere(faces: Faces, rest: Points, scheme: str) -> Frame:
+    splits = np.ones(len(refine.create("none", faces, rest).edges), dtype=np.uint8)
+    refiner = refine.create("kahler", faces, rest, scheme=scheme, blend=False, splits=splits)
+    return _Frame(refiner, None)
+
+
+def _unrefined(faces: Faces, rest: Points) -> Frame:
+    return _Frame(refine.create("none", faces, rest), None)
+
+
+_BINDINGS: Mapping[str, Callable[[Faces, Points], Frame]] = {
+    "not refined": _unrefined,
+    "cubic where a split moves most": _adaptive,
+    "cubic, all edges": partial(_everywhere, scheme="cubic"),
+    "Loop, all edges": partial(_everywhere, scheme="loop"),
+}
+OURS: Sequence[Method] = tuple(
+    Method(f"risorius, {title}", "risorius", "risorius.refine", bind, bind is _adaptive)
+    for title, bind in _BINDINGS.items()
+)
+
+
+def cases(subjects: Sequence[tuple[str, Subject]]) -> Iterator[Case]:
+    """A sphere, the plane under its full sine, and of each subject the pose that moves it most."""
+    coarse = trimesh.creation.icosphere(2)
+    faces = np.array(coarse.faces, dtype=np.int32)
+    points = np.array(coarse.vertices)
+    yield Case("sphere", faces, points, points, np.array(trimesh.creation.icosphere(5).vertices))
+
+    plane = PlaneScene()
+    plane.pose({"amplitude": 1.0})
+    plane.step(1.0 / 30.0)
+    fineness = 12  # cells of the true sine in each cell of the plane, each way
+    flat, _ = make_grid(COLUMNS * fineness, ROWS * fineness, CELL / fineness)
+    sine, _ = plane.waved(flat)
+    yield Case("sine plane", plane.faces, plane.rest_positions, plane.positions.copy(), sine)
+
+    for name, subject in subjects:
+        rest = subject.rest.coarse
+        motion = {name: np.abs(pose.coarse - rest).mean() for name, pose in subject.poses.items()}
+        most = max(motion, key=motion.__getitem__)
+        pose = subject.poses[most]
+        yield Case(f"{name}, {most}", subject.coarse_faces, rest, pose.coarse, pose.dense)
+
+
+def available() -> tuple[list[Method], list[str]]:
+    """Ours, the methods whose library is installed, and a line for each library that is not."""
+    found = list(OURS)
+    skipped = {}
+    for method in METHODS:
+        try:
+            needed(method.module, method.package, "rivals", package=method.package)
+        except UserError as error:
+            skipped[method.package] = f"skipped: {error}"
+        else:
+            found.append(method)
+    return found, list(skipped.values())
+
+
+def measure(case: Case, methods: Sequence[Method], seconds: float) -> tuple[list[Row], list[str]]:
+    """Rows of the methods, and a line for each that does not take the mesh.
+
+    `seconds`: of timing, at least five calls of each.
+    """
+    rows = []
+    skipped = []
+    for method in methods:
+        try:
+            limit = _limit(case, method) if method.has_limit else 0.0
+            frame = partial(method.bind(case.faces, case.rest), case.positions, limit)
+            surface = frame()
+        except (RuntimeError, ValueError) as error:
+            skipped.append(f"skipped: {method.title} of the {case.surface}: {error}")
+            continue
+        distance = _distance(case, surface)
+        # One after the other: threads of one library would hold up those of the next.
+        time_of_each = 0.5 * seconds / len(methods)
+        first = _shortest(partial(_first, case, method, limit), time_of_each)
+        further = _shortest(frame, time_of_each)
+        kept = case.surface, len(case.faces), method.title, len(surface[1])
+        rows.append(Row(*kept, distance, first, further))
+    return rows, skipped
+
+
+def report(rows: Sequence[Row], methods: Sequence[Method]) -> str:
+    """The text to print."""
+    packages = dict.fromkeys(method.package for method in methods)
+    lines = [
+        f"Refined to {TIMES:g} times the triangles, on all cores of {processor()}.",
+        ", ".join(f"{package} {version(package)}" for package in packages),
+    ]
+    for surface in dict.fromkeys(row.surface for row in rows):
+        group = [row for row in rows if row.surface == surface]
+        cells = [(row.method, row.triangles, *row[4:]) for row in group]
+        columns = "method:<43|triangles:9d|distance:8.0f|first ms:9.3f|frame ms:9.3f"
+        title = f"{surface}, {group[0].coarse_triangles} triangles"
+        lines += ["", title, *table(columns, cells, indent="  ")]
+    return "\n".join(lines)
+
+
+def _limit(case: Case, method: Method) -> float:
+    """The limit that leads to TIMES the triangles, or a few less."""
+    frame = method.bind(case.faces, case.rest)
+
+    def is_over(limit: float) -> bool:
+        return len(frame(case.positions, limit)[1]) > TIMES * len(case.faces)
+
+    # From the side of few triangles: a far too low limit may lead to billions of them.
+    high = 10.0 * float(np.linalg.norm(np.ptp(case.positions, axis=0)))
+    smallest = 1e-9 * high
+    while high > smallest and not is_over(0.5 * high):
+        high *= 0.5
+    low = 0.5 * high
+    search_steps = 12
+    for _ in range(search_steps):
+        middle = (low * high) ** 0.5
+        if is_over(middle):
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+def _distance(case: Case, surface: Surface) -> float:
+    """Root mean square of the distance of the true surface [millionths of the diagonal]."""
+    points, triangles = surface
+    away = closest_points(case.truth, points.astype(np.float64), triangles.astype(np.int32))
+    diagonal = float(np.linalg.norm(np.ptp(case.truth, axis=0)))
+    return 1e6 * float(np.sqrt((away.distances**2).mean())) / diagonal
+
+
+def _first(case: Case, method: Method, limit: float) -> Surface:
+    return method.bind(case.faces, case.rest)(case.positions, limit)
+
+
+def _shortest(call: Callable[[], object], seconds: float) -> float:
+    """The shortest time of a call [ms], of at least five and as many as fit the time."""
+    fewest_rounds = 5
+    times: list[float] = []
+    while len(times) < fewest_rounds or sum(times) < seconds:
+        start = time.perf_counter()
+        call()
+        times.append(time.perf_counter() - start)
+    return 1e3 * min(times)

@@ -1,0 +1,102 @@
+"""A fine mesh on a coarse cloth of Newton: `refine.Embedding` beside Newton's own binding.
+
+    pip install '.[newton]'
+    python examples/in_newton.py
+
+A square sheet is held at its border and sags. Newton simulates 128 triangles, on the processor.
+They carry a finer mesh twice: as a visual mesh of Newton, which is flat on each triangle, and
+through `refine.Embedding`. A simulation of four times the triangles says where the finer mesh
+belongs.
+"""
+
+import newton
+import numpy as np
+import numpy.typing as npt
+import warp as wp
+
+from risorius import refine
+
+Points = npt.NDArray[np.float64]
+
+CELLS = 8
+SIDE = 2.0  # [m]
+
+
+def cloth(cells: int) -> newton.ModelBuilder:
+    """A sheet of cells x cells squares, whose border is held."""
+    builder = newton.ModelBuilder()
+    builder.add_cloth_grid(
+        pos=wp.vec3(0.0, 0.0, 0.0),
+        rot=wp.quat_identity(),
+        vel=wp.vec3(0.0, 0.0, 0.0),
+        dim_x=cells,
+        dim_y=cells,
+        cell_x=SIDE / cells,
+        cell_y=SIDE / cells,
+        mass=1.0 / (cells + 1) ** 2,
+        fix_left=True,
+        fix_right=True,
+        fix_top=True,
+        fix_bottom=True,
+        tri_ke=50.0,
+        tri_ka=50.0,
+        tri_kd=2.0,
+        edge_ke=0.0,
+        edge_kd=0.0,
+    )
+    builder.color()
+    return builder
+
+
+def sagged(model: newton.Model) -> newton.State:
+    """The sheet after four seconds."""
+    solver = newton.solvers.SolverVBD(model, iterations=20)
+    state = model.state()
+    following = model.state()
+    control = model.control()
+    for _ in range(480):
+        state.clear_forces()
+        solver.step(state, following, control, None, 1.0 / 120.0)
+        state, following = following, state
+    return state
+
+
+def main() -> dict[str, float]:
+    """Root mean square distances from the finer simulation [mm]."""
+    finer = cloth(2 * CELLS).finalize(device="cpu")
+    fine = finer.particle_q.numpy().astype(np.float64)
+    triangles = finer.tri_indices.numpy()
+    truth = sagged(finer).particle_q.numpy().astype(np.float64)
+
+    builder = cloth(CELLS)
+    count = len(builder.tri_indices)
+    builder.add_deformable_visual_mesh(
+        fine, triangles.ravel(), kind="triangle", tri_range=(0, count)
+    )
+    coarse = builder.finalize(device="cpu")
+    rest = coarse.particle_q.numpy().astype(np.float64)
+    faces = coarse.tri_indices.numpy().reshape(-1, 3)
+    embedding = refine.Embedding(faces, rest, fine)  # once
+    state = sagged(coarse)
+    shown = newton.geometry.DeformableVisuals(coarse).update(state).points.numpy()
+    positions = state.particle_q.numpy()
+    carried = embedding.evaluate(positions).positions  # every frame
+
+    is_coarse = (np.abs(fine[:, None] - rest) < 1e-6).all(axis=2).any(axis=1)
+    errors = {
+        "Newton's visual mesh, flat": shown - truth,
+        "refine.Embedding": carried - truth,
+        "the coarse vertices themselves": (shown - truth)[is_coarse],
+    }
+    return {
+        name: 1000.0 * float(np.sqrt((error**2).sum(axis=1).mean()))
+        for name, error in errors.items()
+    }
+
+
+if __name__ == "__main__":
+    distances = main()
+    finer_count = 8 * CELLS**2
+    print(f"Newton {newton.__version__}: root mean square distance from {finer_count} triangles")
+    for name, distance in distances.items():
+        print(f"  {name}: {distance:.1f} mm")
