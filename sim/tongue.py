@@ -97,6 +97,11 @@ class Tongue:
 
         beside = self.rest[:, 0] * slender
         off = self.off * here(height) * slender + here(hollow) * beside**2 - here(sunk)
+        # Flat, it shows the groove in its middle, which runs out before the tip.
+        groove_depth = 1.6  # mm at most
+        groove_width = 2.6  # mm
+        groove = groove_depth * risen * smoothstep((self.along - 0.03) / 0.2)
+        off -= groove * np.exp(-((beside / groove_width) ** 2)) * (self.off > 0.0)
         bent = self.rest.copy()
         bent[:, 0] = beside
         bent[:, 1] = here(spine[:, 1]) + off * np.cos(here(turn))

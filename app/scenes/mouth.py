@@ -113,9 +113,10 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
     def shaded(part: Any) -> Any:
         """The part itself where it is not of the mouth."""
         if part.name == "tongue":
-            colours = read_only(_shaded(part.vertices, part.colours, front, TONGUE))
-            drawn = {**_drawn(part), "colours": colours}
-            return Tongue(**drawn, unlit=part.colours, front=float(front))
+            unlit = _painted_tongue(part)
+            colours = read_only(_shaded(part.vertices, unlit, front, TONGUE))
+            drawn = {**_drawn(part), "colours": colours, "shine": 0.42}  # it is wet
+            return Tongue(**drawn, unlit=unlit, front=float(front))
         if part.mandible_shares is not None:
             shares = part.mandible_shares
             rest = part.vertices
@@ -128,6 +129,26 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
         return replace(part, colours=_shaded(part.vertices, part.colours, front, gloom))
 
     return tuple(shaded(part) for part in parts)
+
+
+def _painted_tongue(part: Any) -> Floats32:
+    """The colours of a tongue, (n, 3): red edges, a pale coat, a dark groove; chosen by eye."""
+    vertices = part.vertices.astype(np.float64)
+    middle = vertices[:, 0].mean()
+    beside = np.abs(vertices[:, 0] - middle)
+    across = beside / max(float(beside.max()), 1e-6)
+    depth = vertices[:, 2].max() - vertices[:, 2]
+    above = np.clip(part.normals[:, 1], 0.0, 1.0)
+    groove_width = 1.6  # [mm]
+    groove = above * np.exp(-((beside / groove_width) ** 2)) * np.clip(depth / 8.0, 0.0, 1.0)
+    coat = above * np.clip(1.0 - across / 0.7, 0.0, 1.0) * np.clip(depth / 20.0, 0.0, 1.0)
+    edge = 1.0 - above * np.clip(1.6 - 1.6 * across, 0.0, 1.0)
+    grain = np.random.default_rng(0).normal(0.0, 0.025, len(vertices))
+    pale = np.array([0.80, 0.62, 0.585])
+    colours = part.colours * (1.0 - edge[:, None] * [0.05, 0.2, 0.2])
+    colours += 0.6 * coat[:, None] * (pale - colours)
+    colours *= (1.0 + grain[:, None]) * (1.0 - groove[:, None] * [0.22, 0.32, 0.32])
+    return np.asarray(np.clip(colours, 0.0, 1.0), np.float32)
 
 
 def _shaded(

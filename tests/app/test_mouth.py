@@ -1,5 +1,7 @@
 """Parts in the mouth: the farther back, the darker."""
 
+import numpy as np
+
 from risorius.app.scenes.mouth import shaded_mouth
 
 
@@ -23,3 +25,20 @@ def test_a_mouth_gets_darker_toward_the_back(face):
     depth = tongue.vertices[:, 2]
     assert light[depth.argmin()] < 0.6 * light[depth.argmax()]
     assert shaded_mouth(()) == ()
+
+
+def test_a_tongue_has_a_groove_a_pale_coat_and_red_edges(face):
+    """It is no egg in one tone."""
+    tongue = next(part for part in face.parts if part.name == "tongue")
+    rest = next(part for part in face.head.parts if part.name == "tongue")
+    depth = rest.vertices[:, 2].max() - rest.vertices[:, 2]
+    rows = (depth > 8.0) & (depth < 30.0) & (rest.normals[:, 1] > 0.7)
+    beside = np.abs(rest.vertices[:, 0])
+    groove, coat = (rows & (beside < 1.0)), (rows & (beside > 3.0) & (beside < 8.0))
+    assert tongue.colours[groove].mean() < 0.88 * tongue.colours[coat].mean()
+    edge = (depth > 8.0) & (depth < 30.0) & (rest.normals[:, 1] < 0.2)
+    redness = [
+        (each[:, 0] / each[:, 1]).mean() for each in (tongue.colours[edge], tongue.colours[coat])
+    ]
+    assert redness[0] > 1.15 * redness[1]
+    assert tongue.shine > rest.shine

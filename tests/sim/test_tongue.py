@@ -67,6 +67,21 @@ def test_the_tongue_comes_out_over_the_lip(simulation, head, jaw):
     assert tongue_now(simulation)[tip, 1] < lip[1] - hangs
 
 
+def test_a_tongue_that_is_out_has_a_groove(simulation, head):
+    """Its upper side is lowest in the middle, before the lip; at the tip it is not."""
+    tongue = part(head, "tongue")
+    settled_displacement(simulation, {"jaw_open": 0.5, "tongue_out": 1.0})
+    bent = simulation.anatomy.tongue()
+    depth = tongue.vertices[:, 2].max() - tongue.vertices[:, 2]
+    beside = np.abs(bent[:, 0])
+    is_upper = tongue.normals[:, 1] > 0.6
+    rows = is_upper & (depth > 12.0) & (depth < 16.0)
+    ahead = bent[rows, 2] + bent[rows, 1]  # it hangs forward and down
+    middle = ahead[beside[rows] < 1.0].mean()
+    aside = ahead[(beside[rows] > 3.0) & (beside[rows] < 7.0)].mean()
+    assert middle < aside - 0.7
+
+
 def test_the_tongue_stays_in_a_shut_mouth(simulation, head):
     """Lips that are kept together keep it in, even over an open jaw."""
     for pose in ({"tongue_out": 1.0}, {"tongue_out": 1.0, "jawOpen": 0.5, "mouthClose": 0.5}):
