@@ -57,6 +57,11 @@ from .options import PATH, SILENT, Size, printing
     help="A colour, as '#8090a0' or grey, or a folder of pictures; soft colours by default.",
 )
 @click.option(
+    "--degrade",
+    is_flag=True,
+    help="Blur, noise and JPEG in the pictures, as the table of --sample draws them.",
+)
+@click.option(
     "--shards",
     type=click.IntRange(1, 10**6),
     metavar="SAMPLES",

@@ -23,8 +23,9 @@ class SetRequest:
     """A data set that is asked for; fit to be pickled.
 
     output: the folder of the set. size: of the pictures [pixels]. passes: some of the images of
-    app/passes/passes.py. refiner: None for the look's. shards: how many samples each has; None for
-    no shards. arguments: the same, as options of the command line.
+    app/passes/passes.py. refiner: None for the look's. degrade: whether pictures have blur, noise
+    and JPEG. shards: how many samples each has; None for no shards. arguments: the same, as options
+    of the command line.
     """
 
     output: Path
@@ -34,6 +35,7 @@ class SetRequest:
     table: SampleTable
     backgrounds: Backgrounds = Backgrounds()  # noqa: RUF009 - frozen
     refiner: str | None = None
+    degrade: bool = False
     shards: int | None = None
     arguments: str = ""
     version: str = version("risorius")
@@ -49,6 +51,7 @@ class SetRequest:
             "passes": list(self.passes),
             "background": self.backgrounds.options,
             "refiner": self.refiner,
+            "degrade": self.degrade,
             "shards": self.shards,
             **{f"[{name}]": section for name, section in table.items()},
         }
@@ -64,6 +67,7 @@ def request_of(
     sample: Path | None = None,
     background: str | None = None,
     refiner: str | None = None,
+    degrade: bool = False,
     shards: int | None = None,
 ) -> SetRequest:
     """The request of a command line; UserError for options that cannot be."""
@@ -79,7 +83,10 @@ def request_of(
         "refiner": refiner,
         "shards": shards,
     }
-    words = [(f"--{name}", as_text(value)) for name, value in settings.items() if value is not None]
+    words = ["--degrade"] if degrade else []
+    for name, value in settings.items():
+        if value is not None:
+            words += [f"--{name}", as_text(value)]
     return SetRequest(
         output.absolute(),
         seed,
@@ -88,6 +95,7 @@ def request_of(
         load_table(sample),
         backgrounds_of(background),
         refiner,
+        degrade,
         shards,
-        shlex.join(word for pair in words for word in pair),
+        shlex.join(words),
     )

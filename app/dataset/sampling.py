@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..motion.life import HEAD_RANGES
+from .degrading import Degradation
 from .table import BLINK, LETTERS, PERSONS, SampleTable, Shares, paired_units
 
 MOST_UNITS = 7  # of a mixture
@@ -43,6 +44,7 @@ class Sample:
     person: number of the one whose head it is, as `assets.identities.sample_identity` has it.
     light: name of one of the renderer's.
     surroundings: seed of light and background.
+    degradation: blur, noise and JPEG of a degraded set.
     """
 
     seed: int
@@ -55,12 +57,13 @@ class Sample:
     person: int
     light: str
     surroundings: int
+    degradation: Degradation
 
 
 def draw(table: SampleTable, seed: int, index: int) -> Sample:
     """Sample number `index` of a seed."""
-    streams = np.random.SeedSequence([seed, index]).spawn(5)
-    faces, sides, heads, cameras, looks = map(np.random.default_rng, streams)
+    streams = np.random.SeedSequence([seed, index]).spawn(6)
+    faces, sides, heads, cameras, looks, faults = map(np.random.default_rng, streams)
     kind = chosen(faces, table.kinds)
     face = _Face(table, faces)
     name = face.fill(kind)
@@ -87,6 +90,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
         seed * PERSONS + int(looks.integers(table.persons.count)),
         chosen(looks, table.lights),
         int(looks.integers(2**63)),
+        _degradation(table, faults),
     )
 
 
@@ -94,6 +98,22 @@ def chosen(random: np.random.Generator, shares: Shares) -> str:
     """One of the names, each as often as its share says."""
     weights = np.array(list(shares.values()))
     return list(shares)[int(random.choice(len(weights), p=weights / weights.sum()))]
+
+
+def _degradation(table: SampleTable, random: np.random.Generator) -> Degradation:
+    """Blur, noise and JPEG of a sample."""
+    rows = table.degradations
+    shares = rows.blurred, rows.noisy, rows.compressed
+    is_blurred, is_noisy, is_compressed = random.random(3) < shares
+    blur = float(random.uniform(*rows.blur))
+    noise = float(random.uniform(*rows.noise))
+    jpeg = float(random.uniform(*rows.jpeg))
+    return Degradation(
+        round(blur, 3) if is_blurred else 0.0,
+        round(noise, 3) if is_noisy else 0.0,
+        round(jpeg) if is_compressed else None,
+        int(random.integers(2**63)),
+    )
 
 
 class _Face:

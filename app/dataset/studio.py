@@ -27,6 +27,7 @@ from ..pictures import Image
 from ..pipeline import Pipeline, Viewport
 from ..refining.presets import Refinement
 from ..scenes import FaceScene
+from .degrading import degraded
 from .folder import name_of
 from .labels import labels_of_face
 from .request import SetRequest
@@ -90,6 +91,9 @@ class Studio:
             **surroundings,
             **labels_of_face(scene, camera, request.size, images["depth"]),
         }
+        if request.degrade:
+            image = degraded(image, sample.degradation)
+            labels["degradation"] = asdict(sample.degradation)
         wanted = {name: images[name] for name in images if name in request.passes}
         return Shot(image, Labelled(wanted, labels))
 

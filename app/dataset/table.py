@@ -152,6 +152,18 @@ class Persons(Record):
 
 
 @dataclass(frozen=True)
+class Degradations(Record):
+    """How often, and how much, pictures are blurred, noisy and compressed."""
+
+    blurred: Share
+    noisy: Share
+    compressed: Share
+    blur: Annotated[Range, _between(0.0, 20.0)]
+    noise: Annotated[Range, _between(0.0, 100.0)]
+    jpeg: Annotated[Range, _between(1.0, 95.0)]
+
+
+@dataclass(frozen=True)
 class SampleTable(Record):
     """The content of aus.toml, section by section; its comments are the documentation."""
 
@@ -171,6 +183,7 @@ class SampleTable(Record):
     cuts_of_women: Annotated[Shares, _drawn_from(CUTS)]
     cuts_of_men: Annotated[Shares, _drawn_from(CUTS)]
     lights: Annotated[Shares, _drawn_from(LIGHTS)]
+    degradations: Degradations
 
     @property
     def population(self) -> Population:
@@ -213,7 +226,7 @@ def load_table(path: Path | None) -> SampleTable:
         except ValueError as error:
             raise UserError(f"{path}: {error}") from None
         # Rows that a table leaves out of these sections are taken from ours.
-        filled_up = ("sides", "eyes", "head", "camera", "persons")
+        filled_up = ("sides", "eyes", "head", "camera", "persons", "degradations")
         for name, rows in own.items():
             is_added = name in filled_up and isinstance(rows, dict)
             sections[name] = {**sections[name], **rows} if is_added else rows

@@ -1,0 +1,47 @@
+"""What a camera adds to a picture: blur, noise, and the blocks of a JPEG file, in this order."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+
+import numpy as np
+import PIL.Image
+import scipy
+
+from risorius.geometry.colour import to_linear, to_screen
+
+from ..pictures import Image
+
+
+@dataclass(frozen=True)
+class Degradation:
+    """How much of each; 0 and None leave the picture as it is.
+
+    blur: standard deviation of a Gaussian, of linear light [pixels]. noise: standard deviation of
+    each channel by itself [grey levels of 255]. jpeg: quality as of Pillow, 1 to 95. seed: of the
+    noise.
+    """
+
+    blur: float
+    noise: float
+    jpeg: int | None
+    seed: int
+
+
+def degraded(image: Image, degradation: Degradation) -> Image:
+    """A picture (H, W, 3), uint8, as such a camera would give it."""
+    values = image.astype(np.float64)
+    if degradation.blur > 0.0:
+        light = to_linear(image / 255.0)
+        blurred = scipy.ndimage.gaussian_filter(light, (degradation.blur, degradation.blur, 0.0))
+        values = 255.0 * to_screen(blurred)
+    if degradation.noise > 0.0:
+        random = np.random.default_rng(degradation.seed)
+        values = values + degradation.noise * random.standard_normal(image.shape)
+    found: Image = np.rint(values).clip(0, 255).astype(np.uint8)
+    if degradation.jpeg is None:
+        return found
+    file = io.BytesIO()
+    PIL.Image.fromarray(found).save(file, "JPEG", quality=degradation.jpeg)
+    return np.asarray(PIL.Image.open(file).convert("RGB"))
