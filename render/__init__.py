@@ -20,6 +20,8 @@ from .compositor import Detail
 from .errors import GLError
 from .frame import NO_MAPS, DrawnPart, Frame, PlacedPart, Plane, Skin, SkinMaps
 from .geometry_buffer import Geometry
+from .light_map import LIGHT_MAPS, LightMap
+from .lights import LAMPS, LIGHTS
 from .lines import Lines
 from .opening import Opening
 from .probe import Finding, probe
@@ -31,7 +33,6 @@ from .style import (
     CLAY,
     DARK,
     LIGHT,
-    LIGHTS,
     SKIN,
     SPLIT_PALETTE,
     WHITE,
@@ -50,8 +51,10 @@ __all__ = [
     "BLACK",
     "CLAY",
     "DARK",
+    "LAMPS",
     "LIGHT",
     "LIGHTS",
+    "LIGHT_MAPS",
     "NO_MAPS",
     "SKIN",
     "SPLIT_PALETTE",
@@ -71,6 +74,7 @@ __all__ = [
     "GpuStream",
     "Image",
     "Light",
+    "LightMap",
     "Lines",
     "OffscreenSurface",
     "Opening",

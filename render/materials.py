@@ -31,20 +31,25 @@ def mesh_shader(style: Style, has_texture: bool, maps: Iterable[BumpMap], fades:
         *(["SHADOWS"] if style.shadows else []),
         *(each.define for each in maps),
         *(["FADED"] if fades else []),
+        *(["AROUND"] if style.light.around else []),
     ]
 
 
-def part_shader(kind: str, opening: str, has_shadow: bool, is_cut: bool) -> list[str]:
+def part_shader(
+    kind: str, opening: str, has_shadow: bool, is_cut: bool, is_around: bool
+) -> list[str]:
     """The file and the defines of the program of parts of a kind, see `PartBuffers`.
 
     opening: how `Opening.define` calls the one before them; empty where there is none.
+    is_around: whether light comes from all around, by nine coefficients.
     """
+    around = ["AROUND"] * is_around
     if kind == "SHELLS":
-        return ["shells.glsl"]
+        return ["shells.glsl", *around]
     shadows = ["SHADOWS"] * (has_shadow and kind != "STRANDS")
     sunk = ["SUNK"] * (is_cut and kind != "STRANDS")
     openings = [opening] if opening else []
-    return ["surface.glsl", "PIXEL", "COLOURED", kind, *openings, *shadows, *sunk]
+    return ["surface.glsl", "PIXEL", "COLOURED", kind, *openings, *shadows, *sunk, *around]
 
 
 def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_scale: float) -> None:
@@ -94,8 +99,11 @@ def set_light(program: moderngl.Program, light: Light) -> None:
     program["key_light"] = light.key
     program["fill_light"] = light.fill
     program["rim_light"] = light.rim
-    program["sky"] = light.sky
-    program["ground"] = light.ground
+    if light.around:
+        write_uniform(program, "around", np.array(light.around))
+    else:
+        program["sky"] = light.sky
+        program["ground"] = light.ground
 
 
 def value_texture(

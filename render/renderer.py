@@ -246,8 +246,9 @@ class Renderer:
         if depths is not None:
             depths.choose_parts(parts)
         programs = {}
+        is_around = bool(style.light.around)
         for kind, opening in {_kind_of(each, style) for each in parts}:
-            names = part_shader(kind, opening, shadow is not None, cut is not None)
+            names = part_shader(kind, opening, shadow is not None, cut is not None, is_around)
             programs[kind, opening] = program = self._program(*names)
             write_uniform(program, "projection", view.projection)
             set_light(program, style.light)

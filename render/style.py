@@ -8,12 +8,8 @@ Light comes from a key, which throws shadows, a fill, a rim and a hemisphere of 
 hangs on the camera, as in a studio where the camera stands still and the head turns.
 """
 
-import tomllib
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from pathlib import Path
-from types import MappingProxyType
 from typing import Self
 
 Colour = tuple[float, float, float]
@@ -85,6 +81,7 @@ class Light:
 
     to_key, to_fill: unit vectors toward the lights, in view space (x right, y up, z to the viewer).
     key, fill, rim: linear light of each; sky, ground: of the ambient light from above and below.
+    around: nine coefficients in the place of sky and ground, as light_map.py makes them; or none.
     """
 
     to_key: Vector = (-0.5300, 0.6300, 0.5677)  # over the viewer's left shoulder
@@ -94,12 +91,7 @@ class Light:
     rim: Vector = (0.66, 0.645, 0.65)  # from behind the viewer's right
     sky: Vector = (0.215, 0.215, 0.225)
     ground: Vector = (0.125, 0.095, 0.083)
-
-
-_ROWS = tomllib.loads((Path(__file__).parent / "lights.toml").read_text(encoding="utf-8"))
-LIGHTS: Mapping[str, Light] = MappingProxyType(
-    {name: Light(**{key: tuple(xyz) for key, xyz in row.items()}) for name, row in _ROWS.items()}
-)
+    around: tuple[Vector, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,7 +108,7 @@ class Style:
     shadows: bool = True  # of the key light
     skin_maps: bool = True  # fine shape, and less light in folds, where the texture says so
     bumps: float = 1.0  # how much of a bump map shows, where there is one; 0 = none
-    light: Light = LIGHTS["studio"]
+    light: Light = Light()
     background: Background | None = LIGHT  # None: transparent
     wire_colour: Colour = (0.07, 0.08, 0.12)
     wire_width: float = 1.0  # [pixels at scale 1]; a window on a dense screen draws it wider

@@ -66,6 +66,11 @@ class Filming:
         default="light",
         help="light, dark, white, black, a colour as #00b140, or transparent.",
     )
+    light: Path | None = option(
+        type=PATH,
+        help="A map of light from all around, .hdr or .exr, twice as wide as high; its middle lies "
+        "behind the head. --style light=NAME has ours.",
+    )
     passes: str | None = option(
         metavar="NAME,...",
         help="Beside each picture: depth, normal, triangle, splits, segmentation, landmarks.",
@@ -102,6 +107,15 @@ class Filming:
             words.pop()
         return ",".join(words) or None, is_turntable
 
+    def _style(self, drawing: Drawing) -> render.Style:
+        """The style of pictures, in the light of a file where there is one."""
+        from ..light_maps import read_light_map
+
+        style = replace(drawing.style(), background=self.background)
+        if self.light is None:
+            return style
+        return replace(style, light=read_light_map(self.light).light())
+
     def options(
         self, script: Script, drawing: Drawing, *, is_recorded: bool = False
     ) -> CaptureOptions:
@@ -121,7 +135,7 @@ class Filming:
             camera=camera or script.camera,
             is_turntable=is_turntable,
             span=self.span,
-            style=replace(drawing.style(), background=self.background),
+            style=self._style(drawing),
             anatomy=drawing.anatomy_view(),
             head=drawing.fitted_head(),
             is_alive=is_recorded and not has_head if self.alive is None else self.alive,

@@ -57,6 +57,11 @@ from .options import PATH, SILENT, Size, printing
     help="A colour, as '#8090a0' or grey, or a folder of pictures; soft colours by default.",
 )
 @click.option(
+    "--light",
+    type=PATH,
+    help="A map of light from all around, .hdr or .exr, or a folder of them; else the table's.",
+)
+@click.option(
     "--degrade",
     is_flag=True,
     help="Blur, noise and JPEG in the pictures, as the table of --sample draws them.",

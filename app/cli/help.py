@@ -15,7 +15,7 @@ HEADINGS: Mapping[str, tuple[str, ...]] = {  # names of parameters, in the order
     "Live face": ("live", "port", "address", "gains", "mirror"),
     "Face": ("head", "landmarks"),
     "Refinement": ("look", "refiner", "refiner_settings"),
-    "Picture": ("camera", "background", "style_settings", "anatomy"),
+    "Picture": ("camera", "background", "light", "style_settings", "anatomy"),
 }
 
 _CONVERT = "convert the recording first: risorius convert RECORDING {option} ... -o script.toml"
@@ -29,7 +29,6 @@ MOVED: Mapping[str, str] = {
     "--face": _CONVERT,
     "--rate": _CONVERT,
     "--skin": _STYLE,
-    "--light": _STYLE,
     "--wrinkles": _STYLE,
     "--wireframe": _WORD,
     "--splits": _WORD,

@@ -10,7 +10,8 @@ from typing import Any
 from ..errors import UserError
 
 STRUCTURES = ("muscles", "skull")  # anatomy.STRUCTURES, not imported yet
-LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard")  # render.LIGHTS, not imported yet
+# render.LIGHTS, not imported yet
+LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard", "clouds", "room", "street")
 SKINS = ("textured", "plain", "clay")
 SIDES = ("both", "left", "right")
 

@@ -14,7 +14,7 @@ from ..passes.labels import check_wanted
 from ..passes.passes import IMAGES
 from ..refining.refiners import parse_options
 from ..text import as_text
-from .surroundings import Backgrounds, backgrounds_of
+from .surroundings import Backgrounds, LightFiles, backgrounds_of, light_files_of
 from .table import SampleTable, load_table
 
 
@@ -34,6 +34,7 @@ class SetRequest:
     passes: tuple[str, ...]
     table: SampleTable
     backgrounds: Backgrounds = Backgrounds()  # noqa: RUF009 - frozen
+    lights: LightFiles = LightFiles()  # noqa: RUF009 - frozen
     refiner: str | None = None
     degrade: bool = False
     shards: int | None = None
@@ -50,6 +51,7 @@ class SetRequest:
             "size": list(self.size),
             "passes": list(self.passes),
             "background": self.backgrounds.options,
+            "light": self.lights.options,
             "refiner": self.refiner,
             "degrade": self.degrade,
             "shards": self.shards,
@@ -66,6 +68,7 @@ def request_of(
     passes: Sequence[str],
     sample: Path | None = None,
     background: str | None = None,
+    light: Path | None = None,
     refiner: str | None = None,
     degrade: bool = False,
     shards: int | None = None,
@@ -80,6 +83,7 @@ def request_of(
         "passes": ",".join(passes),
         "size": "x".join(map(str, size)),
         "background": background,
+        "light": light,
         "refiner": refiner,
         "shards": shards,
     }
@@ -94,6 +98,7 @@ def request_of(
         passes,
         load_table(sample),
         backgrounds_of(background),
+        light_files_of(light),
         refiner,
         degrade,
         shards,

@@ -18,6 +18,7 @@ import PIL.Image
 from risorius import render
 from risorius.assets.identities import in_colours, make_person, own_colours, sample_identity
 
+from ..light_maps import seen_behind
 from ..motion import SETTLING
 from ..motion.life import EYE_RANGE, looking_at
 from ..passes.camera import CameraLabels
@@ -103,22 +104,25 @@ class Studio:
         """The picture of a scene as it is now, and the labels of its light and background."""
         request = self._request
         random = np.random.default_rng(sample.surroundings)
-        light = light_of(sample.light, random)
+        lit = light_of(sample.light, request.lights, random)
         picture = None
         colours = None
         name = ""
         if request.backgrounds.pictures:
             name, picture = request.backgrounds.picture(random, request.size)
+        elif lit.map is not None and request.backgrounds.colour is None:
+            name = lit.name
+            picture = seen_behind(lit.map, request.size, sample.view.field_of_view, lit.turn)
         else:
             colours = request.backgrounds.colours(random)
-        style = render.Style(light=light, background=colours)
+        style = render.Style(light=lit.light, background=colours)
         model.pipeline.draw(camera, style, [Viewport(model.passes.drawn, (0, 0, *request.size))])
         if picture is None:
             image = self._surface.read()
         else:
             image = laid_over(picture, self._surface.read_scene(4))
-        lit = {"name": sample.light, **asdict(light)}
-        return image, {"light": lit, "background": name if colours is None else asdict(colours)}
+        background = name if colours is None else asdict(colours)
+        return image, {"light": lit.labels, "background": background}
 
     def _person_of(self, number: int) -> _Model:
         """Person `number` before the frame, drawn from the table's population."""

@@ -7,7 +7,8 @@ import contextlib
 import hashlib
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +17,19 @@ import PIL.Image
 import PIL.ImageColor
 import PIL.ImageOps
 
-from risorius.render import LIGHTS, Background, Light
+from risorius.geometry.arrays import Floats64
+from risorius.render import LAMPS, LIGHT_MAPS, Background, Light, LightMap
 
 from ..errors import UserError
+from ..light_maps import LIGHT_SUFFIXES, read_light_map
 from ..pictures import Image
 from ..text import as_text
+
+
+def _digest(paths: tuple[Path, ...]) -> str:
+    """Another one for other files."""
+    listed = "".join(f"{path.name} {path.stat().st_size}\n" for path in paths)
+    return hashlib.sha256(os.fsencode(listed)).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
@@ -35,9 +44,7 @@ class Backgrounds:
         """All that decides them, for JSON."""
         if not self.pictures:
             return self.colour if self.colour is None else list(self.colour)
-        listed = "".join(f"{path.name} {path.stat().st_size}\n" for path in self.pictures)
-        content = hashlib.sha256(os.fsencode(listed)).hexdigest()[:16]  # other files, other digest
-        return {"pictures": len(self.pictures), "content": content}
+        return {"pictures": len(self.pictures), "content": _digest(self.pictures)}
 
     def colours(self, random: np.random.Generator) -> Background:
         """The colours of one sample: not far from grey, the edge a little darker or lighter."""
@@ -69,17 +76,81 @@ class Backgrounds:
         return as_text(path.name), np.asarray(part)
 
 
-def light_of(name: str, random: np.random.Generator) -> Light:
-    """One of the renderer's lights: its key moved, all brighter or darker, warmer or cooler."""
-    light = LIGHTS[name]
+@dataclass(frozen=True)
+class SampleLight:
+    """The light of a sample: name, and the map that it comes from, turned by an angle [deg]."""
+
+    name: str
+    light: Light
+    map: LightMap | None = None
+    turn: float = 0.0
+
+    @property
+    def labels(self) -> dict[str, Any]:
+        """As JSON has it."""
+        turned = {} if self.map is None else {"turn": self.turn}
+        return {"name": self.name, **turned, **asdict(self.light)}
+
+
+@dataclass(frozen=True)
+class LightFiles:
+    """Maps of light, of which each sample has one; none: the table's lights."""
+
+    paths: tuple[Path, ...] = ()
+
+    @property
+    def options(self) -> Any:
+        """All that decides them, for JSON."""
+        return _digest(self.paths) if self.paths else None
+
+
+@lru_cache(8)
+def _light_map(path: Path) -> LightMap:
+    return read_light_map(path)
+
+
+def light_of(name: str, files: LightFiles, random: np.random.Generator) -> SampleLight:
+    """A light, brighter or darker, warmer or cooler: of a lamp the key is moved, a map is turned.
+
+    name: of one of the renderer's, unless there are files.
+    """
+    if not files.paths and name in LAMPS:
+        return SampleLight(name, _lamp(name, random))
+    light_map = None if files.paths else LIGHT_MAPS[name]
+    if light_map is None:
+        path = files.paths[int(random.integers(len(files.paths)))]
+        name = as_text(path.name)
+        light_map = _light_map(path)
+        turn = round(float(random.uniform(-180.0, 180.0)), 2)
+    else:  # ours have their windows and lamps before the face
+        turn = round(float(np.clip(25.0 * random.standard_normal(), -60.0, 60.0)), 2)
+    light = light_map.light(turn)
+    tint = _tint(random)
+    changed: dict[str, Any] = {"key": _tinted(tint, light.key)}
+    changed["around"] = tuple(_tinted(tint, row) for row in light.around)
+    return SampleLight(name, replace(light, **changed), light_map, turn)
+
+
+def _tint(random: np.random.Generator) -> Floats64:
+    """By what red, green and blue light are multiplied."""
+    # Of red over blue light, with this standard deviation.
+    warmth = 0.08 * np.clip(random.standard_normal(), -2.0, 2.0)
+    return np.asarray(random.uniform(0.75, 1.15) * np.array([1.0 + warmth, 1.0, 1.0 - warmth]))
+
+
+def _tinted(tint: Floats64, light: tuple[float, float, float]) -> tuple[float, ...]:
+    return tuple((tint * light).tolist())
+
+
+def _lamp(name: str, random: np.random.Generator) -> Light:
+    """One of the renderer's lamps: its key moved, all brighter or darker, warmer or cooler."""
+    light = LAMPS[name]
     # The key light is moved, with this standard deviation [degrees].
     to_key = np.array(light.to_key) + np.radians(18.0) * random.standard_normal(3)
     to_key[2] = max(to_key[2], 0.1)  # not behind the head
-    # Of red over blue light, with this standard deviation.
-    warmth = 0.08 * np.clip(random.standard_normal(), -2.0, 2.0)
-    tint = random.uniform(0.75, 1.15) * np.array([1.0 + warmth, 1.0, 1.0 - warmth])
+    tint = _tint(random)
     changed: dict[str, Any] = {
-        each: tuple((tint * getattr(light, each)).tolist())
+        each: _tinted(tint, getattr(light, each))
         for each in ("key", "fill", "rim", "sky", "ground")
     }
     return replace(light, to_key=tuple((to_key / np.linalg.norm(to_key)).tolist()), **changed)
@@ -92,6 +163,19 @@ def laid_over(picture: Image, premultiplied: Image) -> Image:
         np.rint(premultiplied[..., :3] + through * picture).clip(0, 255).astype(np.uint8)
     )
     return blended
+
+
+def light_files_of(path: Path | None) -> LightFiles:
+    """The value of `--light`: a map of light, a folder of them, or None; UserError else."""
+    if path is None:
+        return LightFiles()
+    paths: tuple[Path, ...] = (path,)
+    if path.is_dir():
+        paths = tuple(sorted(p for p in path.iterdir() if p.suffix.lower() in LIGHT_SUFFIXES))
+        if not paths:
+            raise UserError(f"--light {path}: no map of light in it, {', '.join(LIGHT_SUFFIXES)}")
+    _light_map(paths[0])  # the others when they are drawn: of many it would take minutes
+    return LightFiles(tuple(each.absolute() for each in paths))
 
 
 def backgrounds_of(text: str | None) -> Backgrounds:

@@ -7,8 +7,12 @@ uniform vec3 to_fill;
 uniform vec3 key_light;
 uniform vec3 fill_light;
 uniform vec3 rim_light;
+#if defined(AROUND)
+uniform vec3 around[9];  // light from all around, see light_map.py
+#else
 uniform vec3 sky;
 uniform vec3 ground;
+#endif
 const vec3 TO_RIM = vec3(0.6200, 0.3600, -0.6972);
 // How far each colour of light travels in skin: red past the terminator, blue hardly.
 const vec3 SCATTER = vec3(0.19, 0.13, 0.098);
@@ -26,8 +30,17 @@ struct Lit {
     vec3 specular;  // added, times lightness
 };
 
+// Light from all around on a surface.
 vec3 hemisphere(vec3 normal) {
+#if defined(AROUND)
+    float x = normal.x, y = normal.y, z = normal.z;
+    vec3 light = around[0] + around[1] * y + around[2] * z + around[3] * x + around[4] * (x * y)
+        + around[5] * (y * z) + around[6] * (x * z) + around[7] * (3.0 * z * z - 1.0)
+        + around[8] * (x * x - y * y);
+    return max(light, 0.0);
+#else
     return mix(ground, sky, 0.5 * normal.y + 0.5);
+#endif
 }
 
 // `openness`: how much of the rim light arrives. It comes from behind and throws no shadows, so that
@@ -53,7 +66,12 @@ Lit studio(vec3 normal, vec3 to_eye, float openness, float subsurface, float glo
     lit.rest = key_light * past * past / (4.0 * scatter * (1.0 + scatter))
         + fill_light * max(0.8 * dot(normal, to_fill) + 0.2, 0.0)
         + rim_light * rim * rim + ambient * mix(vec3(1.0), WARMTH, subsurface);
-    lit.specular = gloss * (key_light * highlight + (0.9 * ambient + rim_light * rim) * fresnel);
+#if defined(AROUND)
+    vec3 mirrored = hemisphere(reflect(-to_eye, normal));
+#else
+    vec3 mirrored = ambient;
+#endif
+    lit.specular = gloss * (key_light * highlight + (0.9 * mirrored + rim_light * rim) * fresnel);
     return lit;
 }
 

@@ -1,0 +1,137 @@
+"""Maps of light that a user brings: Radiance HDR and OpenEXR, all around (equirectangular).
+
+Source: Ward 1991, "Real pixels", Graphics Gems II, for the bytes of Radiance's files.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+import scipy
+
+from risorius import render
+from risorius.geometry.colour import to_screen
+
+from .errors import UserError
+from .extras import needed
+from .files import read_bytes
+
+LIGHT_SUFFIXES = (".hdr", ".exr")
+Pixels = npt.NDArray[np.float32]
+
+
+def read_light_map(path: Path) -> render.LightMap:
+    """The light in a file, (128, 256) texels; UserError for one that cannot be used."""
+    suffix = path.suffix.lower()
+    if suffix not in LIGHT_SUFFIXES:
+        raise UserError(f"{path}: is no map of light; give a file {' or '.join(LIGHT_SUFFIXES)}")
+    content = read_bytes(path, what="map of light", longest=2**28)
+    try:
+        pixels = _radiance(content) if suffix == ".hdr" else _openexr(path)
+    except (ValueError, IndexError) as error:
+        raise UserError(f"{path}: cannot be read as a map of light: {error}") from None
+    height, width = pixels.shape[:2]
+    if abs(width - 2 * height) > 0.02 * width:
+        raise UserError(
+            f"{path}: has {width} x {height} pixels; a map of light from all around "
+            "(equirectangular) is twice as wide as high"
+        )
+    pixels = np.nan_to_num(pixels, nan=0.0, posinf=0.0).clip(0.0, None)
+    if not pixels.any():
+        raise UserError(f"{path}: is black; nothing would be seen in its light")
+    size = (256, 128)
+    box = PIL.Image.Resampling.BOX
+    small = [PIL.Image.fromarray(pixels[..., k]).resize(size, box) for k in range(3)]
+    return render.LightMap(np.stack([np.asarray(each, np.float64) for each in small], axis=-1))
+
+
+def seen_behind(
+    light_map: render.LightMap, size: tuple[int, int], field_of_view: float, turn: float = 0.0
+) -> npt.NDArray[np.uint8]:
+    """A map behind a head, out of focus, (height, width, 3), exposed as its light is.
+
+    size: width and height [pixels]. field_of_view: from top to bottom [deg]. turn: as of
+    `LightMap.light`.
+    """
+    width, height = size
+    half = np.tan(np.radians(field_of_view) / 2.0)
+    up = half * np.linspace(1.0, -1.0, height)[:, None]
+    right = half * width / height * np.linspace(-1.0, 1.0, width)
+    azimuth = np.degrees(np.arctan(right)) - turn
+    elevation = np.degrees(np.arctan(up / np.hypot(1.0, right)))
+    rows, columns = light_map.radiance.shape[:2]
+    row = (0.5 - elevation / 180.0) * rows - 0.5
+    column = (azimuth / 360.0 + 0.5) * columns - 0.5
+    places = np.stack(np.broadcast_arrays(row, column % columns))
+    out_of_focus = 3.0 * rows / 180.0  # 3 degrees, in texels
+    seen = []
+    for channel in np.moveaxis(light_map.radiance, -1, 0):
+        modes = ("nearest", "wrap")
+        soft = scipy.ndimage.gaussian_filter(channel, out_of_focus, mode=modes)
+        around = np.hstack([soft, soft[:, :4]])  # the seam lies within
+        seen.append(scipy.ndimage.map_coordinates(around, places, order=3, mode="nearest"))
+    shown = np.maximum(light_map.exposure(turn) * np.stack(seen, axis=-1), 0.0)
+    over = np.maximum(shown - 0.8, 0.0)  # the shoulder of lighting.glsl
+    shown = np.minimum(shown, 0.8) + over / (1.0 + 5.0 * over)
+    return np.asarray(np.rint(255.0 * to_screen(shown)).clip(0, 255), np.uint8)
+
+
+def _radiance(content: bytes) -> Pixels:
+    """The pixels of a Radiance file, shape (H, W, 3); ValueError where it is none."""
+    head, _, _ = content.partition(b"\n\n")
+    found = re.match(rb"-Y (\d{1,5}) \+X (\d{1,5})\n", content[len(head) + 2 :])
+    if not content.startswith(b"#?") or b"xyze" in head or found is None:
+        raise ValueError("it must be Radiance RGBE with lines from above, '-Y height +X width'")
+    height, width = (int(each) for each in found.groups())
+    data = np.frombuffer(content, np.uint8, offset=len(head) + 2 + found.end())
+    if len(data) == 4 * height * width:
+        rgbe = data.reshape(height, width, 4)
+    else:
+        rgbe = _unpacked(data, height, width)
+    scale = np.ldexp(np.float32(1.0), rgbe[..., 3:].astype(np.int32) - 136)
+    return np.asarray(np.where(rgbe[..., 3:] > 0, rgbe[..., :3] * scale, 0.0), np.float32)
+
+
+def _unpacked(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArray[np.uint8]:
+    """Lines whose four channels are packed by the lengths of runs, shape (H, W, 4)."""
+    values = data.tobytes()
+    lines = np.zeros((height, 4, width), np.uint8)
+    at = 0
+    for line in lines:
+        if values[at : at + 4] != bytes([2, 2, width >> 8, width & 255]):
+            raise ValueError("a line is packed in another way than by runs in each channel")
+        at += 4
+        for channel in line:
+            column = 0
+            while column < width:
+                count = values[at]
+                if count > 128:  # the same value, so often
+                    count -= 128
+                    channel[column : column + count] = values[at + 1]
+                    at += 2
+                else:
+                    channel[column : column + count] = data[at + 1 : at + 1 + count]
+                    at += 1 + count
+                column += count
+                if not count or column > width:
+                    raise ValueError("a line is longer than the picture is wide")
+    return lines.transpose(0, 2, 1)
+
+
+def _openexr(path: Path) -> Pixels:
+    """The pixels of an OpenEXR file, shape (H, W, 3); ValueError where it is none."""
+    module = needed("OpenEXR", "a light of .exr", "passes")
+    try:
+        with module.File(str(path), separate_channels=True) as file:
+            channels = file.channels()
+            names = [name for name in "RGB" if name in channels]
+            if len(names) < 3:
+                raise ValueError("it has no channels R, G and B")
+            pixels = np.stack([channels[name].pixels for name in names], axis=-1)
+    except RuntimeError as error:
+        raise ValueError(str(error)) from None
+    return pixels.astype(np.float32)

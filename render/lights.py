@@ -1,0 +1,17 @@
+"""Lights by name: lamps of lights.toml, and light from all around of maps."""
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from .light_map import LIGHT_MAPS
+from .style import Light
+
+_ROWS = tomllib.loads((Path(__file__).parent / "lights.toml").read_text(encoding="utf-8"))
+LAMPS: Mapping[str, Light] = MappingProxyType(
+    {name: Light(**{key: tuple(xyz) for key, xyz in row.items()}) for name, row in _ROWS.items()}
+)
+LIGHTS: Mapping[str, Light] = MappingProxyType(
+    {**LAMPS, **{name: each.light() for name, each in LIGHT_MAPS.items()}}
+)

@@ -1,0 +1,122 @@
+"""Maps of light from files: Radiance HDR, OpenEXR, and what is refused."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from risorius import render
+from risorius.app.errors import UserError
+from risorius.app.light_maps import read_light_map, seen_behind
+
+from .command_line import risorius
+
+HEAD = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n"
+
+
+def pixels():
+    """A sky that darkens downward, with a sun of 60 times its light."""
+    light = np.linspace(1.0, 0.25, 32)[:, None, None] * np.array([0.5, 0.75, 1.0])
+    light = np.broadcast_to(light, (32, 64, 3)).copy()
+    light[6:9, 40:44] = 60.0
+    return light
+
+
+def rgbe(light):
+    """Shared exponents, (H, W, 4)."""
+    _, exponent = np.frexp(light.max(axis=-1))
+    mantissa = light * np.ldexp(256.0, -exponent)[..., None]
+    return np.concatenate([mantissa, exponent[..., None] + 128], axis=-1).astype(np.uint8)
+
+
+def packed(lines):
+    """Channel by channel, equal values as a run."""
+    found = b""
+    for line in lines:
+        found += bytes([2, 2, 0, len(line)])
+        for channel in line.T.tolist():
+            column = 0
+            while column < len(channel):
+                end = column
+                while end < len(channel) and channel[end] == channel[column]:
+                    end += 1
+                if end - column > 2:
+                    found += bytes([128 + end - column, channel[column]])
+                else:
+                    found += bytes([end - column, *channel[column:end]])
+                column = end
+    return found
+
+
+@pytest.mark.parametrize("is_packed", [True, False])
+def test_radiance_is_read(tmp_path, is_packed):
+    """Packed by runs or not, to the precision of its bytes."""
+    path = tmp_path / "sky.hdr"
+    content = rgbe(pixels())
+    path.write_bytes(HEAD + (packed(content) if is_packed else content.tobytes()))
+    found = read_light_map(path).radiance
+    assert_allclose(found[::4, ::4], pixels(), rtol=0.05, atol=0.01)
+
+
+def test_openexr_is_read(tmp_path):
+    """Channels R, G and B, beside any others."""
+    module = pytest.importorskip("OpenEXR")
+    path = tmp_path / "sky.exr"
+    channels = {name: pixels()[..., k].astype(np.float32) for k, name in enumerate("RGB")}
+    channels["A"] = np.ones((32, 64), np.float32)
+    kind = {"compression": module.ZIP_COMPRESSION, "type": module.scanlineimage}
+    with module.File(kind, channels) as file:
+        file.write(str(path))
+    assert_allclose(read_light_map(path).radiance[::4, ::4], pixels(), rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("sky.png", b"", "is no map of light; give a file .hdr or .exr"),
+        ("sky.hdr", b"nothing", "cannot be read as a map of light"),
+        ("sky.hdr", HEAD + b"\2\2\0\x40" + b"\xff", "cannot be read as a map of light"),
+        ("sky.hdr", HEAD.replace(b"64", b"32") + bytes(32 * 32 * 4), "has 32 x 32 pixels"),
+        ("sky.hdr", HEAD + bytes(64 * 32 * 4), "is black"),
+        ("sky.exr", b"nothing", "cannot be read as a map of light"),
+    ],
+)
+def test_others_are_refused_in_one_line(tmp_path, name, content, message):
+    """With the file's name and what is allowed."""
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(UserError, match=message) as raised:
+        read_light_map(path)
+    assert str(raised.value).startswith(str(path))
+
+
+def test_a_set_is_lit_by_files(tmp_path):
+    """Each sample by one of them, turned, with the map behind; labels say so."""
+    maps = tmp_path / "maps"
+    maps.mkdir()
+    (maps / "sky.hdr").write_bytes(HEAD + rgbe(pixels()).tobytes())
+    shutil.copy(maps / "sky.hdr", maps / "sun.hdr")
+    options = ("--count", 1, "--size", "64x64", "--light", maps, "--quiet")
+    result = risorius("dataset", *options, "-o", tmp_path / "set")
+    assert result.exit_code == 0, result.output
+    labels = json.loads((tmp_path / "set" / "000000.json").read_text())
+    assert labels["light"]["name"] in ("sky.hdr", "sun.hdr")
+    assert labels["background"] == labels["light"]["name"]
+    assert -180.0 <= labels["light"]["turn"] <= 180.0
+    assert len(labels["light"]["around"]) == 9
+
+
+def test_what_lies_behind_is_the_middle_of_the_map():
+    """It is out of focus, and moves to the right where the map is turned so."""
+    radiance = np.full((64, 128, 3), 0.3)
+    radiance[28:36, 62:66] = 0.0
+    radiance[:, :32] = 1.0  # behind the viewer
+    light_map = render.LightMap(radiance)
+    rows = [
+        seen_behind(light_map, (80, 60), 40.0, turn)[30, :, 0].astype(int) for turn in (0.0, 12.0)
+    ]
+    assert abs(int(rows[0].argmin()) - 40) <= 3
+    assert rows[1].argmin() > rows[0].argmin() + 8
+    assert np.abs(np.diff(rows[0])).max() < 40
