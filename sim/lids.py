@@ -201,8 +201,11 @@ def _one_eye(
     share = np.where(side > 0.0, eyes.blink_meeting - 1.0, eyes.blink_meeting)
     closing = share * weight * opening
     arrives = column + slide * np.where(side > 0.0, *eyes.blink_slide) / np.linalg.norm(axes.axis)
-    seam = lower.front + eyes.blink_meeting * height  # where closed lids meet
-    meeting, rises = (np.interp(c, where, seam) for c in (arrives, column))
+    plain_seam = lower.front + eyes.blink_meeting * height
+    seam = _raised_at_corners(plain_seam, upper.front)  # where closed lids meet
+    meeting, rises = (
+        np.interp(c, where, each) for c, each in ((arrives, seam), (column, plain_seam))
+    )
     closing += weight * (meeting - rises)
     edge_turn = 1e-3  # rad
     for lid, sign in ((upper, 1.0), (lower, -1.0)):  # the margin itself, up to its front edge
@@ -220,12 +223,29 @@ def _one_eye(
     sink *= (side > 0.0) * weight
     least_turn = 1e-3  # lid vertices that move less are not lid
     vertex = np.flatnonzero(np.maximum(np.maximum(weight, fold), slide) > least_turn)
-    wide_opening = 0.3  # rad: from here on they do in full
-    width = (opening - least_opening) / (wide_opening - least_opening)
-    pressed_turn = 0.11  # rad (1.4 mm) by which closed lids are pressed into each other
-    overlap = pressed_turn * weight * smoothstep(width)
+    overlap = weight * _pressed_turn(opening, least_opening)
     values = (weight, closing, overlap, sink, fold, opening, slide)
     return _OneEye(vertex, side[vertex] > 0.0, *(each[vertex] for each in values))
+
+
+def _pressed_turn(opening: Floats64, least_opening: float) -> Floats64:
+    """How far closed lids are pressed into each other [rad], by how far the eye is open there."""
+    wide_opening = 0.3  # rad: from here on they are in full
+    most_turn = 0.11  # rad (1.4 mm)
+    width = (opening - least_opening) / (wide_opening - least_opening)
+    return most_turn * smoothstep(width)
+
+
+def _raised_at_corners(seam: Floats64, upper: Floats64) -> Floats64:
+    """The seam [rad] by column without a step at a corner that lies above the lower lid's edge.
+
+    Lids that met below such a corner left a notch beside it. upper: front edge of the upper lid.
+    """
+    where = np.linspace(0.0, 1.0, COLUMNS)
+    corner_slope = 0.5  # [rad] over the width of the opening
+    raised = np.maximum(seam[0] - corner_slope * where, seam[-1] - corner_slope * (1.0 - where))
+    joined: Floats64 = np.maximum(seam, np.minimum(raised, upper))
+    return joined
 
 
 class _OneLid(NamedTuple):

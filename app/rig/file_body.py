@@ -17,6 +17,7 @@ import scipy
 
 from risorius.assets import Part
 from risorius.assets.fitting import FittedHead
+from risorius.assets.fitting.eyeballs import sphere_of
 from risorius.assets.fitting.mesh_validation import pieces_of, with_seams_joined
 from risorius.assets.meshes import Mesh
 from risorius.geometry.arrays import Floats64, Integers, Integers32
@@ -25,7 +26,7 @@ from risorius.geometry.normals import vertex_normals
 
 from ..scenes.surface_attachment import SurfaceAttachment
 from .bodies import EYES
-from .pieces import FilePiece, sphere_of
+from .pieces import FilePiece
 from .poses import CRANIUM, Pose
 
 LIP_HEIGHT = (

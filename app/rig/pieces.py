@@ -16,6 +16,7 @@ import numpy.typing as npt
 import scipy
 
 from risorius.assets.fitting import FittedHead
+from risorius.assets.fitting.eyeballs import is_eyeball
 from risorius.assets.fitting.mesh_validation import pieces_of
 from risorius.geometry.arrays import Floats64, Integers32
 
@@ -37,7 +38,6 @@ AROUND_MOUTH = 6.0  # [mm] about these parts, in which parts of a mouth are look
 FACE = slice(17, 68)  # landmarks, without the jaw line
 BESIDE = 12.0  # [mm] about these, in which lashes and brows are looked for
 CHIN = 8  # landmark
-FEWEST = 4  # vertices of an eyeball or a jaw: fewer are strands and cards
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def _role_of(
 ) -> str:
     """What a piece is taken for. points: its vertices [mm], shape (n, 3)."""
     for eye in head.eyes:
-        if _is_eyeball(points, middle, eye.centre, eye.radius):
+        if is_eyeball(points, eye.centre, eye.radius):
             return f"eye_{eye.name}"
     role = _role_in_mouth(points, middle, head)
     if role is not None:
@@ -103,19 +103,6 @@ def _role_of(
     if points[:, 1].max() < landmarks[CHIN, 1]:
         return "body"
     return "hair"
-
-
-def _is_eyeball(points: Floats64, middle: Floats64, centre: Floats64, radius: float) -> bool:
-    """Whether a piece is an eyeball, or a layer of one, such as an iris or a cornea."""
-    if len(points) < FEWEST:
-        return False
-    off = np.linalg.norm(points - centre, axis=1)
-    if np.quantile(off, 0.9) > 1.7 * radius:
-        return False
-    aside = np.abs(middle - centre)[:2].max()
-    width, height, _ = np.ptp(points, axis=0)
-    is_round = 0.6 < (width + 1e-9) / (height + 1e-9) < 1.7
-    return bool(aside < 0.4 * radius and is_round and width > 0.3 * radius)
 
 
 def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str | None:
@@ -193,22 +180,3 @@ def described(pieces: Sequence[FilePiece]) -> list[str]:
         lines.append(f"{name}: {vertices}{where}: {what}")
         first = last + 1
     return lines
-
-
-def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats64, float]:
-    """The sphere that fits points (n, 3) best, if they are a ball about there; else the given one.
-
-    Source: linear least squares of |p|^2 = 2 p c + (r^2 - |c|^2).
-    """
-    local = points - centre
-    matrix = np.column_stack([2.0 * local, np.ones(len(local))])
-    found, _, rank, _ = np.linalg.lstsq(matrix, (local**2).sum(axis=1), rcond=None)
-    size = float(found[3] + found[:3] @ found[:3])
-    if rank < 4 or size <= 0.0:
-        return centre, radius
-    middle = centre + found[:3]
-    fitted = float(np.sqrt(size))
-    off = np.abs(np.linalg.norm(points - middle, axis=1) - fitted)
-    is_ball = off.mean() < 0.12 * fitted and 0.6 < fitted / radius < 1.7
-    is_near = np.linalg.norm(middle - centre) < 0.6 * radius
-    return (middle, fitted) if is_ball and is_near else (centre, radius)

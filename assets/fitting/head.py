@@ -46,6 +46,7 @@ from .mesh_validation import (
     SkinPiece,
     check_manifold,
     check_openings,
+    pieces_of,
     skin_of,
     with_seams_joined,
     without_bag,
@@ -198,13 +199,14 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
     if mesh.texture is not None:
         own = own_picture(mesh.texture, skin.file_faces, skin.is_turned)
     target = similarity.points(points)
+    pieces = tuple(similarity.points(each) for each in _beside_skin(mesh.vertices, faces, skin))
     notes = mesh.notes
     simplified = None
     if len(skin.faces) > simplifying.MOST_SIMULATED:
         coarse = simplifying.simplified(skin, target)
         count = len(coarse.faces)
         notes += (f"its {len(skin.faces)} triangles follow a simplified mesh of {count}",)
-        carried = _carried_over(known, coarse, target)
+        carried = _carried_over(known, coarse, target, pieces)
         simplified = simplifying.SimulatedHead(
             vertices=coarse.vertices,
             faces=coarse.faces,
@@ -217,7 +219,7 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
         )
         carried = _on_finer(carried, coarse, skin)
     else:
-        carried = _carried_over(known, skin, target)
+        carried = _carried_over(known, skin, target, pieces)
     layout, albedo, maps = _painted(mesh, own, skin, Layout(carried.uv, skin.faces))
     wrinkles, segments, light = maps
     return FittedHead(
@@ -242,6 +244,18 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
     )
 
 
+def _beside_skin(vertices: Floats64, faces: Integers32, skin: SkinPiece) -> list[Floats64]:
+    """The vertices (n, 3) of each piece of a mesh that is not the skin."""
+    piece = pieces_of(faces, len(vertices))
+    used = np.zeros(len(vertices), np.bool_)
+    used[faces] = True
+    used[piece == piece[skin.file_vertices[0]]] = False
+    others = np.flatnonzero(used)
+    others = others[np.argsort(piece[others], kind="stable")]
+    starts = np.flatnonzero(np.diff(piece[others])) + 1
+    return [vertices[group] for group in np.split(others, starts) if len(group)]
+
+
 class _Carried(NamedTuple):
     """All that is carried over from the built-in head to a skin of V vertices."""
 
@@ -252,14 +266,16 @@ class _Carried(NamedTuple):
     bone_depth: Floats64  # (V,) [mm]
 
 
-def _carried_over(known: Head, skin: SkinPiece, target: Floats64) -> _Carried:
+def _carried_over(
+    known: Head, skin: SkinPiece, target: Floats64, pieces: tuple[Floats64, ...]
+) -> _Carried:
     """Warp the built-in head to a skin [mm] whose 68 landmarks lie at `target`, and read it off."""
     normals = vertex_normals(skin.vertices, skin.faces)
     warp = ThinPlateSpline(known.vertices[known.landmarks], target)
     warped = warp.points(known.vertices)
     nearest = nearest_on(skin.vertices, normals, warped, known.faces)
     weight = nearest.interpolate(known.mandible_weight)
-    fitted = FittedSkin(skin.vertices, normals, skin.faces, target, weight)
+    fitted = FittedSkin(skin.vertices, normals, skin.faces, target, weight, pieces)
     eyes = place_eyes(known, fitted)
     parts = place_parts(known, fitted, warp, eyes)
     neck_part = "neck"  # the shirt of the built-in head, which has its shoulders

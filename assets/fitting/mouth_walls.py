@@ -34,6 +34,7 @@ class FittedSkin:
     faces: its triangles, counter-clockwise seen from outside, shape (F, 3).
     landmarks: their points [mm], shape (68, 3).
     mandible_weight: carried over from the built-in head, shape (V,).
+    pieces: of the file beside the skin, vertices [mm] of each, shape (n, 3).
     """
 
     vertices: Floats64
@@ -41,6 +42,7 @@ class FittedSkin:
     faces: Integers32
     landmarks: Floats64
     mandible_weight: Floats64
+    pieces: tuple[Floats64, ...] = ()
 
 
 def stretched_walls(walls: Floats64, shares: ShareArray, mandible: Floats64) -> Floats64:

@@ -19,6 +19,7 @@ from risorius.geometry.normals import vertex_normals
 from ...geometry.arrays import Floats64, Integers32
 from ..model import Eye, Head, Part
 from ..topology import boundary_loops, grid_faces
+from .eyeballs import ball_of_pieces, ball_of_socket
 from .mouth_walls import WALLS, FittedSkin, opened_jaws, within_skin
 from .warp import Similarity, ThinPlateSpline
 
@@ -31,7 +32,9 @@ RIM_ROWS = 8  # of vertices, from the lids' edge backward
 def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
     """The eyes of a head, round and behind its lids.
 
-    Eyeballs differ less than the openings in front of them: by the root of the ratio.
+    An eyeball of the file has its place and size, or the ball that its socket is the shell of. Else
+    the lids say it. Eyeballs and irises differ less than the openings in front of them: by the root
+    of the ratio.
     """
     eyes = []
     lid_depth = 5.0  # [mm] from the landmarks on a lid's edge that its inner skin may reach
@@ -48,9 +51,16 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         is_lid = outward > -0.5
         is_lid &= scipy.spatial.cKDTree(target).query(fitted.vertices)[0] < lid_depth
         skin = np.vstack([target, fitted.vertices[is_lid]])
+        iris = scale * eye.iris_radius
         centre, radius = _behind_lids(centre, scale * eye.radius, target.mean(axis=0), skin)
-        centre[2] += _way_forward(centre, radius + LID_CLEARANCE, skin)
-        eyes.append(Eye(eye.name, centre, radius, radius / eye.radius * eye.iris_radius))
+        own = ball_of_pieces(fitted.pieces, centre, radius, target)
+        socket = ball_of_socket(fitted.vertices, outward, centre, radius)
+        if own is None and socket is None:
+            iris = radius / eye.radius * eye.iris_radius
+        centre, radius = own or socket or (centre, radius)
+        if own is None:
+            centre[2] += _way_forward(centre, radius + LID_CLEARANCE, skin)
+        eyes.append(Eye(eye.name, centre, radius, iris))
     return tuple(eyes)
 
 
@@ -129,14 +139,15 @@ def place_parts(
     """The rigid parts of the built-in head, in another one."""
     mouth = _mouth_of(known, fitted, warp)
     jaws = opened_jaws(known, warp)
-    balls = {}
-    for old, new in zip(known.eyes, eyes, strict=True):
-        scale = new.radius / old.radius
-        balls[f"eye_{new.name}"] = Similarity(scale, np.eye(3), new.centre - scale * old.centre)
+    balls = {f"eye_{old.name}": (old, new) for old, new in zip(known.eyes, eyes, strict=True)}
     parts = []
     for part in known.parts:
-        stiffly = balls.get(part.bone) or (mouth if part.name.startswith(STIFF) else None)
-        placed = _bent(part, warp) if stiffly is None else _moved(part, stiffly)
+        if part.bone in balls:
+            placed = _resized(part, *balls[part.bone])
+        elif part.name.startswith(STIFF):
+            placed = _moved(part, mouth)
+        else:
+            placed = _bent(part, warp)
         if part.name.startswith(WALLS):
             placed = within_skin(placed, fitted, mouth, jaws)
         parts.append(placed)
@@ -176,6 +187,21 @@ def _moved(part: Part, similarity: Similarity) -> Part:
     )
 
 
+def _resized(part: Part, old: Eye, new: Eye) -> Part:
+    """An eyeball with the size, the place and the iris of another."""
+    away = part.vertices - old.centre
+    reach = np.linalg.norm(away, axis=1)
+    angle = np.arccos(away[:, 2] / reach)
+    edges = [0.0, *(np.arcsin(eye.iris_radius / eye.radius) for eye in (old, new)), np.pi]
+    placed = np.interp(angle, [0.0, edges[1], np.pi], [0.0, edges[2], np.pi])
+    beside = away[:, :2] / np.maximum(np.linalg.norm(away[:, :2], axis=1, keepdims=True), 1e-9)
+    ways = np.column_stack([np.sin(placed)[:, None] * beside, np.cos(placed)])
+    bulge = new.iris_radius / old.iris_radius * (reach - old.radius)
+    vertices = new.centre + (new.radius + bulge)[:, None] * ways
+    normals = vertex_normals(vertices, part.faces)
+    return replace(part, vertices=vertices.astype(np.float32), normals=normals.astype(np.float32))
+
+
 def _bent(part: Part, warp: ThinPlateSpline) -> Part:
     """A part that takes the shape of its new place."""
     vertices = warp.points(part.vertices)
@@ -187,7 +213,7 @@ def _bent(part: Part, warp: ThinPlateSpline) -> Part:
 def with_eyelid_rims(
     parts: Sequence[Part], vertices: Floats64, faces: Integers32, eyes: Sequence[Eye]
 ) -> tuple[Part, ...]:
-    """The parts of a head, its flesh with a rim for each eye whose skin ends around it.
+    """The parts of a head; its flesh is where skin ends around an eye, and has a rim there.
 
     The built-in lids reach behind the front of the ball, and flesh fills their corners. A mesh that
     is brought ends anywhere: between its edge and the ball one would look into the empty head.
@@ -196,11 +222,31 @@ def with_eyelid_rims(
     loops = [(eye, _edge_around(eye, vertices, faces)) for eye in eyes]
     # Of the rim from the edge of lids to the eyeball.
     flesh = "eye_corners"  # the part that rims belong to: they have its colour
-    return tuple(
-        _joined(part, [_rim_of(eye, vertices[loop]) for eye, loop in loops if loop])
-        if part.name == flesh
-        else part
-        for part in parts
+    placed = []
+    for part in parts:
+        if part.name == flesh:
+            part = _without_corners(part, [eye for eye, loop in loops if not loop])
+            part = _joined(part, [_rim_of(eye, vertices[loop]) for eye, loop in loops if loop])
+            if not len(part.faces):
+                continue
+        placed.append(part)
+    return tuple(placed)
+
+
+def _without_corners(part: Part, closed: Sequence[Eye]) -> Part:
+    """Flesh without the corners of eyes in closed sockets: their skin fills them itself."""
+    middle = part.vertices.astype(np.float64)[part.faces].mean(axis=1)
+    most_radii = 2.0  # of an eye, within which its flesh lies
+    stays = np.ones(len(part.faces), np.bool_)
+    for eye in closed:
+        stays &= np.linalg.norm(middle - eye.centre, axis=1) > most_radii * eye.radius
+    used, faces = np.unique(part.faces[stays], return_inverse=True)
+    return replace(
+        part,
+        vertices=part.vertices[used],
+        faces=faces.reshape(-1, 3).astype(np.int32),
+        normals=part.normals[used],
+        colours=part.colours[used],
     )
 
 
@@ -239,6 +285,8 @@ def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
 
 def _joined(part: Part, rims: Sequence[tuple[Floats64, Integers32]]) -> Part:
     """A part with rims of its colour, which darken backward."""
+    if not rims:
+        return part
     colour = part.colours.mean(axis=0)
     least_light = 0.6  # share at its end, which lies in the shade
     for points, faces in rims:

@@ -13,12 +13,12 @@ import trimesh
 
 from risorius.app.recordings.names import ARKIT
 from risorius.app.rig.glb import Glb
-from risorius.app.rig.pieces import sphere_of
 from risorius.app.rig.poses import rest_in
 from risorius.app.rig.scene_meshes import Piece, add_mesh
 from risorius.app.rig.surface import MovingSurface
 from risorius.app.scenes import FaceScene
 from risorius.assets.fitting import simplifying
+from risorius.assets.fitting.eyeballs import sphere_of
 from risorius.assets.fitting.topologies import recognised
 from risorius.assets.meshes import read_mesh
 from risorius.geometry.normals import vertex_normals

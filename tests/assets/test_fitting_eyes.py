@@ -10,12 +10,13 @@ from numpy.linalg import norm
 from risorius import assets
 from risorius.assets.fitting import FittedHead, fit
 from risorius.assets.fitting.mouth_walls import FittedSkin
-from risorius.assets.fitting.organs import place_eyes
+from risorius.assets.fitting.organs import place_eyes, with_eyelid_rims
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops
 from risorius.geometry.normals import vertex_normals
 from tests.assets.checks import check_part
 from tests.heads import shape
+from tests.meshes import ball
 
 Array = npt.NDArray[np.float64]
 NEAR = 25.0  # [mm] around an eye: its own parts
@@ -100,3 +101,62 @@ def test_the_wall_of_a_socket_moves_no_eye():
     for eye, other in zip(place_eyes(head, skin), place_eyes(head, narrow), strict=True):
         assert norm(eye.centre - other.centre) < 0.1
         assert abs(eye.radius - other.radius) < 0.1
+
+
+def _ball(centre, radius):
+    """Vertices of a sphere, and its triangles."""
+    unit = ball(2)
+    return centre + radius * unit.vertices, unit.faces
+
+
+def test_eyeballs_of_the_file_say_where_eyes_are():
+    """Size and place are those of the balls behind its lids; irises keep the size of the face's."""
+    head = assets.load("head")
+    vertices = shape(head.vertices)
+    faces = head.faces
+    moved = shape(np.array([eye.centre for eye in head.eyes]))
+    moved += (0.0, 0.3, -1.5)
+    for centre in moved:
+        points, triangles = _ball(centre, 14.1)
+        faces = np.concatenate([faces, triangles + len(vertices)])
+        vertices = np.concatenate([vertices, points])
+    found = fit(Mesh(vertices, faces.astype(np.int32)), head.landmarks)
+    for eye, old, centre in zip(found.eyes, head.eyes, moved, strict=True):
+        wanted = found.to_millimetres.points(centre[None])[0]
+        assert norm(eye.centre - wanted) < 0.3
+        assert eye.radius == pytest.approx(14.1 * found.to_millimetres.scale, abs=0.3)
+        assert eye.iris_radius == pytest.approx(old.iris_radius, rel=0.1)
+        part = next(part for part in found.parts if part.bone == f"eye_{eye.name}")
+        check_part(part)
+
+
+def test_a_closed_socket_is_the_shell_of_its_ball():
+    """Its skin says how large the ball is, which touches the lids from behind."""
+    head = assets.load("head")
+    normals = vertex_normals(head.vertices, head.faces)
+    points = head.vertices[head.landmarks]
+    unit = ball(3).vertices
+    unit = unit[unit[:, 2] < 0.5]
+    shells = [eye.centre + [0.0, 0.0, -3.0] + 15.5 * unit for eye in head.eyes]
+    skin = FittedSkin(
+        np.vstack([head.vertices, *shells]),
+        np.vstack([normals, *[-unit] * 2]),
+        head.faces,
+        points,
+        head.mandible_weight,
+    )
+    for eye, new in zip(head.eyes, place_eyes(head, skin), strict=True):
+        assert 14.8 < new.radius < 15.5
+        assert norm((new.centre - eye.centre)[:2]) < 0.3
+        assert norm(points[36:48] - new.centre, axis=1).min() > new.radius
+        assert new.iris_radius == pytest.approx(eye.iris_radius, rel=0.05)
+
+
+def test_a_closed_socket_has_no_other_flesh(fitted):
+    """Its own skin fills the corners; lumps of another head's would stand in them."""
+    far = np.array([[0.0, 500.0, 0.0], [1.0, 500.0, 0.0], [0.0, 501.0, 0.0]])
+    triangle = np.array([[0, 1, 2]], np.int32)
+    head = assets.load("head")
+    parts = with_eyelid_rims(head.parts, far, triangle, head.eyes)
+    assert {part.name for part in head.parts} - {part.name for part in parts} == {"eye_corners"}
+    assert "eye_corners" in {part.name for part in fitted.parts}

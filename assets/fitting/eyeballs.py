@@ -1,0 +1,92 @@
+"""Balls that a file shows itself: eyeballs among its pieces, and sockets that are shells of them.
+
+A head of few triangles has neither; then its lids alone say where an eyeball is (organs.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...geometry.arrays import Floats64
+
+FEWEST = 4  # vertices of an eyeball: fewer are strands and cards
+
+
+def is_eyeball(points: Floats64, centre: Floats64, radius: float) -> bool:
+    """Whether a piece (n, 3) is an eyeball about there, or a layer: an iris, a cornea."""
+    if len(points) < FEWEST:
+        return False
+    off = np.linalg.norm(points - centre, axis=1)
+    if np.quantile(off, 0.9) > 1.7 * radius:
+        return False
+    low = points.min(axis=0)
+    high = points.max(axis=0)
+    aside = np.abs(0.5 * (low + high) - centre)[:2].max()
+    width, height, _ = high - low
+    is_round = 0.6 < (width + 1e-9) / (height + 1e-9) < 1.7
+    return bool(aside < 0.4 * radius and is_round and width > 0.3 * radius)
+
+
+def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats64, float]:
+    """The sphere that fits points (n, 3) best, if they are a ball about there; else the given one.
+
+    Source: linear least squares of |p|^2 = 2 p c + (r^2 - |c|^2).
+    """
+    local = points - centre
+    matrix = np.column_stack([2.0 * local, np.ones(len(local))])
+    found, _, rank, _ = np.linalg.lstsq(matrix, (local**2).sum(axis=1), rcond=None)
+    size = float(found[3] + found[:3] @ found[:3])
+    if rank < 4 or size <= 0.0:
+        return centre, radius
+    middle = centre + found[:3]
+    fitted = float(np.sqrt(size))
+    off = np.abs(np.linalg.norm(points - middle, axis=1) - fitted)
+    is_ball = off.mean() < 0.12 * fitted and 0.6 < fitted / radius < 1.7
+    is_near = np.linalg.norm(middle - centre) < 0.6 * radius
+    return (middle, fitted) if is_ball and is_near else (centre, radius)
+
+
+def ball_of_pieces(
+    pieces: Sequence[Floats64], centre: Floats64, radius: float, lids: Floats64
+) -> tuple[Floats64, float] | None:
+    """Centre and radius [mm] of the largest eyeball among pieces; None: there is none.
+
+    centre, radius: about where and how large it is. lids: landmarks of the eye, shape (6, 3); a
+    ball that stands out of them is none.
+    """
+    found = None
+    for points in pieces:
+        if not is_eyeball(points, centre, radius):
+            continue
+        middle, size = sphere_of(points, centre, radius)
+        is_fitted = middle is not centre
+        most_out = 1.5  # [mm] that a lid's edge may lie in the ball
+        is_behind = np.linalg.norm(lids - middle, axis=1).min() > size - most_out
+        if is_fitted and is_behind and (found is None or size > found[1]):
+            found = middle, size
+    return found
+
+
+def ball_of_socket(
+    skin: Floats64, outward: Floats64, centre: Floats64, radius: float
+) -> tuple[Floats64, float] | None:
+    """Centre and radius [mm] of the ball that lies in a shell behind the lids; None: there is none.
+
+    skin: its vertices, shape (V, 3). outward: cosine of each normal with the way from `centre`,
+    shape (V,). centre, radius: about where and how large the ball is.
+    """
+    most_radii = 2.0  # of the shell
+    facing = -0.6  # cosine below which skin faces the ball
+    away = np.linalg.norm(skin - centre, axis=1)
+    shell = skin[(away < most_radii * radius) & (outward < facing)]
+    is_rear = shell[:, 2] < centre[2] - 0.5 * radius
+    if is_rear.sum() < FEWEST * FEWEST or is_rear.all():
+        return None
+    middle, _ = sphere_of(shell, centre, radius)
+    if middle is centre:
+        return None
+    thickness = 0.3  # [mm] of air about the ball
+    nearest = np.quantile(np.linalg.norm(shell - middle, axis=1), 0.1)
+    return middle, float(nearest) - thickness

@@ -1,0 +1,25 @@
+"""Where closed lids meet, beside the corners of an eye."""
+
+import numpy as np
+
+from risorius.sim.lids import COLUMNS, _raised_at_corners
+
+WHERE = np.linspace(0.0, 1.0, COLUMNS)
+
+
+def test_no_step_below_a_corner_above_the_lower_lid():
+    """The seam rises to a corner of 6 degrees from a lid of -8, so that there is no notch."""
+    seam = np.radians(np.where((WHERE == 0.0) | (WHERE == 1.0), 6.0, -8.0))
+    upper = np.radians(6.0 + 68.0 * WHERE * (1.0 - WHERE))
+    raised = _raised_at_corners(seam, upper)
+    assert np.abs(np.diff(raised)).max() < np.radians(1.0)
+    assert (raised >= seam).all()
+    assert (raised <= upper).all()
+    np.testing.assert_array_equal(raised[20], seam[20])
+
+
+def test_a_level_lid_keeps_its_seam():
+    """Nothing is raised where the lower lid runs straight into the corners."""
+    seam = np.radians(-21.0 - 3.0 * np.sin(np.pi * WHERE))
+    upper = seam + np.radians(45.0) * np.sin(np.pi * WHERE)
+    np.testing.assert_allclose(_raised_at_corners(seam, upper), seam, atol=np.radians(0.3))
