@@ -31,6 +31,7 @@ class LidVertices(NamedTuple):
     shut_hold: Floats64  # (L,) stiffness by which its muscle presses down an upper lid that is shut
     centres: Floats64  # (eyes, 3)
     radii: Floats64  # (eyes,)
+    gaze_share: Floats64  # (eyes,) of the gaze that lids follow
     up: Floats64  # (eyes, 3) unit, across the lid axis
     forward: Floats64  # (eyes, 3) unit
     inward: Floats64  # (eyes, 3) unit, from the outer to the inner corner
@@ -48,7 +49,7 @@ def turn_lids(
     """Turn the far ends of the tissue springs of all lid vertices, and their normals.
 
     Adds the stiffness that holds moved folds to `state.hold`. drive: see Lids.drive; gaze: angles
-    of each eye to the subject's left and up [rad], shape (eyes, 2).
+    of each eye to the subject's left and up that its lids follow [rad], shape (eyes, 2).
     """
     carried = state.carried
     normals = state.normals

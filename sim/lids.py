@@ -98,12 +98,22 @@ def place_lids(
         * np.array([[-ball.side.sign] for ball in eyeballs]),
         slide=eyes.blink_slide,
         raise_slide=eyes.raise_slide,
+        gaze_share=np.array([_gaze_share(ball.radius) for ball in eyeballs]),
         upper_follows=eyes.upper_lid_follows,
         lower_follows=eyes.lower_lid_follows,
         sideways_follow=eyes.lids_follow_sideways,
     )
     vertices = vertices._replace(sink=joined.sink - _lift(vertices, surface, eyeballs))
     return Lids(vertices, hold, _lid_muscles(rig, eyeballs, names))
+
+
+def _gaze_share(radius: float) -> float:
+    """How much of a gaze lids follow: on a ball [mm] beyond a human's they move as far as on that.
+
+    Artists put such balls behind openings that are no wider than a human's.
+    """
+    most_radius = 12.8  # mm
+    return min(1.0, most_radius / radius)
 
 
 def _lift(lids: LidVertices, surface: SkinSurface, eyeballs: tuple[Eyeball, ...]) -> Floats64:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from risorius.sim.lids import COLUMNS, _raised_at_corners
+from risorius.sim.lids import COLUMNS, _gaze_share, _raised_at_corners
 
 WHERE = np.linspace(0.0, 1.0, COLUMNS)
 
@@ -23,3 +23,9 @@ def test_a_level_lid_keeps_its_seam():
     seam = np.radians(-21.0 - 3.0 * np.sin(np.pi * WHERE))
     upper = seam + np.radians(45.0) * np.sin(np.pi * WHERE)
     np.testing.assert_allclose(_raised_at_corners(seam, upper), seam, atol=np.radians(0.3))
+
+
+def test_lids_follow_a_gaze_on_a_large_ball_no_farther():
+    """The way of a lid does not grow with a ball beyond a human's size."""
+    assert _gaze_share(12.8) == 1.0
+    np.testing.assert_allclose(_gaze_share(16.2) * 16.2, _gaze_share(12.8) * 12.8)
