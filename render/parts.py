@@ -22,6 +22,7 @@ FEWEST_LAYERS = 2  # shells
 LAYER_PIXELS = 10.0  # that a layer is there for, where they are thickest
 ROOT = -0.6  # of that way, from vertices
 TIP = 0.4  # of that way, from vertices
+SHADING_DENSITY = 0.6  # of shells, from which on they throw a shadow
 
 
 class PartBuffers:
@@ -57,6 +58,13 @@ class PartBuffers:
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
         self._chosen = gl.buffer(reserve=self._indices.size, dynamic=True)
         self._chosen_count = 0
+        self._throwing = self._indices
+        self._throwing_count = len(part.faces)
+        if self._way is not None and part.striation is not None:
+            throws = (part.striation[:, 5] > SHADING_DENSITY)[part.faces].all(axis=1)
+            self._throwing_count = int(throws.sum())
+            throwing = np.ascontiguousarray(part.faces[throws], np.uint32)
+            self._throwing = gl.buffer(throwing.tobytes() or bytes(12))
         self._arrays: dict[tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray] = {}
 
     def upload(self, placed: PlacedPart) -> None:
@@ -94,6 +102,18 @@ class PartBuffers:
         if chosen and not self._chosen_count:
             return
         indices = self._chosen if chosen else self._indices
+        count = self._chosen_count if chosen else len(self.faces)
+        self._render(program, indices, count, layers)
+
+    def draw_shadow(self, program: moderngl.Program) -> None:
+        """Draw what of it throws a shadow: of shells no hem, which lets light through."""
+        if self._throwing_count:
+            self._render(program, self._throwing, self._throwing_count, 1)
+
+    def _render(
+        self, program: moderngl.Program, indices: moderngl.Buffer, count: int, layers: int
+    ) -> None:
+        """Draw so many triangles of an index buffer, their outer side."""
         if (program, indices) not in self._arrays:
             self._arrays[program, indices] = self._gl.vertex_array(
                 program,
@@ -102,7 +122,6 @@ class PartBuffers:
                 index_element_size=4,
                 skip_errors=True,  # not every program has a use for colours
             )
-        count = self._chosen_count if chosen else len(self.faces)
         self._gl.enable(moderngl.CULL_FACE)
         self._arrays[program, indices].render(vertices=3 * count, instances=layers)
         self._gl.disable(moderngl.CULL_FACE)

@@ -80,7 +80,7 @@ class ShadowMap:
             frame.skin.stream.draw(self._program)
         for buffers, part in parts:
             write_uniform(self._program, "light_matrix", part.transform.T @ to_light)
-            buffers.draw(self._program)
+            buffers.draw_shadow(self._program)
         return Shadow(self._depth, view_to_light, view.camera.scene_radius)
 
 

@@ -180,7 +180,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     )
     along = (FINE if cut.knot else 1.0) * radius * away
     striation = np.column_stack([radius * angle, along, way, dense])
-    short_shine = 0.13
+    short_shine = 0.12
     hair = Part(
         name=HAIR,
         vertices=(points + MEAN * way).astype(np.float32),

@@ -82,8 +82,9 @@ def falling_hair(
     bent[:, 0] = sharp[:, 0]  # roots stay where they are
     along = _along(bent)
     off = 88.0 * (angle - EDGE)[:, None]
-    # Hair gets dense over 2 mm from the parting and 11 mm from the face.
-    dense = np.minimum(0.6 + along / 2.0, 0.45 + off / 11.0)
+    # Hair gets dense over 2 mm from the parting and 4 mm from the face: farther, and strands in
+    # front are bars over the skin.
+    dense = np.minimum(0.6 + along / 2.0, 0.55 + off / 4.0)
     dense = np.minimum(dense, (along[:, -1:] - along) / HEM)
     hair = _layers(HAIR, bent, across[:, None], thick, dense, colour)
     return from_within(hair, hair.faces), short.loose_hairs(hair), hair

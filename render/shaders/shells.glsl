@@ -56,10 +56,11 @@ const float LONG = 11.0;                 // [mm] after which a strand is another
 const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
 const vec2 SIDEWAYS = vec2(0.45, 0.75);  // facing, from which on single strands are seen
-const vec2 RAGGED = vec2(0.7, 0.15);     // of density, by strands: so hems are no lines
-const vec2 CRISP = vec2(1.5, 3.0);       // how abruptly hems end: where locks are seen, and single strands
+const vec2 RAGGED = vec2(0.4, 0.08);     // of density, by strands: so hems are no lines
+const vec2 CRISP = vec2(1.1, 1.6);       // how abruptly hems end: where locks are seen, and single strands
 const float LEAST_FACING = 0.05;        // from which on all of a layer is passed
 const float DARK = 0.45;                 // of the light, at roots
+const float COVERED = 0.7;               // layers above one, from which on it gets less light
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
 const float SHARP = 0.01;                // that of outlines: layers are there or not, and no veil
 
@@ -86,7 +87,8 @@ void main() {
     float single = smoothstep(SIDEWAYS.x, SIDEWAYS.y, surface.facing);
     // Its outline is the layer about the mean, for any number of layers.
     float outline = (floor(MEAN * float(layers) - LOWEST + 0.5) + LOWEST) / float(layers) + SHARP;
-    float tall = mix(outline, 0.65 + 0.5 * tones.x + 0.4 * tones.y, single);
+    vec2 apart = vec2(0.5, 0.4) * clamp(surface.dense, 0.25, 1.0);  // where hems begin no teeth
+    float tall = mix(outline, 0.65 + dot(apart, tones), single);
     // Toward hems there are fewer strands, and shorter ones; where they are finer than a pixel, a veil.
     float dense = surface.dense / seen + dot(RAGGED, tones);
     float there = clamp(mix(CRISP.x, CRISP.y, share.x) * (dense - 0.5) + 0.5, 0.0, 1.0);
@@ -97,8 +99,10 @@ void main() {
     // Tilted toward the root and toward the tip.
     float first = surface.cosine + UNEVEN * uneven - TILT, second = first + 2.0 * TILT;
     float bright = exp2(-SHARPNESS * first * first), glow = exp2(-SOFTNESS * second * second);
-    float open = mix(DARK, 1.0, max(surface.layer, 1.0 - surface.dense));
-    vec3 front = surface.colour * (1.0 + 0.6 * uneven) * open;
+    // Light gets lost below other layers, of which there are as many as the strands are tall.
+    float above = (far - surface.layer) * float(layers);
+    float open = mix(1.0, DARK, smoothstep(COVERED, COVERED + max(1.0, 0.5 * float(layers)), above));
+    vec3 front = surface.colour * (1.0 + 1.0 * uneven) * open;
     vec3 shine = surface.shine * open * max(1.0 + 2.0 * uneven, 0.0) * (bright * (0.06 + 0.4 * front) + 0.3 * glow * front);
     pixel_colour = vec4(display(front * surface.diffuse + shine), cover);
 }

@@ -9,7 +9,7 @@ from pytest import approx
 
 from risorius import render
 
-from .scenes import PLAIN, Ball, Shape, at, draw, drawn, facing, lent, square, still
+from .scenes import PLAIN, STILL, Ball, Shape, at, draw, drawn, facing, lent, square, still
 
 
 def reshaped(ball, **changes):
@@ -142,3 +142,24 @@ def test_hair_hides_the_skin_behind_it(renderer):
     hair = reshaped(ball, striation=striation)
     frame = draw(renderer, wall, parts=still(hair))
     assert at(frame, 0.0, 0.0).max() < 100 < at(frame, 30.0, 30.0).max()
+
+
+def test_a_hem_of_hair_throws_no_shadow(renderer):
+    """Where no strand is to be seen, light gets through; dense hair shades what is below."""
+    lit = []
+    for dense in (0.0, 2.0):
+        wall = lent(renderer, square(z=-25.0))
+        ball = Ball(colour=(0.1, 0.1, 0.1))
+        columns = [
+            ball.vertices[:, :2],
+            4.0 * ball.normals,
+            np.full((len(ball.vertices), 1), dense),
+        ]
+        hair = reshaped(ball, striation=np.hstack(columns))
+        placed = [render.PlacedPart.of(hair, STILL, throws_shadow=True)]
+        style = replace(PLAIN, shadows=True)
+        lit.append(draw(renderer, wall, style=style, parts=placed).sum(axis=2))
+    shaded = (lit[0] - lit[1])[60:, 56:]  # below and right: the key stands above at the left
+    assert shaded.max() > 100
+    wall_alone = draw(renderer, lent(renderer, square(z=-25.0)), style=replace(PLAIN, shadows=True))
+    assert np.abs(lit[0] - wall_alone.sum(axis=2)).max() < 12

@@ -1,0 +1,38 @@
+"""The hairline of the built-in head, as a picture shows it."""
+
+import numpy as np
+
+from risorius import render
+from risorius.app.pipeline import Pipeline, Viewport
+from risorius.app.refining.presets import Refinement
+
+SIZE = (480, 360)
+HEIGHT = 105.0  # [mm] of the picture
+
+
+def forehead(scene):
+    """The light of pixels, (H, W), around the hairline; top row first."""
+    scene.reset()
+    nasion = scene.rest_positions[scene.landmarks[27]]
+    camera = render.OrbitCamera.framing(scene.rest_positions)
+    camera.target = nasion + np.array([0.0, 60.0, 0.0])
+    camera.field_of_view = 14.0
+    camera.distance = HEIGHT / (2.0 * np.tan(np.radians(7.0)))
+    with render.open_offscreen(SIZE) as surface:
+        pipeline = Pipeline(scene, render.Renderer(surface))
+        drawn = pipeline.bind(Refinement())
+        pipeline.draw(camera, render.Style(), [Viewport(drawn, (0, 0, *SIZE))])
+        return surface.read() @ np.array([0.2126, 0.7152, 0.0722])
+
+
+def test_the_front_is_no_saw_and_throws_no_hard_patch(scene):
+    """Its edge goes up and down by little from pixel to pixel, and the forehead below is clean."""
+    light = forehead(scene)
+    columns = slice(160, 320)
+    skin = np.median(light[240:280, columns])
+    edge = 280 - np.argmax(light[279::-1, columns] < 0.5 * skin, axis=0)
+    assert 40 < edge.min() < edge.max() < 250
+    millimetres = HEIGHT / SIZE[1] * edge
+    assert np.abs(np.diff(millimetres)).mean() < 0.6
+    below = light[edge.max() + 20 : 280, columns]
+    assert below.min() > 0.75 * skin
