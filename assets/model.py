@@ -23,6 +23,7 @@ from risorius.geometry.read_only import make_read_only
 
 from ..geometry.arrays import Floats32, Floats64, Integers32
 from .data_files import Image, read_arrays, read_image
+from .nostrils import lit_nostrils
 from .topology import quarter
 
 
@@ -268,7 +269,9 @@ class Head:
 
         Texel by texel that of `albedo`.
         """
-        return read_arrays(self.beside("_ambient_occlusion.npz"))["ambient_occlusion"]
+        occlusion = read_arrays(self.beside("_ambient_occlusion.npz"))["ambient_occlusion"]
+        rims = [self.uv[self.rings[f"nostril_{side}"]] for side in ("left", "right")]
+        return lit_nostrils(occlusion, rims)
 
     @cached_property
     def fine_shape(self) -> FineShape:

@@ -1,0 +1,30 @@
+"""Light in the nostrils: walls of flesh throw it about, so that no black hole is seen from below."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ..geometry.arrays import Floats32
+from .data_files import Image
+
+
+def lit_nostrils(occlusion: Image, rims: Iterable[Floats32]) -> Image:
+    """How open the skin is to light, (H, W), uint8, with light in the nostrils.
+
+    rims: texture coordinates around each nostril, shape (n, 2). How much light is chosen by eye.
+    """
+    height, width = occlusion.shape
+    lit = occlusion.astype(np.float64)
+    inner_light = 66.0  # of 255, where no light gets in straight
+    for rim in rims:
+        middle = rim.mean(axis=0)
+        reach = 1.25 * float(np.linalg.norm(rim - middle, axis=1).max())
+        across = (np.arange(width) + 0.5) / width - middle[0]
+        down = 1.0 - (np.arange(height) + 0.5) / height - middle[1]
+        near = np.exp(-(((across**2 + down[:, None] ** 2) / reach**2) ** 3))
+        lit += near * inner_light * (1.0 - lit / 255.0) ** 2
+    found = np.rint(np.minimum(lit, 255.0)).astype(np.uint8)
+    found.flags.writeable = False
+    return found
