@@ -1,4 +1,4 @@
-"""Light in the nostrils: walls of flesh throw it about, so that no black hole is seen from below."""
+"""Light in the nostrils: walls of flesh throw it about, and from below no hole is black."""
 
 from __future__ import annotations
 

@@ -189,9 +189,24 @@ def _resting(known: Head, identity: Identity) -> Floats32:
     frown_radii = np.array([15.0, 18.0, 30.0])
     frowned = np.exp(-((off / frown_radii) ** 2).sum(axis=1))
     most_resting = {Sex.WOMAN: 0.45, Sex.MAN: 0.5}
-    return np.asarray(
-        most_resting[identity.sex] * identity.furrows * past * past * (1.0 - frowned), np.float32
-    )
+    shown = most_resting[identity.sex] * identity.furrows * past * past * (1.0 - frowned)
+    return np.asarray(np.minimum(shown * _own_places(known, identity), 1.0), np.float32)
+
+
+def _own_places(known: Head, identity: Identity) -> Floats64:
+    """How deep furrows are at each vertex beside those of most people of that age, shape (V,).
+
+    Chosen: waves over the face, whose phases are those of the person; the halves are alike.
+    """
+    phases = np.array([identity.age, identity.covered]).view(np.uint32)
+    random = np.random.default_rng(phases)
+    wave_count = 5
+    length = 60.0  # [mm] of a wave in the mean
+    ways = random.normal(0.0, 2.0 * np.pi / length, (3, wave_count)) / np.sqrt(3.0)
+    begins = random.uniform(0.0, 2.0 * np.pi, wave_count)
+    halves = np.abs(known.vertices * [1.0, 0.0, 0.0]) + known.vertices * [0.0, 1.0, 1.0]
+    waves = np.cos(halves @ ways + begins).sum(axis=1) / np.sqrt(0.5 * wave_count)
+    return np.asarray(np.clip(1.0 + 0.55 * waves, 0.15, 1.9))
 
 
 def _named(known: Head) -> Integers32:

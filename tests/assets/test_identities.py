@@ -120,6 +120,16 @@ def test_persons_of_one_age_and_sex_differ_in_small_things():
     assert resting[0] == approx(3.0 * resting[1])
 
 
+def test_furrows_of_old_persons_lie_in_places_of_their_own():
+    """Of two as old, one has them on the forehead, another beside the mouth; halves are alike."""
+    persons = [make_person(sample_identity(number, age=70.0)) for number in (1, 2)]
+    shares = [each.wrinkles.resting / each.wrinkles.resting.max() for each in persons]
+    assert abs(np.corrcoef(*shares)[0, 1]) < 0.8
+    for person, share in zip(persons, shares, strict=True):
+        assert share.std() > 0.1
+        assert share[person.mirror] == approx(share, abs=1e-5)
+
+
 def test_people_are_drawn_freely():
     """No direction of form is narrower than people's own spread, but for the head's size."""
     weights = np.array(
