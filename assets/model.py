@@ -48,6 +48,7 @@ class Segment(IntEnum):
     NECK = 12
     HAIR = 13
     CLOTHING = 15
+    GLASSES = 16
     IGNORE = 255
 
 
@@ -109,6 +110,8 @@ class Part:
     @property
     def is_enclosed(self) -> bool:
         """Whether it is in the head, where light from behind does not get."""
+        if self.name == "glasses":
+            return False
         return self.bone in ("cranium", "mandible", "eye_right", "eye_left")
 
 

@@ -16,7 +16,13 @@ import numpy as np
 import PIL.Image
 
 from risorius import render
-from risorius.assets.identities import in_colours, make_person, own_colours, sample_identity
+from risorius.assets.identities import (
+    in_colours,
+    make_person,
+    own_colours,
+    sample_identity,
+    wearing,
+)
 
 from ..light_maps import seen_behind
 from ..motion import SETTLING
@@ -32,8 +38,9 @@ from .degrading import degraded
 from .folder import name_of
 from .labels import labels_of_face
 from .request import SetRequest
-from .sampling import Sample, SampleCamera, draw
+from .sampling import Sample, SampleCamera, chosen, draw
 from .surroundings import laid_over, light_of
+from .table import NO_GLASSES
 
 
 @dataclass(frozen=True)
@@ -129,6 +136,9 @@ class Studio:
         population = self._request.table.population
         person = make_person(sample_identity(number, population=population))
         colours = own_colours(person.identity, number, population=population)
+        random = np.random.default_rng([number, 19])  # 18 is that of colours
+        shirt = chosen(random, self._request.table.shirts)
+        glasses = chosen(random, self._request.table.glasses)
         labels = {
             "number": number,
             "tone": round(colours.angle, 2),
@@ -136,10 +146,13 @@ class Studio:
             "sex": person.identity.sex.value,
             "age": round(person.identity.age, 1),
             "hair": person.identity.cut,
+            "shirt": shirt,
+            "glasses": glasses,
             "measures": {code: round(value, 3) for code, value in person.measures.items()},
         }
         head = in_colours(person, colours, shrink=_shrink_for(self._request.size))
-        scene = FaceScene(head)
+        frame = None if glasses == NO_GLASSES else glasses
+        scene = FaceScene(wearing(head, shirt=shirt, frame=frame))
         pipeline = Pipeline(scene, self._renderer)
         drawn = pipeline.bind(Refinement(refiner=self._request.refiner))
         return _Model(scene, pipeline, Passes(pipeline, drawn), labels)

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from risorius import assets
-from risorius.assets.identities import DARKEST, LIGHTEST, Population
+from risorius.assets.identities import DARKEST, FRAMES, LIGHTEST, SHIRTS, Population
 from risorius.assets.identities.hair import CUTS
 from risorius.assets.identities.population import IRIS_SHARES
 from risorius.render import LIGHTS
@@ -24,6 +24,7 @@ from ..files import NoSuchFileError, read_text
 
 LETTERS = ("A", "B", "C", "D", "E")
 BLINK = "AU45"
+NO_GLASSES = "none"  # in the table
 PERSONS = 1_000_000  # of each seed: no other seed has them
 Shares = Mapping[str, float]
 Range = tuple[float, float]
@@ -182,6 +183,8 @@ class SampleTable(Record):
     irises: Annotated[Shares, _drawn_from(IRIS_SHARES)]
     cuts_of_women: Annotated[Shares, _drawn_from(CUTS)]
     cuts_of_men: Annotated[Shares, _drawn_from(CUTS)]
+    shirts: Annotated[Shares, _drawn_from(SHIRTS)]
+    glasses: Annotated[Shares, _drawn_from((NO_GLASSES, *FRAMES))]
     lights: Annotated[Shares, _drawn_from(LIGHTS)]
     degradations: Degradations
 

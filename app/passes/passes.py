@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from risorius import render
 from risorius.assets import Segment
-from risorius.assets.identities import HAIR
+from risorius.assets.identities import GLASSES, HAIR
 
 from ..pipeline import Pipeline, Viewport
 from ..refining.drawn_mesh import DrawnMesh
@@ -99,6 +99,8 @@ def _classes(part: Any) -> Bytes:
     """The class of each triangle of a part."""
     if part.name.startswith(HAIR):
         return np.full(len(part.faces), Segment.HAIR, np.uint8)
+    if part.name == GLASSES:
+        return np.full(len(part.faces), Segment.GLASSES, np.uint8)
     by_side = {"eye_right": Segment.RIGHT_EYE, "eye_left": Segment.LEFT_EYE}
     if part.bone == "neck":
         return np.full(len(part.faces), Segment.CLOTHING, np.uint8)

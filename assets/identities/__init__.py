@@ -21,13 +21,17 @@ from .named import (
 from .person import Person, make_person
 from .population import DARKEST, EVERYBODY, LIGHTEST, Population, drawn_irises
 from .space import Identity, Sex, sample_identity
+from .wear import FRAMES, GLASSES, SHIRTS, wearing
 
 __all__ = [
     "DARKEST",
     "EVERYBODY",
+    "FRAMES",
+    "GLASSES",
     "HAIR",
     "LIGHTEST",
     "NAMED",
+    "SHIRTS",
     "Colours",
     "Features",
     "Identity",
@@ -46,4 +50,5 @@ __all__ = [
     "person_in_words",
     "recoloured",
     "sample_identity",
+    "wearing",
 ]

@@ -31,7 +31,7 @@ def test_every_texel_has_a_class(head):
     """Of those that skin has: no background, nothing to ignore, no clothing."""
     assert head.segments.shape == head.albedo.shape[:2]
     assert set(np.unique(head.segments)) == set(Segment) - {
-        Segment.BACKGROUND, Segment.CLOTHING, Segment.IGNORE,
+        Segment.BACKGROUND, Segment.CLOTHING, Segment.GLASSES, Segment.IGNORE,
     }  # fmt: skip
 
 

@@ -1,0 +1,195 @@
+"""What persons wear: shirts of several colours, and glasses on the bridge of the nose and the ears.
+
+Lenses are clear, so only their frame is there. It moves with the head, and keeps off the skin at
+rest. All sizes are chosen by eye, after usual frames (lens 48 mm, bridge 18 mm, temple 140 mm).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+
+from ...geometry.arrays import Floats64, Integers32
+from ..model import Part
+from ..topology import grid_faces
+from .person import Person
+
+Colour = tuple[float, float, float]
+GLASSES = "glasses"  # the name of the part
+SHIRTS: Mapping[str, Colour] = MappingProxyType(
+    {
+        "blue": (0.22, 0.24, 0.28),  # of the built-in head
+        "white": (0.80, 0.79, 0.77),
+        "grey": (0.46, 0.46, 0.47),
+        "black": (0.09, 0.09, 0.10),
+        "red": (0.47, 0.13, 0.13),
+        "green": (0.20, 0.33, 0.24),
+        "sand": (0.66, 0.57, 0.44),
+        "sky": (0.47, 0.59, 0.72),
+    }
+)
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A frame of glasses.
+
+    half_width, half_height: of a lens [mm]. squareness: 2 is an ellipse, more nears a rectangle.
+    thickness: of the rims [mm]. colour: sRGB. shine: 0 dull, 1 wet.
+    """
+
+    half_width: float
+    half_height: float
+    squareness: float
+    thickness: float
+    colour: Colour
+    shine: float
+
+
+FRAMES: Mapping[str, Frame] = MappingProxyType(
+    {
+        "round": Frame(23.5, 21.5, 2.2, 1.6, (0.33, 0.28, 0.22), 0.8),
+        "rectangular": Frame(26.0, 17.5, 3.6, 2.6, (0.045, 0.045, 0.05), 0.55),
+        "oval": Frame(25.0, 19.0, 2.6, 2.2, (0.24, 0.12, 0.06), 0.6),
+    }
+)
+
+
+def wearing(person: Person, *, shirt: str, frame: str | None = None) -> Person:
+    """A person in a shirt of SHIRTS, and with a frame of FRAMES or none; KeyError for others."""
+    usual = np.array(SHIRTS["blue"])
+    parts = []
+    for part in person.parts:
+        if part.bone == "neck" and shirt != "blue":
+            shade = part.colours / usual
+            colours = np.clip(shade * SHIRTS[shirt], 0.0, 1.0)
+            part = replace(part, colours=colours.astype(np.float32))
+        parts.append(part)
+    if frame is not None:
+        parts.append(glasses(person, FRAMES[frame]))
+    return replace(person, parts=tuple(parts))
+
+
+def glasses(person: Person, frame: Frame) -> Part:
+    """Glasses that fit a person."""
+    skin = person.vertices
+    eyes = {eye.name: eye for eye in person.eyes}
+    middle = 0.5 * (eyes["left"].centre + eyes["right"].centre)
+    apart = 0.5 * (eyes["left"].centre[0] - eyes["right"].centre[0])
+    lens = np.array([1.1 * apart, middle[1] - 3.0])
+    # Of the lens on the left; the right one is its mirror image.
+    cornea = middle[2] + eyes["left"].radius
+    around = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
+    ways = np.stack([np.cos(around), np.sin(around)], axis=-1)
+    power = frame.squareness
+    reach = (np.abs(ways / [frame.half_width, frame.half_height]) ** power).sum(axis=1)
+    rim = lens + ways / reach[:, None] ** (1.0 / power)
+    inner = lens[0] - frame.half_width
+    across = np.linspace(-inner, inner, 13)
+    bow = 1.0 - (across / inner) ** 2
+    bridge = np.stack([across, lens[1] + 5.0 + 3.0 * bow], axis=-1)
+    front = [_in_front(each, lens, cornea) for each in (rim, rim * [-1.0, 1.0], bridge)]
+    front[2][:, 2] += 2.0 * bow
+    clearance = 0.5 * frame.thickness + 1.0  # [mm] between the frame and the skin
+    lacking = max(_depth_at(skin, each) + clearance for each in front)
+    forward = float(np.clip(lacking, -2.0, 9.0))
+    moved = [each + np.array([0.0, 0.0, forward]) for each in front]
+    tubes = [_tube(each, frame.thickness, closed=True) for each in moved[:2]]
+    tubes.append(_tube(moved[2], frame.thickness, closed=False))
+    for side, name in ((1.0, "left"), (-1.0, "right")):
+        hinge = moved[0][np.argmax(rim[:, 0] + 0.4 * rim[:, 1])]
+        ear = skin[person.anatomy[f"tragion_{name}"]]
+        temple = _temple(skin, hinge * [side, 1.0, 1.0], ear, frame.thickness)
+        tubes.append(_tube(temple, 0.9 * frame.thickness, closed=False))
+    return _joined(tubes, frame)
+
+
+def _in_front(places: Floats64, lens: Floats64, cornea: float) -> Floats64:
+    """Places (x, y) in the surface of the lenses, which is bent around and leans to the cheeks."""
+    vertex_distance = 11.0  # [mm] from the cornea
+    bend = 0.0016 * np.maximum(np.abs(places[:, 0]) - 12.0, 0.0) ** 2
+    lean = 0.09 * (places[:, 1] - lens[1])
+    return np.column_stack([places, cornea + vertex_distance - bend + lean])
+
+
+def _depth_at(skin: Floats64, points: Floats64) -> float:
+    """How far skin stands out before points, seen from the front [mm]; below 0 for none."""
+    beside = 4.0  # [mm]
+    near = scipy.spatial.cKDTree(skin[:, :2]).query_ball_point(points[:, :2], beside)
+    depths = [
+        float(skin[found, 2].max() - point[2])
+        for found, point in zip(near, points, strict=True)
+        if found
+    ]
+    return max(depths, default=0.0)
+
+
+def _temple(skin: Floats64, hinge: Floats64, ear: Floats64, thickness: float) -> Floats64:
+    """From the hinge along the side of the head over the ear, and down behind it, (n, 3)."""
+    side = np.sign(hinge[0])
+    top = np.array([ear[0] + side * 2.5, ear[1] + 21.0, ear[2] - 4.0])
+    share = np.linspace(0.0, 1.0, 24)[:, None]
+    straight = hinge + share * (top - hinge)
+    head = skin[skin[:, 2] > ear[2] + 6.0]  # without the ear
+    tree = scipy.spatial.cKDTree(head[:, 1:])
+    near = tree.query_ball_point(straight[:, 1:], 6.0)
+    widest = np.array([max((side * head[found, 0]).max(initial=0.0), 0.0) for found in near])
+    wanted = np.maximum(side * straight[:, 0], widest + 0.5 * thickness + 1.8)
+    wanted[0] = side * straight[0, 0]
+    for _ in range(3):
+        smooth = wanted.copy()
+        smooth[1:-1] = 0.25 * wanted[:-2] + 0.5 * wanted[1:-1] + 0.25 * wanted[2:]
+        wanted = np.maximum(wanted, smooth)
+    straight[:, 0] = side * wanted
+    turn = np.linspace(0.0, 1.0, 9)[1:, None]
+    behind = straight[-1] + turn * [0.0, 0.0, -16.0] + turn**2 * [-side * 2.0, -17.0, 0.0]
+    return np.vstack([straight, behind])
+
+
+class _Tube(NamedTuple):
+    """A part of a frame."""
+
+    points: Floats64
+    normals: Floats64
+    faces: Integers32
+
+
+def _tube(path: Floats64, thickness: float, *, closed: bool) -> _Tube:
+    """A round tube along a path (n, 3)."""
+    corners = 8
+    if closed:
+        along = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0)
+    else:
+        along = np.gradient(path, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    first = np.cross(along, [0.31, 0.52, 0.79])
+    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    second = np.cross(along, first)
+    angle = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)[:, None, None]
+    normals = np.cos(angle) * first + np.sin(angle) * second  # (corners, n, 3)
+    points = path + 0.5 * thickness * normals
+    numbers = np.arange(points.shape[0] * points.shape[1]).reshape(points.shape[:2])
+    rows = np.vstack([numbers, numbers[:1]])
+    faces = grid_faces(rows, closed=closed)
+    return _Tube(points.reshape(-1, 3), normals.reshape(-1, 3), faces)
+
+
+def _joined(tubes: list[_Tube], frame: Frame) -> Part:
+    """One part of several tubes."""
+    firsts = np.cumsum([0, *(len(each.points) for each in tubes[:-1])])
+    faces = [each.faces + first for each, first in zip(tubes, firsts, strict=True)]
+    points = np.vstack([each.points for each in tubes])
+    return Part(
+        name=GLASSES,
+        vertices=points.astype(np.float32),
+        normals=np.vstack([each.normals for each in tubes]).astype(np.float32),
+        faces=np.vstack(faces).astype(np.int32),
+        colours=np.tile(np.array(frame.colour, np.float32), (len(points), 1)),
+        bone="cranium",
+        shine=frame.shine,
+    )

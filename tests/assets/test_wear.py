@@ -1,0 +1,58 @@
+"""Shirts and glasses: where frames lie on any person, and what else stays."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from risorius.assets.identities import FRAMES, SHIRTS, make_person, sample_identity, wearing
+from risorius.assets.identities.wear import GLASSES, glasses
+
+
+@pytest.fixture(scope="module")
+def people():
+    """Three persons."""
+    return [make_person(sample_identity(number)) for number in (3, 7, 12)]
+
+
+@pytest.mark.parametrize("name", FRAMES)
+def test_frames_lie_before_eyes_and_off_the_skin(people, name):
+    """Rims around both eyes, temples that reach behind the ears, mirrored, none within the skin."""
+    for person in people:
+        part = glasses(person, FRAMES[name])
+        points = part.vertices.astype(float)
+        assert np.isfinite(part.normals).all()
+        for eye in person.eyes:
+            front = points[points[:, 2] > eye.centre[2]]
+            away = front[:, :2] - eye.centre[:2]
+            around = np.degrees(np.arctan2(away[:, 1], away[:, 0]))
+            assert np.diff(np.sort(around)).max() < 20.0
+        for side, ear in ((1.0, "left"), (-1.0, "right")):
+            tragion = person.vertices[person.anatomy[f"tragion_{ear}"]]
+            reached = points[side * points[:, 0] > 40.0]
+            assert reached[:, 2].min() < tragion[2] - 10.0
+        rims = points[points[:, 2] > person.eyes[0].centre[2] + person.eyes[0].radius]
+        near = cKDTree(person.vertices[:, :2]).query_ball_point(rims[:, :2], 3.0)
+        for found, point in zip(near, rims, strict=True):
+            assert not found or person.vertices[found, 2].max() < point[2]
+
+
+def test_normals_point_out_of_the_frame(people):
+    """Faces run the way of their normals, or they would be culled."""
+    part = glasses(people[0], FRAMES["oval"])
+    a, b, c = (part.vertices[part.faces[:, k]].astype(float) for k in range(3))
+    across = np.cross(b - a, c - a)
+    assert ((across * part.normals[part.faces[:, 0]]).sum(axis=1) > 0.0).all()
+
+
+def test_shirts_keep_their_shades(people):
+    """Only the colours of the shirt differ; without glasses there are none."""
+    plain = people[0]
+    white = wearing(plain, shirt="white")
+    for before, after in zip(plain.parts, white.parts, strict=True):
+        is_shirt = before.bone == "neck"
+        assert np.array_equal(before.colours, after.colours) != is_shirt
+        if is_shirt:
+            assert after.colours.mean() > before.colours.mean() + 0.3
+    assert [part.name for part in wearing(plain, shirt="blue").parts].count(GLASSES) == 0
+    assert {part.name for part in wearing(plain, shirt="red", frame="round").parts} >= {GLASSES}
+    assert len(SHIRTS) == 8
