@@ -1,9 +1,9 @@
 """Where the 68 landmarks of a head may lie, from the few that somebody has placed.
 
-    first points  ->  similarity to the built-in head
+    first points  ->  similarity to the built-in head  ->  the likeliest person
                   ->  its face laid on the mesh, stiff at first  ->  its landmarks on the mesh
 
-The built-in face is laid on the mesh as one lays a cloth: each of its points goes to the nearest
+The person's face is laid on the mesh as one lays a cloth: each of its points goes to the nearest
 place that faces the same way. A warp follows them, and bends more in each step.
 
 Source: Amberg, Romdhani, Vetter 2007, "Optimal step nonrigid ICP" (stiffness that falls from step
@@ -25,6 +25,7 @@ from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh
 from ..model import Head
+from .likely_face import FARTHEST_MATCH, LikelyFace
 from .mesh_validation import pieces_of
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
@@ -49,24 +50,23 @@ def guess(mesh: Mesh, known: Known) -> Floats64:
     faces = skin_around(vertices, mesh.faces, given)
     # The landmarks and the face around them are laid on the mesh.
     chosen = np.concatenate([head.landmarks, _around_landmarks(head)])
-    points = head.vertices[chosen]
-    known_points = head.vertices[head.landmarks[numbers]]
+    face = LikelyFace(head, vertices, faces, numbers, given, chosen)
+    face.fit()
+    own = face.vertices
+    points = own[chosen]
+    known_points = own[head.landmarks[numbers]]
     is_free = ~np.isin(np.arange(len(chosen)), numbers)
-    laid = head.vertices
-    stiffnesses = (1e4, 3e3, 1e3, 300.0, 100.0, 30.0)  # [mm] of the warp, from step to step
-    # [mm]: a point of the face finds no place on the mesh that is farther off.
-    farthest_match = 18.0
+    laid = own
+    stiffnesses = (1e3, 300.0, 100.0)  # [mm] of the warp, from step to step
     for stiffness in stiffnesses:
-        feet = _feet(laid, head, chosen, vertices, faces)
-        is_laid = is_free & (np.linalg.norm(feet - laid[chosen], axis=1) < farthest_match)
+        feet = _feet(laid, head, chosen, face.mesh, faces)
+        is_laid = is_free & (np.linalg.norm(feet - laid[chosen], axis=1) < FARTHEST_MATCH)
         give = np.concatenate([np.zeros(len(numbers)), np.full(is_laid.sum(), stiffness)])
         source = np.vstack([known_points, points[is_laid]])
-        laid = ThinPlateSpline(source, np.vstack([given, feet[is_laid]]), give).points(
-            head.vertices
-        )
-    found = _feet(laid, head, head.landmarks, vertices, faces)
-    found[numbers] = given
-    return similarity.inverse.points(found)
+        laid = ThinPlateSpline(source, np.vstack([face.given, feet[is_laid]]), give).points(own)
+    found = _feet(laid, head, head.landmarks, face.mesh, faces)
+    found[numbers] = face.given
+    return similarity.inverse.points(face.moved.inverse.points(found))
 
 
 def placing(known: Known) -> Similarity:
