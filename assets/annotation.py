@@ -41,8 +41,8 @@ class Annotation:
     """Places on the skin of one head; see the module.
 
     inner: of the points 17 to 67, in their order.
-    lanes: of the ways on which the outline is sought, LANES times STEPS places of the right side
-        and as many of the left one, each way from the cheek outward.
+    lanes: on the ways along which the outline is sought: LANES ways of STEPS places on the right
+        side, then as many on the left. Each way runs from the cheek outward.
     """
 
     inner: SurfacePoints

@@ -55,11 +55,11 @@ MOST_YAW = 10.0  # [degrees] of frontal pictures
 
 @dataclass(frozen=True)
 class Finding:
-    """What a detector found in the pictures of a set.
+    """The errors of a detector on the pictures of a set.
 
     errors: of each picture and point, in the frame of the face: along the line of the eyes to the
     subject's left, and down [percent of the eyes' distance], (n, 68, 2). yaw: of the heads
-    [degrees], (n,). picture_count: of the set, with those in which it found no face.
+    [degrees], (n,). picture_count: of all pictures, those without a found face included.
     """
 
     detector: str

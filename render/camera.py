@@ -193,11 +193,11 @@ class OrbitCamera:
 
 @dataclass(frozen=True, eq=False)
 class CameraView:
-    """A camera, as it stands when this is made, that looks into a viewport.
+    """The state of a camera, when this is made, and the viewport that it looks into.
 
     viewport: x, y, width, height [pixels of the surface] from the lower left corner, whose aspect
         the picture takes on; None: all of the surface.
-    clip: the part of the surface outside which nothing is drawn; None: all of the viewport. Two
+    clip: the only part of the surface that is drawn; None: all of the viewport. Two
         clips make one image of two meshes.
     """
 

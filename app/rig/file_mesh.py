@@ -230,7 +230,7 @@ class FileMeshWriter:
 def root_matrix(to_millimetres: Similarity) -> Floats64:
     """The matrix (4, 4) that brings the coordinates of a file to metres, y up, face along z.
 
-    Axes are turned by right angles alone, and the unit is a usual one, where one is near.
+    Axes turn by right angles only. The unit is the nearest usual one, if one is near.
     """
     rotation = to_millimetres.rotation
     axes = np.zeros((3, 3))

@@ -98,7 +98,7 @@ def worth_correcting(
 ) -> list[tuple[str, str]]:
     """The pairs of shapes whose sums are farthest off, at most `count`, farthest first.
 
-    Those are simulated that share the most skin, TRIED for each one that is wanted. Opposites, such
+    It simulates TRIED pairs for each wanted one: those that share the most skin. Opposites, such
     as an eye that looks up and down, and shapes that are shares of others, are left out.
     """
     sums = Sums(scene, poses)

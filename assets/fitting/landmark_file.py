@@ -74,7 +74,7 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]
 def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, Floats64], frozenset[int]]:
     """Points (3,) [unit of the mesh] of those landmarks that are marked, and which were guessed.
 
-    Raises AssetError as `read_landmarks` does, but for those that are missing.
+    Raises AssetError as `read_landmarks` does, but not for missing landmarks.
     """
     try:
         document = _document(path)

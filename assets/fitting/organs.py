@@ -213,10 +213,10 @@ def _bent(part: Part, warp: ThinPlateSpline) -> Part:
 def with_eyelid_rims(
     parts: Sequence[Part], vertices: Floats64, faces: Integers32, eyes: Sequence[Eye]
 ) -> tuple[Part, ...]:
-    """The parts of a head; its flesh is where skin ends around an eye, and has a rim there.
+    """The parts of a head, with flesh that begins where skin ends around an eye, and has a rim.
 
-    The built-in lids reach behind the front of the ball, and flesh fills their corners. A mesh that
-    is brought ends anywhere: between its edge and the ball one would look into the empty head.
+    The built-in lids reach behind the front of the ball, and flesh fills their corners. The lids of
+    other meshes end anywhere, and the empty head would be seen between them and the ball.
     vertices: of the skin [mm], shape (V, 3); faces: its triangles, shape (F, 3).
     """
     loops = [(eye, _edge_around(eye, vertices, faces)) for eye in eyes]

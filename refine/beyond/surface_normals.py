@@ -225,7 +225,8 @@ def surface_normals_of_vertices(
 ) -> None:
     """Write unit normals of vertices, the first of `normals`, shape (V + E, 3).
 
-    `starts`, `corners`: those at each vertex (mesh/fans.py). `rows`: positions, shape (V + E, 6).
+    `starts`, `corners`: of the triangles at each vertex (mesh/fans.py). `rows`: positions, shape
+    (V + E, 6).
     """
     vertex_count = starts.shape[0] - 1
     for v in range(first, last):

@@ -23,8 +23,8 @@ import numpy.typing as npt
 class RefinedMesh(NamedTuple):
     """Triangles of one frame: views of buffers that the next frame overwrites.
 
-    Where the output lies elsewhere, in buffers of a GPU for one, a refiner hands out an object of
-    its own with these members, counts included, which fetches arrays when they are read.
+    A refiner whose output lies elsewhere, for example in buffers of a GPU, returns an object of its
+    own with these members, counts included. That object fetches arrays when they are read.
     """
 
     positions: npt.NDArray[np.float32]
@@ -93,10 +93,10 @@ class Origins(NamedTuple):
 class Stream(Protocol):
     """Arrays lent by the caller, which the refiner fills from the top.
 
-    They have room for `vertex_capacity` and `triangle_capacity`, and may be others in each frame.
+    They have room for `vertex_capacity` and `triangle_capacity`. Each frame may bring others.
     They may be views of mapped memory: of a file, of another process, of a buffer of the GPU.
-    The built-in refiners read rows again that they have written in the same frame, so the memory
-    should be fast to read, too.
+    The built-in refiners read again rows that they wrote in the same frame, so the memory should
+    be fast to read, too.
     """
 
     @property

@@ -38,8 +38,8 @@ def cross_product(positions: Floats64, a: np.uint32, b: np.uint32, c: np.uint32)
 def normalise(vectors: Floats32) -> None:
     """Bring vectors, shape (V, 3), to length one; those that are zero stay zero.
 
-    Without a branch the loop takes several at a time. Vectors whose square single precision
-    does not hold are left to a second loop, which takes them one by one.
+    The loop has no branch, so it takes several vectors at a time. A second loop takes the vectors
+    whose squares single precision does not hold, one by one.
     """
     assert vectors.shape[1] == WIDTH
     left_count = 0

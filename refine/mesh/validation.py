@@ -118,8 +118,8 @@ def take_positions(
     """Copy the positions of a frame, shape (V, 3), in double and in single precision.
 
     Raises ValueError unless all used positions are finite and below LARGEST_COORDINATE; `is_used`:
-    flags of these, shape (V,). Bad unused positions move to the first used one. An array that is no
-    plain one of doubles is copied first, so that compiled code has one kind of array to take.
+    flags of these, shape (V,). Bad unused positions move to the first used one. Any array but a
+    plain one of doubles is copied first: compiled code takes one kind of array.
     """
     source: npt.NDArray[Any] = given
     if given.dtype is not _DOUBLE or not given.flags.carray:
