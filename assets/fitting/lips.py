@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,11 +16,10 @@ import scipy
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from ...geometry.arrays import Floats64, Integers32
+from ...geometry.arrays import Floats64, Integers, Integers32
 from ...geometry.sides import sides_of
 from ..meshes import Mesh
 
-Numbers = npt.NDArray[np.integer[Any]]
 UPPER_LIP = (60, 61, 62, 63, 64)
 LOWER_LIP = (60, 67, 66, 65, 64)
 OUTER_MIDDLES = (51, 57)  # of the upper and the lower lip's outer border
@@ -64,8 +62,8 @@ class LipCut:
     landmarks: vertices of the mesh that is cut, shape (68,). points: where they lie, (68, 3).
     """
 
-    sources: Numbers
-    below: Numbers
+    sources: Integers
+    below: Integers
     landmarks: Integers32
     points: Floats64
 
@@ -100,7 +98,7 @@ class LipCut:
             corners=corners.astype(np.int32),
         )
 
-    def is_below(self, triangles: Numbers) -> npt.NDArray[np.bool_]:
+    def is_below(self, triangles: Integers) -> npt.NDArray[np.bool_]:
         """Which of some triangles (F, 3), with the numbers of the file, take new vertices."""
         known = set(map(tuple, self.below.tolist()))
         touched = np.flatnonzero(np.isin(triangles, self.sources).any(axis=1))
@@ -153,7 +151,7 @@ def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | No
     return LipCut(sources, np.sort(corners[below], axis=1), numbers, points)
 
 
-def _path_along(mesh: Mesh, line: Floats64) -> Numbers | None:
+def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
     """Vertices that edges join to a path along a line (n, 3), from end to end; None for none."""
     used = np.unique(mesh.faces)
     ends = used[scipy.spatial.cKDTree(mesh.vertices[used]).query(line[[0, -1]])[1]]
@@ -175,7 +173,7 @@ def _path_along(mesh: Mesh, line: Floats64) -> Numbers | None:
     return np.array(path[::-1])
 
 
-def _sides_of_path(faces: Integers32, path: Numbers) -> list[Numbers]:
+def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
     """The triangles at the inner vertices of a path, in parts that the path divides."""
     strip = np.flatnonzero(np.isin(faces, path[1:-1]).any(axis=1))
     sides = np.sort(sides_of(faces[strip]), axis=1)
