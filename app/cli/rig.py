@@ -58,7 +58,8 @@ class Rigging:
     )
     take: Path | None = option(
         type=PATH,
-        help="Compare sums of shapes with this recording or script; with a few words by default.",
+        help="Compare sums of shapes with this recording or script, with a few words by default; "
+        "--correctives are those that pay most on it.",
     )
     quiet: bool = option(is_flag=True, help="Print nothing but errors.")
 
@@ -92,6 +93,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
         rigging.correctives,
         not rigging.quiet,
         _take_of(rigging, kinds),
+        chooses_by_take=rigging.take is not None,
     )
 
     def say(line: str) -> None:
@@ -122,7 +124,7 @@ def _take_of(rigging: Rigging, kinds: tuple[str, ...]) -> Script | None:
         if rigging.take is not None:
             raise UserError("--take goes with the shapes of ARKit; add arkit to --shapes")
         return None
-    if rigging.quiet:
+    if rigging.quiet and (rigging.take is None or not rigging.correctives):
         return None
     if rigging.take is None:
         return built_in_words()

@@ -21,7 +21,7 @@ from .linearity import Difference, corrective_poses, table, worth_correcting
 from .linearity import corrected as corrected_shapes
 from .pieces import FilePiece, corrected, described, find_pieces
 from .poses import shape_names
-from .take_linearity import difference_on, played_take
+from .take_linearity import difference_on, played_take, worth_correcting_on
 
 GLTF = (".glb", ".gltf")
 
@@ -34,6 +34,7 @@ class RigRequest:
     corrections: of the roles of pieces. adds_parts: built-in eyes, teeth and tongue are added where
     the file has none. correctives: shapes of pairs, at most. progress: a bar is shown.
     take: on which sums of ARKit's shapes are compared with the simulation; None: on none.
+    chooses_by_take: correctives are those that pay most on the take, not on all skin.
     """
 
     kinds: tuple[str, ...] = ("arkit",)
@@ -43,6 +44,7 @@ class RigRequest:
     correctives: int = 0
     progress: bool = True
     take: Script | None = None
+    chooses_by_take: bool = False
 
     def has_eye_nodes(self, *, is_gltf: bool) -> bool:
         """Whether eyeballs are left to nodes; those of a glTF file, which keeps its own, are not
@@ -120,12 +122,19 @@ def avatar_of(head: FittedHead | None, request: RigRequest, say: Say) -> Avatar:
     poses = dict(poses_of(scene, names, progress=request.progress))
     sums = table(scene, poses)
     pairs: list[tuple[str, str]] = []
+    take = None
+    if request.take is not None and "arkit" in request.kinds:
+        take = played_take(scene, request.take)
     if request.correctives:
-        pairs = worth_correcting(scene, poses, request.correctives, progress=request.progress)
+        count = request.correctives
+        if take is not None and request.chooses_by_take:
+            pairs = worth_correcting_on(take, scene, poses, count, progress=request.progress)
+        else:
+            pairs = worth_correcting(scene, poses, count, progress=request.progress)
         poses.update(corrective_poses(scene, pairs))
         names = tuple(poses)
-    if request.take is not None and "arkit" in request.kinds:
-        sums.append(difference_on(played_take(scene, request.take), scene, poses, pairs))
+    if take is not None:
+        sums.append(difference_on(take, scene, poses, pairs))
     for difference in sums:
         say(f"sum of shapes off the simulation: {difference}")
     shapes = tuple(_without_sums(each, pairs, names) for each in moving(bodies, poses))

@@ -60,6 +60,17 @@ class Sums:
         self._areas = vertex_areas(scene.rest_positions, scene.faces)
         self._ways = {name: pose.skin - base.skin for name, (pose, base) in poses.items()}
 
+    @property
+    def pairs(self) -> list[tuple[str, str]]:
+        """Pairs of shapes that may be made at once.
+
+        Opposites, such as an eye that looks up and down, and shapes that are shares of others, are
+        left out.
+        """
+        shares = self._scene.simulation.controls.tables.share_of
+        names = [name for name in self._ways if name not in shares]
+        return [pair for pair in combinations(names, 2) if not _are_opposite(*pair)]
+
     def difference(self, names: Sequence[str]) -> Difference:
         """Of a sum of some shapes at 1."""
         together = rest_in(self._scene, dict.fromkeys(names, 1.0)).skin
@@ -98,15 +109,10 @@ def worth_correcting(
 ) -> list[tuple[str, str]]:
     """The pairs of shapes whose sums are farthest off, at most `count`, farthest first.
 
-    It simulates TRIED pairs for each wanted one: those that share the most skin. Opposites, such
-    as an eye that looks up and down, and shapes that are shares of others, are left out.
+    It simulates TRIED pairs for each wanted one: those that share the most skin.
     """
     sums = Sums(scene, poses)
-    shares = scene.simulation.controls.tables.share_of
-    names = [name for name in poses if name not in shares]
-    pairs = [pair for pair in combinations(names, 2) if not _are_opposite(*pair)]
-    pairs.sort(key=lambda pair: -sums.shared(*pair))
-    tried = pairs[: TRIED * count]
+    tried = sorted(sums.pairs, key=lambda pair: -sums.shared(*pair))[: TRIED * count]
     bar = tqdm(tried, "Pairs", unit="pair", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):
         found = [(sums.difference(pair), pair) for pair in bar]

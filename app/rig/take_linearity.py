@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from tqdm import tqdm
 
 from risorius.geometry.arrays import Floats32, Floats64
 from risorius.geometry.normals import vertex_areas
@@ -18,9 +19,10 @@ from ..motion import play
 from ..recordings.names import ARKIT
 from ..scenes import FaceScene
 from ..script import Script
+from ..stopping import cleaned_up_if_stopped
 from .curves import shape_curves
-from .linearity import Difference
-from .poses import Pose, pose_of
+from .linearity import TRIED, Difference, Sums
+from .poses import Pose, pose_of, rest_in
 
 FRAMES_PER_SECOND = 15.0  # few of a take are as good as all
 
@@ -58,6 +60,70 @@ def played_take(scene: FaceScene, script: Script) -> PlayedTake:
         dict(zip(scene.values, np.stack(controls, axis=1), strict=True)),
     )
     return PlayedTake(script.title or script.source, np.stack(ways), curves)
+
+
+def worth_correcting_on(
+    take: PlayedTake,
+    scene: FaceScene,
+    poses: Mapping[str, tuple[Pose, Pose]],
+    count: int,
+    *,
+    progress: bool,
+) -> list[tuple[str, str]]:
+    """The pairs of ARKit's shapes whose correctives bring sums nearest to a take, at most `count`.
+
+    Those are simulated that the take plays at once on the same skin. The one that takes the most
+    of what is left of the squares is chosen, again and again, as long as one takes any.
+    """
+    weights = dict(zip(ARKIT, take.curves.T, strict=True))
+    sums = Sums(scene, {name: poses[name] for name in ARKIT})
+    played = {
+        pair: float((weights[pair[0]] * weights[pair[1]]).sum()) * sums.shared(*pair)
+        for pair in sums.pairs
+    }
+    together = [pair for pair in sums.pairs if played[pair] > 0.0]
+    tried = sorted(together, key=lambda pair: -played[pair])[: TRIED * count]
+    if not tried:
+        return []
+    ways = []
+    bar = tqdm(tried, "Pairs", unit="pair", disable=not progress or None, leave=False)
+    with cleaned_up_if_stopped(bar.close):
+        for pair in bar:
+            way = rest_in(scene, dict.fromkeys(pair, 1.0)).skin - scene.rest_positions
+            ways.append(way - sums.sum(dict.fromkeys(pair, 1.0)))
+    shares = np.sqrt(vertex_areas(scene.rest_positions, scene.faces))[:, None]
+    columns = np.stack([(shares * way).ravel() for way in ways], axis=1)
+    products = np.stack([weights[first] * weights[second] for first, second in tried], axis=1)
+    along = np.zeros(products.shape)  # what is left of each frame, along each way
+    for frame, way in enumerate(take.ways):
+        at_once = {name: float(curve[frame]) for name, curve in weights.items()}
+        along[frame] = (shares * (way - sums.sum(at_once))).ravel() @ columns
+    return _greediest(tried, products, along, columns.T @ columns, count)
+
+
+def _greediest(
+    pairs: Sequence[tuple[str, str]],
+    products: Floats64,
+    along: Floats64,
+    lengths: Floats64,
+    count: int,
+) -> list[tuple[str, str]]:
+    """The pairs that take the most of the squares, one after the other.
+
+    products: weights of the pairs in each frame, (N, K). along: what is left of each frame, along
+    the way of each pair, (N, K). lengths: of ways, along each other, (K, K).
+    """
+    left = along.copy()
+    found: list[tuple[str, str]] = []
+    while len(found) < min(count, len(pairs)):
+        taken = (2.0 * products * left - products**2 * np.diag(lengths)).sum(axis=0)
+        taken[[pairs.index(pair) for pair in found]] = -np.inf
+        best = int(taken.argmax())
+        if taken[best] <= 0.0:
+            break
+        found.append(pairs[best])
+        left -= products[:, best, None] * lengths[best]
+    return found
 
 
 def difference_on(

@@ -269,6 +269,12 @@ def test_a_take_shows_how_far_sums_are_off(tmp_path, face):
     together = rest_in(face, {"jawOpen": 1.0, "mouthPucker": 1.0}).skin
     expected = np.linalg.norm(sum(shapes) - face.rest_positions - together, axis=1).max()
     assert both == pytest.approx(expected, abs=0.2)
+    path = tmp_path / "corrected.glb"
+    result = risorius("rig", "-o", path, "--take", take, "--correctives", 2)
+    (first, *_) = document(path)["meshes"][0]["extras"]["correctives"]
+    assert first["product"] == ["jawOpen", "mouthPucker"]  # chosen by the take, which plays them
+    line = next(line for line in result.output.splitlines() if "Still" in line)
+    assert float(re.search(r"at most (\d+\.\d) mm", line)[1]) < 0.3 * both
     words = ("--shapes", "units", "--take", take)
     assert "--shapes" in refusal(risorius("rig", "-o", tmp_path / "b.glb", *words))
 
