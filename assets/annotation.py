@@ -144,20 +144,20 @@ def _with_brows(head: Head | Person, points: SurfacePoints) -> SurfacePoints:
 def _along_brow(places: Floats64) -> Integers32:
     """Five of the places (n, 3) [mm] of a left brow, from the nose outward, shape (5,).
 
-    Both ends, and three on the upper edge, as far from each other along it.
+    Both ends, and three on the upper edge, as far from each other along it. The tail ends at the
+    place that is farthest from the nose's end, for it may turn down there.
     """
     x, y, _ = places.T
     strip_width = 1.0  # [mm]
     strip = np.round((x - x.min()) / strip_width).astype(int)
-    last = int(strip.max())
     edge = []
-    for number in range(last + 1):
+    for number in range(strip.max() + 1):
         inside = np.flatnonzero(strip == number)
         if len(inside) == 0:
             continue
-        is_end = number in (0, last)
-        wanted = np.median(y[inside]) if is_end else y[inside].max()
+        wanted = np.median(y[inside]) if number == 0 else y[inside].max()
         edge.append(inside[np.abs(y[inside] - wanted).argmin()])
+    edge[-1] = np.linalg.norm(places - places[edge[0]], axis=1).argmax()
     along = arc_lengths(places[edge])
     stations = np.linspace(0.0, along[-1], 5)
     nearest = np.abs(along[:, None] - stations).argmin(axis=0)

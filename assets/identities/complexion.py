@@ -214,14 +214,14 @@ def _haired_segments(segments: Image, features: Features, behind: Floats32) -> I
     if features.brows is not None:
         found[(found == brows[0]) | (found == brows[1])] = Segment.SKIN
         hairs = painted(features.brows, len(found))
-        blur = 3.0  # [texels]
+        blur = 2.0  # [texels]
         wide = round(5.0 * blur)
         rows = np.flatnonzero(hairs.any(axis=1))
         near = slice(max(rows[0] - wide, 0), rows[-1] + wide)  # rows of texels about brows
         covered = scipy.ndimage.gaussian_filter(hairs[near], blur)
         left = np.arange(found.shape[1]) > found.shape[1] / 2
         sides = np.where(left, np.uint8(Segment.LEFT_BROW), np.uint8(Segment.RIGHT_BROW))
-        least_cover = 0.12  # share of hairs from which skin is called brow
+        least_cover = 0.1  # share of hairs from which skin is called brow
         is_brow = (covered > least_cover) & (found[near] == Segment.SKIN)
         found[near] = np.where(is_brow, sides, found[near])
     return found

@@ -1,0 +1,32 @@
+"""Where annotators put points: on what a picture shows."""
+
+import numpy as np
+import pytest
+
+from risorius.assets.annotation import _on_texture, annotation_of
+from risorius.assets.identities import complexion, person_called
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [3, 8, 21])
+def test_a_brow_ends_where_its_hairs_do(monkeypatch, number):
+    """The tail's point is within 1.5 mm of the last hair that is seen, whatever way it turns."""
+    painted = complexion.painted
+    pictures = []
+
+    def kept(brows, size):
+        pictures.append(painted(brows, size))
+        return pictures[-1]
+
+    monkeypatch.setattr(complexion, "painted", kept)
+    person = person_called(number)
+    assert person.segments is not None
+    hairs = pictures[-1]
+    points = annotation_of(person).inner_points(person.vertices)
+    seen = 0.3  # of the darkness of a hair
+    rows, columns = np.nonzero(hairs > seen)
+    uv = (np.column_stack([columns, rows]) + 0.5) / len(hairs) * [1.0, -1.0] + [0.0, 1.0]
+    places = _on_texture(uv[columns > len(hairs) / 2]).interpolate(person.vertices)
+    nose_end, tail = points[[22 - 17, 26 - 17]]
+    last = places[np.linalg.norm(places - nose_end, axis=1).argmax()]
+    assert np.linalg.norm(tail - last) < 1.5  # mm
