@@ -110,7 +110,7 @@ def opened(detector: str, model: Path | None) -> Iterator[Detector]:
 def _dlib(model: Path | None) -> Detector:
     """dlib's detector of frontal faces, and its 68 points in the face."""
     dlib = needed("dlib", "the detector", "dlib")
-    file = model or _packaged_model()
+    file = model or packaged_model()
     try:
         predictor = dlib.shape_predictor(str(file))
     except RuntimeError as error:
@@ -131,7 +131,7 @@ def _dlib(model: Path | None) -> Detector:
     return detect
 
 
-def _packaged_model() -> Path:
+def packaged_model() -> Path:
     """The predictor that the package face_recognition_models brings."""
     package = importlib.util.find_spec("face_recognition_models")
     places = list(package.submodule_search_locations or ()) if package else []

@@ -1,11 +1,14 @@
 """Every program in examples/ runs, and does what its first lines say."""
 
 import importlib.util
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
+import PIL.Image
 import pytest
 
 from risorius import refine
@@ -27,7 +30,15 @@ def example(name: str) -> ModuleType:
 def test_every_example_is_tested():
     """A new program in the folder needs a test here."""
     found = {path.stem for path in tracked(FOLDER, "*.py") if path.parent == FOLDER}
-    assert found == {"plain_script", "own_refiner", "read_dataset", "in_mujoco", "in_newton"}
+    assert found == {
+        "in_mujoco",
+        "in_newton",
+        "landmark_faces",
+        "own_refiner",
+        "plain_script",
+        "read_dataset",
+        "train_landmarks",
+    }
 
 
 @pytest.mark.slow
@@ -87,3 +98,48 @@ def test_read_dataset(tmp_path):
     )
     assert result.stdout.startswith("3 samples to train with, 1 to test with")
     assert len(result.stdout.splitlines()) == 13
+
+
+def test_faces_are_cut_out_with_their_points(tmp_path):
+    """A photograph and its `.pts` become one face, and its points stay on what they mark."""
+    random = np.random.default_rng(4)
+    points = random.uniform([150.0, 120.0], [350.0, 330.0], (68, 2))
+    picture = PIL.Image.new("RGB", (500, 400))
+    column, row = np.floor(points[30]).astype(int)
+    picture.paste((255, 255, 255), (column - 4, row - 4, column + 5, row + 5))
+    picture.save(tmp_path / "face.png")
+    rows = "\n".join(f"{x + 0.5} {y + 0.5}" for x, y in points)  # they count pixels from 1
+    marks = f"version: 1\nn_points: 68\n{{\n{rows}\n}}\n"
+    (tmp_path / "face.pts").write_text(marks, encoding="utf-8")
+    by_hand, by_dlib = example("landmark_faces").read_photographs(tmp_path)
+    assert (len(by_hand), len(by_dlib)) == (1, 0)
+    cut, places = by_hand[0]
+    assert cut.shape == (3, 144, 144)
+    bright = np.argwhere(cut[0] > 128).mean(axis=0)[::-1] + 0.5
+    assert np.allclose((places[30] + 1.0) * 72.0, bright, atol=0.7)
+
+
+@pytest.mark.slow
+def test_train_landmarks(tmp_path):
+    """As a user starts it, on few faces: it learns, and prints errors on photographs, too."""
+    pytest.importorskip("torch", reason="pip install '.[torch]' brings it")
+    faces = tmp_path / "faces"
+    make_set(request_of(faces, seed=1, size=(96, 96), passes=()), 8, progress=False)
+    photographs = tmp_path / "photographs"
+    photographs.mkdir()
+    shutil.copy(faces / "000001.png", photographs / "face.png")
+    points = (faces / "000001_ldmks.txt").read_text("utf-8").splitlines()[:68]
+    marks = "\n".join(["version: 1", "n_points: 68", "{", *points, "}"])
+    (photographs / "face.pts").write_text(marks, encoding="utf-8")
+    command = [FOLDER / "train_landmarks.py", faces, photographs, "--epochs", 12]
+    result = subprocess.run(
+        [sys.executable, *map(str, command)],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    lines = result.stdout.splitlines()
+    losses = [float(line.split()[-1]) for line in lines[:12]]
+    assert losses[-1] < 0.9 * losses[0]
+    assert lines[12].startswith("ours, ")
+    assert "photographs marked by hand, 1 faces [%]" in result.stdout

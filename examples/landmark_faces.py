@@ -1,0 +1,96 @@
+"""Faces cut out of pictures with their 68 points: of a data set of ours, and of photographs.
+
+`train_landmarks.py` learns from the first and is tested on the second. A photograph with a `.pts`
+file beside it, as 300-W has them, has one face, marked by hand. In the others dlib finds the faces,
+and its points stand for the truth.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib.util
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import PIL.Image
+
+from risorius.bench.landmarks import packaged_model
+from risorius.faces import Faces
+
+Face = tuple[np.ndarray, np.ndarray]  # a picture (3, 144, 144) 0..255, points (68, 2) from -1 to 1
+
+SIDE = 96  # of the picture that a network sees [pixels]
+WIDE = 144  # of the pictures that are kept, for the network's are turned and moved in them
+
+
+def cut_out(picture: PIL.Image.Image, points: np.ndarray) -> Face:
+    """The face around the known points 17 to 67. points: (68, 2) [pixels]."""
+    low = points[17:].min(axis=0)
+    high = points[17:].max(axis=0)
+    size = (high - low).max()
+    middle = 0.5 * (low + high) + [0.0, 0.15 * size]  # the chin is below
+    half = 0.85 * size * WIDE / SIDE
+    factor = max(round(2.0 * half / WIDE), 1)
+    box = np.concatenate([middle - half, middle + half]) / factor
+    small = picture.convert("RGB").reduce(factor)
+    cut = small.transform(
+        (WIDE, WIDE), PIL.Image.Transform.EXTENT, tuple(box), PIL.Image.Resampling.BILINEAR
+    )
+    return np.array(cut).transpose(2, 0, 1), ((points - middle) / half).astype(np.float32)
+
+
+def read_set(faces: Faces, numbers: list[int], is_on_bone: bool) -> list[Face]:
+    """Samples of ours. is_on_bone: the jaw lies where the rig has it, not on the outline."""
+    found = []
+    for number in numbers:
+        sample = faces[number]
+        points = sample["pixels"][:68].copy()
+        if is_on_bone:
+            labels = json.loads(faces.files(number)["json"])["landmarks"]
+            points[:17] = labels["jaw_on_bone"]["pixels"]
+        picture = np.rint(255.0 * sample["image"].transpose(1, 2, 0)).astype(np.uint8)
+        found.append(cut_out(PIL.Image.fromarray(picture), points))
+    return found
+
+
+@functools.cache
+def opened_dlib() -> tuple[Any, Any]:
+    """dlib's detector of faces, and its points in a face."""
+    import dlib
+
+    return dlib.get_frontal_face_detector(), dlib.shape_predictor(str(packaged_model()))
+
+
+def read_by_dlib(picture: np.ndarray, doublings: int = 0) -> list[np.ndarray]:
+    """The 68 points [pixels] of each face, 80 pixels or higher once doubled; none without dlib."""
+    if importlib.util.find_spec("dlib") is None:
+        return []
+    detect, predict = opened_dlib()
+    shapes = [predict(picture, box).parts() for box in detect(picture, doublings)]
+    return [np.array([(point.x, point.y) for point in shape], float) for shape in shapes]
+
+
+def points_of_dlib(faces: list[Face]) -> np.ndarray:
+    """What dlib reads in cut-out faces, (n, 68, 2) from -1 to 1; no numbers where it finds none."""
+    found = [read_by_dlib(np.ascontiguousarray(cut.transpose(1, 2, 0)), 1) for cut, _ in faces]
+    nothing = np.full((68, 2), np.nan)
+    return np.stack([(each or [nothing])[0] for each in found]) / (WIDE / 2) - 1.0
+
+
+def read_photographs(folder: Path) -> tuple[list[Face], list[Face]]:
+    """The faces in photographs that are marked by hand, and those that dlib reads."""
+    by_hand = []
+    by_dlib = []
+    kinds = (".jpg", ".jpeg", ".png", ".ppm")
+    for file in sorted(path for path in folder.iterdir() if path.suffix.lower() in kinds):
+        picture = PIL.Image.open(file).convert("RGB")
+        marks = file.with_suffix(".pts")
+        if marks.exists():
+            text = marks.read_text("utf-8").partition("{")[2].partition("}")[0]
+            points = np.array(text.split(), float).reshape(68, 2)
+            by_hand.append(cut_out(picture, points - 0.5))  # they count pixels from 1
+        else:
+            by_dlib += [cut_out(picture, points) for points in read_by_dlib(np.asarray(picture))]
+    return by_hand, by_dlib

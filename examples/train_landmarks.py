@@ -1,0 +1,170 @@
+"""Train a network for landmarks on a data set, and test it on photographs.
+
+    pip install '.[torch,dlib]'
+    risorius dataset --count 2000 --seed 2026 --size 160x160 --background pictures -o faces
+    python examples/train_landmarks.py faces photographs
+
+An error is the mean distance in hundredths of the distance between the outer corners of the eyes.
+As in tests on 300-W, where the face is comes from its known points; see `landmark_faces.py`.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+import torch
+from landmark_faces import SIDE, WIDE, Face, points_of_dlib, read_photographs, read_set
+from torch import Tensor, nn
+from torch.nn import functional
+
+from risorius.bench.landmarks import GROUPS
+from risorius.faces import Faces
+from risorius.sim.landmarks import MIRRORED
+
+
+def tensors(faces: list[Face]) -> tuple[Tensor, Tensor]:
+    """Pictures (n, 3, 144, 144) 0..255 and points (n, 68, 2)."""
+    pictures = np.stack([picture for picture, _ in faces])
+    return torch.from_numpy(pictures), torch.from_numpy(np.stack([points for _, points in faces]))
+
+
+def seen(pictures: Tensor, points: Tensor, changes: Tensor | None = None) -> tuple[Tensor, Tensor]:
+    """What the network sees: the middle of pictures, 0..1, or what `changes` (n, 2, 3) shows."""
+    middle = torch.tensor([[SIDE / WIDE, 0.0, 0.0], [0.0, SIDE / WIDE, 0.0]])
+    view = middle.expand(len(pictures), 2, 3) if changes is None else changes
+    grid = functional.affine_grid(view, [len(pictures), 3, SIDE, SIDE], align_corners=False)
+    inside = functional.grid_sample(pictures.float() / 255.0, grid, align_corners=False)
+    return inside, (points - view[:, None, :, 2]) @ torch.linalg.inv(view[:, :, :2]).transpose(1, 2)
+
+
+def varied(pictures: Tensor, points: Tensor) -> tuple[Tensor, Tensor]:
+    """What the network sees in training: turned, moved, mirrored, of other colours and quality."""
+    count = len(pictures)
+    angle = torch.randn(count) * 0.25  # radians
+    size = SIDE / WIDE * torch.exp(torch.randn(count) * 0.12)
+    is_mirrored = torch.rand(count) < 0.5
+    flip = torch.where(is_mirrored, -1.0, 1.0)
+    across = torch.stack([angle.cos() * flip, -angle.sin(), torch.randn(count) * 0.08], dim=1)
+    down = torch.stack([angle.sin() * flip, angle.cos(), torch.randn(count) * 0.08], dim=1)
+    changes = torch.stack([across, down], dim=1)
+    changes[:, :, :2] *= size[:, None, None]
+    inside, places = seen(pictures, points, changes)
+    places[is_mirrored] = places[is_mirrored][:, torch.from_numpy(MIRRORED)]
+
+    grey = inside.mean(dim=1, keepdim=True)
+    inside = torch.lerp(grey, inside, torch.rand(count, 1, 1, 1) * 1.3)
+    gains = torch.exp(torch.randn(count, 3, 1, 1) * 0.12 + torch.randn(count, 1, 1, 1) * 0.2)
+    bends = torch.exp(torch.randn(count, 1, 1, 1) * 0.25)
+    inside = (inside * gains).clamp(1e-4, 1.0) ** bends
+    for number in torch.nonzero(torch.rand(count) < 0.4).flatten().tolist():
+        small = int(torch.randint(28, 80, ()))
+        soft = functional.interpolate(inside[number : number + 1], (small, small), mode="area")
+        inside[number] = functional.interpolate(soft, (SIDE, SIDE), mode="bilinear")[0]
+    inside += torch.randn_like(inside) * torch.rand(count, 1, 1, 1) * 0.06
+    for number in torch.nonzero(torch.rand(count) < 0.4).flatten().tolist():  # something before it
+        row, column, height, width = torch.randint(8, 72, (4,)).tolist()
+        rows = slice(row, row + height // 2)
+        inside[number, :, rows, column : column + width // 2] = torch.rand(3, 1, 1)
+    return inside, places
+
+
+def block(before: int, after: int, stride: int = 1) -> nn.Sequential:
+    """A convolution with a norm, cut off at 0."""
+    convolution = nn.Conv2d(before, after, 3, stride, padding=1, bias=False)
+    return nn.Sequential(convolution, nn.BatchNorm2d(after), nn.ReLU(inplace=True))
+
+
+class Network(nn.Module):
+    """Heat maps of 24 x 24, whose means are the points (Sun et al. 2018, Integral regression)."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.fine = nn.Sequential(block(3, 16, 2), block(16, 32, 2))
+        self.middle = nn.Sequential(block(32, 64, 2), block(64, 64))
+        self.coarse = nn.Sequential(block(64, 128, 2), block(128, 64))
+        self.down = block(64, 32)
+        self.maps = nn.Sequential(block(32, 48), nn.Conv2d(48, 68, 1))
+
+    def forward(self, pictures: Tensor) -> Tensor:
+        """Points (n, 68, 2) in pictures (n, 3, 96, 96)."""
+        fine = self.fine(pictures - 0.5)
+        middle = self.middle(fine)
+        middle = middle + functional.interpolate(self.coarse(middle), scale_factor=2)
+        maps = self.maps(fine + functional.interpolate(self.down(middle), scale_factor=2))
+        weights = maps.flatten(2).softmax(dim=2).view_as(maps)
+        places = (2.0 * torch.arange(24) + 1.0) / 24.0 - 1.0
+        return torch.stack([weights.sum(2) @ places, weights.sum(3) @ places], dim=2)
+
+
+def train(faces: list[Face], epochs: int, is_plain: bool) -> Network:
+    """A network that learned from faces. is_plain: it sees them as they are."""
+    pictures, points = tensors(faces)
+    network = Network().to(memory_format=torch.channels_last)  # faster so on a processor
+    steps = (len(faces) + 31) // 32
+    optimiser = torch.optim.AdamW(network.parameters(), weight_decay=1e-3)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 4e-3, epochs * steps)
+    for epoch in range(epochs):
+        total = 0.0
+        for chosen in torch.randperm(len(faces)).chunk(steps):
+            batch = pictures[chosen], points[chosen]
+            inside, places = seen(*batch) if is_plain else varied(*batch)
+            loss = (network(inside) - places).abs().mean()
+            optimiser.zero_grad()
+            loss.backward()
+            optimiser.step()
+            schedule.step()
+            total += loss.item()
+        print(f"epoch {epoch + 1}: {total / steps:.4f}", flush=True)
+    return network.eval()
+
+
+def percent(found: Tensor, places: Tensor) -> Tensor:
+    """Errors (n, 68) of points (n, 68, 2)."""
+    apart = (places[:, 36] - places[:, 45]).norm(dim=1, keepdim=True)
+    return 100.0 * (found - places).norm(dim=2) / apart
+
+
+def report(name: str, faces: list[Face], network: Network, mean: Tensor) -> None:
+    """Print the errors on some faces: of the mean face, of the network, of dlib."""
+    if not faces:
+        return
+    pictures, points = tensors(faces)
+    inside, places = seen(pictures, points)
+    with torch.no_grad():
+        found = network(inside)
+    rows = {"mean face": mean.expand_as(places), "network": found}
+    rows["dlib"] = torch.from_numpy(points_of_dlib(faces) * WIDE / SIDE).float()
+    print(f"{name}, {len(faces)} faces [%]".ljust(44), *(f"{group:>7}" for group in GROUPS))
+    for reader, places_found in rows.items():
+        errors = percent(places_found, places)
+        errors = errors[~errors[:, 0].isnan()]
+        means = [f"{errors[:, numbers].mean():7.2f}" for numbers in GROUPS.values()]
+        print(f"    {reader} ({len(errors)} faces)".ljust(44), *means)
+
+
+def main() -> None:
+    """Train, test, print."""
+    command = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    command.add_argument("set", type=Path, help="the folder of a set")
+    command.add_argument("photographs", type=Path, nargs="?", help="a folder of pictures")
+    command.add_argument("--epochs", type=int, default=24)
+    command.add_argument("--plain", action="store_true", help="do not vary the pictures")
+    command.add_argument("--jaw-on-bone", action="store_true", help="as the rig has the jaw")
+    given = command.parse_args()
+    torch.manual_seed(1)
+    faces = Faces(given.set)
+    training, testing = faces.split(share=0.1)
+    learned = read_set(faces, training, given.jaw_on_bone)
+    network = train(learned, given.epochs, given.plain)
+    mean = seen(*tensors(learned))[1].mean(dim=0)
+    report("ours", read_set(faces, testing, given.jaw_on_bone), network, mean)
+    if given.photographs:
+        by_hand, by_dlib = read_photographs(given.photographs)
+        report("photographs marked by hand", by_hand, network, mean)
+        report("photographs read by dlib", by_dlib, network, mean)
+
+
+if __name__ == "__main__":
+    main()
