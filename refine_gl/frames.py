@@ -165,7 +165,8 @@ def _block(tables: Tables) -> bytes:
     return np.pad(words, (0, -len(words) % 4)).tobytes()
 
 
-def _text(name: str) -> str:
+def shader_text(name: str) -> str:
+    """The source of a shader of this package."""
     return (files(__package__) / "shaders" / f"{name}.glsl").read_text(encoding="utf-8")
 
 
@@ -174,7 +175,7 @@ def _compile(gl: moderngl.Context, tables: Tables, name: str) -> moderngl.Comput
     if gl.extra is None:
         gl.extra = {}  # shared by all users of a context
     known: dict[str, moderngl.ComputeShader] = gl.extra.setdefault(__name__, {})
-    texts = [f"#line 1\n{_text(each)}" for each in ("common", name)]
+    texts = [f"#line 1\n{shader_text(each)}" for each in ("common", name)]
     source = "\n".join(["#version 430 core", tables.head, *texts])
     if source not in known:
         try:

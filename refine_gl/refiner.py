@@ -84,17 +84,18 @@ def create_kahler_gl(
     decides = port.criterion_of(criterion, NormalDrop(threshold_once, threshold_twice), splits)
     settings = Settings(scheme, decides, blend, bool(coherent))
     if scheme == "cubic" and values.get("crease_angle") is not None:
-        _warn_once("kahler-gl: cubic edges beside creases are refined by the processor (kahler)")
+        warn_once("kahler-gl: cubic edges beside creases are refined by the processor (kahler)")
         return create_kahler(faces, rest_positions, **settings._asdict(), **values)
     try:
         return KahlerGl(faces, rest_positions, own=own_context(), settings=settings, **values)
     except GpuError as error:
-        _warn_once(f"kahler-gl: {error}; the processor refines instead (kahler)")
+        warn_once(f"kahler-gl: {error}; the processor refines instead (kahler)")
     return create_kahler(faces, rest_positions, **settings._asdict(), **values)
 
 
 @functools.cache
-def _warn_once(text: str) -> None:
+def warn_once(text: str) -> None:
+    """Write a warning into the log, the first time alone."""
     log.warning(text)
 
 

@@ -52,6 +52,11 @@ class Receiver:
         self._thread.start()
 
     @property
+    def address(self) -> str:
+        """The address that is listened on."""
+        return str(self._socket.getsockname()[0])
+
+    @property
     def port(self) -> int:
         """The port that is listened on."""
         return int(self._socket.getsockname()[1])

@@ -51,7 +51,7 @@ class Registry(Generic[Product]):
 
     def installed(self) -> "Mapping[str, EntryPoint]":
         """What installed packages announce for this kind, by name; nothing is imported."""
-        return _entry_points(self._group)
+        return entry_points_of(self._group)
 
     def find(self, name: str) -> Callable[..., Product]:
         """Return the factory of a name.
@@ -174,7 +174,8 @@ def _check_options(
 
 
 @functools.cache
-def _entry_points(group: str) -> "Mapping[str, EntryPoint]":
+def entry_points_of(group: str) -> "Mapping[str, EntryPoint]":
+    """The entry points of a group, by name; they are looked up once."""
     from importlib.metadata import entry_points  # takes as long to import as all of this package
 
     return {point.name: point for point in entry_points(group=group)}

@@ -167,9 +167,9 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     (notes / "METADATA").write_text("Metadata-Version: 2.1\nName: theirs\nVersion: 1.0\n")
     (notes / "entry_points.txt").write_text(ENTRY_POINTS, encoding="utf-8")
     monkeypatch.syspath_prepend(site)
-    registry._entry_points.cache_clear()
+    registry.entry_points_of.cache_clear()
     yield
-    registry._entry_points.cache_clear()
+    registry.entry_points_of.cache_clear()
 
 
 def capture(folder: Path, *options: str) -> Result:

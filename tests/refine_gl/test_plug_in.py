@@ -133,7 +133,7 @@ def without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
         """Fail as `own_context` does then."""
         raise GpuError("no OpenGL 4.3 without a window (it has 4.1)")
 
-    refiner._warn_once.cache_clear()
+    refiner.warn_once.cache_clear()
     monkeypatch.setattr(refiner, "own_context", fails)
 
 
@@ -154,9 +154,9 @@ def test_without_opengl_the_processor_refines(caplog):
 
 def test_a_driver_that_refuses_a_shader(monkeypatch, caplog):
     """Then the processor refines as well, and the line has the driver's complaint."""
-    whole = frames._text
-    refiner._warn_once.cache_clear()
-    monkeypatch.setattr(frames, "_text", lambda name: whole(name) + "?" * (name == "mark"))
+    whole = frames.shader_text
+    refiner.warn_once.cache_clear()
+    monkeypatch.setattr(frames, "shader_text", lambda name: whole(name) + "?" * (name == "mark"))
     with caplog.at_level(logging.WARNING):
         assert type(refine.create("kahler-gl", MESH.faces, MESH.vertices)) is refine.Kahler
     (line,) = caplog.messages
@@ -166,7 +166,7 @@ def test_a_driver_that_refuses_a_shader(monkeypatch, caplog):
 
 def test_shaders_take_eight_buffers():
     """OpenGL 4.3 promises no more storage buffers in all, nor a larger group of threads."""
-    bindings = re.findall(r"std430, binding = (\d+)", frames._text("common"))
+    bindings = re.findall(r"std430, binding = (\d+)", frames.shader_text("common"))
     assert sorted(map(int, bindings)) == list(range(8))
     assert tables.GROUP <= 1024
 
