@@ -72,10 +72,14 @@ def falling_hair(
     wide = np.linalg.norm((start - middle)[..., [0, 2]], axis=-1)
     tip_thinning = 0.7  # share of the volume that tips lack
     tip_curving = 0.27  # share of the radius that tips lack
-    wide = wide * (1.0 - tip_curving * drop**1.6) - tip_thinning * drop**2 * thick[:, -1:]
+    height = start[..., 1] + drop * (ends[:, None] - start[..., 1])
+    lobe_depth = 42.0  # [mm] below the ear's tragus: above, lobes would come through curving tips
+    lobes = ear[1] - lobe_depth
+    low = np.clip((lobes - height) / np.maximum(lobes - ends, 1.0)[:, None], 0.0, 1.0)
+    wide = wide * (1.0 - tip_curving * low**1.6) - tip_thinning * low**2 * thick[:, -1:]
     fall = middle + wide[..., None] * level[:, None]
-    fall[..., 1] = start[..., 1] + drop * (ends[:, None] - start[..., 1])
-    thick = np.hstack([thick, thick[:, -1:] * (1.0 - tip_thinning * drop**2)])
+    fall[..., 1] = height
+    thick = np.hstack([thick, thick[:, -1:] * (1.0 - tip_thinning * low**2)])
     sharp = np.concatenate([places, fall], axis=1)
     bending_steps = 1.3  # along strands, over which they bend from the head
     bent = scipy.ndimage.gaussian_filter1d(sharp, bending_steps, axis=1, mode="nearest")

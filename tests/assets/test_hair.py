@@ -11,7 +11,7 @@ from risorius.app.anatomy import Anatomy, AnatomyView
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.passes.passes import Passes
 from risorius.app.scenes import FaceScene
-from risorius.assets import Segment
+from risorius.assets import Segment, load
 from risorius.assets.identities import (
     HAIR,
     Features,
@@ -147,3 +147,16 @@ def test_hair_is_seen_framed_and_labelled():
     for seen in (anatomy.dissect(opened), anatomy.dissect(clay, has_hair=False)):
         assert seen.parts
         assert not [each for each in seen.parts if each.part.name.startswith(HAIR)]
+
+
+def test_lobes_of_ears_stay_under_hair_that_falls():
+    """They come through no short bob whose tips curve to the face."""
+    person = person_called(4)
+    hair = hair_of(person)
+    rings = load("head").rings
+    lobes = np.unique(np.concatenate([rings["ear_1_left"], rings["ear_1_right"]]))
+    lobes = lobes[person.vertices[lobes, 1] < person.vertices[lobes, 1].min() + 12.0]
+    points = person.vertices[lobes]
+    nearest = cKDTree(hair.vertices).query(points)[1]
+    off = ((points - hair.vertices[nearest]) * hair.normals[nearest]).sum(axis=1)
+    assert off.max() < -2.0
