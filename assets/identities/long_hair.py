@@ -70,16 +70,12 @@ def falling_hair(
     places = middle + (_reach(ways, solid) + clearance + thick)[..., None] * ways
     start = places[:, -1:]
     wide = np.linalg.norm((start - middle)[..., [0, 2]], axis=-1)
-    tip_thinning = 0.7  # share of the volume that tips lack
-    tip_curving = 0.27  # share of the radius that tips lack
     height = start[..., 1] + drop * (ends[:, None] - start[..., 1])
     lobe_depth = 42.0  # [mm] below the ear's tragus: above, lobes would come through curving tips
-    lobes = ear[1] - lobe_depth
-    low = np.clip((lobes - height) / np.maximum(lobes - ends, 1.0)[:, None], 0.0, 1.0)
-    wide = wide * (1.0 - tip_curving * low**1.6) - tip_thinning * low**2 * thick[:, -1:]
-    fall = middle + wide[..., None] * level[:, None]
+    curved, thinned = _tips(height, ears_end=ear[1] - lobe_depth, ends=ends)
+    fall = middle + (wide * curved - thinned * thick[:, -1:])[..., None] * level[:, None]
     fall[..., 1] = height
-    thick = np.hstack([thick, thick[:, -1:] * (1.0 - tip_thinning * low**2)])
+    thick = np.hstack([thick, thick[:, -1:] * (1.0 - thinned)])
     sharp = np.concatenate([places, fall], axis=1)
     bending_steps = 1.3  # along strands, over which they bend from the head
     bent = scipy.ndimage.gaussian_filter1d(sharp, bending_steps, axis=1, mode="nearest")
@@ -92,6 +88,18 @@ def falling_hair(
     dense = np.minimum(dense, (along[:, -1:] - along) / HEM)
     hair = _layers(HAIR, bent, across[:, None], thick, dense, colour)
     return from_within(hair, hair.faces), short.loose_hairs(hair), hair
+
+
+def _tips(height: Floats64, *, ears_end: float, ends: Floats64) -> tuple[Floats64, Floats64]:
+    """How far strands beside the face curve to it below the ears, and what they lose of volume.
+
+    height: along strands [mm], (n, m). ends: of each strand, (n,). Shares of the radius and of the
+    volume, (n, m).
+    """
+    tip_thinning = 0.7  # share of the volume that tips lack
+    tip_curving = 0.27  # share of the radius that tips lack
+    low = np.clip((ears_end - height) / np.maximum(ears_end - ends, 1.0)[:, None], 0.0, 1.0)
+    return 1.0 - tip_curving * low**1.6, tip_thinning * low**2
 
 
 def _reach(ways: Floats64, solid: Floats64) -> Floats64:
