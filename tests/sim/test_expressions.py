@@ -110,6 +110,15 @@ def test_lids_follow_the_gaze_up_a_little(simulation, head):
         assert 1.0 < moved_landmarks(head, moved, landmark)[1] < 2.0
 
 
+def test_raised_inner_brows_leave_the_lids(simulation, head):
+    """An upper lid stays within a third of a millimetre: scanned ones rise by a sixth."""
+    moved = settled_displacement(simulation, {"browInnerUp": 1.0})
+    for brow in (21, 22):
+        assert moved_landmarks(head, moved, brow)[1] > 4.0
+    for lid in (37, 38, 43, 44):
+        assert abs(moved_landmarks(head, moved, lid)[1]) < 0.33
+
+
 def test_joy_bares_the_teeth(simulation, head):
     """The upper lip bares the lower part of the teeth, along whose edge the lower one lies."""
     moved = settled_displacement(simulation, head.expressions["joy"])
