@@ -395,7 +395,7 @@ def test_wrong_options_are_refused(whole, tmp_path):
     head = (whole.mesh, "--landmarks", landmarks)
     for words, expected in (
         (("-o", tmp_path / "a.fbx"), ".glb"),
-        ((whole.mesh, "-o", tmp_path / "a.glb"), "--landmarks"),
+        ((stranger().write(tmp_path)[0], "-o", tmp_path / "a.glb"), "landmark file go together"),
         ((3, "--landmarks", landmarks, "-o", tmp_path / "a.glb"), "--landmarks"),
         (("-o", tmp_path / "a.glb", "--shapes", "arkit,cats"), "cats"),
         ((*head, "-o", tmp_path / "a.glb", "--piece", "9000=hair"), "pieces 1 to"),
