@@ -43,6 +43,7 @@ from .kahler.smoothing import place_middles, place_vertices
 from .mesh.connectivity import Connectivity, connect
 from .mesh.creases import sharpened
 from .mesh.rings import vertex_rings
+from .mesh.threads import share
 
 CHILD_TRIANGLES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """Of a triangle with corners 0 1 2 and middles 3 4 5 of its edges: the triangles it becomes."""
@@ -71,12 +72,15 @@ class Level:
         points = self.points
         normals = self.normals
         frame = self._frame
-        place_vertices(points, normals, *self._rings, self._all_move, rows)
+        count = len(points)
+        share(place_vertices, count, points, normals, *self._rings, self._all_move, rows)
         edges = frame.split_edges
         splits = frame.splits
         first_points = frame.first_points
         of_edges = edges, splits, first_points, frame.geomorph_once
-        place_middles(points, normals, self._mesh.around.points, *of_edges, self._middles, rows)
+        around = self._mesh.around.points
+        to = self._middles, rows
+        share(place_middles, len(edges), points, normals, around, *of_edges, *to)
 
 
 class Loop(BaseRefiner):

@@ -15,9 +15,10 @@ highlights change. This scheme takes the surface that all splits together would 
               d
 
 Both are sums of the cross products of the small triangles around the point, put together. They do
-not depend on the splits of this frame, so no normal jumps when an edge is split. A new point begins
-with the mean of the normals at the ends of its edge, and turns to its own while it goes the first
-third of its way (blending.py). At a quarter it is the mean of its neighbours'.
+not depend on the splits of this frame, so no normal jumps when an edge is split. Normals at m are
+worked out where an edge is split; on all edges where the criterion measures them. A new point
+begins with the mean of the normals at the ends of its edge, and turns to its own while it goes the
+first third of its way (blending.py). At a quarter it is the mean of its neighbours'.
 
 Differs from the paper, whose rule is `normals="linear"`.
 """
@@ -78,11 +79,12 @@ class WholeSurface:
         rows = np.zeros((vertex_count + edge_count, 6), dtype=np.float32)
         self._frame = split_everywhere(frame, vertex_count)._replace(rows=rows)
         self._centres = np.zeros((len(mesh.faces), 3), dtype=np.float32)
+        self._has_all_edges = False
         self.rows = rows
         """Of the vertices, then of the middles of all edges, shape (V + E, 6): positions first, as
         seen from the first vertex in use, so that a mesh far from the origin loses nothing."""
         self.normals = np.zeros((vertex_count + edge_count, 3), dtype=np.float32)
-        """Unit normals there, shape (V + E, 3)."""
+        """Unit normals there, shape (V + E, 3); in middles after `find_normals_of_edges` alone."""
 
     def split(self, frame: FrameBuffers) -> FrameBuffers:
         """The mesh of `frame`, as seen from its first vertex, every edge split once; unplaced."""
@@ -95,7 +97,7 @@ class WholeSurface:
         return self._frame
 
     def find_normals(self) -> None:
-        """Work the normals out, when the rows have been placed."""
+        """Work the normals of vertices out, when the rows have been placed."""
         mesh = self._mesh
         rows = self.rows
         centres = self._centres
@@ -105,15 +107,25 @@ class WholeSurface:
         fans = self._fans.corner_starts, self._fans.corners, mesh.triangle_edges
         count = mesh.vertex_count
         share(surface_normals_of_vertices, count, *fans, rows, centres, normals)
+        self._has_all_edges = False
+
+    def find_normals_of_edges(self, edges: Unsigned32) -> None:
+        """Work the normals in the middles of these out, numbers of shape (N,), unless all have."""
+        if self._has_all_edges:
+            return
+        mesh = self._mesh
         around = mesh.around.points, mesh.edge_sides, mesh.around.is_interior
-        share(surface_normals_of_edges, len(mesh.edges), *around, rows, centres, normals)
+        arrays = self.rows, self._centres, self.normals
+        share(surface_normals_of_edges, len(edges), edges, *around, *arrays)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far middles stand out of their edges, and their normals turn; shape (E,) each.
 
         Against the straight edge, and against the mean of the normals at its ends [rad], times the
-        length of the edge.
+        length of the edge. All middles have their normals then.
         """
+        self.find_normals_of_edges(self._frame.split_edges)
+        self._has_all_edges = True
         points = self._mesh.around.points
         share(measure_edges, len(points), points, self.rows, self.normals, displacements, turns)
 
@@ -149,6 +161,7 @@ class RefinedNormals(Scheme):
 
     def place(self, frame: FrameBuffers) -> None:
         """Write points where the scheme has them, with the normals of its surface."""
+        self._surface.find_normals_of_edges(frame.split_edges)
         self._scheme.place_positions(frame)
         count = len(frame.points) + int(frame.counts[ONCE])
         share(turn_normals, count, self._mesh.around.points, frame, self._surface.normals)
@@ -248,6 +261,7 @@ def surface_normals_of_vertices(
 def surface_normals_of_edges(
     first: int,
     last: int,
+    edges: Unsigned32,
     points: Unsigned32,
     edge_sides: Unsigned32,
     is_interior: Flags,
@@ -257,11 +271,13 @@ def surface_normals_of_edges(
 ) -> None:
     """Write unit normals of the middles of edges, the last of `normals`, shape (V + E, 3).
 
-    `points`: of edges, shape (E, 4). The vertices have theirs.
+    `edges`: those that want theirs, shape (N,); `points`: of edges, shape (E, 4). The vertices have
+    theirs.
     """
     vertex_count = normals.shape[0] - points.shape[0]
     face_count = centres.shape[0]
-    for e in range(first, last):
+    for k in range(first, last):
+        e = edges[k]
         a = points[e, 0]
         b = points[e, 1]
         row = np.uint32(vertex_count + e)

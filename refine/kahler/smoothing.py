@@ -51,6 +51,7 @@ from ...jit import njit
 from ..border.registry import Registry
 from ..mesh.connectivity import Connectivity
 from ..mesh.rings import NEAR_COUNT, vertex_rings
+from ..mesh.threads import share, threads_for
 from ..mesh.vectors import (
     HALF,
     ONE,
@@ -149,6 +150,9 @@ class LoopScheme(Scheme):
 
     def place(self, frame: FrameBuffers) -> None:
         """Write moved vertices, first level, second level."""
+        if threads_for(len(frame.points) + int(frame.counts[ONCE])) > 1:
+            self._place_shared(frame)
+            return
         if frame is not self._frame:
             self._frame = frame
             self._arrays = (
@@ -169,6 +173,25 @@ class LoopScheme(Scheme):
                 frame.rows,
             )
         place_by_loop(*self._arrays)
+
+    def _place_shared(self, frame: FrameBuffers) -> None:
+        """Do the same in loops that threads share, to the same bits."""
+        points = frame.points
+        normals = frame.normals
+        around = self._around.points
+        once = frame.geomorph_once
+        moves = self._vertex_geomorph
+        rows = frame.rows
+        edges = frame.split_edges
+        geomorph_vertices(around, edges, once, moves)
+        share(place_vertices, len(points), points, normals, *self._rings, moves, rows)
+        of_edges = frame.splits, frame.first_points, once
+        to = self._middles, rows
+        share(place_middles, len(edges), points, normals, around, edges, *of_edges, *to)
+        edges = frame.twice_split_edges
+        around_twice = around, self._around.wings, edges
+        twice = frame.geomorph_twice
+        share(place_quarters, len(edges), points, *around_twice, *of_edges, twice, *to)
 
 
 @njit
@@ -196,7 +219,9 @@ def geomorph_vertices(
 
 
 @njit
-def place_vertices(
+def place_vertices(  # noqa: PLR0913 - arrays: tuples take longer to hand over
+    first: int,
+    last: int,
     points: Floats32,
     normals: Floats32,
     own: Floats32,
@@ -212,7 +237,7 @@ def place_vertices(
     `own` to `others`: the arrays of `Rings`; `geomorph`: of each vertex, shape (V,).
     """
     assert points.shape[1] == normals.shape[1] == WIDTH and near.shape[1] == NEAR_COUNT
-    for v in range(points.shape[0]):
+    for v in range(first, last):
         point = row_of(points, v)
         if geomorph[v] > ZERO:
             total = row_of(points, near[v, 0])
@@ -227,7 +252,9 @@ def place_vertices(
 
 
 @njit
-def place_middles(
+def place_middles(  # noqa: PLR0913 - arrays: tuples take longer to hand over
+    first: int,
+    last: int,
     points: Floats32,
     normals: Floats32,
     around: Unsigned32,
@@ -243,7 +270,7 @@ def place_middles(
     `around`: a, b, c, d of every edge, shape (E, 4); `edges`: those that are split, shape (N,);
     `middles`: points as they are when fully grown, shape (E, 3).
     """
-    for e in edges:
+    for e in edges[first:last]:
         a = around[e, 0]
         b = around[e, 1]
         c = around[e, 2]
@@ -281,7 +308,9 @@ def geomorph_of_split(splits: Unsigned8, geomorph: Floats32, e: np.uint32) -> np
 
 
 @njit
-def place_quarters(
+def place_quarters(  # noqa: PLR0913 - arrays: tuples take longer to hand over
+    first: int,
+    last: int,
     points: Floats32,
     around: Unsigned32,
     wings: Unsigned32,
@@ -298,7 +327,7 @@ def place_quarters(
     `around`, `wings`: as in `Surroundings`; `edges`: those split twice, shape (N,); `once`,
     `twice`: geomorph weights of edges; `middles`: as `place_middles` left them.
     """
-    for e in edges:
+    for e in edges[first:last]:
         near_a = first_points[e]
         centre = np.uint32(near_a + 1)
         near_b = np.uint32(near_a + 2)
@@ -368,7 +397,12 @@ def place_by_loop(  # noqa: PLR0913 - all of it at once: four calls take longer 
     """
     edges = split_once[: counts[ONCE]]
     geomorph_vertices(around, edges, once, vertex_geomorph)
-    place_vertices(points, normals, own, ring, near, starts, others, vertex_geomorph, rows)
-    place_middles(points, normals, around, edges, splits, first_points, once, middles, rows)
+    rings = own, ring, near, starts, others
+    count = len(points)
+    place_vertices(0, count, points, normals, *rings, vertex_geomorph, rows)
+    of_edges = splits, first_points, once
+    count = len(edges)
+    place_middles(0, count, points, normals, around, edges, *of_edges, middles, rows)
     edges = split_twice[: counts[TWICE]]
-    place_quarters(points, around, wings, edges, splits, first_points, once, twice, middles, rows)
+    count = len(edges)
+    place_quarters(0, count, points, around, wings, edges, *of_edges, twice, middles, rows)

@@ -10,6 +10,8 @@ from numpy.testing import assert_allclose
 from scipy.spatial import KDTree
 
 from risorius import refine
+from risorius.refine.beyond import surface_normals
+from risorius.refine.mesh.threads import share
 from tests import meshes
 from tests.refine.cases import GivenMetric, kahler, scheme_of, surface_at
 
@@ -37,6 +39,33 @@ def turns(some, others):
     """Angles [rad] between unit vectors, shape (..., 3)."""
     chords = norm(np.asarray(some, dtype=np.float64) - others, axis=-1)
     return 2.0 * np.arcsin(np.minimum(0.5 * chords, 1.0))
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_edges_have_normals_where_they_are_needed(scheme, monkeypatch):
+    """Those that are split, or all where a criterion measures them: to the same bits."""
+    found = []
+
+    def counted(kernel, count, *arguments):
+        found.append((kernel.__name__, count))
+        share(kernel, count, *arguments)
+
+    monkeypatch.setattr(surface_normals, "share", counted)
+    mesh = meshes.irregular(4)
+    quiet = bound(mesh, scheme, "normal")
+    measured = bound(mesh, scheme, ["normal", refine.Displacement(levels=0)])
+    for seed in range(3):
+        deformed = meshes.wrinkled(mesh, seed, 0.05)
+        found.clear()
+        one = quiet.refine(deformed)
+        split_count = np.count_nonzero(quiet.splits)
+        assert 0 < split_count < len(quiet.edges)
+        assert ("surface_normals_of_edges", split_count) in found
+        assert "measure_edges" not in dict(found)
+        found.clear()
+        other = measured.refine(deformed)
+        assert found.count(("surface_normals_of_edges", len(quiet.edges))) == 1
+        assert all(a.tobytes() == b.tobytes() for a, b in zip(one[:4], other[:4], strict=True))
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
