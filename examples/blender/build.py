@@ -1,8 +1,10 @@
 """Build the add-on for Blender as one .zip with all that it needs: Extensions > Install from Disk.
 
     python examples/blender/build.py [linux-x64 | windows-x64 | macos-arm64] [FOLDER]
+    python examples/blender/build.py --blender 5.0 linux-x64
 
-Wheels are bundled as they come from the package index, for Blender's own Python and numpy.
+Wheels are bundled as they come from the package index, for Blender's own Python and numpy. So each
+.zip is for one version of Blender, 5.2 by default, and one platform.
 """
 
 import argparse
@@ -13,8 +15,26 @@ import tempfile
 import tomllib
 import zipfile
 from pathlib import Path
+from typing import NamedTuple
 
 PASSED_OVER = shutil.ignore_patterns(".*", "__pycache__", "build", "dist", "out", "*.egg-info")
+
+
+class Blender(NamedTuple):
+    """What wheels and the manifest must know of a version of Blender."""
+
+    python: str
+    numpy: str
+    first: str
+    """The first version that the .zip is for."""
+    beyond: str
+    """The first version after it that the .zip is not for."""
+
+
+BLENDERS = {
+    "5.0": Blender("3.11", "numpy==1.26.4", "5.0.0", "5.1.0"),
+    "5.2": Blender("3.13", "numpy==2.3.*", "5.2.0", "5.3.0"),
+}
 WHEELS_FOR = {  # by Blender's name of a platform: tags of wheels that run there
     "linux-x64": ("manylinux_2_28_x86_64", "manylinux_2_27_x86_64", "manylinux2014_x86_64"),
     "windows-x64": ("win_amd64",),
@@ -22,7 +42,7 @@ WHEELS_FOR = {  # by Blender's name of a platform: tags of wheels that run there
 }
 
 
-def collect_wheels(platform: str, folder: Path) -> list[Path]:
+def collect_wheels(blender: Blender, platform: str, folder: Path) -> list[Path]:
     """Put the wheels of risorius, numba and llvmlite into a folder.
 
     That of risorius is built from a copy: a build leaves files in its checkout, and those of an
@@ -35,21 +55,24 @@ def collect_wheels(platform: str, folder: Path) -> list[Path]:
     wheels = ["--no-deps", "--wheel-dir", str(folder), str(copy)]
     subprocess.run([*pip, "wheel", *wheels], check=True)
     tags = [f"--platform={tag}" for tag in WHEELS_FOR[platform]]
-    python = "3.11"  # of Blender 5.0
-    chosen = ["--only-binary=:all:", f"--python-version={python}", *tags, "--dest", str(folder)]
-    numpy = "numpy==1.26.4"  # of Blender 5.0
-    subprocess.run([*pip, "download", *chosen, "numba>=0.62", numpy], check=True)
+    tags.append(f"--python-version={blender.python}")
+    chosen = ["--only-binary=:all:", *tags, "--dest", str(folder)]
+    subprocess.run([*pip, "download", *chosen, "numba>=0.62", blender.numpy], check=True)
     return sorted(file for file in folder.glob("*.whl") if not file.name.startswith("numpy-"))
 
 
-def main(platform: str, target: Path) -> Path:
-    """Write the .zip; its manifest names the wheels, and the platform that they are for."""
+def main(version: str, platform: str, target: Path) -> Path:
+    """Write the .zip; its manifest names the wheels, and the platform and Blender they are for."""
+    blender = BLENDERS[version]
     add_on = Path(__file__).parent / "risorius_refine"
     manifest = (add_on / "blender_manifest.toml").read_text(encoding="utf-8")
     about = tomllib.loads(manifest)
-    file = target / f"{about['id']}-{about['version']}-{platform}.zip"
+    for key, value in (("min", blender.first), ("max", blender.beyond)):
+        stated = f'blender_version_{key} = "{about[f"blender_version_{key}"]}"'
+        manifest = manifest.replace(stated, f'blender_version_{key} = "{value}"')
+    file = target / f"{about['id']}-{about['version']}-blender{version}-{platform}.zip"
     with tempfile.TemporaryDirectory() as folder:
-        wheels = collect_wheels(platform, Path(folder))
+        wheels = collect_wheels(blender, platform, Path(folder))
         names = "".join(f'    "./wheels/{wheel.name}",\n' for wheel in wheels)
         lines = f'platforms = ["{platform}"]\nwheels = [\n{names}]\n\n'
         part = file.with_suffix(".part")
@@ -67,6 +90,7 @@ def main(platform: str, target: Path) -> Path:
 if __name__ == "__main__":
     command = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     command.add_argument("platform", nargs="?", choices=WHEELS_FOR, default="linux-x64")
+    command.add_argument("--blender", choices=BLENDERS, default="5.2")
     command.add_argument("folder", nargs="?", type=Path, default=Path("."))
     given = command.parse_args()
-    print(main(given.platform, given.folder))
+    print(main(given.blender, given.platform, given.folder))

@@ -176,22 +176,18 @@ class LoopScheme(Scheme):
 
     def _place_shared(self, frame: FrameBuffers) -> None:
         """Do the same in loops that threads share, to the same bits."""
-        points = frame.points
-        normals = frame.normals
         around = self._around.points
-        once = frame.geomorph_once
-        moves = self._vertex_geomorph
-        rows = frame.rows
         edges = frame.split_edges
-        geomorph_vertices(around, edges, once, moves)
-        share(place_vertices, len(points), points, normals, *self._rings, moves, rows)
-        of_edges = frame.splits, frame.first_points, once
-        to = self._middles, rows
-        share(place_middles, len(edges), points, normals, around, edges, *of_edges, *to)
-        edges = frame.twice_split_edges
-        around_twice = around, self._around.wings, edges
-        twice = frame.geomorph_twice
-        share(place_quarters, len(edges), points, *around_twice, *of_edges, twice, *to)
+        moves = self._vertex_geomorph
+        mesh = frame.points, frame.normals
+        of_edges = frame.splits, frame.first_points, frame.geomorph_once
+        to = self._middles, frame.rows
+        geomorph_vertices(around, edges, frame.geomorph_once, moves)
+        share(place_vertices, len(moves), *mesh, *self._rings, moves, frame.rows)
+        share(place_middles, len(edges), *mesh, around, edges, *of_edges, *to)
+        twice = frame.twice_split_edges
+        given = frame.points, around, self._around.wings, twice, *of_edges, frame.geomorph_twice
+        share(place_quarters, len(twice), *given, *to)
 
 
 @njit
@@ -398,11 +394,8 @@ def place_by_loop(  # noqa: PLR0913 - all of it at once: four calls take longer 
     edges = split_once[: counts[ONCE]]
     geomorph_vertices(around, edges, once, vertex_geomorph)
     rings = own, ring, near, starts, others
-    count = len(points)
-    place_vertices(0, count, points, normals, *rings, vertex_geomorph, rows)
+    place_vertices(0, len(points), points, normals, *rings, vertex_geomorph, rows)
     of_edges = splits, first_points, once
-    count = len(edges)
-    place_middles(0, count, points, normals, around, edges, *of_edges, middles, rows)
+    place_middles(0, len(edges), points, normals, around, edges, *of_edges, middles, rows)
     edges = split_twice[: counts[TWICE]]
-    count = len(edges)
-    place_quarters(0, count, points, around, wings, edges, *of_edges, twice, middles, rows)
+    place_quarters(0, len(edges), points, around, wings, edges, *of_edges, twice, middles, rows)

@@ -107,9 +107,12 @@ def test_renders_files_and_undo(seen):
 
 
 @pytest.mark.slow
-def test_the_zip_has_all_that_it_needs(tmp_path):
+@pytest.mark.parametrize(
+    ("version", "python", "beyond"), [("5.2", "cp313", "5.3.0"), ("5.0", "cp311", "5.1.0")]
+)
+def test_the_zip_has_all_that_it_needs(tmp_path, version, python, beyond):
     """Built for Linux: the manifest names each wheel that is in it, and Blender accepts it."""
-    build = [sys.executable, str(EXAMPLES / "build.py"), "linux-x64", str(tmp_path)]
+    build = [sys.executable, EXAMPLES / "build.py", "--blender", version, "linux-x64", tmp_path]
     subprocess.run(build, check=True, capture_output=True)
     (file,) = tmp_path.iterdir()
     with zipfile.ZipFile(file) as archive:
@@ -120,7 +123,10 @@ def test_the_zip_has_all_that_it_needs(tmp_path):
     assert {Path(wheel).name.partition("-")[0] for wheel in wheels} == {
         *("risorius", "numba", "llvmlite")
     }
+    assert all(python in wheel for wheel in wheels if "risorius" not in wheel)
     assert manifest["platforms"] == ["linux-x64"]
+    assert manifest["blender_version_min"] == f"{version}.0"
+    assert manifest["blender_version_max"] == beyond
     assert names - {wheel.removeprefix("./") for wheel in wheels} == {
         *("__init__.py", "blender_manifest.toml")
     }
