@@ -40,8 +40,7 @@ weight 0 or 1 returns one of its two sides to the last bit.
 Normals of new points are interpolated between their two neighbours on the edge and normalised
 (section 4.4, first paragraph).
 
-Section 6: "it would be interesting to investigate the effects of other smoothing schemes". So a
-scheme is one small class, `Scheme`.
+Section 6: "the effects of other smoothing schemes" are of interest. So a scheme is a class.
 """
 
 import numpy as np
@@ -178,16 +177,16 @@ class LoopScheme(Scheme):
         """Do the same in loops that threads share, to the same bits."""
         around = self._around.points
         edges = frame.split_edges
-        moves = self._vertex_geomorph
         mesh = frame.points, frame.normals
         of_edges = frame.splits, frame.first_points, frame.geomorph_once
         to = self._middles, frame.rows
-        geomorph_vertices(around, edges, frame.geomorph_once, moves)
-        share(place_vertices, len(moves), *mesh, *self._rings, moves, frame.rows)
+        geomorph_vertices(around, edges, frame.geomorph_once, self._vertex_geomorph)
+        to_vertices = self._vertex_geomorph, frame.rows
+        share(place_vertices, len(frame.points), *mesh, *self._rings, *to_vertices)
         share(place_middles, len(edges), *mesh, around, edges, *of_edges, *to)
-        twice = frame.twice_split_edges
-        given = frame.points, around, self._around.wings, twice, *of_edges, frame.geomorph_twice
-        share(place_quarters, len(twice), *given, *to)
+        edges = frame.twice_split_edges
+        of_twice = *of_edges, frame.geomorph_twice, *to
+        share(place_quarters, len(edges), mesh[0], around, self._around.wings, edges, *of_twice)
 
 
 @njit
