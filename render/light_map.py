@@ -90,9 +90,11 @@ def _key_of(radiance: Floats64, away: Floats64, solid: Floats64) -> tuple[Floats
     Light from before the face is preferred: a sun behind it stays a part of the rest.
     """
     lightness = _luminance(radiance) * solid
-    lobe_power = 40  # of the cosine: within some 15 degrees
     tried = away[::7]  # fewer than all, for it costs the square
-    gathered = np.maximum(tried @ away.T, 0.0) ** lobe_power @ lightness
+    square = np.maximum(tried @ away.T, 0.0) ** 2
+    eighth = (square**2) ** 2
+    # The 40th power of the cosine is a lobe of some 15 degrees; squares are quicker than a power.
+    gathered = (eighth**2) ** 2 * eighth @ lightness
     middle = tried[np.argmax(gathered * (0.6 + 0.4 * tried[:, 2]))]
     cosine = away @ middle
     is_near = cosine > np.cos(np.radians(32.0))

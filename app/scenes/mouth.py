@@ -113,7 +113,7 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
     def shaded(part: Any) -> Any:
         """The part itself where it is not of the mouth."""
         if part.name == "tongue":
-            unlit = _painted_tongue(part)
+            unlit = read_only(_painted_tongue(part))
             colours = read_only(_shaded(part.vertices, unlit, front, TONGUE))
             drawn = {**_drawn(part), "colours": colours, "shine": 0.42}  # it is wet
             return Tongue(**drawn, unlit=unlit, front=float(front))

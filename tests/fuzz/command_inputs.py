@@ -48,7 +48,7 @@ REFUSED = {
     # Options that commands had before.
     f"{IMAGE} --gain all=1": "--gain has left: convert the recording first: risorius convert",
     f"{IMAGE} --wireframe": "--wireframe has left: write --style wireframe",
-    f"{IMAGE} --light side": "--light has left: write --style light=VALUE",
+    f"{IMAGE} --light side": "for side write --style light=side",
     "view --person 3": "--person has left: write --head NUMBER",
     "replay good.toml --no-skin-maps": "--no-skin-maps has left: pictures always have skin maps",
     "export good.toml -o x.npz --rate 30": "--rate has left: convert the recording first",
