@@ -27,6 +27,7 @@ from .options import (
     packed,
     played,
 )
+from .styles import LIGHT_NAMES
 
 if TYPE_CHECKING:
     from risorius import render
@@ -114,7 +115,7 @@ class Filming:
         style = replace(drawing.style(), background=self.background)
         if self.light is None:
             return style
-        if self.light.name in render.LIGHTS and not self.light.exists():
+        if self.light.name in LIGHT_NAMES and not self.light.exists():
             name = self.light.name
             raise UserError(f"--light takes a file of a map; for {name} write --style light={name}")
         return replace(style, light=read_light_map(self.light).light())
