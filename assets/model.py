@@ -26,6 +26,8 @@ from .data_files import Image, read_arrays, read_image
 from .nostrils import lit_nostrils
 from .topology import quarter
 
+GLASSES = "glasses"  # the name of the part
+
 
 class Segment(IntEnum):
     """Segments of a face that pixels show, by the numbers of FaceSynthetics (Wood et al. 2021).
@@ -110,7 +112,7 @@ class Part:
     @property
     def is_enclosed(self) -> bool:
         """Whether it is in the head, where light from behind does not get."""
-        if self.name == "glasses":
+        if self.name == GLASSES:
             return False
         return self.bone in ("cranium", "mandible", "eye_right", "eye_left")
 

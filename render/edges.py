@@ -28,7 +28,7 @@ class EdgeSmoother:
         self._edges = gl.framebuffer(depth_attachment=found)
         self._find = self._pass("FIND")
         self._smooth = self._pass()
-        self._smoothed: tuple[RenderTarget, int] | None = None
+        self._smoothed: tuple[RenderTarget, int, Rectangle | None] | None = None
 
     def _pass(self, *defines: str) -> moderngl.VertexArray:
         """A pass over the scene."""
@@ -37,8 +37,8 @@ class EdgeSmoother:
         return self._gl.vertex_array(program, [])
 
     def smooth(self, scene: RenderTarget, area: Rectangle | None) -> None:
-        """Copy a scene and smooth the edges in an area (None: all), once for each frame of it."""
-        frame = scene, scene.frame_number
+        """Copy a scene and smooth the edges in an area (None: all); a second time does nothing."""
+        frame = scene, scene.frame_number, area
         if self._smoothed == frame:
             return
         self._smoothed = frame

@@ -50,9 +50,7 @@ class SkinSurface:
 
     def nearest(self, points: Floats64) -> Integers32:
         """Number of the vertex nearest to each point (n, 3)."""
-        squared = ((self.positions[None] - points[:, None]) ** 2).sum(axis=2)
-        nearest: Integers32 = squared.argmin(axis=1).astype(np.int32)
-        return nearest
+        return np.asarray(self.tree.query(points)[1], dtype=np.int32)
 
     def distances_from(self, vertices: Integers64) -> Floats64:
         """Shortest way along edges [mm] from some vertices, shape (V,); inf on other components."""

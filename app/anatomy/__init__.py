@@ -98,7 +98,7 @@ class Anatomy:
             for part in (*stay, *self._soft(view))
             for half, opening in self._lit(face, view, part, openings)
         ]
-        hair = self._whole(face, view, (HAIR,)) if has_hair else []
+        hair = self._whole_hair(face, view) if has_hair else []
         parts_of_hair = [place(part, bones) for part in hair]
         return Dissection((*structures, *others, *parts_of_hair), view.opacity, _cut(face, view))
 
@@ -134,10 +134,10 @@ class Anatomy:
         is_seen = "muscles" in view.structures or SIDES[view.side]
         return [part for part in self._scene.parts if is_seen and part.name.startswith(SOFT)]
 
-    def _whole(self, face: Face, view: AnatomyView, names: tuple[str, ...]) -> list[Any]:
-        """Parts, by how their names begin, on the side that is not opened; none if both are."""
+    def _whole_hair(self, face: Face, view: AnatomyView) -> list[Any]:
+        """The hair on the side that is not opened; none if both are."""
         side = SIDES[view.side]
-        parts = [part for part in self._scene.parts if side and part.name.startswith(names)]
+        parts = [part for part in self._scene.parts if side and part.name.startswith(HAIR)]
         return [self._half(face, part, side) for part in parts]
 
     def _half(self, face: Face, part: Any, side: float) -> Any:

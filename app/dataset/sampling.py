@@ -42,7 +42,7 @@ class Sample:
     controls: all values of the face but its gaze.
     gaze: where it looks within the head, to its left and up [degrees]; None: into the camera.
     person: number of the one whose head it is, as `assets.identities.sample_identity` has it.
-    light: name of one of the renderer's.
+    light: name of one of the renderer's, which maps of the user's replace.
     surroundings: seed of light and background.
     degradation: blur, noise and JPEG of a degraded set.
     """

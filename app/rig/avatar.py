@@ -12,7 +12,9 @@ import numpy as np
 from risorius.assets.fitting import FittedHead
 from risorius.assets.meshes import read_mesh
 from risorius.assets.painted import PaintedMesh, read_painted
+from risorius.geometry.arrays import Floats64
 
+from ..errors import UserError
 from ..scenes import FaceScene, build_face
 from ..script import Script
 from .bodies import Body, Shaped, Skin, bodies_of_parts, moving, poses_of
@@ -158,6 +160,8 @@ def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
         mesh = head.lip_cut.applied(mesh)
         painted = painted and replace(painted, mesh=mesh)
     rest = head.to_millimetres.points(mesh.vertices)
+    if not _is_as_fitted(rest, head):
+        raise UserError(f"{path}: has changed since it was read; open it again")
     same = merged_vertices(mesh, head)
     faces = same[mesh.faces].astype(np.int32)
     pieces = corrected(find_pieces(rest, faces, head.file_vertices, head), request.corrections)
@@ -174,6 +178,14 @@ def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
     for line in described(pieces):
         say(line)
     return FileHead(head, body, tuple(pieces), painted, path)
+
+
+def _is_as_fitted(rest: Floats64, head: FittedHead) -> bool:
+    """Whether a file's vertices [mm] are those that the head was made of, to 0.001 mm."""
+    fitted = head.file_vertices
+    if len(fitted) and fitted.max() >= len(rest):
+        return False
+    return bool(np.allclose(rest[fitted], head.vertices, rtol=0.0, atol=1e-3))
 
 
 def _missing(file: FileHead) -> set[str]:

@@ -70,6 +70,8 @@ def cut_primitives(
 def _rows_of(glb: Glb, file: GltfFile, accessor: int, rows: Integers, name: str) -> int:
     """A new accessor with some rows of one; names of bones stay whole numbers."""
     values = file.values(accessor)[rows]
+    if values.shape[1] == 1:  # a scalar, as an attribute of a program's own may be
+        values = values[:, 0]
     if not name.startswith("JOINTS"):
         values = values.astype(np.float32)
     return glb.accessor(values, ARRAY_BUFFER, is_bounded=name == "POSITION")

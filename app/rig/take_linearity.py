@@ -81,7 +81,7 @@ def worth_correcting_on(
         pair: float((weights[pair[0]] * weights[pair[1]]).sum()) * sums.shared(*pair)
         for pair in sums.pairs
     }
-    together = [pair for pair in sums.pairs if played[pair] > 0.0]
+    together = [pair for pair, share in played.items() if share > 0.0]
     tried = sorted(together, key=lambda pair: -played[pair])[: TRIED * count]
     if not tried:
         return []

@@ -15,12 +15,11 @@ import numpy as np
 import scipy
 
 from ...geometry.arrays import Floats64, Integers32
-from ..model import Part
+from ..model import GLASSES, Part
 from ..topology import grid_faces
 from .person import Person
 
 Colour = tuple[float, float, float]
-GLASSES = "glasses"  # the name of the part
 SHIRTS: Mapping[str, Colour] = MappingProxyType(
     {
         "blue": (0.22, 0.24, 0.28),  # of the built-in head

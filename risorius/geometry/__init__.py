@@ -4,6 +4,8 @@ arrays.py       types of arrays
 closest.py      the closest points of a triangle mesh
 gradients.py    gradients of texture coordinates along a surface
 normals.py      cross products of triangles, normals of vertices
+polylines.py    the way along polylines
+rays.py         where lines meet triangles
 sides.py        the sides of triangles, as pairs of vertices
 texels.py       the texels of a picture that triangles lie over
 read_only.py    views that cannot be written

@@ -11,13 +11,15 @@ import numpy as np
 import pytest
 import trimesh
 
+from risorius.app.errors import UserError
 from risorius.app.recordings.names import ARKIT
+from risorius.app.rig.avatar import RigRequest, file_head
 from risorius.app.rig.glb import Glb
 from risorius.app.rig.poses import rest_in
 from risorius.app.rig.scene_meshes import Piece, add_mesh
 from risorius.app.rig.surface import MovingSurface
 from risorius.app.scenes import FaceScene
-from risorius.assets.fitting import simplifying
+from risorius.assets.fitting import fit_head, simplifying
 from risorius.assets.fitting.eyeballs import sphere_of
 from risorius.assets.fitting.topologies import recognised
 from risorius.assets.meshes import read_mesh
@@ -415,3 +417,20 @@ def test_a_ball_is_found_where_it_is():
     assert radius == pytest.approx(12.0, abs=0.01)
     guess = np.array([31.0, 0.0, 72.0])
     assert sphere_of(front * (1.0, 1.0, 0.0), guess, 11.0)[1] == 11.0
+
+
+@pytest.mark.parametrize("change", ["moved", "fewer"])
+def test_a_file_that_changed_since_it_was_read_is_refused(tmp_path, change):
+    """The window makes an avatar long after it has read the head; vertex numbers may be others."""
+    brought = stranger()
+    mesh, marks = brought.write(tmp_path)
+    head = fit_head(mesh, marks)
+    lines = mesh.read_text().splitlines()
+    first = next(number for number, line in enumerate(lines) if line.startswith("v "))
+    if change == "moved":
+        lines[first] = "v 1 2 3"
+    else:
+        lines = ["v 0 0 0", "v 1 0 0", "v 0 1 0", "f 1 2 3"]
+    mesh.write_text("\n".join(lines) + "\n")
+    with pytest.raises(UserError, match="has changed since it was read; open it again"):
+        file_head(head, RigRequest(), print)

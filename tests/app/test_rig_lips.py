@@ -40,7 +40,8 @@ def write_glb(shut, folder):
     uv[len(vertices) :] += 0.01
     maker = GltfMaker()
     uv_accessor = maker.accessor(uv)
-    primitive = maker.primitive(METRES * doubled, corners, attributes={"TEXCOORD_0": uv_accessor})
+    attributes = {"TEXCOORD_0": uv_accessor, "_MASK": maker.accessor(np.linspace(0, 1, len(uv)))}
+    primitive = maker.primitive(METRES * doubled, corners, attributes=attributes)
     maker.shown({"name": "head", "mesh": maker.mesh(primitive)})
     marks = folder / "marks.json"
     marks.write_text(json.dumps({"landmarks": shut.landmarks.tolist()}))
@@ -117,6 +118,10 @@ def test_an_avatar_has_the_files_vertices_and_few_more(shut, tmp_path, kind):
         if kind == "glb":
             coordinates = player.attribute("head", "TEXCOORD_0")
             assert np.abs(uv[same] - coordinates[place]).sum(axis=1).min() < 1e-6
+    if kind == "glb":  # a scalar, as Blender writes attributes of the user's own
+        mask = player.attribute("head", "_MASK").ravel()
+        assert len(mask) == len(points)
+        assert np.abs(mask[: len(own)] - np.linspace(0.0, 1.0, len(own))).max() < 1e-6
     assert parted > 15.0
     corners = player.values(player.primitive("head").indices)
     assert len(corners) == 3 * len(shut.mesh.faces)

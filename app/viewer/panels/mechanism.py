@@ -216,7 +216,7 @@ class MechanismPanel:
         steps = [each for each in times.steps if each]
         phases = {readable(name): times.median(name) for name in PHASES}
         rest = max(times.frame - sum(phases.values()), 0.0)
-        rows = {**phases, "Events and panels": rest, "Frame": times.frame}
+        rows = {**phases, "Panels and pauses": rest, "Frame": times.frame}
         for label, milliseconds in rows.items():
             imgui.text(label)
             imgui.same_line(self._rows.second)
