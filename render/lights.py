@@ -12,6 +12,8 @@ _ROWS = tomllib.loads((Path(__file__).parent / "lights.toml").read_text(encoding
 LAMPS: Mapping[str, Light] = MappingProxyType(
     {name: Light(**{key: tuple(xyz) for key, xyz in row.items()}) for name, row in _ROWS.items()}
 )
+"""Lamps by name: key, fill, rim, and a hemisphere of ambient light."""
 LIGHTS: Mapping[str, Light] = MappingProxyType(
     {**LAMPS, **{name: each.light() for name, each in LIGHT_MAPS.items()}}
 )
+"""All lights by name."""

@@ -6,6 +6,7 @@
 Any of them goes where the built-in head goes: `sim.create(person)`, `FaceScene(person)`.
 """
 
+from ..model import GLASSES
 from .complexion import built_in_hair, coloured, recoloured
 from .features import Features, features_of
 from .hair import HAIR
@@ -21,7 +22,7 @@ from .named import (
 from .person import Person, make_person
 from .population import DARKEST, EVERYBODY, LIGHTEST, Population, drawn_irises
 from .space import Identity, Sex, sample_identity
-from .wear import FRAMES, GLASSES, SHIRTS, wearing
+from .wear import FRAMES, SHIRTS, wearing
 
 __all__ = [
     "DARKEST",
