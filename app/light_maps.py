@@ -5,8 +5,12 @@ Source: Ward 1991, "Real pixels", Graphics Gems II, for the bytes of Radiance's 
 
 from __future__ import annotations
 
+import contextlib
+import math
 import re
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -26,20 +30,9 @@ Pixels = npt.NDArray[np.float32]
 
 def read_light_map(path: Path) -> render.LightMap:
     """The light in a file, (128, 256) texels; UserError for one that cannot be used."""
-    suffix = path.suffix.lower()
-    if suffix not in LIGHT_SUFFIXES:
-        raise UserError(f"{path}: is no map of light; give a file {' or '.join(LIGHT_SUFFIXES)}")
-    content = read_bytes(path, what="map of light", longest=2**28)
-    try:
-        pixels = _radiance(content) if suffix == ".hdr" else _openexr(path)
-    except (ValueError, IndexError) as error:
-        raise UserError(f"{path}: cannot be read as a map of light: {error}") from None
-    height, width = pixels.shape[:2]
-    if abs(width - 2 * height) > 0.02 * width:
-        raise UserError(
-            f"{path}: has {width} x {height} pixels; a map of light from all around "
-            "(equirectangular) is twice as wide as high"
-        )
+    check_light_map(path)
+    with _refused(path):
+        pixels = _openexr(path) if _is_openexr(path) else _radiance(_content(path))
     pixels = np.nan_to_num(pixels, nan=0.0, posinf=0.0).clip(0.0, None)
     if not pixels.any():
         raise UserError(f"{path}: is black; nothing would be seen in its light")
@@ -49,13 +42,39 @@ def read_light_map(path: Path) -> render.LightMap:
     return render.LightMap(np.stack([np.asarray(each, np.float64) for each in small], axis=-1))
 
 
+def check_light_map(path: Path) -> None:
+    """Read a file's header; UserError unless it is a map of light, twice as wide as high.
+
+    Nothing is reserved for pixels.
+    """
+    if path.suffix.lower() not in LIGHT_SUFFIXES:
+        raise UserError(f"{path}: is no map of light; give a file {' or '.join(LIGHT_SUFFIXES)}")
+    header = _content(path, first=2**16)
+    with _refused(path):
+        if _is_openexr(path):
+            height, width = _openexr_size(path)
+        else:
+            height, width, _ = _radiance_size(header)
+    longest = 32767  # of a line in Radiance's files
+    if not 0 < width <= longest or abs(width - 2 * height) > 0.02 * width:
+        raise UserError(
+            f"{path}: has {width} x {height} pixels; a map of light from all around "
+            f"(equirectangular) is twice as wide as high, and at most {longest} pixels wide"
+        )
+
+
 def seen_behind(
-    light_map: render.LightMap, size: tuple[int, int], field_of_view: float, turn: float = 0.0
+    light_map: render.LightMap,
+    size: tuple[int, int],
+    field_of_view: float,
+    *,
+    turn: float,
+    exposure: float,
 ) -> npt.NDArray[np.uint8]:
     """A map behind a head, out of focus, (height, width, 3), exposed as its light is.
 
-    size: width and height [pixels]. field_of_view: from top to bottom [deg]. turn: as of
-    `LightMap.light`.
+    size: width and height [pixels]. field_of_view: from top to bottom [deg]. turn, exposure: as of
+    `LightMap.exposed`.
     """
     width, height = size
     half = np.tan(np.radians(field_of_view) / 2.0)
@@ -74,20 +93,47 @@ def seen_behind(
         soft = scipy.ndimage.gaussian_filter(channel, out_of_focus, mode=modes)
         around = np.hstack([soft, soft[:, :4]])  # the seam lies within
         seen.append(scipy.ndimage.map_coordinates(around, places, order=3, mode="nearest"))
-    shown = np.maximum(light_map.exposure(turn) * np.stack(seen, axis=-1), 0.0)
+    shown = np.maximum(exposure * np.stack(seen, axis=-1), 0.0)
     over = np.maximum(shown - 0.8, 0.0)  # the shoulder of lighting.glsl
     shown = np.minimum(shown, 0.8) + over / (1.0 + 5.0 * over)
     return np.asarray(np.rint(255.0 * to_screen(shown)).clip(0, 255), np.uint8)
 
 
-def _radiance(content: bytes) -> Pixels:
-    """The pixels of a Radiance file, shape (H, W, 3); ValueError where it is none."""
+def _is_openexr(path: Path) -> bool:
+    return path.suffix.lower() == ".exr"
+
+
+def _content(path: Path, first: int | None = None) -> bytes:
+    """A file's bytes, or its `first` ones."""
+    return read_bytes(path, what="map of light", longest=2**28, first=first)
+
+
+@contextlib.contextmanager
+def _refused(path: Path) -> Iterator[None]:
+    """Turn the errors of a broken file into a UserError that names it."""
+    try:
+        yield
+    except (ValueError, IndexError) as error:
+        raise UserError(f"{path}: cannot be read as a map of light: {error}") from None
+
+
+def _radiance_size(content: bytes) -> tuple[int, int, int]:
+    """Height and width in a Radiance file's header [pixels], and where its pixels begin [bytes].
+
+    ValueError where it is none.
+    """
     head, _, _ = content.partition(b"\n\n")
     found = re.match(rb"-Y (\d{1,5}) \+X (\d{1,5})\n", content[len(head) + 2 :])
     if not content.startswith(b"#?") or b"xyze" in head or found is None:
         raise ValueError("it must be Radiance RGBE with lines from above, '-Y height +X width'")
-    height, width = (int(each) for each in found.groups())
-    data = np.frombuffer(content, np.uint8, offset=len(head) + 2 + found.end())
+    height, width = found.groups()
+    return int(height), int(width), len(head) + 2 + found.end()
+
+
+def _radiance(content: bytes) -> Pixels:
+    """The pixels of a Radiance file, shape (H, W, 3); ValueError where it is none."""
+    height, width, begin = _radiance_size(content)
+    data = np.frombuffer(content, np.uint8, offset=begin)
     if len(data) == 4 * height * width:
         rgbe = data.reshape(height, width, 4)
     else:
@@ -98,6 +144,9 @@ def _radiance(content: bytes) -> Pixels:
 
 def _unpacked(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArray[np.uint8]:
     """Lines whose four channels are packed by the lengths of runs, shape (H, W, 4)."""
+    most_alike = 127  # in a run, of two bytes
+    if len(data) < height * (4 + 8 * math.ceil(width / most_alike)):
+        raise ValueError("it is shorter than its size asks for")
     values = data.tobytes()
     lines = np.zeros((height, 4, width), np.uint8)
     at = 0
@@ -122,16 +171,32 @@ def _unpacked(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArr
     return lines.transpose(0, 2, 1)
 
 
-def _openexr(path: Path) -> Pixels:
-    """The pixels of an OpenEXR file, shape (H, W, 3); ValueError where it is none."""
+@contextlib.contextmanager
+def _opened_openexr(path: Path, *, header_only: bool) -> Iterator[Any]:
+    """An OpenEXR file; ValueError where it is none, or proves broken in the block."""
     module = needed("OpenEXR", "a light of .exr", "passes")
     try:
-        with module.File(str(path), separate_channels=True) as file:
-            channels = file.channels()
-            names = [name for name in "RGB" if name in channels]
-            if len(names) < 3:
-                raise ValueError("it has no channels R, G and B")
-            pixels = np.stack([channels[name].pixels for name in names], axis=-1)
+        with module.File(str(path), separate_channels=True, header_only=header_only) as file:
+            yield file
     except RuntimeError as error:
         raise ValueError(str(error)) from None
+
+
+def _openexr_size(path: Path) -> tuple[int, int]:
+    """Height and width of an OpenEXR file [pixels]; ValueError for one without colours."""
+    with _opened_openexr(path, header_only=True) as file:
+        header = file.header()
+        names = {channel.name for channel in header["channels"]}
+        first, last = header["dataWindow"]
+    if not names.issuperset("RGB"):
+        raise ValueError("it has no channels R, G and B")
+    width, height = (last - first + 1).tolist()
+    return height, width
+
+
+def _openexr(path: Path) -> Pixels:
+    """The pixels of an OpenEXR file, shape (H, W, 3); ValueError where it is broken."""
+    with _opened_openexr(path, header_only=False) as file:
+        channels = file.channels()
+        pixels = np.stack([channels[name].pixels for name in "RGB"], axis=-1)
     return pixels.astype(np.float32)

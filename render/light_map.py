@@ -31,14 +31,10 @@ class LightMap:
 
     def light(self, turn: float = 0.0) -> Light:
         """The light of the map, turned to the viewer's right by an angle [deg], well exposed."""
-        return self._exposed(turn)[0]
+        return self.exposed(turn)[0]
 
-    def exposure(self, turn: float = 0.0) -> float:
-        """By how much radiance was multiplied for that light."""
-        return self._exposed(turn)[1]
-
-    def _exposed(self, turn: float) -> tuple[Light, float]:
-        """The light of the map, and by how much its radiance was multiplied."""
+    def exposed(self, turn: float) -> tuple[Light, float]:
+        """That light, and by how much radiance was multiplied for it."""
         rows, columns = self.radiance.shape[:2]
         every = max(rows // 32, 1)  # 6 degrees are fine enough for light
         radiance = self.radiance[: rows // every * every, : columns // every * every]

@@ -27,7 +27,7 @@ from .options import (
     packed,
     played,
 )
-from .styles import LIGHT_NAMES
+from .styles import LIGHT_NAMES, STYLE_WORDS
 
 if TYPE_CHECKING:
     from risorius import render
@@ -115,6 +115,8 @@ class Filming:
         style = replace(drawing.style(), background=self.background)
         if self.light is None:
             return style
+        if "light" in STYLE_WORDS.read(drawing.style_settings):
+            raise UserError("--light and --style light= are both given; leave one out")
         if self.light.name in LIGHT_NAMES and not self.light.exists():
             name = self.light.name
             raise UserError(f"--light takes a file of a map; for {name} write --style light={name}")

@@ -29,6 +29,7 @@ MOVED: Mapping[str, str] = {
     "--face": _CONVERT,
     "--rate": _CONVERT,
     "--skin": _STYLE,
+    "--light": _STYLE,  # capture and dataset have another
     "--wrinkles": _STYLE,
     "--wireframe": _WORD,
     "--splits": _WORD,

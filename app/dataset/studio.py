@@ -119,7 +119,13 @@ class Studio:
             name, picture = request.backgrounds.picture(random, request.size)
         elif lit.map is not None and request.backgrounds.colour is None:
             name = lit.name
-            picture = seen_behind(lit.map, request.size, sample.view.field_of_view, lit.turn)
+            picture = seen_behind(
+                lit.map,
+                request.size,
+                sample.view.field_of_view,
+                turn=lit.turn,
+                exposure=lit.exposure,
+            )
         else:
             colours = request.backgrounds.colours(random)
         style = render.Style(light=lit.light, background=colours)

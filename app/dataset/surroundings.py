@@ -21,7 +21,7 @@ from risorius.geometry.arrays import Floats64
 from risorius.render import LAMPS, LIGHT_MAPS, Background, Light, LightMap
 
 from ..errors import UserError
-from ..light_maps import LIGHT_SUFFIXES, read_light_map
+from ..light_maps import LIGHT_SUFFIXES, check_light_map, read_light_map
 from ..pictures import Image
 from ..text import as_text
 
@@ -78,12 +78,16 @@ class Backgrounds:
 
 @dataclass(frozen=True)
 class SampleLight:
-    """The light of a sample: name, and the map that it comes from, turned by an angle [deg]."""
+    """The light of a sample: name, and the map that it comes from, turned by an angle [deg].
+
+    exposure: by how much the map's radiance was multiplied.
+    """
 
     name: str
     light: Light
     map: LightMap | None = None
     turn: float = 0.0
+    exposure: float = 1.0
 
     @property
     def labels(self) -> dict[str, Any]:
@@ -104,7 +108,7 @@ class LightFiles:
         return _digest(self.paths) if self.paths else None
 
 
-@lru_cache(8)
+@lru_cache(256)  # of 0.8 MB each
 def _light_map(path: Path) -> LightMap:
     return read_light_map(path)
 
@@ -124,11 +128,11 @@ def light_of(name: str, files: LightFiles, random: np.random.Generator) -> Sampl
         turn = round(float(random.uniform(-180.0, 180.0)), 2)
     else:  # ours have their windows and lamps before the face
         turn = round(float(np.clip(25.0 * random.standard_normal(), -60.0, 60.0)), 2)
-    light = light_map.light(turn)
+    light, exposure = light_map.exposed(turn)
     tint = _tint(random)
     changed: dict[str, Any] = {"key": _tinted(tint, light.key)}
     changed["around"] = tuple(_tinted(tint, row) for row in light.around)
-    return SampleLight(name, replace(light, **changed), light_map, turn)
+    return SampleLight(name, replace(light, **changed), light_map, turn, exposure)
 
 
 def _tint(random: np.random.Generator) -> Floats64:
@@ -169,13 +173,19 @@ def light_files_of(path: Path | None) -> LightFiles:
     """The value of `--light`: a map of light, a folder of them, or None; UserError else."""
     if path is None:
         return LightFiles()
-    paths: tuple[Path, ...] = (path,)
-    if path.is_dir():
-        paths = tuple(sorted(p for p in path.iterdir() if p.suffix.lower() in LIGHT_SUFFIXES))
+    if not os.path.exists(path):
+        raise UserError(f"--light {path}: no such file or folder")
+    whole = path.absolute()
+    paths: tuple[Path, ...] = (whole,)
+    if whole.is_dir():
+        files = (each for each in whole.iterdir() if each.is_file())
+        paths = tuple(sorted(each for each in files if each.suffix.lower() in LIGHT_SUFFIXES))
         if not paths:
             raise UserError(f"--light {path}: no map of light in it, {', '.join(LIGHT_SUFFIXES)}")
+        for each in paths:
+            check_light_map(each)
     _light_map(paths[0])  # the others when they are drawn: of many it would take minutes
-    return LightFiles(tuple(each.absolute() for each in paths))
+    return LightFiles(paths)
 
 
 def backgrounds_of(text: str | None) -> Backgrounds:

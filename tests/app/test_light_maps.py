@@ -2,14 +2,18 @@
 
 import json
 import shutil
+import tracemalloc
+from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from risorius import render
+from risorius.app import light_maps
+from risorius.app.dataset import surroundings
 from risorius.app.errors import UserError
-from risorius.app.light_maps import read_light_map, seen_behind
+from risorius.app.light_maps import check_light_map, read_light_map, seen_behind
 
 from .command_line import risorius
 
@@ -50,6 +54,29 @@ def packed(lines):
     return found
 
 
+def _write_openexr(path, size):
+    """The upper left part of the sky, with an alpha."""
+    module = pytest.importorskip("OpenEXR")
+    rows, columns = size
+    light = pixels()[:rows, :columns].astype(np.float32)
+    channels = {name: light[..., k].copy() for k, name in enumerate("RGB")}
+    channels["A"] = np.ones(size, np.float32)
+    kind = {"compression": module.ZIP_COMPRESSION, "type": module.scanlineimage}
+    with module.File(kind, channels) as file:
+        file.write(str(path))
+
+
+def _count_calls(monkeypatch, owner, name, count):
+    """Have a function's arguments counted before it is called."""
+    function = getattr(owner, name)
+
+    def counted(*given, **named):
+        count(*given, **named)
+        return function(*given, **named)
+
+    monkeypatch.setattr(owner, name, counted)
+
+
 @pytest.mark.parametrize("is_packed", [True, False])
 def test_radiance_is_read(tmp_path, is_packed):
     """Packed by runs or not, to the precision of its bytes."""
@@ -62,13 +89,8 @@ def test_radiance_is_read(tmp_path, is_packed):
 
 def test_openexr_is_read(tmp_path):
     """Channels R, G and B, beside any others."""
-    module = pytest.importorskip("OpenEXR")
     path = tmp_path / "sky.exr"
-    channels = {name: pixels()[..., k].astype(np.float32) for k, name in enumerate("RGB")}
-    channels["A"] = np.ones((32, 64), np.float32)
-    kind = {"compression": module.ZIP_COMPRESSION, "type": module.scanlineimage}
-    with module.File(kind, channels) as file:
-        file.write(str(path))
+    _write_openexr(path, (32, 64))
     assert_allclose(read_light_map(path).radiance[::4, ::4], pixels(), rtol=1e-3)
 
 
@@ -79,6 +101,9 @@ def test_openexr_is_read(tmp_path):
         ("sky.hdr", b"nothing", "cannot be read as a map of light"),
         ("sky.hdr", HEAD + b"\2\2\0\x40" + b"\xff", "cannot be read as a map of light"),
         ("sky.hdr", HEAD.replace(b"64", b"32") + bytes(32 * 32 * 4), "has 32 x 32 pixels"),
+        ("sky.hdr", HEAD.replace(b"Y 32 +X 64", b"Y 32767 +X 65534"), "at most 32767 pixels wide"),
+        ("sky.hdr", HEAD.replace(b"Y 32 +X 64", b"Y 99999 +X 65535"), "has 65535 x 99999 pixels"),
+        ("sky.hdr", HEAD.replace(b"Y 32 +X 64", b"Y 0 +X 0"), "has 0 x 0 pixels"),
         ("sky.hdr", HEAD + bytes(64 * 32 * 4), "is black"),
         ("sky.exr", b"nothing", "cannot be read as a map of light"),
     ],
@@ -90,6 +115,65 @@ def test_others_are_refused_in_one_line(tmp_path, name, content, message):
     with pytest.raises(UserError, match=message) as raised:
         read_light_map(path)
     assert str(raised.value).startswith(str(path))
+
+
+@pytest.mark.parametrize("size", ["Y 99999 +X 65535", "Y 16383 +X 32767"])
+def test_a_header_reserves_no_memory(tmp_path, size):
+    """A size that is wrong, or more than the file can hold, is refused before there is room."""
+    path = tmp_path / "sky.hdr"
+    path.write_bytes(HEAD.replace(b"Y 32 +X 64", size.encode()))
+    tracemalloc.start()
+    with pytest.raises(UserError):
+        read_light_map(path)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 2**29  # as long as a file may be, and some
+
+
+def test_openexr_is_not_read_into_memory_first(tmp_path, monkeypatch):
+    """The library reads the file; beside it, only its first bytes are read."""
+    path = tmp_path / "sky.exr"
+    _write_openexr(path, (32, 64))
+    read = []
+    _count_calls(monkeypatch, light_maps, "read_bytes", lambda _, **named: read.append(named))
+    read_light_map(path)
+    assert [named["first"] for named in read] == [2**16]
+
+
+def test_a_size_of_openexr_is_refused_by_its_header(tmp_path):
+    """As for Radiance."""
+    path = tmp_path / "sky.exr"
+    _write_openexr(path, (32, 32))
+    with pytest.raises(UserError, match="has 32 x 32 pixels"):
+        check_light_map(path)
+
+
+def test_maps_of_a_set_are_read_once(tmp_path, monkeypatch):
+    """Each of 10, however often samples draw it; its light is found once a sample."""
+    for number in range(10):
+        (tmp_path / f"{number}.hdr").write_bytes(HEAD + rgbe(pixels()).tobytes())
+    (tmp_path / "folder.hdr").mkdir()
+    read = []
+    exposed = []
+    _count_calls(monkeypatch, surroundings, "read_light_map", read.append)
+    _count_calls(monkeypatch, render.LightMap, "exposed", lambda *given: exposed.append(given))
+    monkeypatch.chdir(tmp_path)
+    files = surroundings.light_files_of(Path())
+    random = np.random.default_rng(0)
+    for _ in range(60):
+        lit = surroundings.light_of("", files, random)
+    seen_behind(lit.map, (8, 6), 40.0, turn=lit.turn, exposure=lit.exposure)
+    assert sorted(read) == list(files.paths)
+    assert len(read) == 10
+    assert len(exposed) == 60
+
+
+def test_every_map_of_a_folder_is_checked(tmp_path):
+    """By its header, before any sample is drawn."""
+    (tmp_path / "a.hdr").write_bytes(HEAD + rgbe(pixels()).tobytes())
+    (tmp_path / "b.hdr").write_bytes(b"nothing")
+    with pytest.raises(UserError, match=r"b\.hdr: cannot be read as a map of light"):
+        surroundings.light_files_of(tmp_path)
 
 
 def test_a_set_is_lit_by_files(tmp_path):
@@ -114,9 +198,11 @@ def test_what_lies_behind_is_the_middle_of_the_map():
     radiance[28:36, 62:66] = 0.0
     radiance[:, :32] = 1.0  # behind the viewer
     light_map = render.LightMap(radiance)
-    rows = [
-        seen_behind(light_map, (80, 60), 40.0, turn)[30, :, 0].astype(int) for turn in (0.0, 12.0)
+    pictures = [
+        seen_behind(light_map, (80, 60), 40.0, turn=turn, exposure=light_map.exposed(turn)[1])
+        for turn in (0.0, 12.0)
     ]
+    rows = [picture[30, :, 0].astype(int) for picture in pictures]
     assert abs(int(rows[0].argmin()) - 40) <= 3
     assert rows[1].argmin() > rows[0].argmin() + 8
     assert np.abs(np.diff(rows[0])).max() < 40
