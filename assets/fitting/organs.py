@@ -58,6 +58,8 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         if own is None and socket is None:
             iris = radius / eye.radius * eye.iris_radius
         centre, radius = own or socket or (centre, radius)
+        most_iris = 0.8  # of the ball's radius: a ball may be small for its face
+        iris = min(iris, most_iris * radius)
         if own is None:
             centre[2] += _way_forward(centre, radius + LID_CLEARANCE, skin)
         eyes.append(Eye(eye.name, centre, radius, iris))

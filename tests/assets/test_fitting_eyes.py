@@ -10,7 +10,8 @@ from numpy.linalg import norm
 from risorius import assets
 from risorius.assets.fitting import FittedHead, fit
 from risorius.assets.fitting.mouth_walls import FittedSkin
-from risorius.assets.fitting.organs import place_eyes, with_eyelid_rims
+from risorius.assets.fitting.organs import place_eyes, place_parts, with_eyelid_rims
+from risorius.assets.fitting.warp import ThinPlateSpline
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops
 from risorius.geometry.normals import vertex_normals
@@ -128,6 +129,24 @@ def test_eyeballs_of_the_file_say_where_eyes_are():
         assert eye.iris_radius == pytest.approx(old.iris_radius, rel=0.1)
         part = next(part for part in found.parts if part.bone == f"eye_{eye.name}")
         check_part(part)
+
+
+def test_an_iris_is_smaller_than_its_ball():
+    """Balls that are small for their face have no corners at nowhere."""
+    head = assets.load("head")
+    points = head.vertices[head.landmarks]
+    normals = vertex_normals(head.vertices, head.faces)
+    own = tuple(_ball(eye.centre, 0.65 * eye.radius)[0] for eye in head.eyes)
+    skin = FittedSkin(head.vertices, normals, head.faces, points, head.mandible_weight, own)
+    wide = tuple(replace(eye, iris_radius=0.9 * eye.radius) for eye in head.eyes)
+    known = replace(head, eyes=wide)
+    warp = ThinPlateSpline(points, points)
+    eyes = place_eyes(known, skin)
+    for eye, old in zip(eyes, head.eyes, strict=True):
+        assert eye.radius == pytest.approx(0.65 * old.radius, rel=0.02)
+        assert eye.iris_radius == pytest.approx(0.8 * eye.radius)
+    for part in place_parts(known, skin, warp, eyes):
+        assert np.isfinite(part.vertices).all()
 
 
 def test_a_closed_socket_is_the_shell_of_its_ball():
