@@ -39,6 +39,19 @@ class Stranger:
         return mesh, marks
 
 
+def write_topology(folder: Path, other: Stranger, **changes: Any) -> Path:
+    """A topology of the user's, by counts alone unless `changes` say more, in its folder."""
+    file = folder / "risorius" / "topologies" / "mine.json"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    mine = {
+        "name": "mine",
+        "counts": [[len(other.mesh.vertices), len(other.mesh.faces)]],
+        "landmarks": other.landmarks.tolist(),
+    }
+    file.write_text(json.dumps(mine | changes))
+    return file
+
+
 def shape(x: Array) -> Array:
     """A smooth change of shape [mm]: a broader, shorter face with a longer chin and a bent nose."""
     across, up, ahead = x.T

@@ -215,13 +215,13 @@ def open_window(
     from ..viewer.settings import settings_path
     from ..viewer.window.splash_screen import SplashScreen
 
-    def load() -> tuple[Script, FittedHead | None]:
+    def load() -> tuple[Script, FittedHead | None, str]:
         """All that takes long."""
         script = performance or new_script()
-        head = _fitted_head(drawing, may_be_marked=mesh is not None)
+        head, complaint = _fitted_head(drawing, may_be_marked=mesh is not None)
         import risorius.app.viewer.window.window  # noqa: F401
 
-        return script, head
+        return script, head, complaint
 
     if listening is not None and performance is not None:
         from ..viewer.session.live_commands import check_scene
@@ -233,7 +233,7 @@ def open_window(
     drawing.check_head()
     path = settings_path()
     with SplashScreen(size, path) as splash:
-        script, head = splash.during(load)
+        script, head, complaint = splash.during(load)
         if drawing.files:
             splash.settings.note_recent(*drawing.files)
         from ..viewer import Viewer
@@ -251,19 +251,24 @@ def open_window(
                     viewer.messages.say(line)
             if mesh is not None and head is None:
                 viewer.read(mesh)()
+                if complaint:
+                    viewer.messages.say(complaint, stays=True)
             viewer.run(playing=playing, once=once)
 
 
-def _fitted_head(drawing: Drawing, *, may_be_marked: bool) -> FittedHead | None:
-    """The head of the options; None, too, where its landmarks are missing and may be marked."""
-    from risorius.assets.fitting.landmark_file import UnfinishedError
+def _fitted_head(drawing: Drawing, *, may_be_marked: bool) -> tuple[FittedHead | None, str]:
+    """The head of the options, and a line that says why known landmarks do not fit it.
+
+    The head is None, too, where its landmarks are missing and may be marked.
+    """
+    from risorius.assets.fitting.landmark_file import MisfitError, UnfinishedError
 
     try:
-        return drawing.fitted_head()
-    except UnfinishedError:
+        return drawing.fitted_head(), ""
+    except UnfinishedError as error:
         if not may_be_marked:
             raise
-    return None
+        return None, str(error) if isinstance(error, MisfitError) else ""
 
 
 @click.command()

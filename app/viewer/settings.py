@@ -8,13 +8,13 @@ window names the unusable one in one line.
 from __future__ import annotations
 
 import json
-import os
 import sys
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 from risorius import refine, render
+from risorius.folders import configuration_folder
 from risorius.schema import (
     Flag,
     MadeFrom,
@@ -250,8 +250,7 @@ def display_of(
 
 def settings_path() -> Path:
     """Where a user's settings are kept."""
-    folder = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config")
-    return folder / "risorius" / "viewer.json"
+    return configuration_folder() / "viewer.json"
 
 
 def load_settings(path: Path) -> tuple[Settings, str]:

@@ -3,8 +3,8 @@
     head = assets.fitting.fit_head("anna.obj", "anna_landmarks.json")
     simulation = sim.create(head)
 
-Needed are the 68 iBug landmarks on the mesh, nothing else; docs/own_head.md is the user's page.
-Start reading at head.py.
+Needed are the 68 iBug landmarks, unless the vertices are known (topologies.py). docs/own_head.md is
+the user's page. Start reading at head.py.
 """
 
 from .head import FittedHead, fit, fit_head

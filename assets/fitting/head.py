@@ -36,8 +36,11 @@ from ..user_files import named
 from . import simplifying
 from .face_place import ORIENTING, is_face, placed
 from .landmark_file import (
+    COUNT,
+    MisfitError,
     UnfinishedError,
     check_lips,
+    nearest_vertices,
     read_landmarks,
 )
 from .lips import LipCut, lip_cut, lips_parted
@@ -48,6 +51,7 @@ from .mesh_validation import (
     check_openings,
     pieces_of,
     skin_of,
+    vertices_of_pieces,
     with_seams_joined,
     without_bag,
 )
@@ -121,7 +125,7 @@ def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHea
 
     landmarks: None for a mesh whose vertices are known by their numbers, see topologies.py.
     Raises AssetError, one line that names the file, where a file is missing, broken or unusable;
-    its subclass UnfinishedError where landmarks are missing.
+    its subclass UnfinishedError where landmarks are missing, or a known head's do not fit.
     """
     path = Path(mesh)
     found = read_mesh(path)
@@ -155,14 +159,17 @@ def _fit_shut_or_not(mesh: Mesh, marks: Callable[[Mesh], Marks]) -> FittedHead:
         places = mesh.vertices[numbers] if points is None else points
         parted = lips_parted(mesh, places)
         if parted is not None:
-            numbers, points = marks(parted)
+            parted_numbers, parted_points = marks(parted)
             with contextlib.suppress(ShutMouthError):
-                return fit(parted, numbers, points=points)
+                return fit(parted, parted_numbers, points=parted_points)
         cut = lip_cut(mesh, numbers, places)
         if cut is None:
             raise
     opened = cut.applied(mesh)
-    fitted = fit(opened, cut.landmarks, points=cut.points)
+    try:
+        fitted = fit(opened, cut.landmarks, points=cut.points)
+    except AssetError as error:
+        raise AssetError(f"{cut.in_words}; but {error}") from None
     return replace(fitted, lip_cut=cut, notes=(*fitted.notes, cut.in_words))
 
 
@@ -174,11 +181,24 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
             f"{named(path)}: its vertices are those of no known head, so mesh and landmark file "
             "go together; `risorius view --head MESH` helps to mark the landmarks"
         )
+
+    def marks(parted: Mesh) -> Marks:
+        """The known landmarks; those of lips that were parted on their own lip each."""
+        numbers = known.landmarks
+        if parted is mesh:
+            return numbers, None
+        nearest = nearest_vertices(mesh.vertices[numbers], parted.vertices, parted.faces)
+        inner_lips = np.arange(COUNT) >= 60
+        return np.where(inner_lips, nearest, numbers), None
+
     note = f"its vertices are those of {known.name}, whose landmarks are known"
     try:
-        fitted = _fit_shut_or_not(mesh, lambda _: (known.landmarks, None))
+        fitted = _fit_shut_or_not(mesh, marks)
     except AssetError as error:
-        raise AssetError(f"{named(path)}: {note}; but {error}") from None
+        raise MisfitError(
+            f"{named(path)}: {note}; but {error}; else mark its landmarks: "
+            "`risorius view --head MESH`"
+        ) from None
     return replace(fitted, files=(path,), notes=(note, *fitted.notes))
 
 
@@ -247,13 +267,9 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
 def _beside_skin(vertices: Floats64, faces: Integers32, skin: SkinPiece) -> list[Floats64]:
     """The vertices (n, 3) of each piece of a mesh that is not the skin."""
     piece = pieces_of(faces, len(vertices))
-    used = np.zeros(len(vertices), np.bool_)
-    used[faces] = True
-    used[piece == piece[skin.file_vertices[0]]] = False
-    others = np.flatnonzero(used)
-    others = others[np.argsort(piece[others], kind="stable")]
-    starts = np.flatnonzero(np.diff(piece[others])) + 1
-    return [vertices[group] for group in np.split(others, starts) if len(group)]
+    own = piece[skin.file_vertices[0]]
+    groups = vertices_of_pieces(piece, faces)
+    return [vertices[group] for group in groups if piece[group[0]] != own]
 
 
 class _Carried(NamedTuple):

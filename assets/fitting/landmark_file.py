@@ -101,7 +101,11 @@ def landmarks_text(places: Mapping[int, Sequence[float]], guessed: Iterable[int]
 
 
 class UnfinishedError(AssetError):
-    """A landmark file in which some are not marked yet."""
+    """Landmarks that are not marked yet; in the window a user marks them."""
+
+
+class MisfitError(UnfinishedError):
+    """Landmarks that are known by the topology, but do not fit the head: marks may."""
 
 
 def _document(path: Path) -> Any:

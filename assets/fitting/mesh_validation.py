@@ -17,7 +17,7 @@ import scipy
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from ...geometry.arrays import Floats64, Integers32, Integers64
+from ...geometry.arrays import Floats64, Integers, Integers32, Integers64
 from ...geometry.sides import sides_of
 from ..errors import AssetError
 from ..topology import unique_points
@@ -108,6 +108,17 @@ def pieces_of(faces: Integers32, count: int) -> Integers32:
     links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
     graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(count, count))
     return np.asarray(csgraph.connected_components(graph, directed=False)[1], np.int32)
+
+
+def vertices_of_pieces(piece: Integers32, faces: Integers32) -> list[Integers]:
+    """The vertices of each piece of a mesh, in their order, but for those of no triangle.
+
+    piece: of each vertex, as `pieces_of` has it, shape (V,).
+    """
+    used = np.unique(faces)
+    order = used[np.argsort(piece[used], kind="stable")]
+    starts = np.flatnonzero(np.diff(piece[order])) + 1
+    return np.split(order, starts)
 
 
 def check_manifold(faces: Integers32, numbers: Integers64 | None = None) -> None:

@@ -12,7 +12,6 @@ The built-in head and the coarse one, which all persons share, are recognised, t
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
@@ -21,18 +20,20 @@ from typing import Annotated
 
 import numpy as np
 
+from risorius.folders import configuration_folder
 from risorius.schema import Record, Within, parsed_json, read
 
 from ...geometry.arrays import Integers, Integers32
+from ...geometry.sides import sides_of
 from ..data_files import read_toml
 from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh
 from ..user_files import MOST_VERTICES, named, read_file
-from .mesh_validation import pieces_of
+from .landmark_file import COUNT
+from .mesh_validation import pieces_of, vertices_of_pieces
 
 Number = Annotated[int, Within(0, MOST_VERTICES)]
-COUNT = 68
 OUTER_EYE_CORNERS = (36, 45)  # landmarks
 
 
@@ -81,8 +82,7 @@ class KnownHead:
 
 def topologies_folder() -> Path:
     """The folder of a user's own topologies, which need not be there."""
-    folder = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config")
-    return folder / "risorius" / "topologies"
+    return configuration_folder() / "topologies"
 
 
 def recognised(mesh: Mesh) -> KnownHead | None:
@@ -103,11 +103,7 @@ def _candidates(mesh: Mesh) -> Iterator[tuple[Integers, int]]:
     """Vertices in their order, and the number of triangles: of each piece, then of all."""
     piece = pieces_of(mesh.faces, len(mesh.vertices))
     triangles = np.bincount(piece[mesh.faces[:, 0]], minlength=int(piece.max()) + 1)
-    used = np.unique(mesh.faces)
-    order = used[np.argsort(piece[used], kind="stable")]
-    starts = np.flatnonzero(np.diff(piece[order])) + 1
-    groups = np.split(order, starts)
-    for group in sorted(groups, key=len, reverse=True):
+    for group in sorted(vertices_of_pieces(piece, mesh.faces), key=len, reverse=True):
         yield group, int(triangles[piece[group[0]]])
     same = np.arange(len(mesh.vertices)) if mesh.same is None else np.asarray(mesh.same)
     yield same, len(mesh.faces)
@@ -125,7 +121,7 @@ def _has_edges(mesh: Mesh, numbers: Integers, topology: Topology) -> bool:
     most_off = 3.0  # times longer or shorter: faces differ
     is_like = (length < most_off * share * width) & (length * most_off > share * width)
     count = len(mesh.vertices)
-    sides = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
+    sides = sides_of(mesh.faces)
     keys = sides.min(axis=1).astype(np.int64) * count + sides.max(axis=1)
     wanted = np.minimum(first, second).astype(np.int64) * count + np.maximum(first, second)
     return bool(is_like.all() and np.isin(wanted, keys).all())

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from risorius import sim
+from risorius.assets import AssetError
 from risorius.assets.fitting import fit_head
 from risorius.assets.fitting.lips import lip_cut
 from risorius.assets.meshes import read_mesh
 
 from ..assets.gltf_files import GltfMaker
-from ..heads import METRES, Stranger, sealed
+from ..heads import METRES, Stranger, closed, sealed
 from .command_line import risorius
 from .glb_player import Player
 
@@ -89,6 +90,28 @@ def test_skin_across_an_open_mouth_is_not_cut(shut):
     places[61:64, 1] += 5.0
     places[65:68, 1] -= 5.0
     assert lip_cut(shut.mesh, shut.landmarks, places) is None
+
+
+def test_a_fault_of_a_cut_head_names_the_cut(shut, tmp_path):
+    """Skin over an eye is found after the lips are cut: the owner learns both."""
+    landmarks = shut.landmarks
+    covered = Stranger(closed(shut.mesh, landmarks[42:48]), landmarks)
+    with pytest.raises(AssetError, match=r"lips were sealed: .*; but the left eye has no opening"):
+        fit_head(*covered.write(tmp_path))
+
+
+def test_a_cut_takes_the_vertices_of_the_mesh_that_is_cut(shut, tmp_path):
+    """Not those of a try before it, where vertices of a seam across the lips are apart."""
+    path, marks, doubled, _ = write_glb(shut, tmp_path)
+    numbers = shut.landmarks.copy()
+    other = np.flatnonzero((doubled == doubled[numbers[UPPER]]).all(axis=1))[-1]
+    assert other != numbers[UPPER]
+    thin_lip = 51  # a landmark of the upper lip's outer border, on a lip without height
+    numbers[thin_lip] = other
+    marks.write_text(json.dumps({"landmarks": numbers.tolist()}))
+    head = fit_head(path, marks)
+    assert head.lip_cut is not None
+    assert head.landmarks[thin_lip] == head.landmarks[UPPER]
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from risorius.app.sound import player
 from risorius.app.viewer import Viewer
 from risorius.assets.coarse import coarse_head
 from risorius.assets.meshes import Mesh
-from tests.heads import stranger
+from tests.heads import stranger, write_topology
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -358,3 +358,17 @@ def test_a_known_head_needs_no_marking(viewer, tmp_path):
     assert len(viewer.session.scene.faces) == len(head.faces)
     assert viewer.exporter.head.files == (mesh,)
     viewer.show_scene(before)
+
+
+@pytest.mark.slow
+def test_a_known_head_that_does_not_fit_is_marked(viewer, tmp_path, monkeypatch):
+    """A dropped mesh whose topology names wrong landmarks opens marking, and a line says why."""
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    other = stranger()
+    write_topology(tmp_path, other, landmarks=list(range(68)))
+    put(viewer, other.write(tmp_path)[0])
+    try:
+        assert until(viewer, lambda: viewer.marking_mode is not None)
+        assert "those of mine" in viewer.messages.text
+    finally:
+        viewer.leave_marking()

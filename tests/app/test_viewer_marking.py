@@ -14,6 +14,8 @@ from PIL import Image
 from pytest import approx
 
 from risorius.__main__ import command
+from risorius.app.cli import commands
+from risorius.app.cli.commands import _fitted_head
 from risorius.app.errors import UserError
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
@@ -23,7 +25,7 @@ from risorius.app.viewer.marking.picture import places_in
 from risorius.assets import AssetError
 from risorius.assets.fitting.guess import placing
 from risorius.assets.fitting.landmark_file import read_landmarks
-from tests.heads import METRES, stranger, with_card
+from tests.heads import METRES, stranger, with_card, write_topology
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -70,6 +72,24 @@ def off(marking):
     """How far marks are from where they belong [m]."""
     found = np.array([marking.marks.places[number] for number in range(68)])
     return norm(found - true_places(), axis=1)
+
+
+def test_a_known_head_opens_without_marking(mesh, tmp_path, monkeypatch):
+    """`view --head MESH` fits it; where its landmarks do not fit, a line leads to marking."""
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    opened = []
+    monkeypatch.setattr(commands, "open_window", lambda *given, **_: opened.append(given))
+    assert CliRunner().invoke(commands.view, ["--head", str(mesh)]).exit_code == 0
+    drawing = opened[0][2]
+    assert _fitted_head(drawing, may_be_marked=True) == (None, "")
+    write_topology(tmp_path, stranger())
+    head, complaint = _fitted_head(drawing, may_be_marked=True)
+    assert head.files == (mesh,) and not complaint
+    write_topology(tmp_path, stranger(), landmarks=list(range(68)))
+    head, complaint = _fitted_head(drawing, may_be_marked=True)
+    assert head is None and "those of mine" in complaint
+    with pytest.raises(AssetError, match="those of mine"):
+        _fitted_head(drawing, may_be_marked=False)
 
 
 @pytest.mark.slow

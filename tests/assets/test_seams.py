@@ -76,9 +76,11 @@ def test_lips_that_touch_exactly_are_two(head, tmp_path, way):
     mesh = maker.write(tmp_path / "head.glb")
     marks = tmp_path / "head.json"
     marks.write_text(json.dumps(head.landmarks.tolist()))
-    found = fit_head(mesh, marks)
-    assert len(found.vertices) == len(head.vertices)
-    assert np.array_equal(found.file_vertices[found.landmarks], head.landmarks)
+    for file in (marks, None):  # it is known by its vertices, too
+        found = fit_head(mesh, file)
+        assert found.lip_cut is None
+        assert len(found.vertices) == len(head.vertices)
+        assert np.array_equal(found.file_vertices[found.landmarks], head.landmarks)
 
 
 def test_lips_that_are_one_are_shut(head, tmp_path):

@@ -11,11 +11,11 @@ from risorius import assets
 from risorius.assets.coarse import coarse_head
 from risorius.assets.data_files import read_toml
 from risorius.assets.fitting import fit_head
-from risorius.assets.fitting.landmark_file import UnfinishedError
-from risorius.assets.fitting.topologies import COUNT, recognised
+from risorius.assets.fitting.landmark_file import COUNT, MisfitError, UnfinishedError
+from risorius.assets.fitting.topologies import recognised
 from risorius.assets.meshes import Mesh
 
-from ..heads import METRES, TURN, shape, stranger
+from ..heads import METRES, TURN, shape, stranger, write_topology
 
 TABLE = read_toml(Path(assets.__file__).with_name("topologies.toml"))["topology"]
 
@@ -87,22 +87,25 @@ def test_edges_tell_meshes_of_the_same_counts_apart(tmp_path):
     width = np.linalg.norm(right - left)
     first, second = mesh.faces[0, :2].tolist()
     share = float(np.linalg.norm(mesh.vertices[first] - mesh.vertices[second]) / width)
-    folder = tmp_path / "config" / "risorius" / "topologies"
-    folder.mkdir(parents=True)
-    file = folder / "mine.json"
-    mine = {
-        "name": "mine",
-        "counts": [[len(mesh.vertices), len(mesh.faces)]],
-        "landmarks": other.landmarks.tolist(),
-        "edges": [[first, second, share]],
-    }
-    file.write_text(json.dumps(mine))
+    file = write_topology(tmp_path / "config", other, edges=[[first, second, share]])
+    mine = json.loads(file.read_text())
     known = recognised(mesh)
     assert known.name == "mine" and np.array_equal(known.landmarks, other.landmarks)
     file.write_text(json.dumps(mine | {"edges": [[first, second, 9.0 * share]]}))
     assert recognised(mesh) is None
     file.write_text(json.dumps(mine | {"edges": [[first, len(mesh.vertices) - 1, share]]}))
     assert recognised(mesh) is None
+
+
+def test_a_known_head_that_cannot_be_fitted_may_be_marked(tmp_path):
+    """Landmarks of another head with as many vertices are an error that leads to marking."""
+    other = stranger()
+    write_topology(tmp_path / "config", other, landmarks=list(range(COUNT)))
+    mesh, marks = other.write(tmp_path)
+    with pytest.raises(MisfitError, match=r"those of mine, .*; but .*; else mark") as raised:
+        fit_head(mesh)
+    assert isinstance(raised.value, UnfinishedError)
+    assert fit_head(mesh, marks).notes == ()
 
 
 @pytest.mark.parametrize(
@@ -116,10 +119,8 @@ def test_edges_tell_meshes_of_the_same_counts_apart(tmp_path):
 )
 def test_a_wrong_topology_is_one_line(tmp_path, change, message):
     """It names the file, the value and the allowed ones."""
-    folder = tmp_path / "config" / "risorius" / "topologies"
-    folder.mkdir(parents=True)
-    mine = {"name": "mine", "counts": [[100, 200]], "landmarks": list(range(COUNT))}
-    (folder / "mine.json").write_text(json.dumps(mine | change))
+    whole = {"counts": [[100, 200]], "landmarks": list(range(COUNT))}
+    write_topology(tmp_path / "config", stranger(), **whole | change)
     with pytest.raises(assets.AssetError, match=message) as raised:
         recognised(stranger().mesh)
     assert "\n" not in str(raised.value)

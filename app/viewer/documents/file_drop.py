@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from risorius import assets
-from risorius.assets.fitting.landmark_file import UnfinishedError
+from risorius.assets.fitting.landmark_file import MisfitError, UnfinishedError
 from risorius.assets.meshes import FORMATS
 
 from ...errors import UserError
@@ -124,19 +124,20 @@ class FileDrop:
         """In a thread: make the task that shows a head, or has it marked, and plays its files."""
         show = None
         remark = ""
+        complaint = ""
         try:
             scene = build_scene("face", own_head(mesh, landmarks))
             show = partial(self._show_scene, scene)
             remark = f" with {mesh.name}"
-        except UnfinishedError:
-            pass  # it is marked further
+        except UnfinishedError as error:  # it is marked further
+            complaint = str(error) if isinstance(error, MisfitError) else ""
         except assets.AssetError as error:
             raise UserError(str(error)) from None
         show_first = show or self._read(mesh, landmarks)
 
         def go_on() -> Message:
             """Show the head first, then play the script, pose or recording on it."""
-            line = show_first() or (f"{mesh.name}: opened" if remark else None)
+            line = show_first() or (f"{mesh.name}: opened" if remark else complaint)
             self._scripts.note_recent(*filter(None, (mesh, landmarks)))
             return self._play(others, remark) or line
 
