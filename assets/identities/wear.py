@@ -39,7 +39,8 @@ class Frame:
     """A frame of glasses.
 
     half_width, half_height: of a lens [mm]. squareness: 2 is an ellipse, more nears a rectangle.
-    thickness: of the rims [mm]. colour: sRGB. shine: 0 dull, 1 wet.
+    thickness: of the rims [mm]. colour: sRGB. shine: 0 dull, 1 wet; more than a little breaks into
+    dashes where a rim is one or two pixels wide.
     """
 
     half_width: float
@@ -52,9 +53,9 @@ class Frame:
 
 FRAMES: Mapping[str, Frame] = MappingProxyType(
     {
-        "round": Frame(23.5, 21.5, 2.2, 1.6, (0.33, 0.28, 0.22), 0.8),
-        "rectangular": Frame(26.0, 17.5, 3.6, 2.6, (0.045, 0.045, 0.05), 0.55),
-        "oval": Frame(25.0, 19.0, 2.6, 2.2, (0.24, 0.12, 0.06), 0.6),
+        "round": Frame(23.5, 21.5, 2.2, 1.6, (0.33, 0.28, 0.22), 0.15),
+        "rectangular": Frame(26.0, 17.5, 3.6, 2.6, (0.045, 0.045, 0.05), 0.08),
+        "oval": Frame(25.0, 19.0, 2.6, 2.2, (0.24, 0.12, 0.06), 0.1),
     }
 )
 

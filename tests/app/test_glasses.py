@@ -1,0 +1,22 @@
+"""Glasses of persons in pictures of a few pixels."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius.app.dataset.request import request_of
+from risorius.app.dataset.studio import Studio
+from risorius.assets import Segment
+
+
+@pytest.mark.slow
+def test_rims_are_not_dashed_by_highlights():
+    """A rim of one or two pixels has no row of light dots, whatever its normals are there."""
+    studio = Studio(request_of(Path(), seed=21, size=(192, 192), passes=("segmentation",)))
+    shot = studio.shoot(2)
+    assert shot.known.labels["person"]["glasses"] == "rectangular"
+    is_rim = shot.known.images["segmentation"] == Segment.GLASSES
+    assert is_rim.sum() > 400
+    lightness = shot.image[is_rim] @ np.array([0.2126, 0.7152, 0.0722])
+    assert (lightness > 110).mean() < 0.01
