@@ -8,6 +8,7 @@ stand here that came nearest to the true surfaces of rivals.py.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from importlib import import_module
 from typing import Any, NamedTuple
 
@@ -142,49 +143,30 @@ def _libigl(faces: Faces, rest: Points) -> Frame:
     return lambda positions, limit: (rows @ positions, fine)
 
 
-METHODS: Sequence[Method] = (
-    Method(
-        "manifold3d, smooth, refined to a tolerance",
-        *("manifold3d", "manifold3d"),
-        lambda faces, rest: _manifold3d(faces, rest, adaptive=True),
-        has_limit=True,
-    ),
-    Method(
-        "manifold3d, smooth, all edges",
-        *("manifold3d", "manifold3d"),
-        lambda faces, rest: _manifold3d(faces, rest, adaptive=False),
-        has_limit=False,
-    ),
-    Method("meshlib, smooth, by curvature", "meshlib", "meshlib.mrmeshpy", _meshlib, True),
-    Method(
-        "pymeshlab, Loop by length",
-        *("pymeshlab", "pymeshlab"),
-        lambda faces, rest: _pymeshlab(faces, rest, "loop"),
-        has_limit=True,
-    ),
-    Method(
-        "pymeshlab, butterfly by length",
-        *("pymeshlab", "pymeshlab"),
-        lambda faces, rest: _pymeshlab(faces, rest, "butterfly"),
-        has_limit=True,
-    ),
-    Method(
-        "VTK, adaptive by length",
-        *("vtk", "vtkmodules.vtkFiltersModeling"),
-        lambda faces, rest: _vtk(faces, rest, "Adaptive"),
-        has_limit=True,
-    ),
-    Method(
-        "VTK, Loop",
-        *("vtk", "vtkmodules.vtkFiltersModeling"),
-        lambda faces, rest: _vtk(faces, rest, "Loop"),
-        has_limit=False,
-    ),
-    Method(
-        "VTK, butterfly",
-        *("vtk", "vtkmodules.vtkFiltersModeling"),
-        lambda faces, rest: _vtk(faces, rest, "Butterfly"),
-        has_limit=False,
-    ),
-    Method("libigl, kept Loop matrix", "libigl", "igl", _libigl, has_limit=False),
-)
+def _table() -> list[Method]:
+    """All methods; a limit is a length, a tolerance or a number of splits."""
+    adaptive = partial(_manifold3d, adaptive=True)
+    everywhere = partial(_manifold3d, adaptive=False)
+    manifold = ("manifold3d", "manifold3d")
+    meshlib = ("meshlib", "meshlib.mrmeshpy")
+    pymeshlab = ("pymeshlab", "pymeshlab")
+    vtk = ("vtk", "vtkmodules.vtkFiltersModeling")
+    return [
+        Method("manifold3d, smooth, refined to a tolerance", *manifold, adaptive, True),
+        Method("manifold3d, smooth, all edges", *manifold, everywhere, False),
+        Method("meshlib, smooth, by curvature", *meshlib, _meshlib, True),
+        Method("pymeshlab, Loop by length", *pymeshlab, partial(_pymeshlab, rule="loop"), True),
+        Method(
+            "pymeshlab, butterfly by length",
+            *pymeshlab,
+            partial(_pymeshlab, rule="butterfly"),
+            True,
+        ),
+        Method("VTK, adaptive by length", *vtk, partial(_vtk, rule="Adaptive"), True),
+        Method("VTK, Loop", *vtk, partial(_vtk, rule="Loop"), False),
+        Method("VTK, butterfly", *vtk, partial(_vtk, rule="Butterfly"), False),
+        Method("libigl, kept Loop matrix", "libigl", "igl", _libigl, False),
+    ]
+
+
+METHODS: Sequence[Method] = tuple(_table())
