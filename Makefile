@@ -42,16 +42,18 @@ endef
 demo: setup opengl
 	@$(BIN)/risorius demo
 
-# What draws and opens windows, as much work as all the rest.
-WINDOWS := $(wildcard tests/app/test_viewer*.py) tests/refine_gl tests/render
+# What draws and opens windows: a third of the work. One process at a time may do that.
+WINDOWS := $(wildcard tests/app/test_viewer*.py) tests/app/test_plug_ins.py \
+	tests/bench/test_window.py tests/refine_gl tests/render
 
-# $(call pass_lane,marks,before): two processes side by side, each with a screen of its own, whose
-# keyboard nobody else may touch: windows, after what comes before them, and all the rest. What the
-# first says is shown when both have ended.
+# $(call pass_lane,marks,before): one process tests windows, after what comes before them, on a
+# screen of its own, whose keyboard nobody else may touch. Beside it two share all the rest, file by
+# file, so that two cores have work to the end. What the first prints is shown when all have ended.
 define pass_lane
 	{ $(2) $(SCREEN) -n 199 $(BIN)/python -m pytest -m "$(1)" $(WINDOWS); } >.venv/windows.log 2>&1 & \
 		windows=$$!; code=0; \
-		$(SCREEN) $(BIN)/python -m pytest -m "$(1)" $(addprefix --ignore=,$(WINDOWS)) || code=1; \
+		$(SCREEN) $(BIN)/python -m pytest -m "$(1)" --numprocesses 2 --dist loadfile \
+			$(addprefix --ignore=,$(WINDOWS)) || code=1; \
 		wait $$windows || code=1; cat .venv/windows.log; exit $$code
 endef
 
