@@ -110,6 +110,7 @@ def slide_lid(carried: Floats64, lids: LidVertices, row: int, inward: float) -> 
     """Slide the far end of a lid vertex around its eyeball, `inward` mm toward the nose."""
     i = lids.vertex[row]
     e = lids.eye[row]
+    deepening_share = 0.2  # of the way back: skin beside the inner corner hangs on a ligament
     side = 0.0
     far = 0.0
     for k in range(3):
@@ -118,6 +119,9 @@ def slide_lid(carried: Floats64, lids: LidVertices, row: int, inward: float) -> 
     angle = inward / np.sqrt(side * side + far * far)
     c = np.cos(angle) - 1.0
     s = np.sin(angle)
+    deeper = far * c - side * s
+    if deeper < 0.0:
+        deeper *= deepening_share
     for k in range(3):
         carried[i, k] += (side * c + far * s) * lids.inward[e, k]
-        carried[i, k] += (far * c - side * s) * lids.forward[e, k]
+        carried[i, k] += deeper * lids.forward[e, k]

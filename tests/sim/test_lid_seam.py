@@ -3,6 +3,7 @@
 import numpy as np
 
 from risorius.sim.lids import COLUMNS, _gaze_share, _raised_at_corners
+from tests.sim.poses import both_sides, settled_displacement
 
 WHERE = np.linspace(0.0, 1.0, COLUMNS)
 
@@ -29,3 +30,15 @@ def test_lids_follow_a_gaze_on_a_large_ball_no_farther():
     """The way of a lid does not grow with a ball beyond a human's size."""
     assert _gaze_share(12.8) == 1.0
     np.testing.assert_allclose(_gaze_share(16.2) * 16.2, _gaze_share(12.8) * 12.8)
+
+
+def test_a_shut_lid_is_a_smooth_sheet_over_the_ball(simulation, head):
+    """Its corner does not sink, and no vertex of the fold drops 4 mm beside one that stays."""
+    shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
+    moved = settled_displacement(simulation, shut)
+    inner = np.array([0, 1, 2, 17, 18, 19])  # places in a row, from the inner corner
+    for row in ("eye_1_left", "eye_2_left", "eye_1_right", "eye_2_right"):
+        assert moved[head.rings[row][inner], 2].min() > -1.0
+    for row in ("eye_3_left", "eye_3_right"):
+        upper = head.rings[row][:11]
+        assert np.abs(np.diff(moved[upper, 1])).max() < 4.0
