@@ -72,9 +72,10 @@ class Texture(_Mipmaps):
             )
         self.redness = _median_redness(image)
         alpha = np.full(image.shape[:2], 255, np.uint8) if occlusion is None else occlusion
-        light = to_linear(np.arange(256) / 255.0).astype(np.float32)[image]
-        texels = np.dstack([light, alpha / np.float32(255.0)])
-        super().__init__(surface, _roots(texels))
+        lights = to_linear(np.arange(256) / 255.0).astype(np.float32)
+        shares = np.arange(256, dtype=np.float32) / np.float32(255.0)
+        super().__init__(surface, np.dstack([_roots(lights)[image], _roots(shares)[alpha]]))
+        texels = np.dstack([lights[image], shares[alpha]])
         for level in range(1, max(self.size).bit_length()):
             texels = _halved(texels)
             self._texture.write(_roots(texels)[::-1].tobytes(), level=level)

@@ -24,6 +24,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ..geometry.arrays import Floats64
 from ..geometry.read_only import read_only
 from ..schema import quoted
 from . import checked
@@ -73,6 +74,7 @@ class Simulation:
         self._drive = MuscleDrive(model.rig, model.muscles.names, self.controls)
         self.anatomy = Anatomy(model, self._state, self.controls, self.bones, self._drive)
         self.touch = Touch(model, self._state, self.positions, self.bones)
+        self._placed_for: Floats64 | None = None  # activations; None: place targets anew
         self.place_targets()
 
     def reset(self) -> None:
@@ -124,7 +126,8 @@ class Simulation:
         count = substeps_in(tick)
         for _ in range(ticks):
             self.controls.advance(tick / 2.0)
-            self.place_targets()
+            if not self._are_targets_there():
+                self.place_targets()
             advance(state, model.skin, Tick(count, tick / count, self.grip, bones.mandible))
             self.controls.advance(tick / 2.0)
         broken = to_posed_head(
@@ -136,6 +139,12 @@ class Simulation:
                 f"{broken} of {len(state.x)} vertices are not finite; "
                 "call reset(), and report the mesh if it was built from a sound one"
             )
+
+    def _are_targets_there(self) -> bool:
+        """Whether activations are as they were when targets were placed, and nobody draws."""
+        if self._placed_for is None or self.touch.is_held:
+            return False
+        return bool((self._placed_for == self.controls.reached).all())
 
     def place_targets(self) -> None:
         """Bones, lids and muscles for the activations reached: where each spring pulls to."""
@@ -157,4 +166,5 @@ class Simulation:
         activation = self._drive.activation()
         muscles.add(self._drive.pull(activation), bones.mandible, bones.weight, state)
         self.touch.add_to(state)
+        self._placed_for = None if self.touch.is_held else self.controls.reached.copy()
         self.grip = model.grip(activation, bones.jaw, bones.lips_closed)

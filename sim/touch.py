@@ -64,9 +64,14 @@ class Touch:
         self._to = np.zeros((0, 3))
         self._stiffness = np.zeros(0)
 
+    @property
+    def is_held(self) -> bool:
+        """Whether a finger has hold of the skin."""
+        return len(self._vertices) > 0
+
     def add_to(self, state: State) -> None:
         """Add the springs to `state.hold` and `state.pull`."""
-        if len(self._vertices):
+        if self.is_held:
             drawn = self._to - state.carried[self._vertices]
             state.hold[self._vertices] += self._stiffness
             state.pull[self._vertices] += self._stiffness[:, None] * drawn

@@ -120,14 +120,16 @@ def _paint(cover: Floats32, hairs: Floats64, side: float, tones: Floats64) -> No
     wide, high = np.ceil(places.max(axis=(0, 1)) / fineness).astype(int) + 8 - low
     image = Image.new("L", (fineness * int(wide), fineness * int(high)))
     pen = ImageDraw.Draw(image)
+    inks = [pen.draw.draw_ink(tone) for tone in range(256)]
     for part in range(PARTS)[::-1]:  # the tips first, so that roots cover them
-        drawn = (tones * (1.0 - 0.75 * part / PARTS)).astype(int)
-        for ends, tone in zip(places[:, part : part + 2] - fineness * low, drawn, strict=True):
-            pen.line(ends.ravel().tolist(), fill=int(tone), width=2 if part < PARTS / 2 else 1)
-    fine = (
-        np.asarray(image, np.float32).reshape(high, fineness, wide, fineness).mean(axis=(1, 3))
-        / 255.0
-    )
+        drawn = (tones * (1.0 - 0.75 * part / PARTS)).astype(int).tolist()
+        ends = (places[:, part : part + 2] - fineness * low).reshape(-1, 4).tolist()
+        width = 2 if part < PARTS / 2 else 1
+        for end, tone in zip(ends, drawn, strict=True):
+            pen.draw.draw_lines(end, inks[tone], width)  # `pen.line` takes six times as long
+    drawn_rows = np.asarray(image).reshape(high, fineness, -1).sum(axis=1, dtype=np.uint16)
+    sums = np.asarray(sum(drawn_rows[:, k::fineness] for k in range(fineness)), np.float32)
+    fine = sums / np.float32(fineness**2) / np.float32(255.0)
     blur = 3.0  # [texels] of the colour between hairs
     soft = scipy.ndimage.gaussian_filter(fine, blur)
     covered = cover[low[1] : low[1] + high, low[0] : low[0] + wide]

@@ -143,17 +143,22 @@ def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
     if features.brows is not None:
         kept = np.where(tints.brow < 1.99, np.float32(0.0), kept)
         brows = painted(features.brows, shrink * len(kept))
-        np.maximum(kept, shrunk(brows, shrink), out=kept)
+        rows = np.flatnonzero(brows.any(axis=1)) // shrink
+        near = slice(rows[0], rows[-1] + 1)
+        brows = brows[shrink * near.start : shrink * near.stop]
+        kept[near] = np.maximum(kept[near], shrunk(brows, shrink))
     if features.lid_line > 0.0:
         kept = np.maximum(kept, np.float32(features.lid_line) * tints.lids)
     if features.stubble > 0.0:
-        kept = np.maximum(
-            kept,
-            np.float32(features.stubble)
-            * shrunk(stubble(shrink * len(kept)), shrink)
-            * tints.beard,
-        )
+        hairs = _shrunk_stubble(shrink * len(kept), shrink)
+        kept = np.maximum(kept, np.float32(features.stubble) * hairs * tints.beard)
     return kept
+
+
+@lru_cache(maxsize=1)
+def _shrunk_stubble(size: int, shrink: int) -> Floats32:
+    """Stubble with so many texels less each way."""
+    return shrunk(stubble(size), shrink)
 
 
 def _grown_over(behind: Floats32) -> Floats32:

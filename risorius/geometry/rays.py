@@ -7,7 +7,8 @@ Graphics Tools 2:21-28.
 import numpy as np
 import numpy.typing as npt
 
-from .arrays import Floats64
+from ..jit import njit
+from .arrays import Floats64, Integers64
 from .normals import cross_products
 
 PARALLEL = 1e-12  # below it a triangle is seen from its edge, and nothing is met
@@ -54,14 +55,64 @@ def exits(
     # A triangle lies in the cone around its middle that its corners span, unless that is blunt.
     cone = np.einsum("fik,fk->fi", ways, middle).min(axis=1)
     cone_slack = 1e-6  # of a cosine, for rounding
-    cone = np.where(cone > 0.0, cone - cone_slack, -2.0).astype(np.float32)
-    cosines = directions.astype(np.float32) @ middle.T.astype(np.float32)
-    ray, face = np.nonzero(cosines >= cone)
-    _, u, v, distance = crossings(np.zeros(3), directions[ray], corners[face])
-    is_met = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (distance > 0.0)
-    ray = ray[is_met]
-    face = face[is_met]
-    distance = distance[is_met]
+    cone = np.where(cone > 0.0, cone - cone_slack, -2.0)
+    met = np.empty((4 * len(directions), 2), np.int64)
+    distances = np.empty(len(met))
+    count = _meetings(directions, corners, middle, cone, met, distances)
+    if count > len(met):  # more layers than usual
+        met = np.empty((count, 2), np.int64)
+        distances = np.empty(count)
+        _meetings(directions, corners, middle, cone, met, distances)
+    ray, face = met[:count].T
     length = np.linalg.norm(normals[face], axis=1)
     cosine = (directions[ray] * normals[face]).sum(axis=1) / length
-    return ray, distance, cosine
+    return ray, distances[:count], cosine
+
+
+@njit
+def _meetings(
+    directions: Floats64,
+    corners: Floats64,
+    middle: Floats64,
+    cone: Floats64,
+    met: Integers64,
+    distances: Floats64,
+) -> int:
+    """The number of meetings of rays from the origin with triangles, as `crossings` finds them.
+
+    middle, cone: of each triangle the middle of its cone (F, 3), and the cosine of its half angle.
+    met, distances: filled as far as they go, ray and triangle (k, 2), and how far away (k,).
+    """
+    found = 0
+    across = np.empty(3)
+    turned = np.empty(3)
+    for ray in range(len(directions)):
+        dx, dy, dz = directions[ray]
+        for face in range(len(corners)):
+            way = middle[face]
+            if dx * way[0] + dy * way[1] + dz * way[2] < cone[face]:
+                continue
+            a = corners[face, 0]
+            ab = corners[face, 1] - a
+            ac = corners[face, 2] - a
+            across[0] = dy * ac[2] - dz * ac[1]
+            across[1] = dz * ac[0] - dx * ac[2]
+            across[2] = dx * ac[1] - dy * ac[0]
+            volume = ab[0] * across[0] + ab[1] * across[1] + ab[2] * across[2]
+            if abs(volume) <= PARALLEL:
+                continue
+            share = 1.0 / volume
+            u = -(a[0] * across[0] + a[1] * across[1] + a[2] * across[2]) * share
+            turned[0] = a[2] * ab[1] - a[1] * ab[2]
+            turned[1] = a[0] * ab[2] - a[2] * ab[0]
+            turned[2] = a[1] * ab[0] - a[0] * ab[1]
+            v = (turned[0] * dx + turned[1] * dy + turned[2] * dz) * share
+            distance = (ac[0] * turned[0] + ac[1] * turned[1] + ac[2] * turned[2]) * share
+            if u < 0.0 or v < 0.0 or u + v > 1.0 or distance <= 0.0:
+                continue
+            if found < len(met):
+                met[found, 0] = ray
+                met[found, 1] = face
+                distances[found] = distance
+            found += 1
+    return found

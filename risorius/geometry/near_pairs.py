@@ -1,0 +1,41 @@
+"""Pairs of triangles that lie near each other.
+
+Source: Cohen, Lin, Manocha, Ponamgi 1995, "I-COLLIDE", Symposium on Interactive 3D Graphics: boxes
+are sorted along one axis, and compared with those that begin before they end.
+"""
+
+import numpy as np
+
+from ..jit import njit
+from .arrays import Floats64, Integers64
+
+
+def near_pairs(corners: Floats64) -> Integers64:
+    """Pairs of triangles (F, 3, 3) whose boxes touch, each once, lower number first, (k, 2)."""
+    low = corners.min(axis=1)
+    high = corners.max(axis=1)
+    order = np.argsort(low[:, 0])
+    low = low[order]
+    high = high[order]
+    pairs = np.empty((_sweep(low, high, np.empty((0, 2), np.int64)), 2), np.int64)
+    _sweep(low, high, pairs)
+    return np.sort(order[pairs], axis=1)
+
+
+@njit
+def _sweep(low: Floats64, high: Floats64, pairs: Integers64) -> int:
+    """The number of boxes (n, 3) that touch, sorted by low x; fills `pairs` as far as it goes."""
+    found = 0
+    for one in range(len(low)):
+        for other in range(one + 1, len(low)):
+            if low[other, 0] > high[one, 0]:
+                break
+            if low[other, 1] > high[one, 1] or high[other, 1] < low[one, 1]:
+                continue
+            if low[other, 2] > high[one, 2] or high[other, 2] < low[one, 2]:
+                continue
+            if found < len(pairs):
+                pairs[found, 0] = one
+                pairs[found, 1] = other
+            found += 1
+    return found

@@ -1,0 +1,23 @@
+"""The pairs of triangles whose boxes touch."""
+
+import numpy as np
+
+from risorius.geometry.near_pairs import near_pairs
+
+
+def test_pairs_are_those_of_a_plain_comparison():
+    """Of a seeded heap of small and large triangles every pair is found once, and no other."""
+    random = np.random.default_rng(2)
+    sizes = np.exp(random.uniform(-3.0, 1.0, (120, 1, 1)))
+    corners = random.uniform(-2.0, 2.0, (120, 1, 3)) + sizes * random.normal(size=(120, 3, 3))
+    low = corners.min(axis=1)
+    high = corners.max(axis=1)
+    touches = (low[:, None] <= high).all(axis=2) & (low <= high[:, None]).all(axis=2)
+    expected = np.argwhere(np.triu(touches, 1)).tolist()
+    assert 100 < len(expected) < 6000
+    assert sorted(near_pairs(corners).tolist()) == expected
+
+
+def test_no_triangles_have_no_pairs():
+    """An empty mesh is no error."""
+    assert near_pairs(np.zeros((0, 3, 3))).shape == (0, 2)

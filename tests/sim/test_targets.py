@@ -1,0 +1,42 @@
+"""Targets of springs are placed anew when something has changed, and only then."""
+
+import numpy as np
+
+from risorius.sim import Simulation
+
+FRAME = 1.0 / 60.0
+
+
+def test_a_face_that_rests_places_no_targets(simulation, monkeypatch):
+    """Once activations have arrived, a step moves skin alone; a control that is set counts."""
+    placed = []
+    place = Simulation.place_targets
+    monkeypatch.setattr(
+        Simulation, "place_targets", lambda face: (placed.append(face), place(face))
+    )
+    simulation.step(FRAME)
+    assert not placed
+    simulation.controls.set("jaw_open", 0.5)
+    simulation.step(FRAME)
+    assert len(placed) == 1
+    for _ in range(90):
+        simulation.step(FRAME)
+    count = len(placed)
+    simulation.step(FRAME)
+    assert len(placed) == count < 80
+
+
+def test_a_finger_is_felt_by_a_resting_face(simulation):
+    """Skin is drawn at from the next step on, and springs back when it is let go."""
+    simulation.step(FRAME)
+    rest = simulation.positions.copy()
+    vertex = int(rest[:, 2].argmax())
+    target = rest[vertex] + [0.0, 0.0, 5.0]
+    simulation.touch.drag([vertex], [target], [1.0])
+    simulation.step(FRAME)
+    drawn = np.linalg.norm(simulation.positions - rest, axis=1).max()
+    simulation.touch.end_drag()
+    for _ in range(60):
+        simulation.step(FRAME)
+    assert drawn > 0.2
+    assert np.linalg.norm(simulation.positions - rest, axis=1).max() < 0.1 * drawn
