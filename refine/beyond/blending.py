@@ -64,6 +64,7 @@ from ..mesh.vectors import (
     ONE,
     QUARTER,
     THIRD,
+    WIDTH,
     ZERO,
     Vector,
     less,
@@ -197,45 +198,64 @@ def centre_shares(x: np.float32, y: np.float32, z: np.float32) -> tuple[Vector, 
 
 
 @njit
-def mixed_corners(rows: Floats32, corners: Unsigned32, shares: Vector, first: int) -> Vector:
-    """Shares of three rows, from column `first` on."""
-    a = row_of(rows, corners[0], first)
-    b = row_of(rows, corners[1], first)
-    c = row_of(rows, corners[2], first)
-    return plus(plus(times(shares[0], a), times(shares[1], b)), times(shares[2], c))
+def displaced(
+    rows: Floats32,
+    centre: Vector,
+    share_of_edge: np.float32,
+    ends: tuple[np.uint32, np.uint32],
+    middle: np.uint32,
+    column: int,
+) -> Vector:
+    """A point that goes with a share of how far the row `middle` stands out between two rows."""
+    straight = plus(row_of(rows, ends[0], column), row_of(rows, ends[1], column))
+    out = less(row_of(rows, middle, column), HALF, straight)
+    return plus(centre, times(share_of_edge, out))
 
 
 @njit
 def place_centres(first: int, last: int, mesh: Connectivity, frame: FrameBuffers) -> None:
     """Write the rows of the points in the middle of triangles, attributes too."""
     rows = frame.rows
+    splits = frame.splits
+    first_points = frame.first_points
+    once = frame.geomorph_once
+    first_row = frame.counts[ROWS]
+    faces = mesh.faces
+    triangle_edges = mesh.triangle_edges
+    centre_weights = frame.centre_weights
+    assert faces.shape[1] == triangle_edges.shape[1] == centre_weights.shape[1] == WIDTH
     for k in range(first, last):
         t = frame.centre_triangles[k]
-        row = np.uint32(frame.counts[ROWS] + k)
-        corners = mesh.faces[t]
-        edges = mesh.triangle_edges[t]
+        row = np.uint32(first_row + k)
+        a = faces[t, 0]
+        b = faces[t, 1]
+        c = faces[t, 2]
+        ab = np.uint32(triangle_edges[t, 0])
+        bc = np.uint32(triangle_edges[t, 1])
+        ca = np.uint32(triangle_edges[t, 2])
         of_corners, of_edges = centre_shares(
-            geomorph_of_split(frame.splits, frame.geomorph_once, edges[0]),
-            geomorph_of_split(frame.splits, frame.geomorph_once, edges[1]),
-            geomorph_of_split(frame.splits, frame.geomorph_once, edges[2]),
+            geomorph_of_split(splits, once, ab),
+            geomorph_of_split(splits, once, bc),
+            geomorph_of_split(splits, once, ca),
         )
-        write_row(frame.centre_weights, k, of_corners)
+        of_a, of_b, of_c = of_corners
+        write_row(centre_weights, np.uint32(k), of_corners)
         for column in (0, 3):  # position, normal
-            centre = mixed_corners(rows, corners, of_corners, column)
-            for i in range(3):
-                e = edges[i]
-                a = corners[i]
-                b = corners[(i + 1) % 3]
-                if frame.splits[e] > 0:
-                    middle = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
-                    straight = plus(row_of(rows, a, column), row_of(rows, b, column))
-                    out = less(row_of(rows, middle, column), HALF, straight)
-                    centre = plus(centre, times(of_edges[i], out))
-            write_row(rows, row, centre, column)
-        write_row(rows, row, unit(row_of(rows, row, 3)), 3)
+            at_a = times(of_a, row_of(rows, a, column))
+            at_b = times(of_b, row_of(rows, b, column))
+            centre = plus(plus(at_a, at_b), times(of_c, row_of(rows, c, column)))
+            if splits[ab] > 0:
+                middle = np.uint32(first_points[ab] + (splits[ab] >> 1))
+                centre = displaced(rows, centre, of_edges[0], (a, b), middle, column)
+            if splits[bc] > 0:
+                middle = np.uint32(first_points[bc] + (splits[bc] >> 1))
+                centre = displaced(rows, centre, of_edges[1], (b, c), middle, column)
+            if splits[ca] > 0:
+                middle = np.uint32(first_points[ca] + (splits[ca] >> 1))
+                centre = displaced(rows, centre, of_edges[2], (c, a), middle, column)
+            write_row(rows, row, centre if column == 0 else unit(centre), column)
         a = mesh.corners[t, 0]
         b = mesh.corners[t, 1]
         c = mesh.corners[t, 2]
-        of_a, of_b, of_c = of_corners
         for i in range(GEOMETRY_COLUMNS, rows.shape[1]):
             rows[row, i] = of_a * rows[a, i] + of_b * rows[b, i] + of_c * rows[c, i]

@@ -40,13 +40,15 @@ from ..mesh.borders import border_neighbours
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.creases import sectors_of
 from ..mesh.fans import Fans, fans_around, fans_of
-from ..mesh.normals import cross_product
+from ..mesh.normals import cross_product, normalise
 from ..mesh.threads import share
 from ..mesh.vectors import (
     HALF,
+    ONE,
     QUARTER,
     THREE_QUARTERS,
     TINY,
+    WIDTH,
     ZERO,
     Rows,
     Vector,
@@ -115,6 +117,7 @@ class CubicScheme(Scheme):
         sectors = sectors_of(mesh)
         self._fans = fans_around(sectors.corners, sectors.edges, sectors.sector_count)
         self._displacements = np.zeros((len(mesh.edges), 3, 3), dtype=np.float32)
+        self._rows = self._displacements.reshape(-1, 3)
         self._crosses = np.zeros((len(mesh.faces), 3), dtype=np.float32)
         sector_normals = np.zeros((sectors.sector_count, 3), dtype=np.float32)
         valences = np.bincount(sectors.edges.ravel(), minlength=sectors.sector_count)
@@ -147,8 +150,7 @@ class CubicScheme(Scheme):
     def place_positions(self, frame: FrameBuffers) -> None:
         """Do the same but for normals."""
         count = len(frame.points) + int(frame.counts[ONCE])
-        rows = self._displacements.reshape(-1, 3)
-        share(place_on_curves, count, self._around.points, frame, rows)
+        share(place_on_curves, count, self._around.points, frame, self._rows)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far the middle of every edge stands out if it is split once, shape (E,).
@@ -173,8 +175,8 @@ class CubicScheme(Scheme):
             share(weighted_normals, count_of_vertices, *around, *given)
         neighbours = fans.neighbour_starts, fans.neighbours
         share(steepen_normals, count, *neighbours, *tangents[:3])
-        edge_count = len(self._displacements)
-        share(displace_cubic, edge_count, self._around, positions, tangents, self._displacements)
+        edges = self._around, positions, tangents
+        share(displace_cubic, len(self._mesh.edges), *edges, self._rows)
 
 
 @njit
@@ -227,13 +229,16 @@ def weighted_normals(
 
     `starts`, `corners`: those at each vertex (mesh/fans.py).
     """
-    for v in range(first, last):
+    assert weights.shape[1] == crosses.shape[1] == normals.shape[1] == WIDTH
+    for k in range(first, last):
+        v = np.uint32(k)
         total = ZERO, ZERO, ZERO
-        for k in range(starts[v], starts[v + 1]):
-            t = corners[k] >> SIDE_BITS
-            i = corners[k] & SIDE_MASK
-            total = plus(total, times(weights[t, i], row_of(crosses, t)))
-        write_row(normals, v, unit(total))
+        for corner in corners[starts[v] : starts[v + 1]]:
+            t = corner >> SIDE_BITS
+            weight = weights[t, corner & SIDE_MASK]
+            total = plus(total, times(weight, row_of(crosses, t)))
+        write_row(normals, v, total)
+    normalise(normals[first:last])
 
 
 @njit
@@ -247,11 +252,14 @@ def steepen_normals(
     off: Floats32,
 ) -> None:
     """Write unit normals less those of their neighbours, `off` of each, shape (V, 3)."""
-    for v in range(first, last):
+    assert normals.shape[1] == steeper.shape[1] == WIDTH
+    for k in range(first, last):
+        v = np.uint32(k)
         total = ZERO, ZERO, ZERO
-        for k in range(starts[v], starts[v + 1]):
-            total = plus(total, row_of(normals, neighbours[k]))
-        write_row(steeper, v, unit(less(row_of(normals, v), off[v], total)))
+        for neighbour in neighbours[starts[v] : starts[v + 1]]:
+            total = plus(total, row_of(normals, neighbour))
+        write_row(steeper, v, less(row_of(normals, v), off[v], total))
+    normalise(steeper[first:last])
 
 
 @njit
@@ -261,16 +269,16 @@ def length_of(d: Vector) -> np.float32:
 
 
 @njit
-def write_cubic(
-    displacements: Floats32, e: int, i: int, turn_a: np.float32, turn_b: np.float32
-) -> None:
-    """Write coordinate i of the displacements of an edge.
+def write_cubic(displacements: Floats32, first: np.uint32, turn_a: Vector, turn_b: Vector) -> None:
+    """Write the displacements of an edge, three rows from row `first` on.
 
     `turn_a`, `turn_b`: how much the tangents at both ends turn away from the straight edge.
     """
-    displacements[e, NEAR_START, i] = NEAR_WEIGHT * turn_a - FAR_WEIGHT * turn_b
-    displacements[e, MIDDLE, i] = EIGHTH * (turn_a - turn_b)
-    displacements[e, NEAR_END, i] = FAR_WEIGHT * turn_a - NEAR_WEIGHT * turn_b
+    near_a = less(times(NEAR_WEIGHT, turn_a), FAR_WEIGHT, turn_b)
+    near_b = less(times(FAR_WEIGHT, turn_a), NEAR_WEIGHT, turn_b)
+    write_row(displacements, np.uint32(first + NEAR_START), near_a)
+    write_row(displacements, np.uint32(first + MIDDLE), times(EIGHTH, less(turn_a, ONE, turn_b)))
+    write_row(displacements, np.uint32(first + NEAR_END), near_b)
 
 
 @njit
@@ -284,31 +292,32 @@ def displace_cubic(
 ) -> None:
     """Write the displacements of edges: those of the cubic with the tangents at both ends.
 
-    `displacements`: shape (E, 3, 3).
+    `displacements`: three rows for each edge, shape (3 E, 3).
     """
+    points = around.points
+    is_interior = around.is_interior
     steeper = tangents.steeper
-    for e in range(first, last):
-        a = around.points[e, 0]
-        b = around.points[e, 1]
+    ends = tangents.ends
+    assert positions.shape[1] == steeper.shape[1] == displacements.shape[1] == WIDTH
+    for k in range(first, last):
+        e = np.uint32(k)
+        a = points[e, 0]
+        b = points[e, 1]
         d = between(positions, a, b)
-        if around.is_interior[e]:
-            at_a = row_of(steeper, tangents.ends[e, 0])
-            at_b = row_of(steeper, tangents.ends[e, 1])
-            height_a = -FULLNESS * dot(d, at_a)
-            height_b = -FULLNESS * dot(d, at_b)
-            for i in range(3):
-                write_cubic(displacements, e, i, height_a * at_a[i], height_b * at_b[i])
-            continue
-        p = tangents.beyond[e, 0]
-        q = tangents.beyond[e, 1]
-        length = length_of(d)
-        share_a = length / max(length + length_of(between(positions, p, a)), TINY)
-        share_b = length / max(length + length_of(between(positions, b, q)), TINY)
-        for i in range(3):
-            straight = np.float32(positions[b, i] - positions[a, i])
-            turn_a = share_a * np.float32(positions[b, i] - positions[p, i]) - straight
-            turn_b = share_b * np.float32(positions[q, i] - positions[a, i]) - straight
-            write_cubic(displacements, e, i, turn_a, turn_b)
+        if is_interior[e]:
+            at_a = row_of(steeper, np.uint32(ends[e, 0]))
+            at_b = row_of(steeper, np.uint32(ends[e, 1]))
+            turn_a = times(-FULLNESS * dot(d, at_a), at_a)
+            turn_b = times(-FULLNESS * dot(d, at_b), at_b)
+        else:
+            p = tangents.beyond[e, 0]
+            q = tangents.beyond[e, 1]
+            length = length_of(d)
+            share_a = length / max(length + length_of(between(positions, p, a)), TINY)
+            share_b = length / max(length + length_of(between(positions, b, q)), TINY)
+            turn_a = less(times(share_a, between(positions, p, b)), ONE, d)
+            turn_b = less(times(share_b, between(positions, a, q)), ONE, d)
+        write_cubic(displacements, np.uint32(3 * e), turn_a, turn_b)
 
 
 @njit
@@ -330,18 +339,23 @@ def place_on_curves(
     """
     points = frame.points
     rows = frame.rows
+    splits = frame.splits
+    first_points = frame.first_points
+    split_once = frame.split_once
+    geomorph_once = frame.geomorph_once
+    assert points.shape[1] == displacements.shape[1] == WIDTH
     vertex_count = points.shape[0]
     for v in range(first, min(last, vertex_count)):
-        write_row(rows, v, row_of(points, v))
+        write_row(rows, np.uint32(v), row_of(points, np.uint32(v)))
     for k in range(max(first - vertex_count, 0), last - vertex_count):
-        e = frame.split_once[k]
-        row = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
+        e = split_once[np.uint32(k)]
+        row = np.uint32(first_points[e] + (splits[e] >> 1))
         at_a = row_of(points, ends[e, 0])
         at_b = row_of(points, ends[e, 1])
-        out = times(frame.geomorph_once[e], row_of(displacements, np.uint32(3 * e + MIDDLE)))
+        out = times(geomorph_once[e], row_of(displacements, np.uint32(3 * e + MIDDLE)))
         middle = plus(times(HALF, plus(at_a, at_b)), out)
         write_row(rows, row, middle)
-        if frame.splits[e] == 2:
+        if splits[e] == 2:
             full_a = plus(times(THREE_QUARTERS, at_a), times(QUARTER, at_b))
             full_b = plus(times(THREE_QUARTERS, at_b), times(QUARTER, at_a))
             full_a = plus(full_a, row_of(displacements, np.uint32(3 * e + NEAR_START)))

@@ -1,0 +1,312 @@
+"""The surface of a frame where every edge is split once, and its normals (surface_normals.py).
+
+Loops over the whole mesh write sums, and bring them to length one in a loop of its own, where the
+compiler takes many vectors at a time (mesh/normals.py): all edges are measured in 0.42 of the time.
+"""
+
+import numpy as np
+
+from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Unsigned32
+from ...jit import njit
+from ..kahler.frame import FrameBuffers, buffers_for, split_everywhere
+from ..kahler.look_up import SIDE_BITS
+from ..mesh.connectivity import Connectivity
+from ..mesh.fans import fans_of
+from ..mesh.normals import normalise
+from ..mesh.threads import share
+from ..mesh.vectors import (
+    HALF,
+    ONE,
+    THIRD,
+    WIDTH,
+    ZERO,
+    Number,
+    Vector,
+    cross,
+    difference,
+    dot,
+    less,
+    plus,
+    row_of,
+    times,
+    unit,
+    write_row,
+)
+
+CENTRE_SHARE = np.float32(0.511)
+"""How far the middle of a triangle follows the displacements of its edges: 4/9 (blending.py), and
+15 % more: curves between these points stand out farther. So normals are nearer to a dense head."""
+MEAN_NORMAL_SHARE = np.float32(0.02)
+"""Share of the mean of the ends' normals, in squared lengths of the edge, that is added to a normal
+in the middle. Chosen: where an edge is folded until nothing is left across it, this decides. More
+looks softer in deep folds and is farther from dense faces: 0.3 costs five points of thirty."""
+
+
+class WholeSurface:
+    """The surface of a frame where every edge is split once, and its normals."""
+
+    def __init__(self, mesh: Connectivity, rest_positions: Floats64) -> None:
+        """Make room; `rest_positions`: shape (V, 3)."""
+        self._mesh = mesh
+        self._fans = fans_of(mesh)
+        self._origin = mesh.first_vertex
+        vertex_count = mesh.vertex_count
+        edge_count = len(mesh.edges)
+        near = np.zeros_like(rest_positions)
+        points = rest_positions.astype(np.float32)
+        frame = buffers_for(mesh, near, points, np.zeros_like(points))
+        rows = np.zeros((vertex_count + edge_count, 6), dtype=np.float32)
+        self._frame = split_everywhere(frame, vertex_count)._replace(rows=rows)
+        self._centres = np.zeros((len(mesh.faces), 3), dtype=np.float32)
+        self._corners = np.zeros((3 * len(mesh.faces), 3), dtype=np.float32)
+        self._has_all_edges = False
+        self.rows = rows
+        """Of the vertices, then of the middles of all edges, shape (V + E, 6): positions first, as
+        seen from the first vertex in use, so that a mesh far from the origin loses nothing."""
+        self.normals = np.zeros((vertex_count + edge_count, 3), dtype=np.float32)
+        """Unit normals there, shape (V + E, 3); in middles after `find_normals_of_edges` alone."""
+
+    def split(self, frame: FrameBuffers) -> FrameBuffers:
+        """The mesh of `frame`, as seen from its first vertex, every edge split once; unplaced."""
+        if frame.normals is not self._frame.normals:
+            self._frame = self._frame._replace(normals=frame.normals)
+        positions = frame.positions
+        near = self._frame.positions
+        points = self._frame.points
+        share(see_from, len(positions), positions, self._origin, near, points)
+        return self._frame
+
+    def find_normals(self) -> None:
+        """Work the normals of vertices out, when the rows have been placed."""
+        mesh = self._mesh
+        triangles = mesh.faces, mesh.triangle_edges
+        of_triangles = self._centres, self._corners
+        middles = self.rows[mesh.vertex_count :]
+        share(cross_corners, len(mesh.faces), *triangles, self.rows, middles, *of_triangles)
+        fans = self._fans.corner_starts, self._fans.corners
+        share(sum_corners, mesh.vertex_count, *fans, self._corners, self.normals)
+        self._has_all_edges = False
+
+    def find_normals_of_edges(self, edges: Unsigned32) -> None:
+        """Work the normals in the middles of these out, numbers of shape (N,), unless all have."""
+        if self._has_all_edges:
+            return
+        mesh = self._mesh
+        around = mesh.around.points, mesh.edge_sides, mesh.around.is_interior
+        arrays = self.rows, self._centres, self.normals
+        share(surface_normals_of_edges, len(edges), edges, *around, *arrays)
+
+    def measure(self, displacements: Floats32, turns: Floats32) -> None:
+        """Write how far middles stand out of their edges, and their normals turn; shape (E,) each.
+
+        Against the straight edge, and against the mean of the normals at its ends [rad], times the
+        length of the edge. All middles have their normals then.
+        """
+        mesh = self._mesh
+        around = mesh.around.points, mesh.edge_sides, mesh.around.is_interior
+        arrays = self.rows, self._centres, self.normals
+        means = self._corners  # which have done their work, and are more than edges
+        share(measure_edges, len(mesh.edges), *around, *arrays, means, displacements, turns)
+        self._has_all_edges = True
+
+
+@njit
+def see_from(
+    first: int, last: int, positions: Floats64, origin: int, near: Floats64, points: Floats32
+) -> None:
+    """Write positions less that of one vertex, shape (V, 3), in double and in single precision."""
+    for v in range(first, last):
+        away = difference(positions, origin, v)
+        write_row(near, v, away)
+        write_row(points, v, away)
+
+
+@njit
+def between_rows(rows: Floats32, a: np.uint32, b: np.uint32) -> Vector:
+    """The vector from row a to row b."""
+    return less(row_of(rows, b), ONE, row_of(rows, a))
+
+
+@njit
+def cross_corners(
+    first: int,
+    last: int,
+    faces: Unsigned32,
+    triangle_edges: Integers32,
+    rows: Floats32,
+    middles: Floats32,
+    centres: Floats32,
+    corners: Floats32,
+) -> None:
+    """Write the points in the middle of triangles with three split edges, shape (F, 3).
+
+    Also what each triangle adds to the normals at its corners, shape (3 F, 3); zero where it names
+    a vertex twice. `rows`, `middles`: of vertices and of all edges, shape (V + E, 6) and (E, 6).
+    """
+    assert (
+        faces.shape[1] == triangle_edges.shape[1] == centres.shape[1] == corners.shape[1] == WIDTH
+    )
+    for k in range(first, last):
+        t = np.uint32(k)
+        of_a = np.uint32(3 * t)
+        of_b = np.uint32(of_a + 1)
+        of_c = np.uint32(of_a + 2)
+        if triangle_edges[t, 0] < 0:
+            corners[3 * t : 3 * t + 3] = ZERO
+            continue
+        a = row_of(rows, faces[t, 0])
+        b = row_of(rows, faces[t, 1])
+        c = row_of(rows, faces[t, 2])
+        ab = row_of(middles, np.uint32(triangle_edges[t, 0]))
+        bc = row_of(middles, np.uint32(triangle_edges[t, 1]))
+        ca = row_of(middles, np.uint32(triangle_edges[t, 2]))
+        # The sum of displacements is the sum of the middles less that of the corners.
+        three = plus(plus(a, b), c)
+        out = less(plus(plus(ab, bc), ca), ONE, three)
+        centre = plus(times(THIRD, three), times(CENTRE_SHARE, out))
+        write_row(centres, t, centre)
+        write_row(corners, of_a, cross(less(centre, ONE, a), less(ca, ONE, ab)))
+        write_row(corners, of_b, cross(less(centre, ONE, b), less(ab, ONE, bc)))
+        write_row(corners, of_c, cross(less(centre, ONE, c), less(bc, ONE, ca)))
+
+
+@njit
+def sum_corners(
+    first: int,
+    last: int,
+    starts: Unsigned32,
+    around: Unsigned32,
+    corners: Floats32,
+    normals: Floats32,
+) -> None:
+    """Write unit normals of vertices, the first of `normals`, shape (V + E, 3).
+
+    `starts`, `around`: the corners at each vertex (mesh/fans.py). `corners`: what they add, shape
+    (3 F, 3).
+    """
+    assert corners.shape[1] == normals.shape[1] == WIDTH
+    for k in range(first, last):
+        v = np.uint32(k)
+        total = ZERO, ZERO, ZERO
+        for i in range(starts[v], starts[v + 1]):
+            corner = around[i]  # 4 x triangle + side
+            total = plus(total, row_of(corners, np.uint32(corner - (corner >> SIDE_BITS))))
+        write_row(normals, v, total)
+    normalise(normals[first:last])
+
+
+@njit
+def across_middle(
+    e: Number,
+    mean: Vector,
+    along: Vector,
+    middle: Vector,
+    edge_sides: Unsigned32,
+    is_interior: Flags,
+    centres: Floats32,
+) -> Vector:
+    """A vector of any length that is normal to the surface in the middle of edge e.
+
+    mean: of the normals at its ends; along: from end to end; middle: where it is split.
+    `edge_sides`, `is_interior`: of edges; `centres`: of triangles, shape (F, 3).
+    """
+    side = edge_sides[e, 0] >> SIDE_BITS
+    beyond = edge_sides[e, 1] >> SIDE_BITS
+    has_two = beyond < centres.shape[0]
+    if has_two and not is_interior[e]:
+        return mean  # sheets that meet have no normal in common
+    far = row_of(centres, beyond) if has_two else middle
+    across = less(row_of(centres, side), ONE, far)
+    steady = times(MEAN_NORMAL_SHARE * dot(along, along), mean)
+    return plus(cross(along, across), steady)
+
+
+@njit
+def surface_normals_of_edges(
+    first: int,
+    last: int,
+    edges: Unsigned32,
+    points: Unsigned32,
+    edge_sides: Unsigned32,
+    is_interior: Flags,
+    rows: Floats32,
+    centres: Floats32,
+    normals: Floats32,
+) -> None:
+    """Write unit normals of the middles of edges, the last of `normals`, shape (V + E, 3).
+
+    `edges`: those that want theirs, shape (N,); `points`: of edges, shape (E, 4). The vertices have
+    theirs.
+    """
+    vertex_count = normals.shape[0] - points.shape[0]
+    for k in range(first, last):
+        e = edges[k]
+        a = points[e, 0]
+        b = points[e, 1]
+        row = np.uint32(vertex_count + e)
+        mean = times(HALF, plus(row_of(normals, a), row_of(normals, b)))
+        middle = row_of(rows, row)
+        along = between_rows(rows, a, b)
+        normal = across_middle(e, mean, along, middle, edge_sides, is_interior, centres)
+        write_row(normals, row, unit(normal))
+
+
+@njit
+def measure_edges(  # noqa: PLR0913 - arrays: tuples take longer to hand over
+    first: int,
+    last: int,
+    points: Unsigned32,
+    edge_sides: Unsigned32,
+    is_interior: Flags,
+    rows: Floats32,
+    centres: Floats32,
+    normals: Floats32,
+    means: Floats32,
+    displacements: Floats32,
+    turns: Floats32,
+) -> None:
+    """Do that for edges in a row, and measure them.
+
+    The distance of each middle from its edge, and the turn of its normal x length, (E,) each.
+    `means`: scratch, at least (E, 3).
+    """
+    assert centres.shape[1] == normals.shape[1] == means.shape[1] == WIDTH
+    vertex_count = np.uint32(normals.shape[0] - points.shape[0])
+    for k in range(first, last):
+        e = np.uint32(k)
+        a = points[e, 0]
+        b = points[e, 1]
+        row = np.uint32(vertex_count + e)
+        sum_of_normals = plus(row_of(normals, a), row_of(normals, b))
+        at_a = row_of(rows, a)
+        at_b = row_of(rows, b)
+        middle = row_of(rows, row)
+        along = less(at_b, ONE, at_a)
+        out = less(middle, HALF, plus(at_a, at_b))
+        mean = times(HALF, sum_of_normals)
+        normal = across_middle(e, mean, along, middle, edge_sides, is_interior, centres)
+        write_row(normals, row, normal)
+        write_row(means, e, sum_of_normals)
+        displacements[e] = dot(out, out)
+        turns[e] = dot(along, along)
+    own = normals[vertex_count + first : vertex_count + last]
+    means = means[first:last]
+    normalise(own)
+    normalise(means)
+    finish_measures(own, means, displacements[first:last], turns[first:last])
+
+
+@njit
+def finish_measures(
+    normals: Floats32, means: Floats32, displacements: Floats32, turns: Floats32
+) -> None:
+    """Take the roots of `displacements`, and of `turns` times the squared turns of normals, (N,).
+
+    `normals`, `means`: unit vectors, shape (N, 3).
+    """
+    assert normals.shape[1] == means.shape[1] == WIDTH
+    for k in range(turns.shape[0]):
+        # The chord of the angle: within a hundredth of it up to half a radian.
+        apart = less(row_of(normals, k), ONE, row_of(means, k))
+        turns[k] = np.sqrt(dot(apart, apart) * turns[k])
+        displacements[k] = np.sqrt(displacements[k])
