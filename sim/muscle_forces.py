@@ -37,7 +37,7 @@ from .fibres import (
     over_skin,
 )
 from .muscle_stack import bottom_up, points_along, stack_muscles
-from .muscles import Line, PlacedMuscle
+from .muscles import Line, PlacedMuscle, Ring
 from .rig import LinearMuscle, Rig
 from .skull import RigidMotion
 from .state import State
@@ -73,7 +73,7 @@ class MuscleForces:
     bundle: FibreBundle
     stack: Stack
     skin: SkinAttachments
-    rings: tuple[tuple[int, Integers32], ...]  # muscle, skin vertices along its ring
+    rings: tuple[tuple[int, Ring], ...]  # muscle, and its ring
 
     def hold_of(self, share: Floats64, vertex_count: int) -> Floats64:
         """Stiffness per vertex, shape (V,), with each muscle's scaled by `share` (M,)."""
@@ -113,8 +113,8 @@ class MuscleForces:
                 np.interp(fixed + remaining * (arc - fixed), arc, moved[:, k]) for k in range(3)
             ]
             lines[self.names[muscle]].append(np.stack(line, axis=1))
-        for muscle, row in self.rings:
-            lines[self.names[muscle]].append(state.x[row])
+        for muscle, ring in self.rings:
+            lines[self.names[muscle]].append(state.x[ring()])
         return lines
 
 

@@ -12,8 +12,9 @@ and bulge acts along the skin normal. Weights were fitted to scanned expressions
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,8 @@ from .landmarks import Side, smoothstep
 from .rig import MOUTH, Fibre, LinearMuscle, Muscle, Rig, RingMuscle
 from .skull import LATERAL, UP, rotation
 from .surface import SkinSurface
+
+Ring = Callable[[], Integers32]  # finds skin vertices along a sphincter: only drawing asks for them
 
 
 class AttachedPoints(NamedTuple):
@@ -59,7 +62,7 @@ class PlacedMuscle:
     muscle: LinearMuscle | RingMuscle
     side: Side
     lines: tuple[Line, ...]
-    ring: Integers32 | None = None  # skin vertices along a sphincter
+    ring: Ring | None = None
 
     @property
     def weight(self) -> Floats64:
@@ -94,8 +97,10 @@ def place_muscles(
             elif isinstance(muscle, RingMuscle):
                 points = next(laid)
                 hold = attach_to_ring(muscle, points, landmarks, side, skin)
-                ring = _ring_vertices(muscle, surface.positions, landmarks, hold.weight, side)
-                placed.append(PlacedMuscle(name, muscle, side, (Line(points, None, hold),), ring))
+                ring = partial(_ring_vertices, muscle, skin.positions, landmarks, hold.weight, side)
+                placed.append(
+                    PlacedMuscle(name, muscle, side, (Line(points, None, hold),), cache(ring))
+                )
     return tuple(placed)
 
 
@@ -161,8 +166,11 @@ def attach_to_fibre(
     at = fibre_coordinates(
         points, places.positions, width=muscle.width * factor, beyond=muscle.beyond * factor
     )
-    weight = fibre.weight * at.weight * _gate(muscle, side, places)
-    on = np.flatnonzero(weight)  # a fibre reaches a tenth of the skin
+    near = np.flatnonzero(at.weight)  # a fibre reaches a tenth of the skin
+    weight = np.zeros(len(at.weight))
+    reached = AttachedPoints(*(each[near] for each in places))
+    weight[near] = fibre.weight * at.weight[near] * _gate(muscle, side, reached)
+    on = np.flatnonzero(weight)
     arc = at.arc[on]
     drawn = fibre.gain * fibre.convergence * muscle.contraction * arc
     bulge_spread = 0.3  # of the fibre's length (fitted)

@@ -11,7 +11,7 @@ per vertex and one spring per edge.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +22,7 @@ from scipy.sparse import linalg as sparse_linalg
 
 from ..geometry.arrays import Floats64, Integers32, Integers64
 from ..geometry.normals import cross_products, vertex_areas, vertex_normals
+from ..geometry.read_only import read_only
 from ..geometry.sides import sides_of
 
 
@@ -104,16 +105,12 @@ def build_surface(positions: Floats64, faces: Integers32) -> SkinSurface:
     least_area = 0.01  # mm2 per vertex: keeps isolated vertices and slivers from having no mass
     areas: Floats64 = np.maximum(vertex_areas(positions, faces), least_area)
 
-    half_edges = np.sort(sides_of(faces), axis=1)
-    unique, inverse = np.unique(half_edges, axis=0, return_inverse=True)
-    edges = unique.astype(np.int32).reshape(-1, 2)
+    edges, edge_of_side = _edges_of(faces.tobytes())
     lengths = np.linalg.norm(positions[edges[:, 1]] - positions[edges[:, 0]], axis=1)
     # In mm per edge: bounds the stiffness of collapsed edges (Van Gelder's is 1/l2).
     least_length = 0.05
     lengths = np.maximum(lengths, least_length)
-    stiffness = (
-        np.bincount(inverse.ravel(), np.tile(face_areas, 3), minlength=len(edges)) / lengths**2
-    )
+    stiffness = np.bincount(edge_of_side, np.tile(face_areas, 3), minlength=len(edges)) / lengths**2
 
     i, j = edges.T
     both = (np.concatenate([i, j]), np.concatenate([j, i]))
@@ -125,6 +122,15 @@ def build_surface(positions: Floats64, faces: Integers32) -> SkinSurface:
     length = np.linalg.norm(smooth, axis=1, keepdims=True)
     directions = np.where(length > 1e-9, smooth / np.maximum(length, 1e-9), [0.0, 0.0, 1.0])
     return SkinSurface(positions, faces, edges, lengths, stiffness, areas, directions, laplacian)
+
+
+@lru_cache(maxsize=4)
+def _edges_of(faces: bytes) -> tuple[Integers32, Integers64]:
+    """Edges (E, 2), sorted, and the edge of each side of `sides_of`; persons share their faces."""
+    sides = np.sort(sides_of(np.frombuffer(faces, np.int32).reshape(-1, 3)), axis=1)
+    unique, edge_of_side = np.unique(sides, axis=0, return_inverse=True)
+    edges: Integers32 = unique.astype(np.int32).reshape(-1, 2)
+    return read_only(edges), read_only(edge_of_side.ravel())
 
 
 def _smooth(

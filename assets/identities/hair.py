@@ -235,13 +235,15 @@ def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
     places = root[:, None, None] + t * along[:, None, None] - t * t * bent[:, None, None]
     radius = 0.045  # [mm]
     places = places + radius * ring[:, None]
-    numbers = np.arange(places.size // 3).reshape(places.shape[:3])
+    corner_count = 3 * step_count
+    one = grid_faces(np.arange(corner_count).reshape(places.shape[1:3]), closed=True)
+    firsts = corner_count * np.arange(hair_count, dtype=np.int32)
     return replace(
         hair,
         name=HAIR + "_loose",
         vertices=places.reshape(-1, 3).astype(np.float32),
         normals=np.broadcast_to(ring[:, None], places.shape).reshape(-1, 3).astype(np.float32),
-        faces=np.concatenate([grid_faces(each, closed=True) for each in numbers]),
+        faces=(firsts[:, None, None] + one).reshape(-1, 3),
         colours=np.repeat(colour, step_count * 3, axis=0).astype(np.float32),
         strand_radius=radius,
         striation=None,
