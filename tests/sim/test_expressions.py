@@ -128,6 +128,24 @@ def test_joy_bares_the_teeth(simulation, head):
     assert abs(lips[1] - edge) < 0.9
 
 
+def test_the_upper_lip_of_joy_is_thinner_than_at_rest(simulation, head):
+    """Its red is drawn over the teeth, most in the middle, and straightens."""
+    border = head.rings["mouth_6_left"][:3]
+    inner = head.rings["mouth_2_left"][:3]
+    smiling = head.vertices + settled_displacement(simulation, head.expressions["joy"])
+    red = smiling[border, 1] - smiling[inner, 1]
+    assert (red < 0.96 * (head.vertices[border, 1] - head.vertices[inner, 1])).all()
+
+
+def test_disgust_shows_no_bits_of_teeth(simulation, head):
+    """Its lips touch, and part beside the corners by less than 1.5 mm."""
+    moved = head.vertices + settled_displacement(simulation, head.expressions["disgust"])
+    row = head.rings["mouth_2_left"]
+    gaps = moved[row[:7], 1] - moved[row[:7:-1], 1]
+    assert gaps[:4].max() < 0.1
+    assert gaps.max() < 1.5
+
+
 def test_sadness_slants_the_brows(simulation, head):
     """The inner brows rise above the outer ones."""
     moved = settled_displacement(simulation, head.expressions["sadness"])
