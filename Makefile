@@ -46,12 +46,15 @@ demo: setup opengl
 WINDOWS := $(wildcard tests/app/test_viewer*.py) tests/app/test_plug_ins.py \
 	tests/bench/test_window.py tests/refine_gl tests/render
 
+# On a fresh machine one process compiles what is simulated and refined; else each would do so.
+COMPILE := $(BIN)/risorius capture --set joy --size 64x64 -o .venv/compiled.png --quiet
+
 # $(call pass_lane,marks,before): one process tests windows, after what comes before them, on a
 # screen of its own, whose keyboard nobody else may touch. Beside it two share all the rest, file by
 # file, so that two cores have work to the end. What the first prints is shown when all have ended.
 define pass_lane
 	{ $(2) $(SCREEN) -n 199 $(BIN)/python -m pytest -m "$(1)" $(WINDOWS); } >.venv/windows.log 2>&1 & \
-		windows=$$!; code=0; \
+		windows=$$!; code=0; $(COMPILE); \
 		$(SCREEN) $(BIN)/python -m pytest -m "$(1)" --numprocesses 2 --dist loadfile \
 			$(addprefix --ignore=,$(WINDOWS)) || code=1; \
 		wait $$windows || code=1; cat .venv/windows.log; exit $$code
@@ -130,7 +133,8 @@ $(READY): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { $(call debian_packages,Python's venv,python3-venv); }
 	@[ -x $(BIN)/python ] || $(PYTHON) -m venv .venv
 	@echo "Installing Risorius and what it needs into .venv, which takes minutes"
-	@$(BIN)/python -m pip install -qq --disable-pip-version-check --constraint constraints.txt --editable ".[dev]"
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-compile \
+		--constraint constraints.txt --editable ".[dev]"
 	@touch $(READY)
 	@echo "Installed; .venv/bin/risorius doctor says what works here"
 
