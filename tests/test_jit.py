@@ -86,7 +86,15 @@ def test_code_is_kept_and_never_old(package):
     assert package.run() == [RESULT]  # as after `git switch`, there and back
 
 
-@pytest.mark.parametrize("fault", ["no folder", "open", "a link", "of somebody else"])
+@pytest.mark.parametrize(
+    "fault",
+    [
+        "no folder",
+        "open",
+        pytest.param("a link", marks=pytest.mark.slow),
+        pytest.param("of somebody else", marks=pytest.mark.slow),
+    ],
+)
 def test_without_a_folder_code_is_compiled_anew(package, fault):
     """Code that others could have written is not run; one line names the cost."""
     if fault == "no folder":

@@ -132,7 +132,15 @@ def test_the_page_reads_a_set_as_it_says(loose, tmp_path):
     assert run.stdout.endswith("False\n")
 
 
-@pytest.mark.parametrize("end", ["cut", "empty", "no listing", "no tar"])
+@pytest.mark.parametrize(
+    "end",
+    [
+        "cut",
+        "no listing",
+        pytest.param("empty", marks=pytest.mark.slow),
+        pytest.param("no tar", marks=pytest.mark.slow),
+    ],
+)
 def test_a_damaged_shard_is_made_anew(packed, tmp_path, end):
     """What can be read of it counts; the set has the same bytes then."""
     folder = tmp_path / "set"

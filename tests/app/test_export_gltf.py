@@ -272,6 +272,7 @@ def test_blender_sees_the_same(clip, glb, tmp_path):
             assert off.max() < NEAR, surface.name
 
 
+@pytest.mark.slow
 def test_what_targets_cannot_follow_is_reported(clip, tmp_path, monkeypatch):
     """A clip that needs more targets than may be is written, and the error that remains is said."""
     monkeypatch.setattr(gltf, "decompose", functools.partial(decompose, most=4))

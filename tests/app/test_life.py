@@ -38,7 +38,7 @@ def pupils(scene):
     return found
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_eyes_blink_as_often_as_people_do_at_rest(seed):
     """17 a minute (Bentivoglio et al. 1997), none while another lasts."""
     waits = np.diff(life_blinks(Life(seed), 300.0))
@@ -48,7 +48,7 @@ def test_eyes_blink_as_often_as_people_do_at_rest(seed):
     assert np.ptp(waits) > 3.0
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_eyes_are_with_the_viewer_most_of_the_time(seed):
     """Glances over his face, and at times beside it; they come back within some seconds."""
     life = Life(seed)

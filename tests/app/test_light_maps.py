@@ -176,6 +176,7 @@ def test_every_map_of_a_folder_is_checked(tmp_path):
         surroundings.light_files_of(tmp_path)
 
 
+@pytest.mark.slow
 def test_a_set_is_lit_by_files(tmp_path):
     """Each sample by one of them, turned, with the map behind; labels say so."""
     maps = tmp_path / "maps"

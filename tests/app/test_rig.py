@@ -222,6 +222,7 @@ def test_the_file_is_read_by_trimesh(whole):
     assert 0.3 < scene.extents[1] < 0.8
 
 
+@pytest.mark.slow
 def test_an_option_corrects_what_a_piece_is(whole, tmp_path):
     """Beside it eyes turn by the shapes, where that is asked for."""
     landmarks = whole.mesh.with_suffix(".json")
@@ -254,6 +255,7 @@ def test_correctives_make_sums_come_true(tmp_path, face):
         assert np.abs(plain - together).max() > 3.0
 
 
+@pytest.mark.slow
 def test_a_take_shows_how_far_sums_are_off(tmp_path, face):
     """A take of one shape is met; where two are at 1, the line has the distance of the pair."""
     take = tmp_path / "take.toml"
