@@ -39,11 +39,9 @@ from .border.rows import (
     write_wedges,
 )
 from .kahler.frame import buffers_for, split_everywhere
-from .kahler.smoothing import place_middles, place_vertices
+from .kahler.smoothing import LoopScheme
 from .mesh.connectivity import Connectivity, connect
 from .mesh.creases import sharpened
-from .mesh.rings import vertex_rings
-from .mesh.threads import share
 
 CHILD_TRIANGLES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """Of a triangle with corners 0 1 2 and middles 3 4 5 of its edges: the triangles it becomes."""
@@ -56,31 +54,19 @@ class Level:
 
     def __init__(self, connectivity: Connectivity, points: Floats32, normals: Floats32) -> None:
         """Take `points` and `normals`, shape (V, 3), as buffers that a frame fills."""
-        vertex_count = connectivity.vertex_count
         self.points = points
         self.normals = normals
-        self._mesh = connectivity
-        self._rings = vertex_rings(connectivity)
-        self._all_move = np.ones(vertex_count, dtype=np.float32)
-        self._middles = np.zeros((len(connectivity.edges), 3), dtype=np.float32)
+        self._scheme = LoopScheme()
         positions = np.zeros((0, 3))  # which no pass of this reads
+        self._scheme.bind(connectivity, positions, normals)
         frame = buffers_for(connectivity, positions, points, normals)
-        self._frame = split_everywhere(frame, vertex_count)
+        self._frame = split_everywhere(frame, connectivity.vertex_count)
 
     def subdivide(self, rows: Floats32) -> None:
         """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
-        points = self.points
-        normals = self.normals
-        frame = self._frame
-        count = len(points)
-        share(place_vertices, count, points, normals, *self._rings, self._all_move, rows)
-        edges = frame.split_edges
-        splits = frame.splits
-        first_points = frame.first_points
-        of_edges = edges, splits, first_points, frame.geomorph_once
-        around = self._mesh.around.points
-        to = self._middles, rows
-        share(place_middles, len(edges), points, normals, around, *of_edges, *to)
+        if rows is not self._frame.rows:
+            self._frame = self._frame._replace(rows=rows)
+        self._scheme.place(self._frame)
 
 
 class Loop(BaseRefiner):

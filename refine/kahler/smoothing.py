@@ -43,13 +43,15 @@ Normals of new points are interpolated between their two neighbours on the edge 
 Section 6: "the effects of other smoothing schemes" are of interest. So a scheme is a class.
 """
 
+from typing import Any
+
 import numpy as np
 
-from ...geometry.arrays import Floats32, Floats64, Integers64, Unsigned8, Unsigned32
+from ...geometry.arrays import Floats32, Floats64, Unsigned8, Unsigned32
 from ...jit import njit
 from ..border.registry import Registry
-from ..mesh.connectivity import Connectivity
-from ..mesh.rings import NEAR_COUNT, vertex_rings
+from ..mesh.connectivity import Connectivity, Surroundings
+from ..mesh.rings import NEAR_COUNT, Rings, vertex_rings
 from ..mesh.threads import share, threads_for
 from ..mesh.vectors import (
     HALF,
@@ -154,39 +156,19 @@ class LoopScheme(Scheme):
             return
         if frame is not self._frame:
             self._frame = frame
-            self._arrays = (
-                frame.points,
-                frame.normals,
-                self._around.points,
-                self._around.wings,
-                *self._rings,
-                frame.splits,
-                frame.first_points,
-                frame.split_once,
-                frame.split_twice,
-                frame.counts,
-                frame.geomorph_once,
-                frame.geomorph_twice,
-                self._vertex_geomorph,
-                self._middles,
-                frame.rows,
-            )
-        place_by_loop(*self._arrays)
+            self._tuples = frame[:], self._around[:], self._rings[:]  # plain: sooner handed over
+        place_by_loop(*self._tuples, self._vertex_geomorph, self._middles)
 
     def _place_shared(self, frame: FrameBuffers) -> None:
         """Do the same in loops that threads share, to the same bits."""
-        around = self._around.points
+        around = self._around
+        middles = self._middles
+        geomorph = self._vertex_geomorph
         edges = frame.split_edges
-        mesh = frame.points, frame.normals
-        of_edges = frame.splits, frame.first_points, frame.geomorph_once
-        to = self._middles, frame.rows
-        geomorph_vertices(around, edges, frame.geomorph_once, self._vertex_geomorph)
-        to_vertices = self._vertex_geomorph, frame.rows
-        share(place_vertices, len(frame.points), *mesh, *self._rings, *to_vertices)
-        share(place_middles, len(edges), *mesh, around, edges, *of_edges, *to)
-        edges = frame.twice_split_edges
-        of_twice = *of_edges, frame.geomorph_twice, *to
-        share(place_quarters, len(edges), mesh[0], around, self._around.wings, edges, *of_twice)
+        geomorph_vertices(around.points, edges, frame.geomorph_once, geomorph)
+        share(place_vertices, len(frame.points), frame, self._rings, geomorph)
+        share(place_middles, len(edges), frame, around, middles)
+        share(place_quarters, len(frame.twice_split_edges), frame, around, middles)
 
 
 @njit
@@ -214,23 +196,18 @@ def geomorph_vertices(
 
 
 @njit
-def place_vertices(  # noqa: PLR0913 - arrays: tuples take longer to hand over
-    first: int,
-    last: int,
-    points: Floats32,
-    normals: Floats32,
-    own: Floats32,
-    ring: Floats32,
-    near: Unsigned32,
-    starts: Unsigned32,
-    others: Unsigned32,
-    geomorph: Floats32,
-    vertices: Floats32,
+def place_vertices(
+    first: int, last: int, frame: FrameBuffers, rings: Rings, geomorph: Floats32
 ) -> None:
     """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3).
 
-    `own` to `others`: the arrays of `Rings`; `geomorph`: of each vertex, shape (V,).
+    `geomorph`: of each vertex, shape (V,).
     """
+    points = frame.points
+    normals = frame.normals
+    rows = frame.rows
+    near = rings.near
+    starts = rings.starts
     assert points.shape[1] == normals.shape[1] == WIDTH and near.shape[1] == NEAR_COUNT
     for v in range(first, last):
         point = row_of(points, v)
@@ -239,38 +216,32 @@ def place_vertices(  # noqa: PLR0913 - arrays: tuples take longer to hand over
             for k in range(1, NEAR_COUNT):
                 total = plus(total, row_of(points, near[v, k]))
             for k in range(starts[v], starts[v + 1]):
-                total = plus(total, row_of(points, others[k]))
-            moved = plus(times(own[v], point), times(ring[v], total))
+                total = plus(total, row_of(points, rings.others[k]))
+            moved = plus(times(rings.own[v], point), times(rings.ring[v], total))
             point = mix(point, moved, geomorph[v])
-        write_row(vertices, v, point)
-        write_row(vertices, v, row_of(normals, v), 3)
+        write_row(rows, v, point)
+        write_row(rows, v, row_of(normals, v), 3)
 
 
 @njit
-def place_middles(  # noqa: PLR0913 - arrays: tuples take longer to hand over
-    first: int,
-    last: int,
-    points: Floats32,
-    normals: Floats32,
-    around: Unsigned32,
-    edges: Unsigned32,
-    splits: Unsigned8,
-    first_points: Unsigned32,
-    geomorph: Floats32,
-    middles: Floats32,
-    vertices: Floats32,
+def place_middles(
+    first: int, last: int, frame: FrameBuffers, around: Surroundings, middles: Floats32
 ) -> None:
     """Write the first-level point of every split edge (Fig. 3), and keep it in `middles`.
 
-    `around`: a, b, c, d of every edge, shape (E, 4); `edges`: those that are split, shape (N,);
     `middles`: points as they are when fully grown, shape (E, 3).
     """
-    for e in edges[first:last]:
-        a = around[e, 0]
-        b = around[e, 1]
-        c = around[e, 2]
-        d = around[e, 3]
-        row = first_points[e] + (splits[e] >> 1)
+    points = frame.points
+    normals = frame.normals
+    rows = frame.rows
+    geomorph = frame.geomorph_once
+    beside = around.points
+    for e in frame.split_once[first:last]:
+        a = beside[e, 0]
+        b = beside[e, 1]
+        c = beside[e, 2]
+        d = beside[e, 3]
+        row = frame.first_points[e] + (frame.splits[e] >> 1)
         ends = plus(row_of(points, a), row_of(points, b))
         middle = times(BORDER_END_WEIGHT, ends)
         if c != a:  # an edge inside the mesh
@@ -278,11 +249,11 @@ def place_middles(  # noqa: PLR0913 - arrays: tuples take longer to hand over
             middle = plus(times(EDGE_END_WEIGHT, ends), times(EDGE_WING_WEIGHT, wings))
         write_row(middles, e, middle)
         if geomorph[e] < ONE:
-            straight = times(HALF, plus(row_of(vertices, a), row_of(vertices, b)))
+            straight = times(HALF, plus(row_of(rows, a), row_of(rows, b)))
             middle = mix(straight, middle, geomorph[e])
-        write_row(vertices, row, middle)
+        write_row(rows, row, middle)
         normal = unit(plus(row_of(normals, a), row_of(normals, b)))
-        write_row(vertices, row, normal, 3)
+        write_row(rows, row, normal, 3)
 
 
 @njit
@@ -303,36 +274,30 @@ def geomorph_of_split(splits: Unsigned8, geomorph: Floats32, e: np.uint32) -> np
 
 
 @njit
-def place_quarters(  # noqa: PLR0913 - arrays: tuples take longer to hand over
-    first: int,
-    last: int,
-    points: Floats32,
-    around: Unsigned32,
-    wings: Unsigned32,
-    edges: Unsigned32,
-    splits: Unsigned8,
-    first_points: Unsigned32,
-    once: Floats32,
-    twice: Floats32,
-    middles: Floats32,
-    vertices: Floats32,
+def place_quarters(
+    first: int, last: int, frame: FrameBuffers, around: Surroundings, middles: Floats32
 ) -> None:
     """Write the quarter points of every edge that is split twice, and move its middle (Fig. 4).
 
-    `around`, `wings`: as in `Surroundings`; `edges`: those split twice, shape (N,); `once`,
-    `twice`: geomorph weights of edges; `middles`: as `place_middles` left them.
+    `middles`: as `place_middles` left them.
     """
-    for e in edges[first:last]:
-        near_a = first_points[e]
+    points = frame.points
+    rows = frame.rows
+    splits = frame.splits
+    once = frame.geomorph_once
+    beside = around.points
+    wings = around.wings
+    for e in frame.split_twice[first:last]:
+        near_a = frame.first_points[e]
         centre = np.uint32(near_a + 1)
         near_b = np.uint32(near_a + 2)
-        a = around[e, 0]
-        b = around[e, 1]
-        c = around[e, 2]
-        d = around[e, 3]
+        a = beside[e, 0]
+        b = beside[e, 1]
+        c = beside[e, 2]
+        d = beside[e, 3]
         m = row_of(middles, e)
-        moved_a = row_of(vertices, a)
-        moved_b = row_of(vertices, b)
+        moved_a = row_of(rows, a)
+        moved_b = row_of(rows, b)
         ends_a = plus(moved_a, m)
         ends_b = plus(moved_b, m)
         moved = plus(moved_a, moved_b)
@@ -355,46 +320,33 @@ def place_quarters(  # noqa: PLR0913 - arrays: tuples take longer to hand over
             beside_a = times(BORDER_END_WEIGHT, ends_a)
             beside_b = times(BORDER_END_WEIGHT, ends_b)
             middle = plus(times(BORDER_OWN_WEIGHT, m), times(BORDER_RING_WEIGHT, moved))
-        geomorph = twice[e]
-        write_row(vertices, near_a, mix(times(HALF, ends_a), beside_a, geomorph))
-        write_row(vertices, centre, mix(m, middle, geomorph))
-        write_row(vertices, near_b, mix(times(HALF, ends_b), beside_b, geomorph))
-        write_mean_normal(vertices, a, centre, near_a)
-        write_mean_normal(vertices, b, centre, near_b)
+        geomorph = frame.geomorph_twice[e]
+        write_row(rows, near_a, mix(times(HALF, ends_a), beside_a, geomorph))
+        write_row(rows, centre, mix(m, middle, geomorph))
+        write_row(rows, near_b, mix(times(HALF, ends_b), beside_b, geomorph))
+        write_mean_normal(rows, a, centre, near_a)
+        write_mean_normal(rows, b, centre, near_b)
 
 
 @njit
-def place_by_loop(  # noqa: PLR0913 - all of it at once: four calls take longer than their work
-    points: Floats32,
-    normals: Floats32,
-    around: Unsigned32,
-    wings: Unsigned32,
-    own: Floats32,
-    ring: Floats32,
-    near: Unsigned32,
-    starts: Unsigned32,
-    others: Unsigned32,
-    splits: Unsigned8,
-    first_points: Unsigned32,
-    split_once: Unsigned32,
-    split_twice: Unsigned32,
-    counts: Integers64,
-    once: Floats32,
-    twice: Floats32,
+def place_by_loop(
+    frame: tuple[Any, ...],
+    around: tuple[Any, ...],
+    rings: tuple[Any, ...],
     vertex_geomorph: Floats32,
     middles: Floats32,
-    rows: Floats32,
 ) -> None:
     """Write moved vertices, the first level and the second level of a frame.
 
-    The arrays are those of `Surroundings`, `Rings` and `FrameBuffers`; `vertex_geomorph`, shape
-    (V,), and `middles`, shape (E, 3), are scratch.
+    All of it at once: four calls take longer than their work. The plain tuples are `FrameBuffers`,
+    `Surroundings` and `Rings`; `vertex_geomorph`, shape (V,), and `middles`, shape (E, 3), are
+    scratch.
     """
-    edges = split_once[: counts[ONCE]]
-    geomorph_vertices(around, edges, once, vertex_geomorph)
-    rings = own, ring, near, starts, others
-    place_vertices(0, len(points), points, normals, *rings, vertex_geomorph, rows)
-    of_edges = splits, first_points, once
-    place_middles(0, len(edges), points, normals, around, edges, *of_edges, middles, rows)
-    edges = split_twice[: counts[TWICE]]
-    place_quarters(0, len(edges), points, around, wings, edges, *of_edges, twice, middles, rows)
+    of_frame = FrameBuffers(*frame)
+    of_edges = Surroundings(*around)
+    counts = of_frame.counts
+    split = of_frame.split_once[: counts[ONCE]]
+    geomorph_vertices(of_edges.points, split, of_frame.geomorph_once, vertex_geomorph)
+    place_vertices(0, len(of_frame.points), of_frame, Rings(*rings), vertex_geomorph)
+    place_middles(0, counts[ONCE], of_frame, of_edges, middles)
+    place_quarters(0, counts[TWICE], of_frame, of_edges, middles)
