@@ -36,11 +36,11 @@ def mesh_shader(style: Style, has_texture: bool, maps: Iterable[BumpMap], fades:
 
 
 def part_shader(
-    kind: str, opening: str, has_shadow: bool, is_cut: bool, is_around: bool
+    kind: str, opening: tuple[str, ...], has_shadow: bool, is_cut: bool, is_around: bool
 ) -> list[str]:
     """The file and the defines of the program of parts of a kind, see `PartBuffers`.
 
-    opening: how `Opening.define` calls the one before them; empty where there is none.
+    opening: the `Opening.defines` of the one before them; empty where there is none.
     is_around: whether light comes from all around, by nine coefficients.
     """
     around = ["AROUND"] * is_around
@@ -48,8 +48,7 @@ def part_shader(
         return ["shells.glsl", *around]
     shadows = ["SHADOWS"] * (has_shadow and kind != "STRANDS")
     sunk = ["SUNK"] * (is_cut and kind != "STRANDS")
-    openings = [opening] if opening else []
-    return ["surface.glsl", "PIXEL", "COLOURED", kind, *openings, *shadows, *sunk, *around]
+    return ["surface.glsl", "PIXEL", "COLOURED", kind, *opening, *shadows, *sunk, *around]
 
 
 def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_scale: float) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import moderngl
 import numpy as np
@@ -10,8 +11,6 @@ import numpy as np
 from ..geometry.arrays import Floats64
 from .camera import PlacedView
 from .programs import write_uniform
-
-RIM_POINTS = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,13 +23,16 @@ class Opening:
         behind it, as teeth do behind lips.
     """
 
+    RIM_POINTS: ClassVar[int] = 12
+
     rim: Floats64
     is_filled: bool
 
     @property
-    def define(self) -> str:
-        """How surface.glsl calls its kind."""
-        return "FILLED" if self.is_filled else "BEHIND"
+    def defines(self) -> tuple[str, str]:
+        """How opening.glsl calls its kind, and the number of points of its rim."""
+        kind = "FILLED" if self.is_filled else "BEHIND"
+        return kind, f"RIM_POINTS {self.RIM_POINTS}"
 
     def set_uniforms(self, program: moderngl.Program, view: PlacedView) -> None:
         """Place it in the view."""
@@ -43,7 +45,7 @@ class Opening:
 
 def _set_lids(program: moderngl.Program, rim: Floats64) -> None:
     """Set both halves of a rim as curves over the way from corner to corner."""
-    half = RIM_POINTS // 2
+    half = len(rim) // 2
     first = rim[0]
     last = rim[half]
     middle = 0.5 * (first + last)
@@ -57,7 +59,7 @@ def _set_lids(program: moderngl.Program, rim: Floats64) -> None:
         write_uniform(program, name, np.append(axis, -axis @ middle) / (0.5 * width))
     x = off @ along / (0.5 * width)
     y = off @ up / (0.5 * width)
-    halves = {"upper_lid": range(half + 1), "lower_lid": (*range(half, RIM_POINTS), 0)}
+    halves = {"upper_lid": range(half + 1), "lower_lid": (*range(half, len(rim)), 0)}
     for name, points in halves.items():
         at = list(points)
         powers = np.vander(x[at], 4, increasing=True)

@@ -312,13 +312,13 @@ class Renderer:
         return is_seen
 
 
-def _kind_of(placed: PlacedBuffers, style: Style) -> tuple[str, str]:
+def _kind_of(placed: PlacedBuffers, style: Style) -> tuple[str, tuple[str, ...]]:
     """The kind of a part, and of the opening through which light gets to it, if any counts."""
     kind = placed.buffers.kind
     opening = placed.part.opening
     if kind != "RIGID" or opening is None or not style.skin_maps:
-        return kind, ""
-    return kind, opening.define
+        return kind, ()
+    return kind, opening.defines
 
 
 def _shares(skin: Skin, style: Style) -> list[tuple[Share, dict[BumpMap, float]]]:

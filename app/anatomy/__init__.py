@@ -154,7 +154,8 @@ class Anatomy:
 
     def _openings(self) -> dict[str, render.Opening]:
         """The openings of the skin now, by their names."""
-        return {name: render.Opening(*rim) for name, rim in self._scene.rims().items()}
+        rims = self._scene.rims(render.Opening.RIM_POINTS)
+        return {name: render.Opening(*rim) for name, rim in rims.items()}
 
     def _lit(
         self, face: Face, view: AnatomyView, part: Any, openings: Mapping[str, render.Opening]

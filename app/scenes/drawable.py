@@ -90,8 +90,11 @@ class Drawable:
         """What moves with bones or the skin, as it is now: eyes, teeth, lashes, ..."""
         return ()
 
-    def rims(self) -> Mapping[str, Rim]:
-        """The openings of its skin as they are now, by names of `openings.opening_before`."""
+    def rims(self, point_count: int) -> Mapping[str, Rim]:
+        """The openings of its skin as they are now, by names of `openings.opening_before`.
+
+        point_count: of each rim, even.
+        """
         return {}
 
     def bone_transforms(self) -> Mapping[str, Points]:

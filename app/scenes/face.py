@@ -111,8 +111,8 @@ class FaceScene(Scene):
                     part.stretch(self.simulation.bones.jaw, to_cranium @ bones["mandible"])
         return self._parts
 
-    def rims(self) -> Mapping[str, Rim]:
-        return rims_of(self.face.marked)
+    def rims(self, point_count: int) -> Mapping[str, Rim]:
+        return rims_of(self.face.marked, point_count)
 
     def bone_transforms(self) -> Mapping[str, Floats64]:
         return self.simulation.bones.transforms()

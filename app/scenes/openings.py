@@ -13,23 +13,30 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-RIM_POINTS = 12  # of an opening, the upper half first, clockwise seen from outside
 LIPS = slice(60, 68)  # landmarks of the inner edges of the lips
 LIDS = {"eye_right": slice(36, 42), "eye_left": slice(42, 48)}  # by the eyeball's bone
 BEHIND_LIPS = ("teeth", "gums", "tongue", "oral_cavity")  # parts, by how their names begin
 
 
 class Rim(NamedTuple):
-    """The rim of an opening, (RIM_POINTS, 3) [mm]; is_filled: by what shows in it."""
+    """The rim of an opening, shape (n, 3) [mm]: the upper half first, clockwise from outside.
+
+    is_filled: by what shows in it.
+    """
 
     points: Floats64
     is_filled: bool
 
 
-def rims_of(landmarks: Floats64) -> dict[str, Rim]:
-    """The openings by the bones of the eyeballs, and "mouth"; landmarks: now, shape (68, 3)."""
-    rims = {bone: Rim(_through(6) @ landmarks[lids], True) for bone, lids in LIDS.items()}
-    return {**rims, "mouth": Rim(_through(8) @ landmarks[LIPS], False)}
+def rims_of(landmarks: Floats64, point_count: int) -> dict[str, Rim]:
+    """The openings by the bones of the eyeballs, and "mouth"; landmarks: now, shape (68, 3).
+
+    point_count: of each rim, even.
+    """
+    of_lids = _through(6, point_count)
+    of_lips = _through(8, point_count)
+    rims = {bone: Rim(of_lids @ landmarks[lids], True) for bone, lids in LIDS.items()}
+    return {**rims, "mouth": Rim(of_lips @ landmarks[LIPS], False)}
 
 
 def opening_before(name: str, bone: str) -> str:
@@ -40,17 +47,18 @@ def opening_before(name: str, bone: str) -> str:
 
 
 @cache
-def _through(count: int) -> Floats64:
-    """Weights of landmarks around an opening in the points of its rim, (RIM_POINTS, count).
+def _through(count: int, point_count: int) -> Floats64:
+    """Weights of landmarks around an opening in the points of its rim, (point_count, count).
 
     Both halves begin and end in its corners: each is the polynomial through its landmarks.
     """
     of_half = count // 2
     knots = np.linspace(0.0, 1.0, of_half + 1)
-    places = np.arange(RIM_POINTS // 2) / (RIM_POINTS // 2)
+    of_half_rim = point_count // 2
+    places = np.arange(of_half_rim) / of_half_rim
     weights = np.vander(places, of_half + 1) @ np.linalg.inv(np.vander(knots, of_half + 1))
-    found = np.zeros((2, RIM_POINTS // 2, count))
+    found = np.zeros((2, of_half_rim, count))
     for half in range(2):
         columns = (half * of_half + np.arange(of_half + 1)) % count
         found[half][:, columns] = weights
-    return found.reshape(RIM_POINTS, count)
+    return found.reshape(point_count, count)

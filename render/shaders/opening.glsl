@@ -25,8 +25,7 @@ float light_let_in(vec3 place) {
 
 #else
 
-const int RIM = 12;
-uniform vec3 rim[RIM];  // clockwise seen from outside, the upper half first
+uniform vec3 rim[RIM_POINTS];  // clockwise seen from outside, the upper half first
 const float GAIN = 4.6;     // light comes in several times, thrown back by teeth and cheeks
 const float LEAST = 0.12;   // of light, in a mouth that is nearly shut
 const float TURNED = 0.35;  // how much the side to which the surface is turned counts
@@ -38,7 +37,7 @@ const float SHADE_ABOVE = 0.5, SHADE_ASIDE = 0.6;
 // From a place to the nearest point of the upper half of the rim.
 float distance_above(vec3 place) {
     float nearest = 1e12;
-    for (int i = 0; i < RIM / 2; i++) {
+    for (int i = 0; i < RIM_POINTS / 2; i++) {
         vec3 along = rim[i + 1] - rim[i];
         float share = clamp(dot(place - rim[i], along) / max(dot(along, along), 1e-9), 0.0, 1.0);
         vec3 away = place - rim[i] - share * along;
@@ -51,23 +50,23 @@ float distance_above(vec3 place) {
 // Photometria), weighted by their cosine to the way out.
 float light_let_in(vec3 place, vec3 normal) {
     vec3 sum = vec3(0.0), outward = vec3(0.0), middle = vec3(0.0);
-    vec3 from = rim[RIM - 1] - place;
-    for (int i = 0; i < RIM; i++) {
+    vec3 from = rim[RIM_POINTS - 1] - place;
+    for (int i = 0; i < RIM_POINTS; i++) {
         vec3 to = rim[i] - place;
         vec3 axis = cross(to, from);
         float sine = length(axis);
         sum += axis * (atan(sine, dot(from, to)) / max(sine, 1e-9));
         outward += axis;
-        middle += to / float(RIM);
+        middle += to / float(RIM_POINTS);
         from = to;
     }
     const float WHOLE = 6.2831853;
     float seen = length(sum) / WHOLE;
     float toward = 0.5 + 0.5 * dot(normal, sum) / max(length(sum), 1e-9);
     float open = mix(LEAST, 1.0, 1.0 - exp2(-GAIN * seen * mix(1.0, toward, TURNED)));
-    float width = max(distance(rim[0], rim[RIM / 2]), 1e-6);
+    float width = max(distance(rim[0], rim[RIM_POINTS / 2]), 1e-6);
     float above = distance_above(place) / (REACH_ABOVE * width);
-    float aside = min(distance(place, rim[0]), distance(place, rim[RIM / 2])) / (REACH_ASIDE * width);
+    float aside = min(distance(place, rim[0]), distance(place, rim[RIM_POINTS / 2])) / (REACH_ASIDE * width);
     open *= (1.0 - SHADE_ABOVE * exp2(-above * above)) * (1.0 - SHADE_ASIDE * exp2(-aside * aside));
     // Out of the mouth there is light all around.
     float out_by = -dot(middle, outward) / max(length(outward), 1e-9);

@@ -8,7 +8,7 @@ from risorius.app.motion import SETTLING
 from risorius.app.passes.passes import Passes
 from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import Refinement
-from risorius.app.scenes.openings import RIM_POINTS, rims_of
+from risorius.app.scenes.openings import rims_of
 from risorius.assets import Segment
 
 SIZE = (320, 240)
@@ -37,12 +37,12 @@ def test_rims_run_through_the_landmarks(scene):
     """Corners of eyes and mouth, and the middles of the lips, are points of the rims."""
     scene.reset()
     marks = scene.face.marked
-    rims = rims_of(marks)
+    rims = rims_of(marks, 12)
     assert set(rims) == {"eye_right", "eye_left", "mouth"}
     for name, corners in (("eye_right", (36, 39)), ("eye_left", (42, 45)), ("mouth", (60, 64))):
         points = rims[name].points
-        assert points.shape == (RIM_POINTS, 3)
-        for place, corner in zip((0, RIM_POINTS // 2), corners, strict=True):
+        assert points.shape == (12, 3)
+        for place, corner in zip((0, 6), corners, strict=True):
             assert points[place] == approx(marks[corner])
     assert rims["mouth"].points[3] == approx(marks[62])
     assert rims["mouth"].points[9] == approx(marks[66])
@@ -51,7 +51,7 @@ def test_rims_run_through_the_landmarks(scene):
 def test_lids_take_light_from_the_eyeball(scene, monkeypatch):
     """Below the upper lid and in the corners the eye is darker than in the open, its middle not."""
     shown, classes = close_picture(scene, {"surprise": 1.0}, range(42, 48), 40.0)
-    monkeypatch.setattr(scene, "rims", dict)
+    monkeypatch.setattr(scene, "rims", lambda point_count: {})
     in_the_open, _ = close_picture(scene, {"surprise": 1.0}, range(42, 48), 40.0)
     share = shown / np.maximum(in_the_open, 1.0)
     rows, columns = np.nonzero(classes == Segment.LEFT_EYE)

@@ -7,7 +7,6 @@ import pytest
 from pytest import approx
 
 from risorius import render
-from risorius.render.opening import RIM_POINTS
 
 from .scenes import PLAIN, STILL, Ball, at, draw
 
@@ -16,8 +15,9 @@ WHITISH = (0.8, 0.8, 0.8)
 
 def rim(width, height, z):
     """A lens-shaped rim, clockwise from the viewer's left, the upper half first."""
-    t = np.arange(RIM_POINTS) / RIM_POINTS * 2.0 * np.pi
-    return np.stack([-0.5 * width * np.cos(t), 0.5 * height * np.sin(t), np.full(12, z)], axis=1)
+    count = render.Opening.RIM_POINTS
+    t = np.arange(count) / count * 2.0 * np.pi
+    return np.stack([-0.5 * width * np.cos(t), 0.5 * height * np.sin(t), np.full(count, z)], axis=1)
 
 
 def light(renderer, opening, style=PLAIN):
