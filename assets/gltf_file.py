@@ -43,8 +43,7 @@ class GltfFile:
         """
         import pygltflib  # which to load the built-in head takes no time for
 
-        magic = b"glTF"  # the first bytes of a GLB file
-        text, self._data = _chunks(content) if content.startswith(magic) else (content, None)
+        text, self._data = chunks_of(content)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of pygltflib, which would print them
             self.document = pygltflib.GLTF2.from_json(
@@ -99,7 +98,7 @@ class GltfFile:
             return bytes(self._view(image.bufferView)), str(image.name or number)
         is_inside = image.uri.startswith("data:")
         name = image.name or (number if is_inside else image.uri)
-        return self._content(image.uri, "picture"), str(name)
+        return content_of(image.uri, self._folder, "picture"), str(name)
 
     def _filled_in(self, rows: npt.NDArray[Any], sparse: Any) -> npt.NDArray[Any]:
         """Rows with those in place of which a sparse accessor has others."""
@@ -139,7 +138,7 @@ class GltfFile:
         if number not in self._buffers:
             uri = self.document.buffers[number].uri
             if uri is not None:
-                self._buffers[number] = self._content(uri, "buffer")
+                self._buffers[number] = content_of(uri, self._folder, "buffer")
             elif number == 0 and self._data is not None:
                 self._buffers[number] = self._data
             elif compressed:
@@ -148,19 +147,24 @@ class GltfFile:
                 raise AssetError(f"its buffer {number} is missing; export it as one file, GLB")
         return self._buffers[number]
 
-    def _content(self, uri: str, kind: str) -> bytes:
-        """The data that a URI holds, or those of the file that it names."""
-        if uri.startswith("data:"):
-            head, _, data = uri.partition(",")
-            plain = unquote_to_bytes(data)
-            return base64.b64decode(plain) if head.endswith(";base64") else plain
-        name = unquote_to_bytes(uri).decode()
-        path = beside(self._folder, name)
-        try:
-            most_megabytes = 100
-            return read_file(path, kind=kind, most=most_megabytes)
-        except AssetError as error:
-            raise AssetError(f"its {kind} {named(name)}: {error}") from None
+
+def content_of(uri: str, folder: Path, kind: str) -> bytes:
+    """The data that a URI holds, or those of the file that it names.
+
+    folder: of the document. kind: of the data, for the message of the AssetError that is raised for
+    a file that cannot be read.
+    """
+    if uri.startswith("data:"):
+        head, _, data = uri.partition(",")
+        plain = unquote_to_bytes(data)
+        return base64.b64decode(plain) if head.endswith(";base64") else plain
+    name = unquote_to_bytes(uri).decode()
+    path = beside(folder, name)
+    try:
+        most_megabytes = 100
+        return read_file(path, kind=kind, most=most_megabytes)
+    except AssetError as error:
+        raise AssetError(f"its {kind} {named(name)}: {error}") from None
 
 
 def entry(part: Any, name: str) -> Any:
@@ -179,8 +183,10 @@ def packed(name: str) -> AssetError:
     return AssetError(f"is compressed ({name}); export it without compression")
 
 
-def _chunks(content: bytes) -> tuple[bytes, bytes | None]:
-    """The document of a GLB file and its binary data, None where it has none."""
+def chunks_of(content: bytes) -> tuple[bytes, bytes | None]:
+    """The document of a glTF or GLB file and its binary data, None where it has none."""
+    if not content.startswith(b"glTF"):  # the first bytes of a GLB file
+        return content, None
     version, length = struct.unpack_from("<II", content, 4)
     if version != 2:
         raise AssetError(f"is glTF {version}; export it as glTF 2.0")

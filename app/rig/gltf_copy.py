@@ -9,22 +9,18 @@ Source: Khronos Group, "glTF 2.0 Specification", sections 3.7.2.2 (morph targets
 
 from __future__ import annotations
 
-import base64
 import json
-import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from urllib.parse import unquote_to_bytes
 
 import numpy as np
 
 from risorius.assets.fitting.lips import LipCut
 from risorius.assets.fitting.warp import Similarity
 from risorius.assets.gltf import StoredPiece
-from risorius.assets.gltf_file import COMPONENTS
-from risorius.assets.user_files import beside, read_file
+from risorius.assets.gltf_file import COMPONENTS, chunks_of, content_of
 from risorius.geometry.arrays import Floats32, Integers
 
 from .bodies import Shaped
@@ -38,18 +34,13 @@ def read_document(content: bytes, folder: Path) -> tuple[dict[str, Any], bytes]:
 
     folder: in which other files of it lie. Raises AssetError for those that are missing.
     """
-    document: dict[str, Any]
-    if not content.startswith(b"glTF"):
-        document = json.loads(content.decode("utf-8-sig"))
-        binary = b""
-    else:
-        (length,) = struct.unpack_from("<I", content, 12)
-        document = json.loads(content[20 : 20 + length].decode("utf-8-sig"))
-        binary = content[28 + length :]
-        buffers = document.get("buffers", [])
-        images = document.get("images", [])
-        if len(buffers) == 1 and not any("uri" in each for each in (*buffers, *images)):
-            return document, binary[: buffers[0]["byteLength"]]
+    text, data = chunks_of(content)
+    document: dict[str, Any] = json.loads(text.decode("utf-8-sig"))
+    binary = data or b""
+    buffers = document.get("buffers", [])
+    images = document.get("images", [])
+    if len(buffers) == 1 and not any("uri" in each for each in (*buffers, *images)):
+        return document, binary[: buffers[0]["byteLength"]]
     return document, _gathered(document, binary, folder)
 
 
@@ -60,7 +51,7 @@ def _gathered(document: dict[str, Any], binary: bytes, folder: Path) -> bytes:
     for buffer in document.get("buffers", []):
         data += b"\0" * (-len(data) % 4)
         starts.append(len(data))
-        found = _content(buffer["uri"], folder) if "uri" in buffer else binary
+        found = content_of(buffer["uri"], folder, "buffer") if "uri" in buffer else binary
         data += found[: buffer["byteLength"]]
     for view in document.get("bufferViews", []):
         view["byteOffset"] = view.get("byteOffset", 0) + starts[view["buffer"]]
@@ -68,7 +59,7 @@ def _gathered(document: dict[str, Any], binary: bytes, folder: Path) -> bytes:
     for image in document.get("images", []):
         if "uri" not in image:
             continue
-        picture = _content(image.pop("uri"), folder)
+        picture = content_of(image.pop("uri"), folder, "picture")
         data += b"\0" * (-len(data) % 4)
         view = {"buffer": 0, "byteOffset": len(data), "byteLength": len(picture)}
         document.setdefault("bufferViews", []).append(view)
@@ -77,15 +68,6 @@ def _gathered(document: dict[str, Any], binary: bytes, folder: Path) -> bytes:
         data += picture
     document["buffers"] = [{"byteLength": len(data)}]
     return bytes(data)
-
-
-def _content(uri: str, folder: Path) -> bytes:
-    """What a URI names: data in itself, or a file beside this one."""
-    if uri.startswith("data:"):
-        head, _, data = uri.partition(",")
-        plain = unquote_to_bytes(data)
-        return base64.b64decode(plain) if head.endswith(";base64") else plain
-    return read_file(beside(folder, unquote_to_bytes(uri).decode()), kind="glTF data", most=100)
 
 
 @dataclass(frozen=True)
