@@ -22,6 +22,7 @@ import numpy as np
 from risorius.geometry.read_only import make_read_only
 
 from ..geometry.arrays import Floats32, Floats64, Integers32
+from ..geometry.directions import unit_vectors
 from .data_files import Image, read_arrays, read_image
 from .nostrils import lit_nostrils
 from .topology import quarter
@@ -307,7 +308,7 @@ class Head:
             edges.append(cut.edges)
         added = arrays["added_vertices"][: count - len(self.vertices)]
         normals = arrays["normals"][:count].astype(np.float64)
-        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        normals = unit_vectors(normals)
         vertices = np.vstack([self.vertices, added])
         for array in (vertices, faces, normals, *edges):
             array.flags.writeable = False

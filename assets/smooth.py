@@ -14,12 +14,6 @@ def smooth_step(low: float, high: float, values: Floats64) -> Floats64:
     return t * t * (3.0 - 2.0 * t)
 
 
-def unit(vectors: Points) -> Points:
-    """Scale rows to length 1; zero rows stay zero."""
-    scaled: Points = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-12)
-    return scaled
-
-
 def shrunk(values: Floats32, shrink: int) -> Floats32:
     """Means of values (H, W, ...), of so many each way; H and W are multiples of it."""
     for axis in (0, 1):

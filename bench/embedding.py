@@ -21,6 +21,7 @@ from risorius import refine
 from risorius.assets.sheets import make_grid
 from risorius.assets.topology import grid_faces
 from risorius.geometry.closest import SurfacePoints, closest_points
+from risorius.geometry.directions import unit_vectors
 
 from .report import Target, at_least, processor, table
 
@@ -123,8 +124,8 @@ class FlatBinding:
 
     def _axes(self, positions: Points) -> Points:
         a, b, c = positions[self._places.corners].swapaxes(0, 1)
-        first = _unit(b - a)
-        normal = _unit(np.cross(b - a, c - a))
+        first = unit_vectors(b - a)
+        normal = unit_vectors(np.cross(b - a, c - a))
         return np.stack([first, np.cross(normal, first), normal], axis=2)
 
 
@@ -193,7 +194,3 @@ def _milliseconds(embedding: refine.Embedding, positions: Points) -> float:
 
 def _root_mean_square(vectors: Points) -> float:
     return float(np.sqrt((vectors**2).sum(axis=1).mean()))
-
-
-def _unit(vectors: Points) -> Points:
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))

@@ -27,6 +27,7 @@ from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.loading import load_head
 from risorius.geometry.arrays import Flags
 from risorius.geometry.closest import closest_points
+from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
 
 from .report import Target, at_most, table
@@ -104,7 +105,7 @@ class IdentitySpace:
         """Which vertices look at skin: straight ahead, or in three of seven directions, (V,)."""
         facing = vertex_normals(self.mean, self.triangles)
         aside = np.cross(facing, np.roll(facing, 1, axis=1))
-        aside /= np.linalg.norm(aside, axis=1, keepdims=True)
+        aside = unit_vectors(aside)
         angles = np.radians(np.arange(0.0, 360.0, 60.0))[:, None, None]
         slanted = facing + np.cos(angles) * aside + np.sin(angles) * np.cross(facing, aside)
         ways = np.concatenate([facing[None], np.sqrt(0.5) * slanted])
@@ -224,7 +225,7 @@ def _feet(
     own = vertex_normals(points, triangles)[asked]
     at = nearest_on(points[asked], own, surface.vertices, surface.faces)
     facing = at.interpolate(surface.normals)
-    facing /= np.linalg.norm(facing, axis=1, keepdims=True)
+    facing = unit_vectors(facing)
     cosine = np.clip((facing * own).sum(axis=1), -1.0, 1.0)
     return at.interpolate(surface.vertices), facing, cosine
 

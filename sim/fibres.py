@@ -25,6 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32, Unsigned32
+from ..geometry.directions import unit_vectors
 from ..jit import njit
 from .landmarks import Side
 from .rig import Fibre
@@ -93,7 +94,7 @@ def bent_to_skin(lines: Floats64, surface: SkinSurface, shares: Floats64) -> Flo
     if surface.vertex_count < WRAP_NEIGHBOURS or not len(lines):
         return lines
     skin, normal = over_skin(lines.reshape(-1, 3), surface, surface.positions, surface.normals)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
+    normal = unit_vectors(normal)
     off = skin - lines.reshape(-1, 3)
     correction = ((off * normal).sum(axis=1, keepdims=True) * normal).reshape(lines.shape)
     for _ in range(2):  # single vertices must not put kinks into a fibre

@@ -14,6 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.arrays import Floats64, Integers32
+from ..geometry.directions import unit_vectors
 from ..geometry.normals import cross_products
 from .contact import EYE_CLEARANCE
 from .skull import Eyeball
@@ -30,7 +31,7 @@ def lift_off(
     rest may stay in it. moves: 1 for those of the upper lid, else 0, shape (V,).
     """
     away = x - ball.centre
-    ways = away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), LIFT_TOLERANCE)
+    ways = unit_vectors(away, LIFT_TOLERANCE)
     faces = faces[moves[faces].any(axis=1)]
     outward = (cross_products(away, faces) * away[faces].sum(axis=1)).sum(axis=1)
     faces = faces[outward > 0.0]  # not the inner side of a lid

@@ -15,6 +15,7 @@ import numpy as np
 import scipy
 
 from risorius.geometry.arrays import Floats32, Floats64, Integers32
+from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
 from risorius.sim import Simulation
 
@@ -87,7 +88,7 @@ class Muscles:
         for start, end, numbers, bands in RINGS:
             edge = _resampled(marks[None, list(numbers)])[0]
             away = (edge - marks[AROUND_OF[end]].mean(axis=0)) * (1.0, 1.0, 0.0)
-            away /= np.linalg.norm(away, axis=1, keepdims=True)
+            away = unit_vectors(away)
             names = simulation.controls.sums
             own = [name for name in names if name.startswith(start) and name.endswith(end)]
             for outward, width in bands:
@@ -145,7 +146,7 @@ class Muscles:
         deep = depth[:, :1] + (end_depth - depth[:, :1]) * u * u * (3.0 - 2.0 * u)
         deep[len(self.names) :] = end_depth  # sphincters have no origin on a bone
         side = np.cross(np.gradient(lines, axis=1), normal)
-        side /= np.maximum(np.linalg.norm(side, axis=2, keepdims=True), 1e-9)
+        side = unit_vectors(side)
         rails = np.stack([lines + each * half[..., None] * side for each in (-1.0, 0.0, 1.0)])
         for _ in range(2):
             outside, normal, bone_depth = skin.at(rails)
@@ -175,7 +176,7 @@ class Muscles:
         normals = np.cross(along, np.roll(grid, -1, axis=2) - np.roll(grid, 1, axis=2))
         normals[:, 0] = normals[:, 1]  # the ends are points
         normals[:, -1] = normals[:, -2]
-        normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
+        normals = unit_vectors(normals)
         self.vertices, self.normals, self.colours = (
             each.reshape(-1, 3).astype(np.float32) for each in (grid, normals, colours)
         )
@@ -220,7 +221,7 @@ class _Skin:
         weight /= weight.sum(axis=-1, keepdims=True)
         off = np.einsum("...kc,...kc->...k", points[..., None, :] - self.x[near], normals)
         normal = np.einsum("...k,...kc->...c", weight, normals)
-        normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-9)
+        normal = unit_vectors(normal)
         return (weight * off).sum(axis=-1), normal, (weight * self._bone[near]).sum(axis=-1)
 
 

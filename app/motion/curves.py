@@ -16,6 +16,7 @@ import numpy as np
 import scipy
 
 from risorius.geometry.arrays import Floats64
+from risorius.geometry.directions import unit_vectors
 from risorius.sim.controls import Controls
 from risorius.sim.layers import LEAST_WHOLE, SIDES, Layers, share_of_whole
 
@@ -107,7 +108,7 @@ def _fitted(shares: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
     rays = _rays(shares)
     reach = np.array([(np.linalg.norm(shares[ray], axis=1) * highest[ray]).sum() for ray in rays])
     directions = np.stack([shares[ray].sum(axis=0) for ray in rays])
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    directions = unit_vectors(directions)
     # Values count a little beside the fit: of all that fit alike, those in between are taken.
     matrix = np.vstack([directions.T, 1e-3 * np.eye(len(rays))])
     values = np.zeros((len(frames), len(shares)))

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from risorius.geometry.arrays import Flags, Floats32, Floats64
+from risorius.geometry.directions import unit_vectors
 from risorius.geometry.polylines import arc_lengths, evenly_spaced
 
 from ..scenes import Face
@@ -91,7 +92,7 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
 def _normals(pixels: Floats64, outward: Floats64) -> Floats64:
     """Unit normals of a line in the picture, (n, 2), on the side of directions (n, 2)."""
     along = np.gradient(pixels, axis=0)
-    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
+    along = unit_vectors(along)
     normals = along @ np.array([[0.0, 1.0], [-1.0, 0.0]])
     return np.asarray(normals * np.sign((normals * outward).sum(axis=1, keepdims=True)))
 

@@ -19,6 +19,7 @@ from risorius.assets.painted import Material, PaintedMesh
 from risorius.assets.pictures import decoded
 from risorius.geometry.arrays import Floats64, Integers
 from risorius.geometry.colour import to_linear
+from risorius.geometry.directions import unit_vectors
 
 from .bodies import Shaped
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
@@ -149,8 +150,7 @@ class FileMeshWriter:
             )
         length = np.linalg.norm(normals, axis=1)
         normals[length < 0.5] = (0.0, 0.0, 1.0)  # of vertices without a triangle
-        unit: Floats64 = normals / np.linalg.norm(normals, axis=1, keepdims=True)
-        return unit
+        return unit_vectors(normals)
 
     def _paint(self, chosen: Integers) -> dict[str, int]:
         """Texture coordinates, v down, and colours of chosen vertices, where the file has any."""

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from risorius import assets, render
 from risorius.geometry.arrays import Floats64
 from risorius.geometry.colour import to_linear
+from risorius.geometry.directions import unit_vectors
 from risorius.geometry.texels import Texels, rates
 
 from ..scenes import Scene
@@ -132,7 +133,7 @@ def _normal_map(surface: MovingSurface, fine: assets.FineShape) -> npt.NDArray[n
     slope_u /= length[texels.faces]
     slope_v = (slope_v - shear[texels.faces] * slope_u) / height[texels.faces]
     normals = np.column_stack([-slope_u, -slope_v, np.ones_like(slope_u)])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = unit_vectors(normals)
     image = np.full((*fine.slopes.shape[:2], 3), (128, 128, 255), np.uint8)
     image[texels.rows, texels.columns] = np.rint(127.5 + 127.5 * normals)
     return image

@@ -8,6 +8,7 @@ import numpy as np
 
 from risorius import assets
 from risorius.geometry.arrays import Floats64
+from risorius.geometry.directions import unit_vectors
 from risorius.geometry.read_only import read_only
 
 from ..control_names.limits import Limits
@@ -53,7 +54,7 @@ class PlaneScene(Scene):
         normals = np.ones_like(points)
         moved[:, 2] += height * np.sin(angle)
         normals[:, :2] = -np.sqrt(0.5) * height * frequency * np.cos(angle)[:, None]
-        return moved, normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        return moved, unit_vectors(normals)
 
     def reset(self) -> None:
         super().reset()

@@ -14,6 +14,7 @@ import numpy as np
 
 from risorius.assets.fitting.warp import nearest_on
 from risorius.geometry.arrays import Floats32, Floats64, Integers32
+from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.read_only import read_only
 
@@ -40,7 +41,7 @@ class SurfaceAttachment:
         # What stands there points out of the skin; what lies there has the skin's normal.
         ahead = np.zeros((len(roots), 3))
         np.add.at(ahead, self._row, rest - rest[roots][self._row] + 1e-3 * normals)
-        feet = nearest_on(rest[roots], _unit(ahead), skin, faces)
+        feet = nearest_on(rest[roots], unit_vectors(ahead), skin, faces)
         is_around = np.isin(faces, feet.corners).any(axis=1)
         self._near, around = np.unique(faces[is_around], return_inverse=True)  # vertices of skin
         self._around = around.reshape(-1, 3).astype(np.int32)  # triangles among them
@@ -68,8 +69,9 @@ class SurfaceAttachment:
         """Feet of the roots, (R, 3), and right-handed unit axes there, (R, 3, 3), in columns."""
         normal = self._feet.interpolate(vertex_normals(skin, self._around))
         along = np.einsum("rc,rci->ri", self._across, skin[self._feet.corners])
-        beside = _unit(np.cross(normal, along))
-        axes = np.stack([np.cross(beside, _unit(normal)), beside, _unit(normal)], axis=2)
+        beside = unit_vectors(np.cross(normal, along))
+        outward = unit_vectors(normal)
+        axes = np.stack([np.cross(beside, outward), beside, outward], axis=2)
         return self._feet.interpolate(skin), axes
 
 
@@ -80,8 +82,3 @@ def _along_x(corners: Floats64) -> Floats64:
     edges = np.stack([first, second], axis=2)
     shares = np.linalg.pinv(edges)[:, :, 0]
     return np.column_stack([-shares.sum(axis=1), shares])
-
-
-def _unit(vectors: Floats64) -> Floats64:
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.asarray(vectors / np.maximum(lengths, 1e-12))

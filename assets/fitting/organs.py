@@ -17,6 +17,7 @@ import scipy
 from risorius.geometry.normals import vertex_normals
 
 from ...geometry.arrays import Floats64, Integers32
+from ...geometry.directions import unit_vectors
 from ..model import Eye, Head, Part
 from ..topology import boundary_loops, grid_faces
 from .eyeballs import ball_of_pieces, ball_of_socket
@@ -196,7 +197,7 @@ def _resized(part: Part, old: Eye, new: Eye) -> Part:
     angle = np.arccos(away[:, 2] / reach)
     edges = [0.0, *(np.arcsin(eye.iris_radius / eye.radius) for eye in (old, new)), np.pi]
     placed = np.interp(angle, [0.0, edges[1], np.pi], [0.0, edges[2], np.pi])
-    beside = away[:, :2] / np.maximum(np.linalg.norm(away[:, :2], axis=1, keepdims=True), 1e-9)
+    beside = unit_vectors(away[:, :2])
     ways = np.column_stack([np.sin(placed)[:, None] * beside, np.cos(placed)])
     bulge = new.iris_radius / old.iris_radius * (reach - old.radius)
     vertices = new.centre + (new.radius + bulge)[:, None] * ways
@@ -208,7 +209,7 @@ def _bent(part: Part, warp: ThinPlateSpline) -> Part:
     """A part that takes the shape of its new place."""
     vertices = warp.points(part.vertices)
     ahead = warp.points(part.vertices + part.normals) - vertices
-    normals = ahead / np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9)
+    normals = unit_vectors(ahead)
     return replace(part, vertices=vertices.astype(np.float32), normals=normals.astype(np.float32))
 
 
@@ -271,7 +272,7 @@ def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
     away = edge - eye.centre
     length = np.linalg.norm(away, axis=1)
     beside = away * [1.0, 1.0, 0.0]
-    beside /= np.maximum(np.linalg.norm(beside, axis=1, keepdims=True), 1e-9)
+    beside = unit_vectors(beside)
     start = np.arccos(away[:, 2] / length)
     rim_depth = 3.0  # [mm] behind the equator of the ball, where a rim ends
     end = np.maximum(0.5 * np.pi + np.arcsin(rim_depth / eye.radius), start)

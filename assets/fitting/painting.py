@@ -25,6 +25,7 @@ from risorius.geometry.normals import cross_products
 from risorius.geometry.texels import Texels, rates
 
 from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Integers64, Unsigned8
+from ...geometry.directions import unit_vectors
 from ...geometry.sides import sides_of
 from ..data_files import Image, read_arrays
 from ..errors import AssetError
@@ -49,7 +50,7 @@ def spread_uv(
     feet = nearest.interpolate(warped)
     away = np.linalg.norm(feet - vertices, axis=1)
     across = cross_products(warped, nearest.corners)
-    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
+    across = unit_vectors(across)
     trusted_within = 6.0  # [mm] from a foot: the trust in it falls to half
     trust = 1.0 / (1.0 + (away / trusted_within) ** 2)
     least_cosine = 0.3  # between the normals of a vertex and of its foot

@@ -19,8 +19,9 @@ from scipy.ndimage import map_coordinates
 from risorius.geometry.normals import vertex_normals
 
 from ...geometry.arrays import Floats32, Floats64, Integers32
+from ...geometry.directions import unit_vectors
 from ..model import Part
-from ..smooth import Points, smooth_step, unit
+from ..smooth import Points, smooth_step
 from ..topology import grid_faces, quarter
 
 HAIR = "hair"  # the name of the part
@@ -140,8 +141,8 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     """The parts drawn as hair; colour: sRGB, shape (3,); length: beside that of the cut."""
     points, normals, faces, behind = scalp
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    whorl = unit(np.array([cut.whorl]))[0]
-    beside = unit(np.cross([[0.0, 0.3, 1.0]], whorl))[0]
+    whorl = unit_vectors(np.array([cut.whorl]))[0]
+    beside = unit_vectors(np.cross([[0.0, 0.3, 1.0]], whorl))[0]
     out = points - middle
     angle = np.arctan2(out @ np.cross(whorl, beside), out @ beside)
     painted_depth = 1.0  # [mm] behind the hairline, where hairs lie on the skin only
@@ -158,10 +159,10 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     points = points[rows]
     normals = normals[rows]
     behind = behind[rows]
-    out = unit(out[rows])
+    out = unit_vectors(out[rows])
     away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
     radius = np.linalg.norm(scalp.points - middle, axis=1).mean()
-    comb = unit(np.cross(np.cross(whorl, out), normals))
+    comb = unit_vectors(np.cross(np.cross(whorl, out), normals))
     long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
     long = length * long * smooth_step(0.0, cut.behind, behind)
     # [mm] behind the hairline, where hair lies flat, and where it stands as its cut says.
@@ -221,8 +222,8 @@ def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
     shares = random.dirichlet((1.0, 1.0, 1.0), hair_count)[:, :, None]
     columns = hair.vertices, hair.normals, hair.colours, hair.striation[:, 2:5]
     root, normal, colour, way = ((shares * each[corners]).sum(axis=1) for each in columns)
-    normal = unit(normal)
-    across = unit(np.cross(normal, way))
+    normal = unit_vectors(normal)
+    across = unit_vectors(np.cross(normal, way))
     rise = (0.05, 0.4)  # least and most, share of the length
     off = random.uniform(*rise, (hair_count, 1))
     stray = 0.2  # share of the length, aside
@@ -278,6 +279,6 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
         above = ((middle - ends) * normals[cut.edges]).sum(axis=2, keepdims=True)
         bulge = -bulge_share * (np.minimum(above, 0.0) * normals[cut.edges]).mean(axis=1)
         points = np.vstack([points, middle[:, 0] + bulge])
-        normals = np.vstack([normals, unit(normals[cut.edges].mean(axis=1))])
+        normals = np.vstack([normals, unit_vectors(normals[cut.edges].mean(axis=1))])
         uv = np.vstack([uv, uv[cut.edges].mean(axis=1)])
     return Scalp(points, normals, faces, far(uv))

@@ -15,8 +15,9 @@ import scipy
 from risorius.geometry.normals import vertex_normals
 
 from ...geometry.arrays import Floats64
+from ...geometry.directions import unit_vectors
 from ..model import Part
-from ..smooth import smooth_step, unit
+from ..smooth import smooth_step
 from ..topology import grid_faces
 from . import hair as short
 from .hair import HAIR, Cut, Fall, Scalp, from_within
@@ -51,9 +52,9 @@ def falling_hair(
     sample_count = 14  # along each strand over the head, and as many below
     over = np.linspace(0.0, 1.0, sample_count)
     drop = np.linspace(0.0, 1.0, sample_count)[1:]
-    roots = unit(front + (share**0.8)[:, None] * (crown - front))
+    roots = unit_vectors(front + (share**0.8)[:, None] * (crown - front))
     level_of_widest = np.array([0.0, -0.1, 0.0])  # a little below it strands leave the head
-    pairs = zip(roots, unit(level + level_of_widest), strict=True)
+    pairs = zip(roots, unit_vectors(level + level_of_widest), strict=True)
     ways = np.array([scipy.spatial.geometric_slerp(*pair, over) for pair in pairs])
     across = 88.0 * side * (np.pi - angle)
     uneven = 0.6 * np.sin(0.9 * across) + 0.4 * np.sin(0.37 * across + 1.0)
@@ -118,8 +119,8 @@ def _reach(ways: Floats64, solid: Floats64) -> Floats64:
 def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Part, ...]:
     """The parts that are drawn as hair of a cut with a knot, or a tail; see `falling_hair`."""
     points = scalp.points
-    out = -unit(np.array([cut.whorl]))[0]
-    ways = unit(points - 0.5 * (points.min(axis=0) + points.max(axis=0)))
+    out = -unit_vectors(np.array([cut.whorl]))[0]
+    ways = unit_vectors(points - 0.5 * (points.min(axis=0) + points.max(axis=0)))
     root = points[np.argmax(ways @ out)]
     place_count = 40
     t = np.linspace(0.0, 1.0, place_count)[:, None]
@@ -130,7 +131,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         bent = smooth_step(root_depth, free_distance, far)
         tie_distance = 28.0  # [mm] from there to its tie
         free = smooth_step(tie_distance, free_distance, far)
-        ways = unit((1.0 - bent) * out + bent * DOWN)
+        ways = unit_vectors((1.0 - bent) * out + bent * DOWN)
         line = root - root_depth * out + np.cumsum(ways * far[1], axis=0)
         tied_width = 0.45  # share of its thickness
         thick = tied_width + (1.0 - tied_width) * free
@@ -160,7 +161,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     place = np.linspace(0.0, 2.0 * np.pi, strand_count)[:, None, None]
     groove = free * (0.5 + 0.5 * np.cos(locks * place)) ** 3
     turn = np.pi + place + 2.0 * np.pi * turns * t  # begins on the side of the head
-    ring = np.cos(turn) * unit(np.cross(RIGHT, ways)) + np.sin(turn) * RIGHT
+    ring = np.cos(turn) * unit_vectors(np.cross(RIGHT, ways)) + np.sin(turn) * RIGHT
     places = line + cut.knot * thick * (1.0 - deep * groove) * ring
     lost_light = 0.5  # share below a knot and at a tail's tie
     light = 1.0 - np.maximum(5.0 * deep * groove, lost_light * shade)
@@ -181,10 +182,10 @@ def _layers(
     shape = places.shape
     points = places.reshape(-1, 3)
     number = np.arange(places.size // 3).reshape(shape[:2])
-    out = unit(points - points.mean(axis=0))
+    out = unit_vectors(points - points.mean(axis=0))
     outward_share = 0.01  # in normals: where strands meet there is no triangle
-    normals = unit(vertex_normals(points, grid_faces(number)) + outward_share * out)
-    ahead = unit(np.gradient(places, axis=1).reshape(-1, 3))
+    normals = unit_vectors(vertex_normals(points, grid_faces(number)) + outward_share * out)
+    ahead = unit_vectors(np.gradient(places, axis=1).reshape(-1, 3))
     layer_share = 0.4  # of the volume
     columns = across, short.FINE * _along(places), layer_share * thick, np.minimum(dense, FULL)
     rows = np.stack([np.broadcast_to(each, shape[:2]) for each in columns], axis=-1)

@@ -29,6 +29,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ...geometry.arrays import Floats64
+from ...geometry.directions import unit_vectors
 from ..data_files import read_arrays
 from ..loading import load
 from ..norms import NORMS, Sample, measures_of
@@ -188,7 +189,7 @@ def person_space() -> PersonSpace:
     named = [point for point, *_ in POINTS]
     numbers = [head.landmarks[p] if isinstance(p, int) else head.anatomy[p] for p in named]
     ways = np.array([way for _, way, *_ in POINTS], dtype=np.float64)
-    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    ways = unit_vectors(ways)
     pushed = np.einsum("kni,ni->nk", modes[:, numbers], ways)
     return PersonSpace(mean, modes, slopes, pushed, head.anatomy)
 

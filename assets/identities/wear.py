@@ -15,6 +15,7 @@ import numpy as np
 import scipy
 
 from ...geometry.arrays import Floats64, Integers32
+from ...geometry.directions import unit_vectors
 from ..model import GLASSES, Part
 from ..topology import grid_faces
 from .person import Person
@@ -166,9 +167,9 @@ def _tube(path: Floats64, thickness: float, *, closed: bool) -> _Tube:
         along = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0)
     else:
         along = np.gradient(path, axis=0)
-    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    along = unit_vectors(along)
     first = np.cross(along, [0.31, 0.52, 0.79])
-    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    first = unit_vectors(first)
     second = np.cross(along, first)
     angle = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)[:, None, None]
     normals = np.cos(angle) * first + np.sin(angle) * second  # (corners, n, 3)

@@ -21,6 +21,7 @@ from risorius import refine, render
 from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import Scene, build_scene
 from risorius.geometry.arrays import Flags
+from risorius.geometry.directions import unit_vectors
 
 from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table, parts_without_hair
 from .experiments import Outcome
@@ -71,7 +72,7 @@ def lines_along(scene: Scene) -> list[Points]:
     directions, is_fold = find_folds(scene.faces, scene.positions)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     unit = float(np.sqrt(np.median(np.linalg.norm(normals, axis=1))))
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    normals = unit_vectors(normals)
     lift = 0.1  # mean edges that lines float over the surface
     middles = corners.mean(axis=1) + lift * unit * normals
     line_length = 0.5  # mean edges, of a line along a fold
@@ -134,7 +135,7 @@ def _shapes(corners: Points, directions: Points) -> Shapes:
     edges = np.roll(corners, -1, axis=1) - corners
     areas = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
     _, _, axes = np.linalg.svd(corners - corners.mean(axis=1, keepdims=True))
-    units = edges / np.maximum(np.linalg.norm(edges, axis=2, keepdims=True), 1e-12)
+    units = unit_vectors(edges)
     angles = np.arccos(np.clip(-(units * np.roll(units, 1, axis=1)).sum(axis=2), -1.0, 1.0))
     off = np.arccos(np.clip(np.abs((axes[:, 0] * directions).sum(axis=1)), 0.0, 1.0))
     smallest, off_fold = (np.average(each, weights=areas) for each in (angles.min(axis=1), off))

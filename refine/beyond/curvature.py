@@ -16,6 +16,7 @@ rims of ears, where long and short edges meet.)
 import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64, Unsigned32
+from ...geometry.directions import unit_vectors
 from ...geometry.normals import cross_products
 from ..kahler.criterion import Levels
 from ..mesh.connectivity import Connectivity
@@ -80,9 +81,7 @@ def _normals_of_sectors(sectors: Sectors, faces: Unsigned32, positions: Floats64
     normals = np.zeros((sectors.sector_count, 3))
     for corner in range(3):
         np.add.at(normals, sectors.corners[:, corner], crosses)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    np.divide(normals, lengths, out=normals, where=lengths > 0.0)
-    return normals
+    return unit_vectors(normals, 1e-300)
 
 
 def _diagonal(positions: Floats64) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
+from ...geometry.directions import unit_vectors
 from ...geometry.read_only import read_only
 from ...jit import njit
 from ..beyond.cubic import SLIVER_SINE
@@ -102,8 +103,7 @@ class Embedding:
         self._place(self.offsets, on_surface)
         self.offsets = fine - on_surface
         if ways is not None:
-            lengths = np.linalg.norm(ways, axis=1, keepdims=True)
-            self._normals = (ways / np.where(lengths > 0.0, lengths, 1.0)).astype(np.float32)
+            self._normals = unit_vectors(ways, 1e-300).astype(np.float32)
         self.triangles = read_only(self.triangles)
         self.weights = read_only(self.weights)
         self.offsets = read_only(self.offsets)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.arrays import Floats64, Integers64, Unsigned32
+from ...geometry.directions import unit_vectors
 from ...geometry.normals import cross_products
 from ...jit import njit
 from ..beyond.cubic import SLIVER_SINE, weigh_corners
@@ -90,9 +91,9 @@ def _shares(rest: Floats64, fans: Unsigned32, sector: Integers64, weights: Float
     areas = np.linalg.norm(crosses, axis=1)
     count = int(sector.max(initial=-1)) + 1
     normals = _sums(sector, weights[:, None] * crosses, count)
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    normals = unit_vectors(normals, 1e-300)
     across = np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)])
-    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-300)
+    across = unit_vectors(across, 1e-300)
     longest = np.maximum(np.linalg.norm(first, axis=1), np.linalg.norm(second, axis=1))
     is_proper = areas > SLIVER_SINE * longest**2
     totals = _sums(sector, np.where(is_proper, areas, 0.0)[:, None], count)[:, 0]

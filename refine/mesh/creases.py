@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.arrays import Flags, Floats64, Integers32, Unsigned32
+from ...geometry.directions import unit_vectors
 from ...jit import njit
 from .connectivity import Connectivity
 
@@ -80,8 +81,7 @@ def dihedral_angles(mesh: Connectivity, positions: Floats64) -> Floats64:
     first_sides = corners[:, 1] - corners[:, 0]
     last_sides = corners[:, 2] - corners[:, 0]
     normals = np.cross(first_sides, last_sides)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    np.divide(normals, lengths, out=normals, where=lengths > 0.0)
+    normals = unit_vectors(normals, 1e-300)
     angles = np.zeros(len(mesh.edges))
     edges = np.flatnonzero(mesh.around.is_interior)
     first, second = normals[mesh.edge_sides[edges] >> 2].swapaxes(0, 1)

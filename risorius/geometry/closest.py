@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from ..jit import njit
 from .arrays import Floats64, Integers64
+from .directions import unit_vectors
 from .normals import cross_products
 
 LEAF_SIZE = 4
@@ -59,7 +60,7 @@ def closest_points(
     order = np.argsort(places_on_curve(corners.mean(axis=1)), kind="stable")
     corners = np.ascontiguousarray(corners[order])
     ways = cross_products(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3))
-    ways /= np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 1e-300)
+    ways = unit_vectors(ways, 1e-300)
     queries = np.ascontiguousarray(points, dtype=np.float64)
     wanted = np.zeros_like(queries) if normals is None else np.array(normals, dtype=np.float64)
     distances = np.empty(len(queries))

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .arrays import Floats64
+from .directions import unit_vectors
 
 
 def cross_products(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats64:
@@ -23,8 +24,7 @@ def vertex_normals(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats
     total = np.stack(
         [np.bincount(corners, np.tile(each, 3), len(vertices)) for each in cross.T], axis=1
     )
-    normals: Floats64 = total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
-    return normals
+    return unit_vectors(total)
 
 
 def vertex_areas(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats64:

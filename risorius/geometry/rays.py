@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from ..jit import njit
 from .arrays import Floats64, Integers64
+from .directions import unit_vectors
 from .normals import cross_products
 
 PARALLEL = 1e-12  # below it a triangle is seen from its edge, and nothing is met
@@ -49,9 +50,9 @@ def exits(
     is_seen = (normals * corners[:, 0]).sum(axis=1) > 0.0  # its inner side
     normals = normals[is_seen]
     corners = corners[is_seen]
-    ways = corners / np.maximum(np.linalg.norm(corners, axis=2, keepdims=True), PARALLEL)
+    ways = unit_vectors(corners, PARALLEL)
     middle = ways.sum(axis=1)
-    middle /= np.maximum(np.linalg.norm(middle, axis=1, keepdims=True), PARALLEL)
+    middle = unit_vectors(middle, PARALLEL)
     # A triangle lies in the cone around its middle that its corners span, unless that is blunt.
     cone = np.einsum("fik,fk->fi", ways, middle).min(axis=1)
     cone_slack = 1e-6  # of a cosine, for rounding
