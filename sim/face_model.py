@@ -14,8 +14,6 @@ import numpy as np
 
 from ..geometry.arrays import Floats64, Integers64
 from .contact import PAIR_GAP, Grip, pair_lips, watch_eyeballs
-from .controls import Control
-from .coordinates import FaceSpace
 from .foundation import Foundation, foundation_of
 from .landmarks import (
     INNER_CORNERS,
@@ -25,13 +23,10 @@ from .landmarks import (
     polyline_distance,
     smoothstep,
 )
-from .layers import Layers
 from .lids import Lids, place_lids
 from .muscle_forces import MuscleForces, build_muscle_forces
 from .muscles import place_muscles
-from .rig import Rig
 from .skin_model import SkinModel
-from .skull import Skull
 from .substep import LONGEST_SUBSTEP, ROUNDING
 from .surface import SkinSurface
 from .teeth import watch_teeth
@@ -47,17 +42,10 @@ LIP_END_REACH = 32.0  # mm from the mouth line, from which on skin stays
 STEP_MARGIN = 1.0 + ROUNDING  # a substep may be this much longer than LONGEST_SUBSTEP
 
 
-@dataclass(frozen=True)
-class FaceModel:
+@dataclass(frozen=True, eq=False)
+class FaceModel(Foundation):
     """A face at rest: nothing here changes while it is simulated."""
 
-    vertices: Floats64  # (V, 3) as given [head units]
-    space: FaceSpace
-    rig: Rig
-    surface: SkinSurface
-    landmarks: Floats64  # (68, 3) mm; zeros without
-    lip_side: Floats64  # (V,) of lip_lid_sides.lip_side
-    skull: Skull
     muscles: MuscleForces
     lids: Lids | None
     skin: SkinModel
@@ -65,8 +53,6 @@ class FaceModel:
     turns: Floats64  # (V, 1) share of the head's pose: 1, fading to 0 down the neck
     passive_hold: Floats64  # (V,)
     closed_weight: Floats64  # (V,) of the mandible while the lips are kept closed over an open jaw
-    controls: tuple[Control, ...]
-    layers: Layers
 
     def grip(self, activation: Floats64, jaw: tuple[float, ...], closed: float) -> Grip:
         """How firmly the lips stick together; the jaw and some muscles part them.
@@ -136,7 +122,11 @@ def _assembled(
     closed_weight: Floats64,
 ) -> FaceModel:
     """Muscles, springs and contacts; corners: of the eyes, near which edges differ, (n, 3) [mm]."""
-    vertices, space, rig, surface, landmarks, side, skull = foundation[:7]
+    rig = foundation.rig
+    surface = foundation.surface
+    landmarks = foundation.landmarks
+    side = foundation.lip_side
+    skull = foundation.skull
     placed = place_muscles(rig, surface, landmarks, side)
     seal = rig.tissue.lip_seal * rig.tissue.stiffness_scale
     lips = pair_lips(surface, landmarks, side, seal)
@@ -155,16 +145,10 @@ def _assembled(
         edges=edges,
         lips=lips,
         eyes=watch_eyeballs(surface, skull.eyeballs),
-        teeth=watch_teeth(foundation.parts, surface, space),
+        teeth=watch_teeth(foundation.parts, surface, foundation.space),
     )
     return FaceModel(
-        vertices=vertices,
-        space=space,
-        rig=rig,
-        surface=surface,
-        landmarks=landmarks,
-        lip_side=side,
-        skull=skull,
+        **vars(foundation),
         muscles=muscles,
         lids=lids,
         skin=skin,
@@ -172,8 +156,6 @@ def _assembled(
         passive_hold=passive,
         turns=turns,
         closed_weight=closed_weight,
-        controls=foundation.controls,
-        layers=foundation.layers,
     )
 
 

@@ -9,6 +9,7 @@ Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landm
 from __future__ import annotations
 
 import pickle
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -51,7 +52,8 @@ class Given(NamedTuple):
     parts: Any  # teeth (named "teeth_..."), on which lips and cheeks rest, and a "tongue"
 
 
-class Foundation(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Foundation:
     """A head before it has muscles and springs; lengths are of the standard face [mm]."""
 
     vertices: Floats64  # (V, 3) as given [head units]

@@ -26,6 +26,7 @@ import math
 
 import numpy as np
 
+from ..geometry.arrays import Floats64
 from ..jit import njit
 from .contact import SLIDE_DISTANCE, EyeContact
 from .skin_model import SkinModel, Tick
@@ -343,12 +344,7 @@ def keep_out_of_teeth(state: State, teeth: Teeth, mandible: RigidMotion) -> None
         x[i, 0] += dx
         x[i, 1] += dy
         x[i, 2] += dz
-        squared = dx * dx + dy * dy + dz * dz
-        approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / max(squared, 1e-18)
-        if approach < 0.0:
-            v[i, 0] -= approach * dx
-            v[i, 1] -= approach * dy
-            v[i, 2] -= approach * dz
+        stop_approach(v, i, (dx, dy, dz))
 
 
 @njit
@@ -371,8 +367,16 @@ def keep_out_of_eyeballs(state: State, eyes: EyeContact) -> None:
         x[i, 0] = centre[c, 0] + dx * out
         x[i, 1] = centre[c, 1] + dy * out
         x[i, 2] = centre[c, 2] + dz * out
-        approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / squared
-        if approach < 0.0:
-            v[i, 0] -= approach * dx
-            v[i, 1] -= approach * dy
-            v[i, 2] -= approach * dz
+        stop_approach(v, i, (dx, dy, dz))
+
+
+@njit
+def stop_approach(v: Floats64, i: int, out: tuple[float, float, float]) -> None:
+    """Remove from the velocity of a vertex its part against the way out."""
+    dx, dy, dz = out
+    squared = dx * dx + dy * dy + dz * dz
+    approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / max(squared, 1e-18)
+    if approach < 0.0:
+        v[i, 0] -= approach * dx
+        v[i, 1] -= approach * dy
+        v[i, 2] -= approach * dz
