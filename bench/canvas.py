@@ -95,6 +95,23 @@ class Canvas:
         self.renderer.draw(render.Frame(view, drawing.style, skin, parts, overlays=lines))
 
 
+@dataclass(frozen=True)
+class Shot:
+    """A picture of a mesh with so many triangles, to be compared with others."""
+
+    triangles: int
+    image: Image
+
+    def off(self, other: Shot) -> Floats64:
+        """How far each pixel is from that of another picture [levels of 255], (H, W)."""
+        apart = self.image.astype(np.float64) - other.image
+        return np.asarray(np.sqrt((apart**2).mean(axis=2)))
+
+    def rms(self, truth: Shot) -> float:
+        """Root mean square of that."""
+        return float(np.sqrt((self.off(truth) ** 2).mean()))
+
+
 def parts_without_hair(scene: Scene) -> tuple[Any, ...]:
     """The parts of a scene but for hair, which hides form."""
     return tuple(part for part in scene.parts if not part.name.startswith(HAIR))

@@ -15,6 +15,9 @@ from .report import conclude, say_progress
 PATH = click.Path(path_type=Path)
 FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
+reference_option = click.option(
+    "--reference", type=FOLDER, help="A folder of `risorius bench reference`."
+)
 needed_reference = click.option(
     "--reference", type=FOLDER, required=True, help="A folder of `risorius bench reference`."
 )
@@ -67,7 +70,7 @@ def bench_embedding() -> None:
 
 
 @bench.command("quality")
-@click.option("--reference", type=FOLDER, help="A folder of `risorius bench reference`.")
+@reference_option
 @click.option(
     "--expression", "expressions", multiple=True, help="Only this one; may be given several times."
 )
@@ -91,7 +94,7 @@ def bench_quality(reference: Path | None, expressions: tuple[str, ...]) -> None:
 
 
 @bench.command("rivals")
-@click.option("--reference", type=FOLDER, help="A folder of `risorius bench reference`.")
+@reference_option
 @click.option(
     "--seconds",
     type=FiniteRange(0.05, 600.0),
@@ -134,7 +137,7 @@ def bench_motion(reference: Path) -> None:
 
 @bench.command("avatar")
 @click.option("--makehuman", type=FOLDER, help="A folder with MakeHuman's base.obj and base.json.")
-@click.option("--reference", type=FOLDER, help="A folder of `risorius bench reference`.")
+@reference_option
 def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
     """Make heads into avatars: are their vertices in place, and how far are sums of shapes off?
 

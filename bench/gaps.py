@@ -28,6 +28,7 @@ from risorius.app.dataset.openings import LOWER_EDGES, around, cut_by, opening, 
 from risorius.app.refining.presets import FIRST_PRESET, PRESETS
 from risorius.geometry.arrays import Floats64
 from risorius.geometry.normals import cross_products
+from risorius.geometry.transforms import moved_points
 
 from .report import Target, at_most, table
 from .subjects import settled_positions
@@ -170,8 +171,8 @@ def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Floats64]:
     for part in head.parts:
         if part.name.startswith("eyeball_"):
             turn = np.asarray(bones[part.bone], dtype=np.float64)
-            x = part.vertices @ turn[:3, :3].T + turn[:3, 3]
-            found[part.bone.removeprefix("eye_")] = x[part.faces]
+            vertices = moved_points(turn, part.vertices)
+            found[part.bone.removeprefix("eye_")] = vertices[part.faces]
     return found
 
 

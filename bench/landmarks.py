@@ -33,7 +33,7 @@ from risorius.geometry.polylines import arc_lengths, evenly_spaced
 from risorius.sim.landmarks import MIRRORED
 
 from .report import Target, at_most, table
-from .seen import silent
+from .seen import face_landmarker
 
 Detector = Callable[[Image], Floats64 | None]
 
@@ -146,27 +146,16 @@ def packaged_model() -> Path:
 @contextlib.contextmanager
 def _mediapipe(model: Path) -> Iterator[Detector]:
     """MediaPipe's mesh of a face, and the 68 points on it."""
-    with silent():
-        mediapipe = needed("mediapipe", "the detector", "mediapipe", package="MediaPipe")
-        from mediapipe.tasks.python import BaseOptions, vision
-    options = vision.FaceLandmarkerOptions(base_options=BaseOptions(model_asset_path=str(model)))
+    with face_landmarker(model) as look:
 
-    def detect(image: Image) -> Floats64 | None:
-        array = np.ascontiguousarray(image)
-        picture = mediapipe.Image(image_format=mediapipe.ImageFormat.SRGB, data=array)
-        found = landmarker.detect(picture).face_landmarks
-        if not found:
-            return None
-        height, width = image.shape[:2]
-        return points_of_mesh(np.array([(each.x * width, each.y * height) for each in found[0]]))
+        def detect(image: Image) -> Floats64 | None:
+            found = look(image).face_landmarks
+            if not found:
+                return None
+            height, width = image.shape[:2]
+            mesh = np.array([(each.x * width, each.y * height) for each in found[0]])
+            return points_of_mesh(mesh)
 
-    try:
-        with silent():
-            landmarker = vision.FaceLandmarker.create_from_options(options)
-            detect(np.zeros((64, 64, 3), dtype=np.uint8))  # the first call is slow
-    except (OSError, RuntimeError, ValueError) as error:
-        raise UserError(f"{model}: is no model of MediaPipe's face landmarker: {error}") from None
-    with contextlib.closing(landmarker):
         yield detect
 
 

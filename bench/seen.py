@@ -20,7 +20,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -47,32 +47,46 @@ SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
 def face_tracker(model: Path) -> Iterator[Tracker]:
     """The tracker with a model file: every shape's score in a picture (H, W, 3); {} without a face.
 
+    Raises UserError as `face_landmarker` does.
+    """
+    with face_landmarker(model, output_face_blendshapes=True) as look:
+
+        def scores(image: Image) -> Scores:
+            found = look(image).face_blendshapes
+            return {each.category_name: float(each.score) for each in found[0]} if found else {}
+
+        yield scores
+
+
+@contextlib.contextmanager
+def face_landmarker(model: Path, **options: bool) -> Iterator[Callable[[Image], Any]]:
+    """MediaPipe's face landmarker with a model file: its result for a picture (H, W, 3).
+
     UserError where the file is no model, and where MediaPipe is not installed.
     """
     with silent():
         mediapipe = needed("mediapipe", "the face tracker", "mediapipe", package="MediaPipe")
         from mediapipe.tasks.python import BaseOptions, vision
-    options = vision.FaceLandmarkerOptions(
-        base_options=BaseOptions(model_asset_path=str(model)), output_face_blendshapes=True
-    )
+    base = BaseOptions(model_asset_path=str(model))
 
-    def scores(image: Image) -> Scores:
+    def look(image: Image) -> Any:
         array = np.ascontiguousarray(image)
         picture = mediapipe.Image(image_format=mediapipe.ImageFormat.SRGB, data=array)
-        found = landmarker.detect(picture).face_blendshapes
-        return {each.category_name: float(each.score) for each in found[0]} if found else {}
+        return landmarker.detect(picture)
 
     try:
         with silent():
-            landmarker = vision.FaceLandmarker.create_from_options(options)
-            scores(np.zeros((64, 64, 3), dtype=np.uint8))  # the first call is slow
+            landmarker = vision.FaceLandmarker.create_from_options(
+                vision.FaceLandmarkerOptions(base_options=base, **options)
+            )
+            look(np.zeros((64, 64, 3), dtype=np.uint8))  # the first call is slow
     except (OSError, RuntimeError, ValueError) as error:
         raise UserError(
             f"{model}: is no model of MediaPipe's face landmarker, which is called "
             f"face_landmarker.task: {error}"
         ) from None
     with contextlib.closing(landmarker):  # left open it fails as Python ends
-        yield scores
+        yield look
 
 
 @contextlib.contextmanager

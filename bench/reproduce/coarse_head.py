@@ -26,7 +26,7 @@ from risorius.app.scenes import FaceScene
 from risorius.assets.coarse import coarse_head
 from risorius.geometry.arrays import Flags, Floats64
 
-from ..canvas import CLAY, Canvas, Drawing, image_table, parts_without_hair
+from ..canvas import CLAY, Canvas, Drawing, Shot, image_table, parts_without_hair
 from ..subjects import SETTLE, fine_simulation, settled_positions
 from .experiments import Outcome
 
@@ -36,23 +36,12 @@ LOOKS = (STATIC, PAPERS_PRESET, FIRST_PRESET)
 
 
 @dataclass(frozen=True)
-class Cell:
+class Cell(Shot):
     """The picture of one expression by one look, and where the head is in it, (H, W)."""
 
-    triangles: int
-    image: Image
     is_head: Flags
     smoother: float
     """Angle between neighbouring triangles where edges are split, over that of the mesh there."""
-
-    def off(self, other: Cell) -> Floats64:
-        """How far each pixel is from that of another picture [levels of 255], (H, W)."""
-        apart = self.image.astype(np.float64) - other.image
-        return np.asarray(np.sqrt((apart**2).mean(axis=2)))
-
-    def rms(self, truth: Cell) -> float:
-        """Root mean square of that."""
-        return float(np.sqrt((self.off(truth) ** 2).mean()))
 
     def wrong(self, truth: Cell) -> int:
         """Pixels that are the head here or in truth, but not in both."""

@@ -24,8 +24,8 @@ from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene
 from risorius.geometry.arrays import Flags, Unsigned8
 
-from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table, parts_without_hair
-from ..subjects import SETTLE, Points, fine_simulation, settled_positions
+from ..canvas import FLAT, GOURAUD, Canvas, Drawing, Shot, image_table, parts_without_hair
+from ..subjects import SETTLE, fine_simulation, settled_positions
 from .border_turn import BorderTurn
 from .experiments import Outcome
 
@@ -65,22 +65,11 @@ class Viewpoint:
 
 
 @dataclass(frozen=True)
-class Cell:
+class Cell(Shot):
     """The picture of one expression by one variant."""
 
     title: str
-    triangles: int
-    smooth: Image
     kinds: Unsigned8  # skin, mouth, background, FINER times as fine, (H, W)
-
-    def off(self, truth: Cell) -> Points:
-        """How far each pixel of the smooth picture is from the truth [levels of 255], (H, W)."""
-        apart = self.smooth.astype(np.float64) - truth.smooth
-        return np.asarray(np.sqrt((apart**2).mean(axis=2)))
-
-    def rms(self, truth: Cell) -> float:
-        """Root mean square of that."""
-        return float(np.sqrt((self.off(truth) ** 2).mean()))
 
     def wrong(self, truth: Cell) -> Flags:
         """Fine pixels that are the opening of the mouth here, or there, but not in both."""
@@ -118,8 +107,7 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
             errors.append(cell.rms(truth) / static.rms(truth))
             edges.append(cell.wrong(truth).sum() / static.wrong(truth).sum())
         smooth = [
-            (f"{cell.title}, {cell.triangles}, {cell.rms(truth):.1f}", cell.smooth)
-            for cell in cells
+            (f"{cell.title}, {cell.triangles}, {cell.rms(truth):.1f}", cell.image) for cell in cells
         ]
         openings = [
             (f"{cell.wrong(truth).sum()} pixels wrong", cell.opening(truth)) for cell in cells
@@ -183,7 +171,7 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
                 )
                 of_kind = kinds.argmax(axis=2).astype(np.uint8)
                 triangles = canvas.mesh_of(refiner).triangle_count
-                cells.append(Cell(title, triangles, _smaller(smooth), of_kind))
+                cells.append(Cell(triangles, _smaller(smooth), title, of_kind))
             yield viewpoint.expression, cells
 
 
