@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..geometry.arrays import Flags, Floats32
+from ..geometry.transforms import moved_points
 from .camera import PlacedView
 from .frame import Frame
 from .parts import PlacedBuffers
@@ -81,9 +82,8 @@ class FarthestDepths:
         faces = []
         first = 0
         for buffers, part in placed:
-            transform = part.transform
             for side in buffers.sides():
-                vertices.append(side @ transform[:3, :3].T + transform[:3, 3])
+                vertices.append(moved_points(part.transform, side))
                 faces.append(buffers.faces + first)
                 first += len(side)
         if not placed:

@@ -10,6 +10,7 @@ import numpy as np
 from risorius.geometry.colour import to_linear
 
 from ..geometry.arrays import Flags, Floats32, Floats64, Integers32
+from ..geometry.transforms import moved_points
 from .camera import PlacedView, box_corners
 from .frame import DrawnPart, PlacedPart
 from .translucency import blending
@@ -162,8 +163,7 @@ class PlacedBuffers(NamedTuple):
     @property
     def corners(self) -> Floats64:
         """Of a box in the world that holds it, shape (8, 3)."""
-        transform = self.part.transform
-        return self.buffers.corners @ transform[:3, :3].T + transform[:3, 3]
+        return moved_points(self.part.transform, self.buffers.corners)
 
 
 class PartStore:

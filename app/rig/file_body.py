@@ -23,6 +23,7 @@ from risorius.assets.meshes import Mesh
 from risorius.geometry.arrays import Floats64, Integers, Integers32
 from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.transforms import moved_points
 
 from ..scenes.surface_attachment import SurfaceAttachment
 from .bodies import EYES
@@ -94,11 +95,11 @@ class FileBody:
                 turned = (self.rest[numbers] - pivot) @ pose.matrices[role][:3, :3].T
                 moved[numbers] = pivot + turned
             elif role == "lower_teeth":
-                moved[numbers] = _by(mandible, self.rest[numbers])
+                moved[numbers] = moved_points(mandible, self.rest[numbers])
             elif role == "mouth":
                 moved[numbers] = self._between_jaws(numbers, mandible)
             elif role == TONGUE:
-                moved[numbers] = _by(mandible, pose.parts[TONGUE].astype(np.float64))
+                moved[numbers] = moved_points(mandible, pose.parts[TONGUE].astype(np.float64))
         if self._lashes is not None:
             self._lashes.follow(pose.skin, pose.matrices[CRANIUM])
             moved[self._pieces["on_skin"]] = self._lashes.vertices
@@ -122,7 +123,7 @@ class FileBody:
         share = np.clip((self._lip_height - points[:, 1]) / LIP_HEIGHT + 0.5, 0.0, 1.0)
         depth = points[:, 2] - points[:, 2].min()
         share *= np.clip(2.0 * depth / max(float(depth.max()), 1e-9), 0.0, 1.0)  # throat: skull
-        moved: Floats64 = points + share[:, None] * (_by(mandible, points) - points)
+        moved: Floats64 = points + share[:, None] * (moved_points(mandible, points) - points)
         return moved
 
     def _attached(self, head: FittedHead) -> SurfaceAttachment:
@@ -208,9 +209,3 @@ def _part(
     colours = np.tile(np.array(TONGUE_COLOUR, np.float32), (len(points), 1))
     normals = vertex_normals(points, faces).astype(np.float32)
     return Part(name, points.astype(np.float32), normals, faces, colours, bone, 0.5, roots)
-
-
-def _by(matrix: Floats64, points: Floats64) -> Floats64:
-    """Points (n, 3) moved by a matrix (4, 4)."""
-    moved: Floats64 = points @ matrix[:3, :3].T + matrix[:3, 3]
-    return moved

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from risorius.geometry.arrays import Floats32, Floats64
+from risorius.geometry.transforms import moved_points
 
 from ..errors import UserError
 from ..motion.curves import ACTION_UNITS, sided
@@ -109,7 +110,5 @@ def settings_of(scene: FaceScene, name: str) -> tuple[dict[str, float], dict[str
 
 def moved_part(part: Any, pose: Pose) -> Floats64:
     """Where the vertices of a part are in a pose, seen from the cranium, shape (n, 3)."""
-    matrix = pose.matrices[part.bone]
     points = pose.parts[part.name].astype(np.float64)
-    moved: Floats64 = points @ matrix[:3, :3].T + matrix[:3, 3]
-    return moved
+    return moved_points(pose.matrices[part.bone], points)

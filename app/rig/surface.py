@@ -9,6 +9,7 @@ import numpy as np
 from risorius import refine
 from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.transforms import moved_points
 
 METRES = 0.001  # a millimetre; programs for animation take bare numbers for metres
 
@@ -42,9 +43,7 @@ class MovingSurface:
         points = self.rest if self.shapes is None else self.shapes[frame].astype(np.float64)
         if self.matrices is None:
             return points
-        matrix = self.matrices[frame]
-        moved: Floats64 = points @ matrix[:3, :3].T + matrix[:3, 3]
-        return moved
+        return moved_points(self.matrices[frame], points)
 
     def normals_of(self, points: Floats64, frame: int | None) -> Floats64:
         """Unit normals of the vertices, shape (V, 3), where they are at `points` in a frame.

@@ -19,6 +19,7 @@ from risorius.geometry.rays import exits
 
 from ...geometry.arrays import Floats32, Floats64, Integers32
 from ...geometry.sides import sides_of
+from ...geometry.transforms import moved_points
 from ..model import Head, Part
 from .warp import Similarity, ThinPlateSpline
 
@@ -51,7 +52,7 @@ def stretched_walls(walls: Floats64, shares: ShareArray, mandible: Floats64) -> 
     shares: how far each goes with the mandible, 0 to 1, shape (n,). mandible: how that has moved,
     seen from the skull, a matrix (4, 4) for column vectors.
     """
-    moved = walls @ mandible[:3, :3].T + mandible[:3, 3]
+    moved = moved_points(mandible, walls)
     return np.asarray(walls + shares[:, None] * (moved - walls))
 
 
