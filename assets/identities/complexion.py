@@ -112,7 +112,7 @@ def recoloured(
     shaded = 1.0 - (1.0 - root_light) * covered
     light = np.empty_like(tints.light)
     relief = features.relief * tints.detail
-    lips = features.lips * BLOOD
+    lips = features.lips * BLOOD - features.pale_lips * np.maximum(density, 0.0)
     beard = features.beard * SHADOW
     # In double precision it takes twice as long.
     density, redness, hair, skin, lips, beard = np.array(

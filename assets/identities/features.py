@@ -19,7 +19,8 @@ class Features:
 
     brows: of a person, else the built-in head's. lid_line: how dark lashes make the edges of the
     lids, 0 to 1. stubble: how much of the skin short hairs of a beard cover. beard, lips: density
-    of its shadow, and of blood in them, beside that of the built-in head. relief: of pores and
+    of its shadow, and of blood in them, beside that of the built-in head. pale_lips: share of the
+    skin's further melanin that lips lack. relief: of pores and
     patches, beside its own. fair, grey: shares of such hair. hairline: where hair begins. iris: how
     irises differ from most of their colour.
     """
@@ -29,6 +30,7 @@ class Features:
     stubble: float = 0.0
     beard: float = 0.0
     lips: float = 0.0
+    pale_lips: float = 0.0
     relief: float = 0.0
     fair: float = 0.0
     grey: float = 0.0
@@ -43,26 +45,35 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
     """Brows, beard, lips, hair and relief of somebody of that sex and age, chosen by eye.
 
     Women's eyes and lips are darker beside their skin (Russell 2009, "A sex difference in facial
-    contrast and its exaggeration by cosmetics", Perception 38:1211-1219).
+    contrast and its exaggeration by cosmetics", Perception 38:1211-1219), less so with age
+    (Porcheron, Mauger, Russell 2013, PLoS ONE 8:e57985). Lips of dark skin differ most, from its
+    own lightness to far lighter and pinker ones (Vergnaud and others 2024, "Lip color diversity",
+    Skin Res. Technol. 30:e13583); on light skin `pale_lips` changes nothing.
     """
     is_man = identity.sex is Sex.MAN
     years = identity.age
-    beard, lips, fair, grey, line, hairs = random.uniform(0.0, 1.0, 6)
+    beard, _, fair, grey, line, hairs = random.uniform(0.0, 1.0, 6)
     fair_skin = 45.0  # ITA above which hair may be fair
     shaved_density = 0.12  # of hair in the shipped picture
+    brows = drawn_brows(is_man, years, random)
+    hairline = drawn_hairline(is_man, years, random)
+    iris = drawn_iris(random)
+    blood_chance, pale_chance = np.clip(random.normal(size=2), -2.0, 2.0).tolist()
+    fading = 1.0 - 0.006 * (years - 20.0)
+    blood = -0.05 + 0.13 * blood_chance if is_man else fading * (0.48 + 0.2 * blood_chance)
+    pale = 0.12 + 0.15 * pale_chance
     return Features(
-        brows=drawn_brows(is_man, years, random),
+        brows=brows,
         lid_line=0.2 * line if is_man else 0.5 + 0.4 * line,
         stubble=float(is_man) * max(2.0 * hairs - 1.1, 0.0),
         beard=0.1 + 0.8 * beard**1.3 if is_man else -shaved_density,
-        lips=-0.12 + 0.1 * lips
-        if is_man
-        else (0.25 + 0.45 * lips) * (1.0 - 0.006 * (years - 20.0)),
+        lips=blood,
+        pale_lips=pale,
         relief=(0.15 if is_man else -0.6) + 0.02 * (years - 30.0),
         fair=fair if angle > fair_skin else 0.0,
         grey=_share_of_grey(years, angle, grey),
-        hairline=drawn_hairline(is_man, years, random),
-        iris=drawn_iris(random),
+        hairline=hairline,
+        iris=iris,
     )
 
 

@@ -138,7 +138,8 @@ def _on_neck(points: Floats64, chin: Floats64, sex: Sex) -> Floats64:
     jaw_slope = 0.35  # of the jaw's line, up to the back
     jaw_depth = 20.0  # [mm] where it ends
     below = chin[1] - points[:, 1:2] + jaw_slope * (chin[2] - np.maximum(points[:, 2:], jaw_depth))
-    narrowing = 0.12  # share, of women's
+    # Share, of women's: 330 mm around beside 398 (Gordon and others 2014, ANSUR II).
+    narrowing = 0.17
     fade_height = 30.0  # [mm] below it, where the neck begins
     narrower = narrowing * (sex is Sex.WOMAN) * smooth_step(0.0, fade_height, below)
     neck_axis = np.array([0.0, 0.0, -8.0])  # [mm]

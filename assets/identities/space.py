@@ -4,10 +4,10 @@ A person is the mean with a weight for each mode; a weight of 1 is one deviation
 modes were fitted to those of ICT-FaceKit as the head's form was (docs/head.md), and turned so that
 the first ones move the face most (principal components). They know neither sex nor age.
 
-Weights are drawn freely, by the law of the modes, 1 to 1.2 times as wide as people's but for the
-size of the head. Sex and age move the middle of the draw in some directions: by what parts the
-published measures of women and men (`assets.norms`), and by points that go their way (brow ridge,
-jaw, chin of men; skin that sags); how far is chosen by eye, after anatomists. The norms are of
+Weights are drawn freely, by the law of the modes, 1.1 to 1.2 times as wide as people's but for the
+size of the head. Sex and age move the middle of the draw to where sexes lie as far apart
+as the published measures of women and men (`assets.norms`), and as some points do (brow ridge, jaw,
+chin of men; skin that sags); how far those is chosen by eye, after anatomists. The norms are of
 Europeans. How near the middle of a draw comes to their means, rather than to that of all people
 whose modes these are, is drawn anew for each person, from not at all to wholly. Neither this nor
 the form knows the tone of the skin: that they are independent is an assumption.
@@ -38,15 +38,17 @@ from .population import EVERYBODY, Population
 MOST = 2.5  # deviations
 PRESSED = {"go-go": 10.0, "zy-zy": 4.0, "ft-ft": 2.0}  # [mm] by calipers, both sides together
 YOUNG = 30.0  # [years] from which on age is seen
-# Points of the left half, an anatomical name or the number of a landmark, a way that they go, and
-# how far ten years take them, and how far a man's lie from a person's of no sex [mm].
+# Points of the left half, an anatomical name or the number of a landmark, a way that they go, how
+# far ten years take them, and how far a man's lie from a person's of no sex [mm]. Up and forward
+# they are taken from the outer corner of the eye, so that a large head has no low brow. Those of
+# the jaw and the corners of the mouth have half of what parts the published widths and heights.
 POINTS: tuple[tuple[str | int, tuple[float, float, float], float, float], ...] = (
-    (24, (0, -1, 0), 0.35, 0.3), (26, (0, -1, 0), 0.35, 0.3), (24, (0, 0, 1), 0.0, 1.6),
-    ("glabella", (0, 0, 1), 0.0, 1.8), ("metopion", (0, 0, -1), 0.0, 1.2),
-    ("palpebrale_superius_left", (0, -1, 0), 0.2, 0.4), ("cheek_left", (-1, 0, -1), 0.35, 1.2),
-    ("cheilion_left", (0, -1, 0), 0.3, 0.0), ("labiale_superius", (0, 0, -1), 0.2, 1.0),
-    ("labiale_inferius", (0, 0, -1), 0.2, 1.0), (9, (1, 0, 0), 0.0, 2.6), (10, (1, 0, 0), 0.0, 3.0),
-    (11, (1, -1, 0), 0.35, 2.0), (12, (1, -1, 0), 0.35, 2.0), ("pogonion", (0, -1, 1), 0.0, 1.6),
+    (24, (0, -1, 0), 0.35, 1.4), (26, (0, -1, 0), 0.35, 1.4), (24, (0, 0, 1), 0.0, 2.6),
+    ("glabella", (0, 0, 1), 0.0, 3.1), ("metopion", (0, 0, -1), 0.0, 1.6),
+    ("palpebrale_superius_left", (0, -1, 0), 0.2, 0.4), ("cheek_left", (-1, 0, -1), 0.35, 1.8),
+    ("cheilion_left", (0, -1, 0), 0.3, 2.2), ("labiale_superius", (0, 0, -1), 0.2, 0.6),
+    ("labiale_inferius", (0, 0, -1), 0.2, 0.6), (9, (1, 0, 0), 0.0, 2.4), (10, (1, 0, 0), 0.0, 3.0),
+    (11, (1, -1, 0), 0.35, 3.3), (12, (1, -1, 0), 0.35, 3.3), ("pogonion", (0, 0, 1), 0.0, 2.0),
 )  # fmt: skip
 
 
@@ -125,14 +127,15 @@ class PersonSpace:
         """The weights of somebody of that sex and age [years], shape (k,)."""
         chance = np.clip(random.normal(size=len(self.modes)), -MOST, MOST)
         near_norms = float(random.uniform())
-        rows, off = self._measured(sex, near_norms)
+        rows, beside, apart = self._measured(sex)
         unit = np.eye(len(self.modes))
-        # Higher, because noses come too far forward without it.
-        firmness_of = MappingProxyType({"sn-prn": 5.0, "ft-ft": 1.5})
+        # Higher, because noses come too far forward without it, and brows draw them long.
+        firmness_of = MappingProxyType({"sn-prn": 5.0, "ft-ft": 1.5, "n-sn": 4.0})
         firmly = np.array([firmness_of.get(code, 1.0) for code in NORMS])[:, None]
         mean_firmness = 4.0  # of published means, beside the modes
-        held = mean_firmness * rows.T @ (firmly * rows)
-        mean = np.linalg.solve(unit + held, mean_firmness * rows.T @ (firmly[:, 0] * off))
+        asked = mean_firmness * (firmly * rows).T
+        held = unit + asked @ rows
+        middle = np.linalg.solve(held, asked @ (near_norms * beside))
         decades = max(age - YOUNG, 0.0) / 10.0
         side = 1.0 if sex is Sex.MAN else -1.0
         far = np.array([decades * older + side * male for _, _, older, male in POINTS])
@@ -147,32 +150,32 @@ class PersonSpace:
                 "ch-ch": 0.1,
             }
         )
-        scores = decades * np.array([aged_measures.get(code, 0.0) for code in NORMS])
+        aged = decades * np.array([aged_measures.get(code, 0.0) for code in NORMS])
         tolerance = 0.7  # [mm] in pushed points
-        pushes = mean_firmness * rows.T @ scores + self.pushed.T @ far / tolerance**2
-        mean += np.linalg.solve(unit + held + self.pushed.T @ self.pushed / tolerance**2, pushes)
+        pushes = asked @ (apart + aged) + self.pushed.T @ far / tolerance**2
+        own = np.linalg.solve(held + self.pushed.T @ self.pushed / tolerance**2, pushes)
+        mean = middle + own
         # Deviations of the first mode, which is the size of the head, of the second one, and from
-        # the seventh on.
-        widths = {0: 0.6, 1: 1.0, 6: 1.2}
+        # the fifth on.
+        widths = {0: 0.6, 1: 1.1, 4: 1.2}
         width = np.interp(np.arange(len(unit)), list(widths), list(widths.values()))
         most_deviations = 4.0  # of any weight that is drawn
         return np.clip(mean + width * chance, -most_deviations, most_deviations)
 
-    def _measured(self, sex: Sex, near_norms: float) -> tuple[Floats64, Floats64]:
-        """The norms as equations for weights: rows (m, k), right side (m,), in deviations.
+    def _measured(self, sex: Sex) -> tuple[Floats64, Floats64, Floats64]:
+        """The norms as equations for weights: rows (m, k), and right sides in deviations, (m,).
 
-        near_norms: 0 leaves the mean of people where it is, but for what parts the sexes; 1 asks
-        for the published means.
+        The first right side leads from the mean of people to that of the norms of both sexes, the
+        second one from there to those of a sex.
         """
         found = measures_of(self.mean, self.anatomy)
         norms = norms_of(sex)
-        off = []
-        for code, norm in NORMS.items():
-            middle = 0.5 * (norm.women.mean + norm.men.mean)
-            beside = middle + PRESSED.get(code, 0.0) - found[code]
-            off.append(near_norms * beside + norms[code].mean - middle)
+        middles = np.array([0.5 * (norm.women.mean + norm.men.mean) for norm in NORMS.values()])
+        surface = np.array([found[code] - PRESSED.get(code, 0.0) for code in NORMS])
+        means = np.array([sample.mean for sample in norms.values()])
         deviations = np.array([sample.deviation for sample in norms.values()])
-        return self.slopes / deviations[:, None], np.array(off) / deviations
+        rows = self.slopes / deviations[:, None]
+        return rows, (middles - surface) / deviations, (means - middles) / deviations
 
 
 @lru_cache(maxsize=1)
@@ -190,7 +193,8 @@ def person_space() -> PersonSpace:
     numbers = [head.landmarks[p] if isinstance(p, int) else head.anatomy[p] for p in named]
     ways = np.array([way for _, way, *_ in POINTS], dtype=np.float64)
     ways = unit_vectors(ways)
-    pushed = np.einsum("kni,ni->nk", modes[:, numbers], ways)
+    corner = modes[:, head.anatomy["exocanthion_left"]] * [0.0, 1.0, 1.0]
+    pushed = np.einsum("kni,ni->nk", modes[:, numbers] - corner[:, None], ways)
     return PersonSpace(mean, modes, slopes, pushed, head.anatomy)
 
 
@@ -230,7 +234,7 @@ def sample_identity(
         cut,
         tuple(weights.tolist()),
         tuple(uneven.tolist()),
-        covered=float(1.7 - 0.3 * is_woman + 0.42 * covered + 0.15 * late),
+        covered=float(np.clip(1.7 - 0.3 * is_woman + 0.6 * covered + 0.15 * late, 0.5, 3.0)),
         corners=float(0.7 + 0.3 * is_woman + 0.65 * corners - 0.08 * late),
         brows=float((1.0 if is_woman else 0.0) + 1.2 * brows - 0.2 * late),
         furrows=furrows,

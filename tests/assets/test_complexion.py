@@ -11,6 +11,7 @@ from risorius.assets.identities import (
     DARKEST,
     LIGHTEST,
     Features,
+    Sex,
     coloured,
     drawn_irises,
     features_of,
@@ -210,6 +211,23 @@ def test_features_do_what_their_names_say(head):
     assert (bald == Segment.HAIR).sum() < (head.segments == Segment.HAIR).sum()
     for side in (Segment.LEFT_BROW, Segment.RIGHT_BROW):
         assert 0.4 < (bald == side).sum() / (head.segments == side).sum() < 2.5
+
+
+def test_lips_differ_by_person(head):
+    """Blood in them by a good part of its mean; of dark skin they are paler, of light skin not."""
+    random = np.random.default_rng(3)
+    woman, man = (sample_identity(1, sex=sex, age=30.0) for sex in (Sex.WOMAN, Sex.MAN))
+    drawn = {who: [features_of(who, -40.0, random) for _ in range(80)] for who in (woman, man)}
+    blood = {who: [each.lips for each in found] for who, found in drawn.items()}
+    assert np.mean(blood[woman]) > np.mean(blood[man]) + 0.3
+    assert np.std(blood[woman]) > 0.15
+    assert np.std(blood[man]) > 0.1
+    assert np.std([each.pale_lips for each in drawn[woman]]) > 0.1
+    pale = Features(pale_lips=0.4)
+    assert (recoloured(65.0, features=pale) == recoloured(65.0)).all()
+    off = recoloured(-40.0, features=pale).astype(int) - recoloured(-40.0)
+    assert off[head.segments == Segment.TOP_LIP].mean() > 5.0
+    assert np.abs(off[head.segments == Segment.NECK]).max() == 0
 
 
 def test_hair_turns_grey_as_in_the_survey():

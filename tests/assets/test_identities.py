@@ -24,6 +24,7 @@ from risorius.assets.identities import (
 )
 from risorius.assets.identities.space import person_space, scores_of
 from risorius.assets.intersections import self_intersections
+from risorius.assets.loading import load
 from risorius.assets.norms import NORMS, measures_of
 from risorius.bench.gaps import eyeballs_of, lid_gaps, widest_slit
 from tests.assets.checks import mirror_error
@@ -90,6 +91,37 @@ def test_persons_are_spread_as_published():
     for code in ("n-gn", "al-al", "zy-zy", "go-go", "ch-ch"):
         published = NORMS[code].men.mean - NORMS[code].women.mean
         assert means[Sex.MAN][code] - means[Sex.WOMAN][code] > 0.4 * published, code
+
+
+def test_women_and_men_differ_as_measured():
+    """Of people alike but for sex: as published, nearly; men's brows lie lower and farther out.
+
+    Brows are taken from the corners of the eyes. Women's necks are a sixth narrower.
+    """
+    space = person_space()
+    weights = {
+        sex: np.mean([space.draw(sex, 30.0, np.random.default_rng(k)) for k in range(20)], axis=0)
+        for sex in Sex
+    }
+    faces = {sex: space.mean + space.moved(mean) for sex, mean in weights.items()}
+    found = {sex: measures_of(face, space.anatomy) for sex, face in faces.items()}
+    for code in ("n-gn", "n-sn", "al-al", "zy-zy", "go-go", "ex-ex"):
+        published = NORMS[code].men.mean - NORMS[code].women.mean
+        assert 0.5 < (found[Sex.MAN][code] - found[Sex.WOMAN][code]) / published < 1.5, code
+    corner = space.anatomy["exocanthion_left"]
+    man, woman = (faces[sex] - faces[sex][corner] for sex in (Sex.MAN, Sex.WOMAN))
+    brow = load("head").landmarks[24]
+    assert 1.5 < woman[brow, 1] - man[brow, 1] < 4.0
+    assert 3.0 < man[brow, 2] - woman[brow, 2] < 6.0
+
+
+def test_womens_necks_are_narrower():
+    """By a sixth, as they were measured, where all else is one person's."""
+    identity = sample_identity(4, is_even=True)
+    her, him = (make_person(replace(identity, sex=sex)) for sex in (Sex.WOMAN, Sex.MAN))
+    is_neck = him.vertices[:, 1] < him.vertices[him.anatomy["menton"], 1] - 40.0
+    shares = np.ptp(her.vertices[is_neck, 0]) / np.ptp(him.vertices[is_neck, 0])
+    assert shares == approx(0.83, abs=0.02)
 
 
 def test_nine_of_ten_parts_of_what_differs_need_eight_ways():
