@@ -9,7 +9,7 @@ landmarks, teeth and picture fit as they are.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +34,7 @@ class CoarseHead(FittedHead):
     """
 
     mandible_weight: Floats64
-    jaw_axis: Floats64
+    jaw_axis: Floats64 = field(kw_only=True)
     anatomy: Mapping[str, int]
     mirror: Integers32
 

@@ -35,6 +35,7 @@ from ..topology import boundary_loops
 from ..user_files import named
 from . import simplifying
 from .face_place import ORIENTING, is_face, placed
+from .jaw_place import jaw_axis_of, opening_as_people
 from .landmark_file import (
     COUNT,
     MisfitError,
@@ -66,9 +67,9 @@ from .warp import Similarity, ThinPlateSpline, nearest_on
 class FittedHead(simplifying.SimulatedHead):
     """A head that somebody brought, with all that `sim.create` and a renderer read.
 
-    The attributes are those of `Head`, in its millimetres and axes, but for the jaw's, which
-    `sim.create` finds by the landmarks. What hangs together with no landmark (eyeballs, teeth of
-    the mesh's own) was left away.
+    The attributes are those of `Head`, in its millimetres and axes, but for the mandible's share,
+    which `sim.create` finds by the landmarks. What hangs together with no landmark (eyeballs,
+    teeth of the mesh's own) was left away.
 
     to_millimetres: takes the file's coordinates to these.
     file_vertices: numbers in the file of the vertices, or of the nearest, shape (V,), int32.
@@ -208,6 +209,24 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
     landmarks: vertex numbers, shape (68,); points: where they lie exactly [unit of the mesh], shape
     (68, 3), unless at those vertices. Raises AssetError for a mesh that cannot work.
     """
+    return _with_jaw(_without_jaw(mesh, landmarks, points))
+
+
+def _with_jaw(head: FittedHead) -> FittedHead:
+    """The head with a jaw in front of its ears, where it has such; so its simplified mesh."""
+    landmarks = head.vertices[head.landmarks]
+    axis = jaw_axis_of(head.vertices, head.faces, landmarks)
+    if axis is None:
+        return head
+    rig = opening_as_people(head.rig, axis, landmarks)
+    simplified = head.simplified
+    if simplified is not None:
+        simplified = replace(simplified, jaw_axis=axis, rig=rig)
+    return replace(head, jaw_axis=axis, rig=rig, simplified=simplified)
+
+
+def _without_jaw(mesh: Mesh, landmarks: Integers32, points: Floats64 | None) -> FittedHead:
+    """Fit all but the jaw; see `fit`."""
     known = load("head")
     points = mesh.vertices[landmarks] if points is None else points
     faces, landmarks = with_seams_joined(mesh.vertices, mesh.faces, landmarks)

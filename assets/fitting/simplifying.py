@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,10 @@ SIMPLIFIED = 15_000  # triangles are left
 
 @dataclass(frozen=True)
 class SimulatedHead:
-    """A mesh with all that `sim.create` reads; its attributes are those of `Head`."""
+    """A mesh with all that `sim.create` reads; its attributes are those of `Head`.
+
+    jaw_axis: None where no ear shows it; then `sim.create` guesses it from the landmarks.
+    """
 
     vertices: Floats64
     faces: Integers32
@@ -34,6 +37,7 @@ class SimulatedHead:
     parts: tuple[Part, ...]
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
+    jaw_axis: Floats64 | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         make_read_only(self)

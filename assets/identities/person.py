@@ -43,7 +43,7 @@ class Person(FittedHead):
     """
 
     mandible_weight: Floats64
-    jaw_axis: Floats64
+    jaw_axis: Floats64 = field(kw_only=True)
     anatomy: Mapping[str, int]
     mirror: Integers32
     identity: Identity

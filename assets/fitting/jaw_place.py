@@ -1,0 +1,114 @@
+"""The jaw of a mesh: its axis is found in front of the ears, its angle by how far people open.
+
+An ear stands off the side of a head, so its front is where the outline of level sections leaps out.
+The condyles lie a finger's breadth in front of the ear canal, well below the skin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from risorius.geometry.arrays import Floats64, Integers32
+
+USUAL_WIDTH = 136.0  # [mm] between the landmarks before the ears, to which lengths here belong
+
+
+def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> Floats64 | None:
+    """Centres of the right and the left condyle [mm], shape (2, 3); None: no ear is to be seen.
+
+    vertices: a head in the place of the built-in one [mm], (V, 3). faces: (F, 3).
+    landmarks: their places [mm], (68, 3).
+    """
+    width = landmarks[16, 0] - landmarks[0, 0]
+    scale = width / USUAL_WIDTH
+    eyes = (landmarks[36] + landmarks[45]) / 2.0
+    places = (vertices - eyes) / scale
+    is_near = (np.abs(places[:, 1] + 20.0) < 60.0) & (places[:, 2] > -150.0)
+    points = _spread(places, faces[is_near[faces].all(axis=1)])
+    found = [_ear(points * (side, 1.0, 1.0)) for side in (-1.0, 1.0)]
+    ears = [ear for ear in found if ear is not None]
+    if not ears:
+        return None
+    middle, front = np.mean(ears, axis=0)
+    above_middle = 5.0  # [mm] of an ear's middle lies the canal's upper edge
+    before = 14.0  # [mm]: from the root of the helix over the tragus to the condyle
+    # An ear's size and height vary more than the joint's place in the face.
+    up = np.clip(middle + above_middle, -30.0, -8.0)
+    forward = np.clip(front + before, -75.0, -40.0)
+    out = 0.36 * USUAL_WIDTH
+    return np.asarray(eyes + scale * np.array([[-out, up, forward], [out, up, forward]]))
+
+
+def opening_as_people(
+    rig: Mapping[str, Any], axis: Floats64, landmarks: Floats64
+) -> dict[str, Any]:
+    """A rig whose jaw lowers the teeth as far as people do; it turns and glides more or less.
+
+    axis: of the jaw (2, 3) [mm]. landmarks: (68, 3) [mm]; the lower lip stands for the teeth. The
+    opening is seven tenths of the widest, 50 mm between the teeth of men, and grows with the
+    distance from the axis to the teeth.
+    """
+    jaw = dict(rig["jaw"])
+    down, forward = (landmarks[66] - axis.mean(axis=0))[1:] * (-1.0, 1.0)
+    reach = float(np.hypot(down, forward))
+    opening = 0.7 * 50.0 / 100.0  # share of the reach, which is 100 mm in men
+    gains = np.linspace(0.8, 1.3, 51)
+    angles = gains * np.radians(jaw["opening_deg"])
+    sunk = forward * np.sin(angles) - down * (1.0 - np.cos(angles))
+    sunk -= gains * jaw["opening_glide"][1]
+    gain = float(np.interp(opening * reach, sunk, gains))
+    jaw["opening_deg"] *= gain
+    jaw["opening_glide"] = [gain * way for way in jaw["opening_glide"]]
+    return {**rig, "jaw": jaw}
+
+
+def _spread(places: Floats64, faces: Integers32) -> Floats64:
+    """Points all over triangles, (n, 3), so that no section misses them."""
+    shares = [(i, j, 6 - i - j) for i in range(7) for j in range(7 - i)]
+    corners = places[faces]
+    return np.concatenate([np.einsum("fcx,c->fx", corners, np.array(s) / 6.0) for s in shares])
+
+
+def _ear(points: Floats64) -> tuple[float, float] | None:
+    """Height of the middle of the left ear and how far its front lies forward, from the eyes [mm].
+
+    None where fewer than five sections show an ear.
+    """
+    heights = np.arange(-64.0, 16.0, 4.0)
+    depths = np.arange(-24.0, -130.0, -2.0)
+    fronts = np.full(len(heights), np.nan)
+    for row, height in enumerate(heights):
+        section = points[np.abs(points[:, 1] - height) < 2.5]
+        fronts[row] = _front(_outline(section, depths), depths)
+    has_ear = ~np.isnan(fronts)
+    if has_ear.sum() < 5:
+        return None
+    # Long ears reach up or down; the root of the ear is where most sections have their front.
+    front = float(np.median(fronts[has_ear]))
+    return float(heights[has_ear].mean()), front
+
+
+def _outline(section: Floats64, depths: Floats64) -> Floats64:
+    """How far a section reaches out at each depth [mm]; 0 behind its end."""
+    reach = np.full(len(depths), -np.inf)
+    row = np.round((depths[0] - section[:, 2]) / 2.0).astype(np.int64)
+    inside = (row >= 0) & (row < len(depths))
+    np.maximum.at(reach, row[inside], section[inside, 0])
+    known = reach > 0.0
+    if known.sum() < 10:
+        return np.zeros(len(depths))
+    # Behind the mesh's end there is nothing that could leap out.
+    return np.asarray(np.interp(-depths, -depths[known], reach[known], right=0.0))
+
+
+def _front(reach: Floats64, depths: Floats64) -> float:
+    """Where the outline leaps out, the front of an ear, as a depth [mm]; NaN: nowhere."""
+    for row in range(4, len(depths) - 12):
+        leap = reach[row] - reach[row - 4]
+        stands_out = reach[row : row + 12].max() - reach[row - 4]
+        if leap > 4.0 and stands_out > 9.0:
+            return float(depths[row])
+    return np.nan
