@@ -25,7 +25,7 @@ from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.transforms import moved_points
 
-from ..scenes.surface_attachment import SurfaceAttachment
+from ..scenes.skin_part import SkinPart
 from .bodies import EYES
 from .pieces import FilePiece
 from .poses import CRANIUM, Pose
@@ -126,7 +126,7 @@ class FileBody:
         moved: Floats64 = points + share[:, None] * (moved_points(mandible, points) - points)
         return moved
 
-    def _attached(self, head: FittedHead) -> SurfaceAttachment:
+    def _attached(self, head: FittedHead) -> SkinPart:
         """Lashes and brows on the skin: each vertex turns with the nearest root of its piece."""
         numbers = self._pieces["on_skin"]
         points = self.rest[numbers]
@@ -141,7 +141,7 @@ class FileBody:
         place[numbers] = np.arange(len(numbers))
         faces = place[self.faces]
         part = _part("on_skin", points, faces[(faces >= 0).all(axis=1)], CRANIUM, roots)
-        return SurfaceAttachment(part, head.vertices, head.faces)
+        return SkinPart(part, head.vertices, head.faces)
 
 
 class _Bag:

@@ -21,7 +21,7 @@ from .face_under_skin import Face
 from .mouth import MouthWalls, Tongue, shaded_mouth
 from .openings import Rim, rims_of
 from .scene import Scene
-from .surface_attachment import SurfaceAttachment
+from .skin_part import SkinPart
 
 BUILT_IN = "built-in"  # how the head that comes along is called
 OWN = "own"  # how a user's head is called
@@ -102,7 +102,7 @@ class FaceScene(Scene):
             tongue = self.simulation.anatomy.tongue()
             bones = self.bone_transforms()
             for part in self._parts:
-                if isinstance(part, SurfaceAttachment):
+                if isinstance(part, SkinPart):
                     part.follow(self.positions, bones[part.bone])
                 elif isinstance(part, Tongue) and tongue is not None:
                     part.bend(tongue)
@@ -151,7 +151,7 @@ def _parts_of(
 ) -> tuple[Any, ...]:
     """The parts of a head, some of which can bend, and the hair of the built-in one."""
     parts = tuple(
-        part if part.roots is None else SurfaceAttachment(part, rest_positions, faces)
+        part if part.roots is None else SkinPart(part, rest_positions, faces)
         for part in shaded_mouth(head.parts)
     )
     return (*parts, *built_in_hair(head)) if isinstance(head, assets.Head) else parts

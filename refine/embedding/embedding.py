@@ -67,6 +67,8 @@ class Embedding:
         face_labels: npt.ArrayLike | None = None,
         crease_angle: float | None = None,
         stretch_offsets: bool = False,
+        places: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+        groups: npt.ArrayLike | None = None,
     ) -> None:
         """Bind `points` at rest, shape (N, 3), to `faces`, (F, 3), of `rest_positions`, (V, 3).
 
@@ -76,8 +78,12 @@ class Embedding:
         (F,): a fine vertex is bound to triangles of its own label alone. `crease_angle`: edges that
         are sharper at rest [degrees] stay sharp. `stretch_offsets`: whether offsets grow as the
         surface around them does, and not only turn.
+        `groups`, integers of shape (N,): fine vertices of one number share the place of the first
+        of them, so a hair keeps its shape and goes with its root. `places`: triangles, shape (P,),
+        and barycentric coordinates there, (P, 3), which are taken in place of a search: one for
+        each group, numbered from 0 on, or for each fine vertex where there are no groups.
         Raises ValueError for arrays that do not fit together, points that are not finite, and
-        labels that no triangle with an area has.
+        labels or places that no triangle with an area has.
         """
         rest, triangles = checked_mesh(rest_positions, faces)
         fine = checked_vectors("points", points, None)
@@ -89,23 +95,26 @@ class Embedding:
         self._stretch = 1.0 if stretch_offsets else 0.0
         mesh = with_creases(connect_writable(triangles, len(rest)), rest, crease_angle)
         is_proper = has_area(rest, triangles, SLIVER_SINE)
-        groups, label_of = _groups(labels, face_labels, len(fine), is_proper)
-        self.triangles, self.weights = nearest_places(fine, ways, rest, triangles, groups)
-        surface = SmoothSurface(mesh, rest, np.arange(len(triangles)))
-        across = across_edges(mesh, label_of)
-        settle(fine, surface, across, self.triangles, self.weights)
+        members = None if groups is None else _checked_labels("groups", groups, len(fine))
+        if places is not None:
+            found = _given_places(places, labels, members, is_proper, len(fine))
+        else:
+            bound, label_of = _groups(labels, face_labels, len(fine), is_proper)
+            found = nearest_places(fine, ways, rest, triangles, bound)
+            surface = SmoothSurface(mesh, rest, np.arange(len(triangles)))
+            settle(fine, surface, across_edges(mesh, label_of), *found)
+            found = _of_first(members, *found)
+        self.triangles = read_only(found[0])
+        self.weights = read_only(found[1])
         used, numbers = np.unique(self.triangles, return_inverse=True)
         self._numbers = numbers.reshape(-1).astype(np.int32)
         self._surface = SmoothSurface(mesh, rest, used)
-        self.offsets = np.zeros_like(fine)
         self._normals: Floats32 | None = None
         on_surface = np.empty_like(fine)
-        self._place(self.offsets, on_surface)
+        self._place(np.zeros_like(fine), on_surface)
         self.offsets = fine - on_surface
         if ways is not None:
             self._normals = unit_vectors(ways, 1e-300).astype(np.float32)
-        self.triangles = read_only(self.triangles)
-        self.weights = read_only(self.weights)
         self.offsets = read_only(self.offsets)
 
     def evaluate(
@@ -165,6 +174,47 @@ def checked_vectors(name: str, given: npt.ArrayLike, count: int | None) -> Float
             f"{vectors[bad[0]]} ({len(bad)} such rows in all); leave them out before binding"
         )
     return vectors
+
+
+def _of_first(
+    groups: Integers64 | None, triangles: Integers64, weights: Floats64
+) -> tuple[Integers64, Floats64]:
+    """Places, of which each group has that of its first vertex."""
+    if groups is None:
+        return triangles, weights
+    _, first, number = np.unique(groups, return_index=True, return_inverse=True)
+    root = first[number.reshape(-1)]
+    return triangles[root], weights[root]
+
+
+def _given_places(
+    places: tuple[npt.ArrayLike, npt.ArrayLike],
+    labels: npt.ArrayLike | None,
+    groups: Integers64 | None,
+    is_proper: npt.NDArray[np.bool_],
+    count: int,
+) -> tuple[Integers64, Floats64]:
+    """The places that were given, one for each of `count` fine vertices, checked."""
+    if labels is not None:
+        raise ValueError("places say where points are bound; leave labels out")
+    number = np.arange(count) if groups is None else groups
+    given = as_array("places[0]", places[0], "integers of shape (P,)")
+    wanted = int(number.max(initial=-1)) + 1
+    if number.min(initial=0) < 0 or given.shape != (wanted,) or given.dtype.kind not in "iu":
+        raise ValueError(
+            f"places must be one for each {'fine vertex' if groups is None else 'group'}, numbered "
+            f"from 0: integers of shape ({wanted},), got {given.dtype} of shape {given.shape}"
+        )
+    weights = checked_vectors("places[1]", places[1], wanted)
+    bad = ~((weights >= 0.0).all(axis=1) & (np.abs(weights.sum(axis=1) - 1.0) < 1e-6))
+    bad |= (given < 0) | (given >= len(is_proper))
+    bad[~bad] = ~is_proper[given[~bad]]
+    if bad.any():
+        raise ValueError(
+            f"places must be on triangles with an area, numbered below {len(is_proper)}, with "
+            f"weights from 0 to 1 whose sum is 1; place {int(bad.argmax())} is not"
+        )
+    return given[number].astype(np.int64), weights[number]
 
 
 def _groups(

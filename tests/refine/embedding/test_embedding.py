@@ -164,6 +164,45 @@ def test_offsets_keep_their_length_or_are_stretched():
     np.testing.assert_allclose(stretched.evaluate(larger).positions, 2.0 * fine, atol=1e-9)
 
 
+def hairs():
+    """A ball and its bent shape; points of hairs that lean on it, roots first, and their hairs."""
+    mesh = meshes.ball(2)
+    rng = np.random.default_rng(3)
+    roots = mesh.vertices[mesh.faces[::7]].mean(axis=1)
+    ways = 0.1 * (roots + rng.normal(size=roots.shape))
+    points = roots[:, None] + np.arange(5)[None, :, None] * ways[:, None]
+    bent = turned(mesh.vertices * [1.4, 0.8, 1.0] + 0.05 * rng.normal(size=mesh.vertices.shape))
+    return mesh, bent, points.reshape(-1, 3), np.repeat(np.arange(len(roots)), 5)
+
+
+def test_groups_keep_their_shape_and_go_with_their_root():
+    """A hair is as long and as bent as at rest; its root is where it would be by itself."""
+    mesh, bent, points, hair = hairs()
+    embedding = refine.Embedding(mesh.faces, mesh.vertices, points, groups=10 * hair)
+    np.testing.assert_allclose(embedding.evaluate(mesh.vertices).positions, points, atol=1e-12)
+    moved = embedding.evaluate(bent).positions.reshape(-1, 5, 3)
+    at_rest = points.reshape(-1, 5, 3)
+    for k in range(5):
+        apart = np.linalg.norm(moved - moved[:, [k]], axis=2)
+        np.testing.assert_allclose(apart, np.linalg.norm(at_rest - at_rest[:, [k]], axis=2))
+    alone = refine.Embedding(mesh.faces, mesh.vertices, at_rest[:, 0]).evaluate(bent)
+    np.testing.assert_allclose(moved[:, 0], alone.positions, atol=1e-12)
+
+
+def test_given_places_are_taken_as_they_are():
+    """Places of another embedding give its motion, one for each vertex or for each group."""
+    mesh, bent, points, hair = hairs()
+    searched = refine.Embedding(mesh.faces, mesh.vertices, points)
+    places = searched.triangles, searched.weights
+    given_to_all = refine.Embedding(mesh.faces, mesh.vertices, points, places=places)
+    expected = searched.evaluate(bent).positions
+    np.testing.assert_array_equal(given_to_all.evaluate(bent).positions, expected)
+    of_roots = searched.triangles[::5], searched.weights[::5]
+    rooted = refine.Embedding(mesh.faces, mesh.vertices, points, places=of_roots, groups=hair)
+    assert rooted.triangles.tolist() == of_roots[0][hair].tolist()
+    np.testing.assert_allclose(rooted.evaluate(bent).positions[::5], expected[::5], atol=1e-12)
+
+
 def test_inputs_stay_and_values_are_carried():
     """Not a byte of the given arrays changes; values at coarse vertices are linear in triangles."""
     mesh = meshes.ball(1)
@@ -187,6 +226,24 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
     "unknown label": ({"labels": [1, 2], "face_labels": [1]}, "faces must have a triangle with la"),
     "no triangle": ({"faces": np.zeros((0, 3), dtype=int)}, "faces must have a triangle with an"),
     "no area": ({"faces": [[0, 1, 1]]}, "faces must have a triangle with an area"),
+    "few groups": ({"groups": [1]}, "groups must be integers of shape (2,)"),
+    "few places": ({"places": ([0], [[1.0, 0.0, 0.0]])}, "places must be one for each fine vertex"),
+    "no such group": (
+        {"places": ([0], [[1.0, 0.0, 0.0]]), "groups": [0, 1]},
+        "places must be one for each group, numbered from 0: integers of shape (2,)",
+    ),
+    "no such triangle": (
+        {"places": ([0, 1], np.full((2, 3), 1 / 3))},
+        "places must be on triangles with an area, numbered below 1",
+    ),
+    "off the triangle": (
+        {"places": ([0, 0], [[1.0, 0.0, 0.0], [1.5, -0.5, 0.0]])},
+        "places must be on triangles with an area",
+    ),
+    "places and labels": (
+        {"places": ([0, 0], np.full((2, 3), 1 / 3)), "labels": [1, 1], "face_labels": [1]},
+        "places say where points are bound",
+    ),
     "an angle": ({"crease_angle": 200}, "crease_angle must be None or"),
 }
 

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from risorius import assets
-from risorius.app.scenes.surface_attachment import SurfaceAttachment
+from risorius.app.scenes.skin_part import SkinPart
 
 POSES = (
     {"AU43": 1.0},
@@ -23,7 +23,7 @@ POSES = (
 
 def attached(scene):
     """Parts that are attached to its skin."""
-    return [part for part in scene.parts if isinstance(part, SurfaceAttachment)]
+    return [part for part in scene.parts if isinstance(part, SkinPart)]
 
 
 @settings(max_examples=20, deadline=None)

@@ -1,0 +1,65 @@
+"""Parts on the skin: lashes, and the tears along the lids, which move with it.
+
+All that hangs on a root keeps the root's place over the triangle that was nearest to it at rest,
+and turns with the skin there (refine.Embedding).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from risorius.assets.fitting.warp import nearest_on
+from risorius.geometry.arrays import Floats32, Floats64, Integers32
+from risorius.geometry.directions import unit_vectors
+from risorius.geometry.read_only import read_only
+
+
+class SkinPart:
+    """A part that changes its shape with the skin; drawn as any other (render/parts.py)."""
+
+    is_enclosed = True
+    striation = None
+    vertices: Floats32
+    normals: Floats32
+
+    def __init__(self, part: Any, skin: Floats64, faces: Integers32) -> None:
+        """A part with `roots`, as it stands on the skin at rest, (V, 3) with triangles (F, 3)."""
+        from risorius.refine import Embedding  # which lists of controls need not load
+
+        self.name = part.name
+        self.bone = part.bone
+        self.faces = part.faces
+        self.colours = part.colours
+        self.shine = part.shine
+        self.strand_radius = part.strand_radius
+        self.vertices = part.vertices
+        self.normals = part.normals
+        rest = part.vertices.astype(np.float64)
+        normals = part.normals.astype(np.float64)
+        roots, root_of = np.unique(part.roots, return_inverse=True)  # a vertex's among roots
+        # What stands there points out of the skin; what lies there has the skin's normal.
+        ahead = np.zeros((len(roots), 3))
+        np.add.at(ahead, root_of, rest - rest[roots][root_of] + 1e-3 * normals)
+        feet = nearest_on(rest[roots], unit_vectors(ahead), skin, faces)
+        # Only the triangles around them matter, also to the normals there.
+        is_around = np.isin(faces, feet.corners).any(axis=1)
+        self._near, around = np.unique(faces[is_around], return_inverse=True)  # vertices of skin
+        number = np.cumsum(is_around) - 1  # of triangles, among those around
+        self._embedding = Embedding(
+            around.reshape(-1, 3),
+            skin[self._near],
+            rest,
+            normals=normals,
+            places=(number[feet.triangles], feet.weights),
+            groups=root_of,
+        )
+
+    def follow(self, skin: Floats64, bone: Floats64) -> None:
+        """Stand on the skin as it is now, (V, 3), seen from the part's bone, a matrix (4, 4)."""
+        there = (skin[self._near] - bone[:3, 3]) @ np.linalg.inv(bone[:3, :3]).T
+        moved = self._embedding.evaluate(there)
+        assert moved.normals is not None
+        self.vertices = read_only(moved.positions.astype(np.float32))
+        self.normals = read_only(moved.normals)
