@@ -14,7 +14,9 @@ folds of small triangles; between them both lose little. And a mean over the tri
 what bends less than it does; so where heights are taken, not where light falls, normals go a little
 further from those of their neighbours than they are: n - 0.15 x mean of the neighbours, normalised.
 On a plane and a sphere of equal triangles that changes nothing. An edge on a border is cubic in the
-border curve itself, because a surface's normal says nothing about where it ends.
+border curve itself, because a surface's normal says nothing about where it ends. Beside a corner of
+the border only the far end has a tangent, and the curve is a parabola: a chord for the tangent at
+the corner, too, would leave it flatter than skin is.
 
 How far the points of an edge stand out of the straight edge is its *displacement*. Those of split
 edges are put there as far as their geomorph weights say (blending.py):
@@ -317,6 +319,10 @@ def displace_cubic(
             share_b = length / max(length + length_of(between(positions, b, q)), TINY)
             turn_a = less(times(share_a, between(positions, p, b)), ONE, d)
             turn_b = less(times(share_b, between(positions, a, q)), ONE, d)
+            if p == a:
+                turn_a = times(-ONE, turn_b)
+            elif q == b:
+                turn_b = times(-ONE, turn_a)
         write_cubic(displacements, np.uint32(3 * e), turn_a, turn_b)
 
 

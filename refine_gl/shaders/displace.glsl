@@ -24,6 +24,8 @@ FOR_EACH(e, edge_count) {
         precise vec3 along_b = share_of(size, length_of(between(b, q))) * between(a, q);
         turn_a = along_a - d;
         turn_b = along_b - d;
+        if (p == a) turn_a = -turn_b;
+        else if (q == b) turn_b = -turn_a;
     }
     precise vec3 difference = turn_a - turn_b, middle = 0.125 * difference;
     displaced(3u * e) = vec4(weighed(0.140625, turn_a, -0.046875, turn_b), 0.0);

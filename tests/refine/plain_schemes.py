@@ -118,18 +118,23 @@ def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> Cur
         if (a, b) in around.inner:
             along = [mix((1, d), (-1.2 * dot(d, steeper[v]), steeper[v])) for v in (a, b)]
             return along[0], along[1]
-        ends = []
+        ends: list[Vector | None] = []
         for here, there in ((a, b), (b, a)):
             ring = around.border_ring[here]
             if len(ring) != 2 or is_corner(*(rest[v] for v in (ring[0], here, ring[1]))):
-                ends.append(d)
+                ends.append(None)
                 continue
             other = ring[0] if ring[1] == there else ring[1]
             chord = mix((1, positions[there]), (-1, positions[other]))
             before = length(mix((1, positions[here]), (-1, positions[other])))
             share = length(d) / (length(d) + before)
             ends.append(mix((share if here == a else -share, chord)))
-        return ends[0], ends[1]
+        at_a, at_b = ends
+        # Beside a corner the middle of a parabola has the direction of the chord.
+        return (
+            at_a or (mix((2, d), (-1, at_b)) if at_b else d),
+            at_b or (mix((2, d), (-1, at_a)) if at_a else d),
+        )
 
     def curve(edge: EdgeName, quarters: int) -> Vector:
         t, (at_a, at_b) = quarters / 4, tangents(*edge)

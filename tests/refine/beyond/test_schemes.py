@@ -122,3 +122,23 @@ def test_flat_stays_flat(scheme):
     )
     heights = 0.5 * refined.positions[:, 0] - 0.3 * refined.positions[:, 1]
     np.testing.assert_allclose(refined.positions[:, 2], heights, rtol=0, atol=1e-5)
+
+
+def test_borders_beside_corners_are_parabolas():
+    """Beside the corner of a half disc its rim curves on, and is not flatter toward the corner."""
+    angles = np.radians([0.0, 45.0, 90.0, 135.0, 180.0])
+    rim = np.stack([np.cos(angles), np.sin(angles), np.zeros(5)], axis=1)
+    half_disc = meshes.Mesh(
+        np.vstack([np.zeros((1, 3)), rim]),
+        np.array([[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]], np.uint32),
+    )
+    edge_count = len(refine.connect(half_disc.faces, 6).edges)
+    refiner = bound(half_disc, "cubic", False, np.full(edge_count, 2.0))
+    refined = refiner.refine(half_disc.vertices)
+    corner, next_to_it, after = rim[:3]
+    chord = next_to_it - corner
+    at_corner = 2.0 * chord - 0.5 * (after - corner)
+    for share in (0.25, 0.5, 0.75):
+        expected = corner + share * at_corner + share**2 * (chord - at_corner)
+        distances = np.linalg.norm(refined.positions - expected, axis=1)
+        assert distances.min() < 1e-5
