@@ -21,12 +21,12 @@ IRIS_SHARES = MappingProxyType(
 )
 CUTS_OF_WOMEN = MappingProxyType(
     {
-        "parted": 0.25,
-        "centred": 0.24,
-        "aside": 0.26,
-        "knotted": 0.09,
-        "topknot": 0.06,
-        "tailed": 0.1,
+        "parted": 0.2,
+        "centred": 0.2,
+        "aside": 0.22,
+        "knotted": 0.14,
+        "topknot": 0.08,
+        "tailed": 0.16,
     }
 )
 CUTS_OF_MEN = MappingProxyType(
