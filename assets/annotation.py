@@ -144,22 +144,18 @@ def _with_brows(head: Head | Person, points: SurfacePoints) -> SurfacePoints:
 def _along_brow(places: Floats64) -> Integers32:
     """Five of the places (n, 3) [mm] of a left brow, from the nose outward, shape (5,).
 
-    Both ends, and three on the upper edge, as far from each other along it. At the front, where
-    hairs stand up, the edge lies below their free ends. The tail ends at the place that is farthest
-    from the nose's end, for it may turn down there.
+    Both ends, and three on the upper edge, as far from each other along it. The tail ends at the
+    place that is farthest from the nose's end, for it may turn down there.
     """
     x, y, _ = places.T
     strip_width = 1.0  # [mm]
     strip = np.round((x - x.min()) / strip_width).astype(int)
-    standing_share = 0.6  # of a brow's length, on which its hairs stand up
     edge = []
     for number in range(strip.max() + 1):
         inside = np.flatnonzero(strip == number)
         if len(inside) == 0:
             continue
-        free_share = 0.3 * max(1.0 - number / (standing_share * strip.max()), 0.0)
-        above = free_share * np.ptp(y[inside])
-        wanted = np.median(y[inside]) if number == 0 else y[inside].max() - above
+        wanted = np.median(y[inside]) if number == 0 else y[inside].max()
         edge.append(inside[np.abs(y[inside] - wanted).argmin()])
     edge[-1] = np.linalg.norm(places - places[edge[0]], axis=1).argmax()
     along = arc_lengths(places[edge])

@@ -9,11 +9,8 @@ from risorius.assets.identities import complexion, person_called
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [3, 8, 21])
-def test_points_of_brows_lie_on_hairs_that_are_seen(monkeypatch, number):
-    """The tail's within 1.5 mm of the last one, whatever way it turns; none above those in front.
-
-    In front a few hairs stand out of the brow, which nobody marks.
-    """
+def test_a_brow_ends_where_its_hairs_do(monkeypatch, number):
+    """The tail's point is within 1.5 mm of the last hair that is seen, whatever way it turns."""
     painted = complexion.painted
     pictures = []
 
@@ -33,6 +30,3 @@ def test_points_of_brows_lie_on_hairs_that_are_seen(monkeypatch, number):
     nose_end, tail = points[[22 - 17, 26 - 17]]
     last = places[np.linalg.norm(places - nose_end, axis=1).argmax()]
     assert np.linalg.norm(tail - last) < 1.5  # mm
-    front = points[23 - 17]
-    beside = places[np.abs(places[:, 0] - front[0]) < 0.5]
-    assert -2.5 < front[1] - beside[:, 1].max() < 0.4  # mm
