@@ -68,9 +68,12 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
 
     Of each way over the skin it has the place that lies farthest out: at first to the side at the
     eyes and down at the chin, then across the line that was found. As annotators do, points are
-    set evenly from there to there.
+    set evenly from the height of one eye's outer corner to that of the other's.
     """
-    ways = face.annotation.ways(face.positions)
+    positions = face.positions
+    ways = face.annotation.ways(positions)
+    corner_numbers = [36 - JAW_COUNT, 45 - JAW_COUNT]
+    corners = camera.project(face.annotation.inner_points(positions)[corner_numbers])
     seen = camera.project(ways.reshape(-1, 3)).reshape(*ways.shape[:3], 2)
     upright = camera.rotation @ face.bone_transforms()["cranium"][:3, :2]
     aside, up = (axis / np.linalg.norm(axis) for axis in (upright[:2, 0], upright[:2, 1]))
@@ -84,6 +87,7 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
             farthest = (seen[side] * outward[:, None]).sum(axis=2).argmax(axis=1)
             line = _smoothed(ways[side, np.arange(len(farthest)), farthest])
             outward = _normals(camera.project(line), outward)
+        line = _below(line, camera.project(line) @ up, float(corners[side] @ up))
         halves.append(_spread(line, camera.project(line), JAW_COUNT // 2 + 1))
     right, left = halves
     return np.vstack([right, left[-2::-1]])
@@ -104,6 +108,16 @@ def _smoothed(points: Floats64) -> Floats64:
         line = line.copy()
         line[1:-1] = 0.25 * line[:-2] + 0.5 * line[1:-1] + 0.25 * line[2:]
     return line
+
+
+def _below(points: Floats64, heights: Floats64, top: float) -> Floats64:
+    """The part of a line, (n, 3), that lies below a height; all of it where it begins below."""
+    first = int((heights < top).argmax())
+    if first == 0:
+        return points
+    share = (heights[first - 1] - top) / (heights[first - 1] - heights[first])
+    start = points[first - 1] + share * (points[first] - points[first - 1])
+    return np.vstack([start, points[first:]])
 
 
 def _spread(points: Floats64, pixels: Floats64, count: int) -> Floats64:
