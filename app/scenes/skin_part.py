@@ -13,6 +13,7 @@ import numpy as np
 from risorius.assets.fitting.warp import nearest_on
 from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.directions import unit_vectors
+from risorius.geometry.normals import cross_products
 from risorius.geometry.read_only import read_only
 
 
@@ -39,6 +40,9 @@ class SkinPart:
         rest = part.vertices.astype(np.float64)
         normals = part.normals.astype(np.float64)
         roots, root_of = np.unique(part.roots, return_inverse=True)  # a vertex's among roots
+        # Files have needles without an area, on which nothing can stand.
+        least_area = 1e-6  # [mm2], doubled
+        faces = faces[np.linalg.norm(cross_products(skin, faces), axis=1) > least_area]
         # What stands there points out of the skin; what lies there has the skin's normal.
         ahead = np.zeros((len(roots), 3))
         np.add.at(ahead, root_of, rest - rest[roots][root_of] + 1e-3 * normals)

@@ -47,6 +47,24 @@ def test_a_skin_that_only_moves_takes_them_along(scene, turn, shift):
         assert np.allclose(part.vertices, made[part.name].vertices, atol=1e-3)
 
 
+def test_slivers_carry_nothing(scene):
+    """Needles of 1 mm and 1e-11 mm on the very roots, as files may have them, change no lash."""
+    skin = np.array(scene.rest_positions)
+    for part in assets.load("head").parts:
+        if part.roots is not None:
+            roots = part.vertices[np.unique(part.roots)].astype(np.float64)
+            ways = np.array([(-0.5, 0.0, 0.0), (0.5, 0.0, 0.0), (0.0, 1e-11, 0.0)])
+            corners = [roots + way for way in ways]
+            littered = np.vstack([skin, *corners])
+            needles = np.arange(len(skin), len(littered)).reshape(3, -1).T
+            faces = np.vstack([needles, scene.faces]).astype(scene.faces.dtype)
+            plain = SkinPart(part, skin, scene.faces)
+            other = SkinPart(part, littered, faces)
+            plain.follow(1.1 * skin, np.eye(4))
+            other.follow(1.1 * littered, np.eye(4))
+            assert np.array_equal(other.vertices, plain.vertices)
+
+
 @pytest.mark.parametrize("pose", POSES, ids=lambda pose: next(iter(pose)))
 def test_they_stay_on_lids_that_move(scene, pose):
     """Roots stay within a millimetre of the skin, lashes keep their length and the eye free."""
