@@ -8,9 +8,7 @@ Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landm
 
 from __future__ import annotations
 
-import pickle
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -83,7 +81,7 @@ def foundation_of(head: Any) -> Foundation:
     vertices, faces = mesh_of("head", head)
     given = Given(*(getattr(head, name, None) for name in Given._fields))
     numbers = _landmark_numbers(given.landmarks, len(vertices))
-    rig = _read_rig(given.rig or {})
+    rig = read_rig(given.rig or {})
     if numbers is None:
         return _plain_foundation(vertices, faces, given, rig)
     return _face_foundation(vertices, faces, given, rig, numbers)
@@ -153,41 +151,9 @@ def _face_foundation(
     )
 
 
-def _read_rig(document: Any) -> Rig:
-    """A rig; persons have the same one, so it is read once."""
-    try:
-        content = pickle.dumps(document)
-    except Exception:  # of another's types; it may still be read
-        return read_rig(document)
-    return _rig_in(content)
-
-
-@lru_cache(maxsize=4)
-def _rig_in(content: bytes) -> Rig:
-    return read_rig(pickle.loads(content))
-
-
-class _Table(NamedTuple):
-    """A layer, as a plain record."""
-
-    title: Any
-    source: Any
-    rows: Any
-
-
 def _read_layers(tables: Any, controls: tuple[Control, ...]) -> Layers:
-    """The layers above these controls; persons have the same ones, so they are read once."""
-    names = tuple(control.name for control in controls)
-    try:
-        content = pickle.dumps([_Table(each.title, each.source, each.rows) for each in tables])
-    except Exception:  # of another's types; the reader says if they are wrong
-        return read_layers(tables, names)
-    return _layers_in(content, names)
-
-
-@lru_cache(maxsize=4)
-def _layers_in(content: bytes, names: tuple[str, ...]) -> Layers:
-    return read_layers(pickle.loads(content), names)
+    """The layers above these controls."""
+    return read_layers(tables, [control.name for control in controls])
 
 
 def mesh_of(what: str, given: Any) -> tuple[Floats64, Integers32]:

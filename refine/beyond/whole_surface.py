@@ -265,10 +265,10 @@ def measure_edges(  # noqa: PLR0913 - arrays: tuples take longer to hand over
     displacements: Floats32,
     turns: Floats32,
 ) -> None:
-    """Do that for edges in a row, and measure them.
+    """Write unit normals of the middles of edges in a row, and measure the edges.
 
     The distance of each middle from its edge, and the turn of its normal x length, (E,) each.
-    `means`: scratch, at least (E, 3).
+    `means`: scratch, at least (E, 3); the others as in `surface_normals_of_edges`.
     """
     assert centres.shape[1] == normals.shape[1] == means.shape[1] == WIDTH
     vertex_count = np.uint32(normals.shape[0] - points.shape[0])

@@ -66,11 +66,12 @@ class Patches(NamedTuple):
     near: Unsigned32
     """Directed edges from each corner to the next one and to the one before, shape (T, 6)."""
     ways: Unsigned32
-    """Of directed edges: the vertices a and b from which and to which they run; the vertex before
-    a on a border that runs on, or NO_VERTEX inside; the sector at a; shape (D, 4)."""
+    """Of directed edges: the vertices a and b from which and to which they run; the vertices before
+    a and after b on a border, a and b themselves where it has a corner there, or NO_VERTEX inside;
+    the sector at a; shape (D, 5)."""
     slopes: Floats64
     """How much of both directions of the sector their tangent at rest is, shape (D, 2); on a
-    border, the edge's share of the chord across a."""
+    border, the edge's share of the chord across a, and across b."""
     rest: Floats64
     """Axes of sectors at rest, shape (S, 16), as `find_axes` writes them."""
 
@@ -133,10 +134,12 @@ def _directed_edges(
     used, first, near = np.unique(np.maximum(names, 0), return_index=True, return_inverse=True)
     edge = used >> 1
     end = used & 1
-    before = np.where(mesh.around.is_interior[edge], NO_VERTEX, borders[edge, end])
+    is_interior = mesh.around.is_interior[edge]
+    before = np.where(is_interior, NO_VERTEX, borders[edge, end])
+    after = np.where(is_interior, NO_VERTEX, borders[edge, 1 - end])
     there = mesh.edges[edge, 1 - end]
     sector = np.repeat(sectors, 2, axis=1).ravel()[first]
-    ways = np.stack([mesh.edges[edge, end], there, before, sector], axis=1)
+    ways = np.stack([mesh.edges[edge, end], there, before, after, sector], axis=1)
     return near.reshape(-1, 6).astype(np.uint32), ways.astype(np.uint32)
 
 
@@ -144,9 +147,10 @@ def _directed_edges(
 def find_slopes(first: int, last: int, rest: Floats64, patches: Patches) -> None:
     """Write `patches.slopes`, from the axes at rest."""
     for k in range(first, last):
-        a, b, before, s = patches.ways[k]
+        a, b, before, after, s = patches.ways[k]
         if before != NO_VERTEX:
             patches.slopes[k, 0] = share_of_chord(rest, before, a, b)
+            patches.slopes[k, 1] = share_of_chord(rest, after, b, a)
             continue
         d = difference(rest, a, b)
         normal = row_of(patches.rest, s)
@@ -167,6 +171,24 @@ def share_of_chord(positions: Floats64, before: np.uint32, a: np.uint32, b: np.u
 
 
 @njit
+def border_tangent(
+    positions: Floats64, way: Unsigned32, share_at_a: float, share_at_b: float
+) -> Vector:
+    """The tangent of a border curve at a, along the edge to b, by shares of chords across both.
+
+    Beside a corner the curve is a parabola, as that of `cubic` is.
+    """
+    a = way[0]
+    b = way[1]
+    before = way[2]
+    after = way[3]
+    if before == a and after != b:
+        at_b = times(share_at_b, difference(positions, a, after))
+        return less(times(2.0, difference(positions, a, b)), 1.0, at_b)
+    return times(share_at_a, difference(positions, before, b))
+
+
+@njit
 def distance(positions: Floats64, a: np.uint32, b: np.uint32) -> float:
     """Length of an edge."""
     d = difference(positions, a, b)
@@ -179,12 +201,13 @@ def find_tangents(
 ) -> None:
     """Write a third of the tangents of directed edges, shape (D, 3)."""
     for k in range(first, last):
-        a, b, before, s = patches.ways[k]
+        a, b, before, after, s = patches.ways[k]
         along = patches.slopes[k, 0]
         if before != NO_VERTEX:
-            chord = difference(positions, before, b)
-            now = times(share_of_chord(positions, before, a, b), chord)
-            carried = times(along, chord)
+            at_a = share_of_chord(positions, before, a, b)
+            at_b = share_of_chord(positions, after, b, a)
+            now = border_tangent(positions, patches.ways[k], at_a, at_b)
+            carried = border_tangent(positions, patches.ways[k], along, patches.slopes[k, 1])
         else:
             d = difference(positions, a, b)
             normal = row_of(axes, s)

@@ -267,3 +267,17 @@ def test_a_bad_frame_is_refused():
         embedding.evaluate(mesh.vertices * np.nan)
     with pytest.raises(ValueError, match="values must be one for each of 3"):
         embedding.carry(np.ones(2))
+
+
+def test_borders_beside_corners_are_those_of_cubic():
+    """The curves of the rim of a half disc, its corners too: points of `cubic` have no offset."""
+    angles = np.radians([0.0, 45.0, 90.0, 135.0, 180.0])
+    rim = np.stack([np.cos(angles), np.sin(angles), np.zeros(5)], axis=1)
+    rest = np.vstack([np.zeros((1, 3)), rim])
+    faces = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]], dtype=np.uint32)
+    splits = np.full(len(refine.connect(faces, 6).edges), 2)
+    cubic = refine.create("kahler", faces, rest, scheme="cubic", splits=splits)
+    points = cubic.refine(rest).positions.astype(np.float64)
+    on_rim = points[np.linalg.norm(points, axis=1) > 0.95]
+    assert len(on_rim) == 5 + 4 * 3
+    assert np.abs(refine.Embedding(faces, rest, on_rim).offsets).max() < 1e-6
