@@ -19,7 +19,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -56,7 +56,7 @@ from .mesh_validation import (
     with_seams_joined,
     without_bag,
 )
-from .mouth_walls import FittedSkin
+from .mouth_walls import FittedSkin, opened_jaws
 from .organs import place_eyes, place_parts, with_eyelid_rims
 from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spread_uv
 from .topologies import recognised
@@ -209,24 +209,6 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
     landmarks: vertex numbers, shape (68,); points: where they lie exactly [unit of the mesh], shape
     (68, 3), unless at those vertices. Raises AssetError for a mesh that cannot work.
     """
-    return _with_jaw(_without_jaw(mesh, landmarks, points))
-
-
-def _with_jaw(head: FittedHead) -> FittedHead:
-    """The head with a jaw in front of its ears, where it has such; so its simplified mesh."""
-    landmarks = head.vertices[head.landmarks]
-    axis = jaw_axis_of(head.vertices, head.faces, landmarks)
-    if axis is None:
-        return head
-    rig = opening_as_people(head.rig, axis, landmarks)
-    simplified = head.simplified
-    if simplified is not None:
-        simplified = replace(simplified, jaw_axis=axis, rig=rig)
-    return replace(head, jaw_axis=axis, rig=rig, simplified=simplified)
-
-
-def _without_jaw(mesh: Mesh, landmarks: Integers32, points: Floats64 | None) -> FittedHead:
-    """Fit all but the jaw; see `fit`."""
     known = load("head")
     points = mesh.vertices[landmarks] if points is None else points
     faces, landmarks = with_seams_joined(mesh.vertices, mesh.faces, landmarks)
@@ -239,26 +221,18 @@ def _without_jaw(mesh: Mesh, landmarks: Integers32, points: Floats64 | None) -> 
         own = own_picture(mesh.texture, skin.file_faces, skin.is_turned)
     target = similarity.points(points)
     pieces = tuple(similarity.points(each) for each in _beside_skin(mesh.vertices, faces, skin))
+    jaw = _jaw_of(known, skin, target)
     notes = mesh.notes
     simplified = None
     if len(skin.faces) > simplifying.MOST_SIMULATED:
         coarse = simplifying.simplified(skin, target)
         count = len(coarse.faces)
         notes += (f"its {len(skin.faces)} triangles follow a simplified mesh of {count}",)
-        carried = _carried_over(known, coarse, target, pieces)
-        simplified = simplifying.SimulatedHead(
-            vertices=coarse.vertices,
-            faces=coarse.faces,
-            landmarks=coarse.landmarks,
-            bone_depth=carried.bone_depth,
-            eyes=carried.eyes,
-            parts=carried.parts,
-            rig=known.rig,
-            layers=known.layers,
-        )
+        carried = _carried_over(known, coarse, target, pieces, jaw)
+        simplified = _simulated(known, coarse, carried, jaw)
         carried = _on_finer(carried, coarse, skin)
     else:
-        carried = _carried_over(known, skin, target, pieces)
+        carried = _carried_over(known, skin, target, pieces, jaw)
     layout, albedo, maps = _painted(mesh, own, skin, Layout(carried.uv, skin.faces))
     wrinkles, segments, light = maps
     return FittedHead(
@@ -274,13 +248,27 @@ def _without_jaw(mesh: Mesh, landmarks: Integers32, points: Floats64 | None) -> 
         wrinkles=replace(wrinkles, across=carried.across),
         segments=segments,
         ambient_occlusion=light,
-        rig=known.rig,
+        jaw_axis=jaw.axis,
+        rig=jaw.rig,
         layers=known.layers,
         to_millimetres=similarity,
         file_vertices=skin.file_vertices,
         notes=notes,
         simplified=simplified,
     )
+
+
+class _Jaw(NamedTuple):
+    """Where the jaw of a head turns, and the rig by whose angle it does so."""
+
+    axis: Floats64 | None  # (2, 3) [mm]; None where the head has no ears
+    rig: dict[str, Any]
+
+
+def _jaw_of(known: Head, skin: SkinPiece, target: Floats64) -> _Jaw:
+    """The jaw of a skin [mm] whose 68 landmarks lie at `target`."""
+    axis = jaw_axis_of(skin.vertices, skin.faces, target)
+    return _Jaw(axis, known.rig if axis is None else opening_as_people(known.rig, axis, target))
 
 
 def _beside_skin(vertices: Floats64, faces: Integers32, skin: SkinPiece) -> list[Floats64]:
@@ -302,7 +290,7 @@ class _Carried(NamedTuple):
 
 
 def _carried_over(
-    known: Head, skin: SkinPiece, target: Floats64, pieces: tuple[Floats64, ...]
+    known: Head, skin: SkinPiece, target: Floats64, pieces: tuple[Floats64, ...], jaw: _Jaw
 ) -> _Carried:
     """Warp the built-in head to a skin [mm] whose 68 landmarks lie at `target`, and read it off."""
     normals = vertex_normals(skin.vertices, skin.faces)
@@ -312,7 +300,8 @@ def _carried_over(
     weight = nearest.interpolate(known.mandible_weight)
     fitted = FittedSkin(skin.vertices, normals, skin.faces, target, weight, pieces)
     eyes = place_eyes(known, fitted)
-    parts = place_parts(known, fitted, warp, eyes)
+    axis = warp.points(known.jaw_axis) if jaw.axis is None else jaw.axis
+    parts = place_parts(known, fitted, warp, eyes, opened_jaws(axis, jaw.rig))
     neck_part = "neck"  # the shirt of the built-in head, which has its shoulders
     return _Carried(
         eyes=eyes,
@@ -321,6 +310,23 @@ def _carried_over(
         uv=spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces)),
         across=nearest.interpolate(known.wrinkles.across).astype(np.float32),
         bone_depth=nearest.interpolate(known.bone_depth),
+    )
+
+
+def _simulated(
+    known: Head, coarse: SkinPiece, carried: _Carried, jaw: _Jaw
+) -> simplifying.SimulatedHead:
+    """The head that is simulated, with a simplified mesh."""
+    return simplifying.SimulatedHead(
+        vertices=coarse.vertices,
+        faces=coarse.faces,
+        landmarks=coarse.landmarks,
+        bone_depth=carried.bone_depth,
+        eyes=carried.eyes,
+        parts=carried.parts,
+        jaw_axis=jaw.axis,
+        rig=jaw.rig,
+        layers=known.layers,
     )
 
 

@@ -9,8 +9,9 @@ mouth where they would leave its skin.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy
@@ -20,8 +21,8 @@ from risorius.geometry.rays import exits
 from ...geometry.arrays import Floats32, Floats64, Integers32
 from ...geometry.sides import sides_of
 from ...geometry.transforms import moved_points
-from ..model import Head, Part
-from .warp import Similarity, ThinPlateSpline
+from ..model import Part
+from .warp import Similarity
 
 ShareArray = Floats64 | Floats32
 WALLS = "oral_cavity"  # how the names of these parts begin
@@ -56,13 +57,13 @@ def stretched_walls(walls: Floats64, shares: ShareArray, mandible: Floats64) -> 
     return np.asarray(walls + shares[:, None] * (moved - walls))
 
 
-def opened_jaws(known: Head, warp: ThinPlateSpline) -> list[Floats64]:
-    """How the mandible of another head moves while it opens, half and wholly: matrices (4, 4).
+def opened_jaws(axis: Floats64, rig: Mapping[str, Any]) -> list[Floats64]:
+    """How the mandible of a head moves while it opens, half and wholly: matrices (4, 4).
 
-    known: the built-in head, whose condyles `warp` takes to the other one.
+    axis: centres of the right and the left condyle [mm], shape (2, 3).
     """
-    jaw = known.rig.get("jaw", {})
-    right, left = warp.points(known.jaw_axis)
+    jaw = rig.get("jaw", {})
+    right, left = axis
     hinge = (left - right) / np.linalg.norm(left - right)
     opened = []
     for share in (0.5, 1.0):

@@ -21,7 +21,7 @@ from ...geometry.directions import unit_vectors
 from ..model import Eye, Head, Part
 from ..topology import boundary_loops, grid_faces
 from .eyeballs import ball_of_pieces, ball_of_socket
-from .mouth_walls import WALLS, FittedSkin, opened_jaws, within_skin
+from .mouth_walls import WALLS, FittedSkin, within_skin
 from .warp import Similarity, ThinPlateSpline
 
 EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
@@ -137,11 +137,17 @@ def lids_on_eyes(
 
 
 def place_parts(
-    known: Head, fitted: FittedSkin, warp: ThinPlateSpline, eyes: tuple[Eye, ...]
+    known: Head,
+    fitted: FittedSkin,
+    warp: ThinPlateSpline,
+    eyes: tuple[Eye, ...],
+    jaws: Sequence[Floats64],
 ) -> tuple[Part, ...]:
-    """The rigid parts of the built-in head, in another one."""
+    """The rigid parts of the built-in head, in another one.
+
+    warp: takes the built-in head there. jaws: how its mandible moves, see `opened_jaws`.
+    """
     mouth = _mouth_of(known, fitted, warp)
-    jaws = opened_jaws(known, warp)
     balls = {f"eye_{old.name}": (old, new) for old, new in zip(known.eyes, eyes, strict=True)}
     parts = []
     for part in known.parts:

@@ -21,7 +21,7 @@ from ...geometry.arrays import Floats32, Floats64, Integers32
 from ..data_files import Image
 from ..errors import AssetError
 from ..fitting.head import FittedHead
-from ..fitting.mouth_walls import FittedSkin
+from ..fitting.mouth_walls import FittedSkin, opened_jaws
 from ..fitting.organs import EYE_LANDMARKS, lids_on_eyes, place_parts
 from ..fitting.warp import Similarity, ThinPlateSpline
 from ..intersections import self_intersections
@@ -102,6 +102,8 @@ def _made(identity: Identity) -> Person:
     normals = vertex_normals(vertices, known.faces)
     landmarks = vertices[known.landmarks]
     skin = FittedSkin(vertices, normals, known.faces, landmarks, known.mandible_weight)
+    jaw_axis = warp.points(known.jaw_axis)
+    parts = place_parts(known, skin, warp, eyes, opened_jaws(jaw_axis, known.rig))
     return Person(
         vertices=vertices,
         faces=known.faces,
@@ -112,7 +114,7 @@ def _made(identity: Identity) -> Person:
             replace(old, vertices=_on_neck(old.vertices.astype(float), *neck).astype(np.float32))
             if old.bone == "neck"
             else new
-            for old, new in zip(known.parts, place_parts(known, skin, warp, eyes), strict=True)
+            for old, new in zip(known.parts, parts, strict=True)
         ),
         uv=known.uv,
         face_uv=known.face_uv,
@@ -124,7 +126,7 @@ def _made(identity: Identity) -> Person:
         to_millimetres=Similarity(1.0, np.eye(3), np.zeros(3)),
         file_vertices=np.arange(len(vertices), dtype=np.int32),
         mandible_weight=known.mandible_weight,
-        jaw_axis=warp.points(known.jaw_axis),
+        jaw_axis=jaw_axis,
         anatomy=known.anatomy,
         mirror=known.mirror,
         ambient_occlusion=known.ambient_occlusion,

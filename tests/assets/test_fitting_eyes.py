@@ -9,7 +9,7 @@ from numpy.linalg import norm
 
 from risorius import assets
 from risorius.assets.fitting import FittedHead, fit
-from risorius.assets.fitting.mouth_walls import FittedSkin
+from risorius.assets.fitting.mouth_walls import FittedSkin, opened_jaws
 from risorius.assets.fitting.organs import place_eyes, place_parts, with_eyelid_rims
 from risorius.assets.fitting.warp import ThinPlateSpline
 from risorius.assets.meshes import Mesh
@@ -145,7 +145,7 @@ def test_an_iris_is_smaller_than_its_ball():
     for eye, old in zip(eyes, head.eyes, strict=True):
         assert eye.radius == pytest.approx(0.65 * old.radius, rel=0.02)
         assert eye.iris_radius == pytest.approx(0.8 * eye.radius)
-    for part in place_parts(known, skin, warp, eyes):
+    for part in place_parts(known, skin, warp, eyes, opened_jaws(head.jaw_axis, head.rig)):
         assert np.isfinite(part.vertices).all()
 
 
