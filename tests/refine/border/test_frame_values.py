@@ -113,7 +113,10 @@ def test_one_topology():
 
 @pytest.mark.parametrize("look", ["paper", "cubic", "none"])
 def test_nothing_is_kept_of_frames(look):
-    """A hundred frames with values leave no memory behind, and write into the same arrays."""
+    """A hundred frames with values leave no memory behind, and write into the same arrays.
+
+    Other threads of the process, as a worker of tests has, take memory now and then, not each time.
+    """
     mesh = Seamed()
     name, options = REFINERS[look]
     refiner = bound(name, options, mesh, np.zeros((len(mesh.vertices), 1)), np.zeros((5, 4)))
@@ -125,16 +128,18 @@ def test_nothing_is_kept_of_frames(look):
         return refined.attributes["heat"].base
 
     first = run(6)
+    growths = []
     tracemalloc.start()
     try:
         run(6)
-        before, _ = tracemalloc.get_traced_memory()
-        last = run(99)
-        after, _ = tracemalloc.get_traced_memory()
+        for _ in range(3):
+            before, _ = tracemalloc.get_traced_memory()
+            assert run(99) is first
+            after, _ = tracemalloc.get_traced_memory()
+            growths.append(after - before)
     finally:
         tracemalloc.stop()
-    assert last is first
-    assert after - before < 20_000
+    assert min(growths) < 20_000
 
 
 def test_mistakes_are_reported():

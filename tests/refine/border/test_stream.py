@@ -136,7 +136,10 @@ def test_stream_may_be_the_input():
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 @pytest.mark.parametrize("textured", [False, True])
 def test_nothing_is_allocated(name, options, textured):
-    """After the first frames, frames take no memory but that of views, and of passes begun anew."""
+    """After the first frames, frames take no memory but that of views, and of passes begun anew.
+
+    Other threads of the process, as a worker of tests has, take memory now and then, not each time.
+    """
     tube = meshes.tube(40, 30)
     texture = {"uv": tube.uv, "face_uv": tube.face_uv} if textured else {}
     refiner = refine.create(name, tube.faces, tube.vertices, **texture, **options)
@@ -147,15 +150,16 @@ def test_nothing_is_allocated(name, options, textured):
         refiner.refine(deformed)
     gc.collect()
     tracemalloc.start()
-    taken = []
-    for deformed in frames:
-        for lent in (stream, None):
-            before, _ = tracemalloc.get_traced_memory()
-            tracemalloc.reset_peak()
-            refiner.refine(deformed, out=lent)
-            taken.append(tracemalloc.get_traced_memory()[1] - before)
+    taken = np.zeros((3, len(frames), 2))
+    for each_time in taken:
+        for of_frame, deformed in zip(each_time, frames, strict=True):
+            for place, lent in enumerate((stream, None)):
+                before, _ = tracemalloc.get_traced_memory()
+                tracemalloc.reset_peak()
+                refiner.refine(deformed, out=lent)
+                of_frame[place] = tracemalloc.get_traced_memory()[1] - before
     tracemalloc.stop()
-    assert max(taken) < 16384  # positions alone are 30 kB
+    assert taken.min(axis=0).max() < 16384  # positions alone are 30 kB
 
 
 @pytest.mark.parametrize(
