@@ -15,10 +15,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import PIL.Image
-import scipy
 
 from risorius import render
-from risorius.geometry.colour import to_screen
 
 from .errors import UserError
 from .extras import needed
@@ -61,42 +59,6 @@ def check_light_map(path: Path) -> None:
             f"{path}: has {width} x {height} pixels; a map of light from all around "
             f"(equirectangular) is twice as wide as high, and at most {longest} pixels wide"
         )
-
-
-def seen_behind(
-    light_map: render.LightMap,
-    size: tuple[int, int],
-    field_of_view: float,
-    *,
-    turn: float,
-    exposure: float,
-) -> npt.NDArray[np.uint8]:
-    """A map behind a head, out of focus, (height, width, 3), exposed as its light is.
-
-    size: width and height [pixels]. field_of_view: from top to bottom [deg]. turn, exposure: as of
-    `LightMap.exposed`.
-    """
-    width, height = size
-    half = np.tan(np.radians(field_of_view) / 2.0)
-    up = half * np.linspace(1.0, -1.0, height)[:, None]
-    right = half * width / height * np.linspace(-1.0, 1.0, width)
-    azimuth = np.degrees(np.arctan(right)) - turn
-    elevation = np.degrees(np.arctan(up / np.hypot(1.0, right)))
-    rows, columns = light_map.radiance.shape[:2]
-    row = (0.5 - elevation / 180.0) * rows - 0.5
-    column = (azimuth / 360.0 + 0.5) * columns - 0.5
-    places = np.stack(np.broadcast_arrays(row, column % columns))
-    out_of_focus = 3.0 * rows / 180.0  # 3 degrees, in texels
-    seen = []
-    for channel in np.moveaxis(light_map.radiance, -1, 0):
-        modes = ("nearest", "wrap")
-        soft = scipy.ndimage.gaussian_filter(channel, out_of_focus, mode=modes)
-        around = np.hstack([soft, soft[:, :4]])  # the seam lies within
-        seen.append(scipy.ndimage.map_coordinates(around, places, order=3, mode="nearest"))
-    shown = np.maximum(exposure * np.stack(seen, axis=-1), 0.0)
-    over = np.maximum(shown - 0.8, 0.0)  # the shoulder of lighting.glsl
-    shown = np.minimum(shown, 0.8) + over / (1.0 + 5.0 * over)
-    return np.asarray(np.rint(255.0 * to_screen(shown)).clip(0, 255), np.uint8)
 
 
 def _is_openexr(path: Path) -> bool:

@@ -40,6 +40,7 @@ from .style import (
     Colour,
     ColourBy,
     Light,
+    MapBackground,
     Shading,
     Style,
 )
@@ -76,6 +77,7 @@ __all__ = [
     "Light",
     "LightMap",
     "Lines",
+    "MapBackground",
     "OffscreenSurface",
     "Opening",
     "OrbitCamera",

@@ -1,21 +1,18 @@
-"""The background under a scene, and the picture of the scene in a window, under its panels.
+"""The picture of a scene in a window, under its panels.
 
 Software OpenGL pays for every sample, so a scene that moves may be drawn with fewer (`Detail`). Its
 edges are smoothed then (edges.py), and it is enlarged here. The scene's own pixels stay as they
 are: when only a panel changes, the scene is laid under it again without being drawn again.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import moderngl
 
-from .camera import PlacedView
 from .edges import EdgeSmoother
 from .programs import compile_program
 from .render_target import Rectangle, RenderTarget, scaled
-from .style import Background
 
 _UNIT = 4  # texture unit while enlarging
 
@@ -117,58 +114,3 @@ class Compositor:
     def read(self) -> bytes:
         """The pixels, bottom row first, three bytes each."""
         return bytes(self.frame.read(components=3, alignment=1))
-
-
-_Area = tuple[Rectangle, Rectangle]  # a viewport, and its part that is painted
-
-
-class Backdrop:
-    """Paints backgrounds into the frame of a surface's target: once, and copied into every frame.
-
-    On software OpenGL a copy of the whole frame costs a fiftieth of painting it (measured: 0.16 ms
-    against 8 ms at 1280 x 720), and a tenth of a copy of a part, which is no plain copying.
-    """
-
-    def __init__(self, gl: moderngl.Context) -> None:
-        self._gl = gl
-        self._program = compile_program(gl, "background.glsl")
-        self._triangle = gl.vertex_array(self._program, [])
-        self._store: moderngl.Framebuffer | None = None
-        self._stored: dict[_Area, Background | None] | None = None
-
-    def paint(
-        self,
-        target: RenderTarget,
-        views: Sequence[PlacedView],
-        backgrounds: Sequence[Background | None],
-    ) -> None:
-        """Paint a background behind each view, in a frame on which nothing was drawn yet.
-
-        None: nothing is there, not even black.
-        """
-        if self._store is None or self._store.size != target.size:
-            self._store = self._gl.framebuffer([self._gl.renderbuffer(target.size, 4)])
-            self._stored = None
-        areas = [(view.viewport, view.clip) for view in views]
-        wanted = dict(zip(areas, backgrounds, strict=True))
-        if self._stored != wanted:
-            self._store.use()
-            self._gl.scissor = None
-            self._store.clear(0.0, 0.0, 0.0, 1.0)  # around them, as an empty frame
-            for (viewport, clip), background in wanted.items():
-                if min(clip[2:]) > 0:
-                    self._paint(viewport, clip, background)
-            self._stored = wanted
-        target.use_frame()
-        self._gl.copy_framebuffer(target.frame, self._store)
-
-    def _paint(self, viewport: Rectangle, clip: Rectangle, background: Background | None) -> None:
-        gl = self._gl
-        gl.viewport = viewport
-        gl.scissor = clip
-        if background is None:
-            gl.fbo.clear(0.0, 0.0, 0.0, 0.0, viewport=clip)
-            return
-        self._program["centre"] = background.centre
-        self._program["edge"] = background.edge
-        self._triangle.render(moderngl.TRIANGLES, vertices=3)

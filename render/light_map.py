@@ -14,9 +14,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
+import numpy.typing as npt
 
 from ..geometry.arrays import Floats64
-from .style import Light
+from .style import Light, MapBackground
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +64,22 @@ class LightMap:
             ),
             scale,
         )
+
+    def background(self, turn: float = 0.0, exposure: float | None = None) -> MapBackground:
+        """The map behind a scene that it lights, out of focus and exposed as its light is.
+
+        turn: as of `light`. exposure: as `exposed` gives it; None: found anew.
+        """
+        if exposure is None:
+            exposure = self.exposed(turn)[1]
+        rows, columns = self.radiance.shape[:2]
+        out_of_focus = 3.0 * rows / 180.0  # 3 degrees, in texels
+        up = np.subtract.outer(np.arange(rows), np.arange(rows))
+        around = np.subtract.outer(np.arange(columns), np.arange(columns))
+        around = (around + columns // 2) % columns - columns // 2  # the ends of a row meet
+        softened = np.tensordot(_gaussian(up, out_of_focus), self.radiance, 1)
+        softened = _gaussian(around, out_of_focus) @ softened
+        return MapBackground(exposure * softened, turn)
 
 
 def directions(rows: int, columns: int, turn: float = 0.0) -> Floats64:
@@ -156,6 +173,12 @@ def _street() -> Floats64:
     lights_behind += _spot(away, azimuth=9.0, elevation=4.0, width=1.3)
     light = light + lights_behind[..., None] * [2.6, 1.7, 0.9]
     return np.asarray(light + lamp[..., None] * [24.0, 18.5, 12.5])
+
+
+def _gaussian(distances: npt.NDArray[np.int64], deviation: float) -> Floats64:
+    """Weights of texels at these distances from each texel, shape (n, n), rows of sum 1."""
+    weights = np.exp(-0.5 * (distances / deviation) ** 2)
+    return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
 
 def _spot(away: Floats64, *, azimuth: float, elevation: float, width: float) -> Floats64:

@@ -13,8 +13,8 @@ import moderngl
 import numpy as np
 
 from ..geometry.arrays import Floats64
+from .backdrop import Backdrop
 from .camera import PlacedView, box_corners
-from .compositor import Backdrop
 from .frame import Frame, Plane, Skin
 from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import FarthestDepths, Occluder, draw_sides

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Self
 
+from ..geometry.arrays import Floats64
+
 Colour = tuple[float, float, float]
 
 
@@ -66,6 +68,17 @@ class Background:
     edge: Colour
 
 
+@dataclass(frozen=True, eq=False)
+class MapBackground:
+    """A map of light that is seen behind a scene, of the form that `LightMap` has.
+
+    It hangs on the camera, as its light does. turn: to the viewer's right [deg].
+    """
+
+    radiance: Floats64
+    turn: float = 0.0
+
+
 LIGHT = Background(centre=(0.885, 0.89, 0.90), edge=(0.665, 0.68, 0.705))
 DARK = Background(centre=(0.27, 0.285, 0.305), edge=(0.085, 0.09, 0.10))
 BLACK = Background(centre=(0.0, 0.0, 0.0), edge=(0.0, 0.0, 0.0))
@@ -109,7 +122,7 @@ class Style:
     skin_maps: bool = True  # fine shape, and less light in folds, where the texture says so
     bumps: float = 1.0  # how much of a bump map shows, where there is one; 0 = none
     light: Light = Light()
-    background: Background | None = LIGHT  # None: transparent
+    background: Background | MapBackground | None = LIGHT  # None: transparent
     wire_colour: Colour = (0.07, 0.08, 0.12)
     wire_width: float = 1.0  # [pixels at scale 1]; a window on a dense screen draws it wider
     wire_opacity: float = 0.5

@@ -13,6 +13,7 @@ from ..refining.presets import PAPERS_PRESET, STATIC, Refinement
 from ..text import in_one_line
 from .help import GroupedCommand
 from .options import (
+    MAP_BACKGROUND,
     PATH,
     SCENE,
     SCRIPT,
@@ -62,10 +63,11 @@ class Filming:
         help="Time of a .png [s]; by default the first named pose, or else the end. FROM:TO: the "
         "part of the script that a film or a folder shows.",
     )
-    background: render.Background | None = option(
+    background: render.Background | str | None = option(
         type=BackgroundName(),
         default="light",
-        help="light, dark, white, black, a colour as #00b140, or transparent.",
+        help="light, dark, white, black, a colour as #00b140, transparent, or map: the map of "
+        "light, out of focus.",
     )
     light: Path | None = option(
         type=PATH,
@@ -110,17 +112,30 @@ class Filming:
 
     def _style(self, drawing: Drawing) -> render.Style:
         """The style of pictures, in the light of a file where there is one."""
+        from risorius import render
+
         from ..light_maps import read_light_map
 
-        style = replace(drawing.style(), background=self.background)
-        if self.light is None:
-            return style
-        if "light" in STYLE_WORDS.read(drawing.style_settings):
-            raise UserError("--light and --style light= are both given; leave one out")
-        if self.light.name in LIGHT_NAMES and not self.light.exists():
-            name = self.light.name
-            raise UserError(f"--light takes a file of a map; for {name} write --style light={name}")
-        return replace(style, light=read_light_map(self.light).light())
+        style = drawing.style()
+        light_map = render.LIGHT_MAPS.get(drawing.style_options["light"])
+        if self.light is not None:
+            if "light" in STYLE_WORDS.read(drawing.style_settings):
+                raise UserError("--light and --style light= are both given; leave one out")
+            if self.light.name in LIGHT_NAMES and not self.light.exists():
+                name = self.light.name
+                raise UserError(
+                    f"--light takes a file of a map; for {name} write --style light={name}"
+                )
+            light_map = read_light_map(self.light)
+            style = replace(style, light=light_map.light())
+        if not isinstance(self.background, str):
+            return replace(style, background=self.background)
+        if light_map is None:
+            raise UserError(
+                f"--background {MAP_BACKGROUND}: no map lights the scene; add --light FILE, or "
+                f"--style light={' or '.join(render.LIGHT_MAPS)}"
+            )
+        return replace(style, background=light_map.background())
 
     def options(
         self, script: Script, drawing: Drawing, *, is_recorded: bool = False

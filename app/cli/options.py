@@ -55,20 +55,28 @@ class Size(click.ParamType[tuple[int, int]]):
         )
 
 
-class BackgroundName(click.ParamType["render.Background | None"]):
-    """The background of the scene, by name or as a colour; None is transparent."""
+MAP_BACKGROUND = "map"
+
+
+class BackgroundName(click.ParamType["render.Background | str | None"]):
+    """The background of the scene, by name or as a colour; None is transparent.
+
+    The word map stays: which map lights the scene, other options say.
+    """
 
     name = "COLOUR"
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> render.Background | None:
+    ) -> render.Background | str | None:
         """Look the name up, or fail with the names that are allowed."""
         from risorius import render
 
         word = str(value).lower()
         if word == "transparent":
             return None
+        if word == MAP_BACKGROUND:
+            return word
         if word in BACKGROUNDS:
             named: render.Background = getattr(render, word.upper())
             return named
@@ -76,8 +84,8 @@ class BackgroundName(click.ParamType["render.Background | None"]):
             red, green, blue = (part / 255.0 for part in bytes.fromhex(word[1:]))
             return render.Background((red, green, blue), (red, green, blue))
         self.fail(
-            f"'{value}' is no background; take {', '.join(BACKGROUNDS)}, transparent, or a colour "
-            "as #00b140"
+            f"'{value}' is no background; take {', '.join(BACKGROUNDS)}, {MAP_BACKGROUND}, "
+            "transparent, or a colour as #00b140"
         )
 
 

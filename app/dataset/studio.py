@@ -24,7 +24,6 @@ from risorius.assets.identities import (
     wearing,
 )
 
-from ..light_maps import seen_behind
 from ..motion import SETTLING
 from ..motion.life import EYE_RANGE, looking_at
 from ..passes.camera import CameraLabels
@@ -113,29 +112,22 @@ class Studio:
         random = np.random.default_rng(sample.surroundings)
         lit = light_of(sample.light, request.lights, random)
         picture = None
-        colours = None
-        name = ""
+        behind: render.Background | render.MapBackground | None = None
+        label: Any = lit.name
         if request.backgrounds.pictures:
-            name, picture = request.backgrounds.picture(random, request.size)
+            label, picture = request.backgrounds.picture(random, request.size)
         elif lit.map is not None and request.backgrounds.colour is None:
-            name = lit.name
-            picture = seen_behind(
-                lit.map,
-                request.size,
-                sample.view.field_of_view,
-                turn=lit.turn,
-                exposure=lit.exposure,
-            )
+            behind = lit.map.background(lit.turn, lit.exposure)
         else:
-            colours = request.backgrounds.colours(random)
-        style = render.Style(light=lit.light, background=colours)
+            behind = request.backgrounds.colours(random)
+            label = asdict(behind)
+        style = render.Style(light=lit.light, background=behind)
         model.pipeline.draw(camera, style, [Viewport(model.passes.drawn, (0, 0, *request.size))])
         if picture is None:
             image = self._surface.read()
         else:
             image = laid_over(picture, self._surface.read_scene(4))
-        background = name if colours is None else asdict(colours)
-        return image, {"light": lit.labels, "background": background}
+        return image, {"light": lit.labels, "background": label}
 
     def _person_of(self, number: int) -> _Model:
         """Person `number` before the frame, drawn from the table's population."""

@@ -47,6 +47,7 @@ RENDER_BACKGROUNDS = ("light", "dark", "white", "black")
 BACKGROUNDS = {
     "theme": None,
     **{name: getattr(render, name.upper()) for name in RENDER_BACKGROUNDS},
+    "map": None,  # of the light; the theme's where a lamp lights the scene
 }
 # Individual typology angles [degrees], see assets/identities/complexion.py; None: the person's own.
 TONES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}

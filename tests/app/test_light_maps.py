@@ -6,6 +6,7 @@ import tracemalloc
 from pathlib import Path
 
 import numpy as np
+import PIL.Image
 import pytest
 from numpy.testing import assert_allclose
 
@@ -13,7 +14,8 @@ from risorius import render
 from risorius.app import light_maps
 from risorius.app.dataset import surroundings
 from risorius.app.errors import UserError
-from risorius.app.light_maps import check_light_map, read_light_map, seen_behind
+from risorius.app.light_maps import check_light_map, read_light_map
+from risorius.geometry.colour import to_screen
 
 from .command_line import risorius
 
@@ -162,7 +164,7 @@ def test_maps_of_a_set_are_read_once(tmp_path, monkeypatch):
     random = np.random.default_rng(0)
     for _ in range(60):
         lit = surroundings.light_of("", files, random)
-    seen_behind(lit.map, (8, 6), 40.0, turn=lit.turn, exposure=lit.exposure)
+    lit.map.background(lit.turn, lit.exposure)
     assert sorted(read) == list(files.paths)
     assert len(read) == 10
     assert len(exposed) == 60
@@ -193,17 +195,61 @@ def test_a_set_is_lit_by_files(tmp_path):
     assert len(labels["light"]["around"]) == 9
 
 
-def test_what_lies_behind_is_the_middle_of_the_map():
-    """It is out of focus, and moves to the right where the map is turned so."""
+@pytest.fixture(scope="module")
+def map_ahead():
+    """A dark spot straight behind the head, a grey world, and white behind the viewer."""
     radiance = np.full((64, 128, 3), 0.3)
     radiance[28:36, 62:66] = 0.0
-    radiance[:, :32] = 1.0  # behind the viewer
-    light_map = render.LightMap(radiance)
-    pictures = [
-        seen_behind(light_map, (80, 60), 40.0, turn=turn, exposure=light_map.exposed(turn)[1])
-        for turn in (0.0, 12.0)
-    ]
-    rows = [picture[30, :, 0].astype(int) for picture in pictures]
+    radiance[:, :32] = 1.0
+    return render.LightMap(radiance)
+
+
+def _painted(background, lens=40.0):
+    with render.open_offscreen((80, 60)) as surface:
+        camera = render.OrbitCamera.framing(np.array([[-1.0] * 3, [1.0] * 3]))
+        camera.field_of_view = lens
+        frame = render.Frame(render.CameraView(camera), render.Style(background=background))
+        render.Renderer(surface).draw(frame)
+        return surface.read()[..., 0].astype(int)
+
+
+def test_what_lies_behind_is_the_middle_of_the_map(map_ahead):
+    """It is out of focus, and moves to the right where the map is turned so."""
+    rows = [_painted(map_ahead.background(turn))[30] for turn in (0.0, 12.0)]
     assert abs(int(rows[0].argmin()) - 40) <= 3
     assert rows[1].argmin() > rows[0].argmin() + 8
     assert np.abs(np.diff(rows[0])).max() < 40
+
+
+def test_a_longer_lens_shows_less_of_the_map(map_ahead):
+    """A spot is twice as wide where the lens sees half as much."""
+    behind = map_ahead.background()
+    wide, near = (
+        (picture[30] < picture[30].max() - 20).sum()
+        for picture in (_painted(behind, 40.0), _painted(behind, 20.6))
+    )
+    assert near == pytest.approx(2.0 * wide, abs=3)
+
+
+def test_a_map_is_seen_as_bright_as_it_is(map_ahead):
+    """A place of the map has its light, exposed as the scene is, by the screen's curve."""
+    painted = _painted(map_ahead.background(exposure=2.0))
+    assert_allclose(painted[5, 5], 255.0 * to_screen(0.6), atol=2)
+
+
+@pytest.mark.parametrize("lit", ["file", "name"])
+def test_capture_shows_the_map_behind(tmp_path, lit):
+    """A file's map, or one of ours by name; without a map one line says what to add."""
+    path = tmp_path / "sky.hdr"
+    path.write_bytes(HEAD + rgbe(pixels()).tobytes())
+    light = ("--light", path) if lit == "file" else ("--style", "light=room")
+    light_map = read_light_map(path) if lit == "file" else render.LIGHT_MAPS["room"]
+    options = ("--scene", "plane", "--size", "80x60", "--background", "map")
+    result = risorius("capture", *options, *light, "--quiet", "-o", tmp_path / "seen.png")
+    assert result.exit_code == 0, result.output
+    seen = np.asarray(PIL.Image.open(tmp_path / "seen.png"))[2, 2, 0]
+    lens = render.OrbitCamera.field_of_view
+    assert_allclose(seen, _painted(light_map.background(), lens)[2, 2], atol=2)
+    result = risorius("capture", *options, "-o", tmp_path / "seen.png")
+    assert result.exit_code == 2
+    assert "no map lights the scene; add --light FILE, or --style light=" in result.output

@@ -13,6 +13,7 @@ from pytest import approx
 from risorius.app.anatomy import AnatomyView
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.captions import plate
+from risorius.app.viewer.interface.gui import THEMES
 from risorius.app.viewer.settings import SKINS, Display
 
 from .driving import (
@@ -134,6 +135,12 @@ def test_the_scene_has_light_lens_and_hair(viewer):
     click(viewer, "Hair")
     display = viewer.settings.display
     assert (display.light, display.background, display.has_hair) == ("side", "white", False)
+    in_panel(viewer, ("Light", "street"), ("Background", "map"))
+    behind = viewer.context.stage.draw_image(viewer.face.view).astype(int)
+    assert np.ptp(behind[5], axis=0).min() > 20  # the map's lamps
+    in_panel(viewer, ("Light", "side"))
+    assert viewer.face.view.background == THEMES[viewer.settings.theme].background
+    in_panel(viewer, ("Background", "white"))
     bald = viewer.context.stage.draw_image(viewer.face.view)
     assert (np.abs(bald - whole).max(axis=2) > 40).mean() > 0.1
     camera = viewer.face.view.camera

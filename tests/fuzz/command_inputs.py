@@ -106,6 +106,7 @@ REFUSED = {
     "capture good.toml -o x.mp4 --size ²x²": "'²x²' is no size",
     "capture good.toml -o x.png --time 86400": "good.toml ends at",
     "capture --scene plane -o x.mp4 --background transparent": "a film has a background; take",
+    "capture --background map -o x.png": "--background map: no map lights the scene; add --light",
     "convert nothing.csv -o c.png": "c.png: scripts are written as .toml",
     "convert good.toml -o out.toml": "is a script already",
     # Persons.

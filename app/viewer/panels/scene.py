@@ -15,6 +15,8 @@ from .display_rows import DisplayRows
 
 HINTS = {
     "Light": "hangs on the camera; the shadow follows the key",
+    "Background": "theme: of the window's colours; map: what the lights clouds, room and street "
+    "show behind the head",
     "Lens": "the angle of view from top to bottom [degrees]; the face keeps its size. Wide lenses "
     "stand near and make noses large",
     "Person": "another head, on which script and pose go on (--head takes any number)",

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from functools import cache
 from types import MappingProxyType
 
 import numpy as np
@@ -68,9 +69,12 @@ class SceneView:
         return self._settings.display
 
     @property
-    def background(self) -> render.Background:
+    def background(self) -> render.Background | render.MapBackground:
         """The background of the picture."""
-        return BACKGROUNDS[self.display.background] or THEMES[self._settings.theme].background
+        display = self.display
+        if display.background == "map" and display.light in render.LIGHT_MAPS:
+            return _map_behind(display.light)
+        return BACKGROUNDS[display.background] or THEMES[self._settings.theme].background
 
     @property
     def viewport(self) -> render.Rectangle:
@@ -247,7 +251,14 @@ def pointed_lines(
     return drawn
 
 
-def style_of(display: Display, background: render.Background | None) -> render.Style:
+@cache
+def _map_behind(light: str) -> render.MapBackground:
+    return render.LIGHT_MAPS[light].background()
+
+
+def style_of(
+    display: Display, background: render.Background | render.MapBackground | None
+) -> render.Style:
     """The renderer's style for the display that the user chose."""
     is_textured, albedo = SKINS[display.skin]
     return render.Style(
