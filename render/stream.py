@@ -138,8 +138,7 @@ class MeshBuffers:
         if name not in self._more:
             room = 3 * NUMBER_BYTES * self._triangle_capacity
             self._more[name] = self.context.buffer(reserve=room, dynamic=True)
-        self._more[name].orphan()
-        self._more[name].write(np.ascontiguousarray(triangles))
+        _write_anew(self._more[name], np.ascontiguousarray(triangles))
 
     def _check_bumps(self, has_bumps: bool) -> None:
         """Raise ValueError where amounts shall count that rows do not have."""
@@ -153,7 +152,8 @@ class MeshBuffers:
         """Upload the triangles anew: first those that have bumps."""
         parts = self.mesh.triangles
         amounts = self.mesh.vertices[:, BUMPS]
-        is_bumped = (amounts.max(axis=1) > 0.0)[parts].any(axis=1)
+        is_shown = (amounts[:, 0] > 0.0) | (amounts[:, 1] > 0.0)
+        is_bumped = is_shown[parts].any(axis=1)
         count = int(is_bumped.sum())
         self._ranges[Share.BUMPED] = 0, count
         self._ranges[Share.SMOOTH] = count, len(parts) - count
@@ -251,13 +251,20 @@ class Stream(MeshBuffers):
         if vertex_count == 0 or triangle_count == 0:
             return
         self.corners = box_corners(self.places)
-        # Orphaning gives the driver a fresh block while it may still draw from the old one.
-        self.vertex_buffer.orphan()
-        self.vertex_buffer.write(rows)
-        self.index_buffer.orphan()
-        self.index_buffer.write(triangles)
+        _write_anew(self.vertex_buffer, rows)
+        _write_anew(self.index_buffer, triangles)
         if has_bumps:
             self._part_bumps()
+
+
+def _write_anew(buffer: moderngl.Buffer, rows: npt.NDArray[np.generic]) -> None:
+    """Write rows into a fresh block of memory: the driver may still draw from the old one.
+
+    Software clears the whole block, so it is no larger than the next power of two. A driver keeps
+    blocks by size, and most frames have that size.
+    """
+    buffer.orphan(1 << max(rows.nbytes - 1, 0).bit_length())
+    buffer.write(rows)
 
 
 class GpuStream(MeshBuffers):

@@ -19,7 +19,7 @@ from risorius.geometry.read_only import read_only
 class DenseSkin:
     """The vertices of a skin as a simulation of fewer carries them.
 
-    rest_positions, positions: at rest and now [mm], shape (V, 3), read only for others.
+    rest_positions: at rest [mm], shape (V, 3), read only for others.
     """
 
     def __init__(self, vertices: Floats64, faces: Integers32, simulation: sim.Simulation) -> None:
@@ -33,11 +33,24 @@ class DenseSkin:
             simulation.faces, simulation.rest_positions, vertices, normals=normals
         )
         self._positions = vertices.copy()
-        self.positions = read_only(self._positions)
+        self._shown = read_only(self._positions)
+        self._wanted: Floats64 | None = None  # where the simulated vertices are, if not followed
 
     def follow(self, simulated: Floats64) -> None:
-        """Go where the simulated vertices are now, shape (K, 3)."""
-        self._positions[:] = self._embedding.evaluate(simulated, with_normals=False).positions
+        """Go where the simulated vertices are, shape (K, 3), as soon as somebody looks.
+
+        A frame has several steps of the simulation, and only after the last of them one looks.
+        """
+        self._wanted = simulated
+
+    @property
+    def positions(self) -> Floats64:
+        """Now [mm], shape (V, 3), read only for others; a view that stays the same."""
+        if self._wanted is not None:
+            moved = self._embedding.evaluate(self._wanted, with_normals=False).positions
+            self._positions[:] = moved
+            self._wanted = None
+        return self._shown
 
     def carry(self, values: Floats64) -> Floats64:
         """Values of simulated vertices, shape (K,), at those of the skin, shape (V,)."""
@@ -48,7 +61,7 @@ class DenseSkin:
         twin = copy.copy(self)
         twin._embedding = copy.deepcopy(self._embedding)
         twin._positions = self._positions.copy()
-        twin.positions = read_only(twin._positions)
+        twin._shown = read_only(twin._positions)
         return twin
 
 

@@ -63,7 +63,7 @@ class Drawable:
     """A mesh as drawing sees it.
 
     name: of the scene, by which looks choose their options.
-    faces: (F, 3). rest_positions: (V, 3) [mm]. positions: the vertices now; read only for others.
+    faces: (F, 3). rest_positions: (V, 3) [mm].
     called: whose head it is, if it is one. face: what muscles move, if they do.
     """
 
@@ -81,9 +81,18 @@ class Drawable:
         self.name = name
         self.faces = faces
         self.rest_positions = rest_positions
-        self.positions = rest_positions
+        self._positions_now = rest_positions
         self.skin = skin
         self.face = face
+
+    @property
+    def positions(self) -> Points:
+        """The vertices now [mm], shape (V, 3); read only for others."""
+        return self._positions_now
+
+    def place(self, positions: Points) -> None:
+        """Bring the vertices to these places [mm], shape (V, 3)."""
+        self._positions_now = positions
 
     @property
     def parts(self) -> tuple[Any, ...]:

@@ -46,7 +46,6 @@ class FaceScene(Scene):
         faces = self.head.faces
         rest = face.rest_positions
         super().__init__(self.name, faces, rest, skin=_images_of(self.head), face=face)
-        self.positions = face.positions
         self.landmarks = self.head.landmarks
         self.called = _name_of(self.head)
         self._parts = _parts_of(self.head, rest, faces)
@@ -93,6 +92,10 @@ class FaceScene(Scene):
         """Take note that the simulation has moved."""
         self.face.follow()
         self._are_bent = False
+
+    @property
+    def positions(self) -> Floats64:
+        return self.face.positions
 
     @property
     def parts(self) -> tuple[Any, ...]:

@@ -63,7 +63,10 @@ class Face:
 
     @property
     def positions(self) -> Floats64:
-        """The vertices of the skin now [mm], shape (V, 3); a view that stays the same."""
+        """The vertices of the skin now [mm], shape (V, 3); a view that stays the same.
+
+        A dense skin moves there when this is asked for.
+        """
         simulated: Floats64 = self.simulation.positions
         return simulated if self.dense_skin is None else self.dense_skin.positions
 
@@ -84,7 +87,7 @@ class Face:
         return annotation_of(self.head)
 
     def follow(self) -> None:
-        """Bring the skin to where the simulated mesh is now."""
+        """Let the skin go where the simulated mesh is now."""
         if self.dense_skin is not None:
             self.dense_skin.follow(self.simulation.positions)
 

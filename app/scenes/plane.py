@@ -39,7 +39,7 @@ class PlaneScene(Scene):
         self.values = self.limits.pose({})
         self._length = float(np.ptp(vertices, axis=0).max())
         self._positions = vertices.copy()
-        self.positions = read_only(self._positions)
+        self.place(read_only(self._positions))
 
     def step(self, seconds: float) -> None:
         self._positions[:] = self.waved(self.rest_positions)[0]

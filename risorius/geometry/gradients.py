@@ -41,22 +41,48 @@ def _add_gradients(
     corners: Floats64,
     sums: npt.NDArray[np.float64],
 ) -> None:
-    """Add to the sums of each corner its triangle's gradients times twice its area, and this."""
+    """Add to the sums of each corner its triangle's gradients times twice its area, and this.
+
+    Vectors are tuples here: arrays of three numbers would be allocated for each triangle.
+    """
     for t in range(faces.shape[0]):
-        a = positions[faces[t, 0]]
-        b = positions[faces[t, 1]]
-        c = positions[faces[t, 2]]
-        normal = np.cross(b - a, c - a)
-        area = np.sqrt((normal * normal).sum())
+        a = faces[t, 0]
+        b = faces[t, 1]
+        c = faces[t, 2]
+        from_a_to_b = _between(positions, a, b)
+        normal = _cross(from_a_to_b, _between(positions, a, c))
+        x, y, z = normal
+        area = np.sqrt(x * x + y * y + z * z)
         if area < 1e-12:
             continue
-        across_a = np.cross(normal, c - b) / area
-        across_b = np.cross(normal, a - c) / area
-        across_c = np.cross(normal, b - a) / area
-        for k in range(2):
-            u = corners[t, :, k]
-            along = u[0] * across_a + u[1] * across_b + u[2] * across_c
-            for i in range(3):
-                sums[face_uv[t, i], 3 * k : 3 * k + 3] += along
+        across_a = _cross(normal, _between(positions, b, c))
+        across_b = _cross(normal, _between(positions, c, a))
+        across_c = _cross(normal, from_a_to_b)
+        for j in range(3):
+            by_a = across_a[j] / area
+            by_b = across_b[j] / area
+            by_c = across_c[j] / area
+            for k in range(2):
+                along = corners[t, 0, k] * by_a + corners[t, 1, k] * by_b + corners[t, 2, k] * by_c
+                for i in range(3):
+                    sums[face_uv[t, i], 3 * k + j] += along
         for i in range(3):
             sums[face_uv[t, i], 6] += area
+
+
+@njit
+def _between(positions: Floats64, a: np.int32, b: np.int32) -> tuple[float, float, float]:
+    """The vector from vertex a to vertex b."""
+    return (
+        positions[b, 0] - positions[a, 0],
+        positions[b, 1] - positions[a, 1],
+        positions[b, 2] - positions[a, 2],
+    )
+
+
+@njit
+def _cross(
+    u: tuple[float, float, float], v: tuple[float, float, float]
+) -> tuple[float, float, float]:
+    """Vector product."""
+    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]

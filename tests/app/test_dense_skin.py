@@ -55,6 +55,29 @@ def test_it_follows_and_comes_back(dense):
     np.testing.assert_allclose(dense.positions, dense.rest_positions, atol=1e-3)
 
 
+def test_it_follows_when_somebody_looks(dense, monkeypatch):
+    """A frame of several steps moves the file's own vertices once, and a second look takes none."""
+    moves = []
+    embedding = type(dense.face.dense_skin._embedding)
+    evaluate = embedding.evaluate
+
+    def counted(self, positions, **options):
+        moves.append(len(positions))
+        return evaluate(self, positions, **options)
+
+    dense.reset()
+    dense.pose({"joy": 1.0})
+    seen = dense.positions
+    monkeypatch.setattr(embedding, "evaluate", counted)
+    for _ in range(6):
+        dense.step(1.0 / 60.0)
+    assert not moves
+    assert dense.positions is seen
+    assert dense.positions is seen
+    assert len(moves) == 1
+    assert np.abs(seen - dense.rest_positions).max() > 1.0
+
+
 def test_lips_keep_their_own_vertices(dense):
     """An opened mouth parts the lips: no vertex of one goes with the other."""
     dense.reset()

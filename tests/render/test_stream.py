@@ -66,6 +66,15 @@ def test_hundred_frames_use_the_same_buffers(renderer):
     assert peaks[-1] < 1.03 * peaks[20]
 
 
+def test_a_frame_takes_no_more_memory_than_it_fills(renderer):
+    """Blocks are as large as the mesh, not as the worst case, and grow with the mesh again."""
+    stream = renderer.lend_stream(100_000, 100_000, 8)
+    for count in (10, 5_000, 10):
+        stream.upload(count, count)
+        assert 32 * count <= stream.vertex_buffer.size < 64 * count
+        assert 12 * count <= stream.index_buffer.size < 24 * count
+
+
 def test_mesh_without_triangles_draws_nothing(renderer):
     """An empty frame of a stream is no error."""
     stream = lent(renderer, square())

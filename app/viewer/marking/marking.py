@@ -132,7 +132,7 @@ class Marking:
     def _place(self, placing: Similarity) -> None:
         self.placing = placing
         seen = self.seen_mesh
-        seen.positions = placing.points(self.mesh.vertices)
+        seen.place(placing.points(self.mesh.vertices))
         self._normals = vertex_normals(seen.positions, seen.faces)
         off = seen.positions - seen.positions.mean(axis=0)
         if float((self._normals * off).sum()) < 0.0:  # it faces inward throughout
