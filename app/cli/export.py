@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
+from ..errors import UserError
 from ..export.formats import FORMATS, ExportRequest, check_request, format_for
 from ..export.formats import export as write
 from ..text import in_one_line
@@ -22,6 +24,9 @@ from .options import (
     packed,
     played,
 )
+
+if TYPE_CHECKING:
+    from risorius.assets.fitting import FittedHead
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,11 @@ class Exporting:
         is_flag=True,
         help="With --refined: other triangles in each frame, as few as it needs (USD, OBJ, "
         "VTKHDF).",
+    )
+    simplified: bool = option(
+        is_flag=True,
+        help="Of a head above 20000 triangles: write the simplified mesh that is simulated, in "
+        "place of the file's own.",
     )
     named_only: bool = option(
         is_flag=True,
@@ -90,9 +100,23 @@ def export(
     if request.refinement is not None:
         request.refinement.check(performance.scene)
     head = subject.fitted_head()
+    if exporting.simplified:
+        head = _simplified(head)
     line, remark = write(
         performance, output, chosen, request, head=head, frames_per_second=exporting.fps
     )
     click.echo(in_one_line(line))
     if remark is not None:
         click.echo(f"{in_one_line(output)}: {remark}", err=True)
+
+
+def _simplified(head: FittedHead | None) -> FittedHead:
+    """The simplified mesh of a head as a head; UserError where there is none."""
+    from risorius.assets.fitting import simplified_head
+
+    if head is None or head.simplified is None:
+        raise UserError(
+            "--simplified: this mesh is simulated as it is; leave it out, or give a --head of more "
+            "than 20000 triangles"
+        )
+    return simplified_head(head)

@@ -197,9 +197,19 @@ def export(
     progress = request.progress
     clip = record(script, scene_of(script, head), frames_per_second, span=span, progress=progress)
     line = f"{output}: {chosen.title}, {counted(clip.frame_count, 'frame')}"
+    if request.refinement is None and chosen.refines:
+        line = f"{line}, {counted(len(clip.skin.faces), 'triangle')}"
     if request.refinement is not None and not request.changes:
         refined = with_refined_skin(clip, request.refinement)
         line = f"{line}, {refined.words}"
         clip = refined.clip
         request = replace(request, refinement=None)
-    return line, write(clip, output, chosen, request)
+    remark = write(clip, output, chosen, request)
+    return f"{line}, {_size_in_words(chosen.outputs(output))}", remark
+
+
+def _size_in_words(outputs: Iterable[Path]) -> str:
+    """How large files are together, and those in a folder."""
+    files = [path for each in outputs for path in (each.iterdir() if each.is_dir() else [each])]
+    size = sum(path.stat().st_size for path in files if path.is_file())
+    return f"{size / 1e6:.1f} MB" if size >= 1_000_000 else f"{max(size / 1e3, 1.0):.0f} kB"

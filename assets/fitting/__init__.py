@@ -8,6 +8,7 @@ the user's page. Start reading at head.py.
 """
 
 from .head import FittedHead, fit, fit_head
+from .simplified_head import simplified_head
 from .simplifying import SimulatedHead
 
-__all__ = ["FittedHead", "SimulatedHead", "fit", "fit_head"]
+__all__ = ["FittedHead", "SimulatedHead", "fit", "fit_head", "simplified_head"]

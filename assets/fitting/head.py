@@ -80,7 +80,6 @@ class FittedHead(simplifying.SimulatedHead):
     lip_cut: of a file whose lips are sealed; its mesh is cut there. None for others.
     """
 
-    uv: Floats32
     face_uv: Integers32
     albedo: Image
     wrinkles: Wrinkles
@@ -327,6 +326,7 @@ def _simulated(
         jaw_axis=jaw.axis,
         rig=jaw.rig,
         layers=known.layers,
+        uv=carried.uv,
     )
 
 

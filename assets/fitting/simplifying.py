@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from risorius.geometry.arrays import Floats64, Integers32
+from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.read_only import make_read_only
 
 from ..errors import AssetError
@@ -26,6 +26,7 @@ SIMPLIFIED = 15_000  # triangles are left
 class SimulatedHead:
     """A mesh with all that `sim.create` reads; its attributes are those of `Head`.
 
+    uv: of vertices in the built-in picture, shape (V, 2).
     jaw_axis: None where no ear shows it; then `sim.create` guesses it from the landmarks.
     """
 
@@ -37,6 +38,7 @@ class SimulatedHead:
     parts: tuple[Part, ...]
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
+    uv: Floats32
     jaw_axis: Floats64 | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:

@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from risorius import sim
 from risorius.app.scenes import FaceScene
 from risorius.app.scenes.dense_skin import DenseSkin
-from risorius.assets.fitting import fit, simplifying
+from risorius.assets import AssetError
+from risorius.assets.fitting import fit, simplified_head, simplifying
+from risorius.assets.fitting.painting import sampled
 from risorius.assets.meshes import Mesh
 from risorius.assets.sheets import make_grid
 from risorius.geometry.normals import vertex_normals
@@ -76,6 +79,28 @@ def test_it_follows_when_somebody_looks(dense, monkeypatch):
     assert dense.positions is seen
     assert len(moves) == 1
     assert np.abs(seen - dense.rest_positions).max() > 1.0
+
+
+def test_its_simplified_mesh_is_a_head(dense):
+    """It moves as the mesh under the dense skin does, with the same picture in another layout."""
+    alone = FaceScene(simplified_head(dense.head))
+    assert np.array_equal(alone.faces, dense.simulation.faces)
+    for scene in (alone, dense):
+        scene.reset()
+        scene.pose({"joy": 1.0})
+        for _ in range(20):
+            scene.step(1.0 / 60.0)
+    np.testing.assert_allclose(alone.positions, dense.simulation.positions, atol=1e-9)
+    skins = [scene.skin for scene in (alone, dense)]
+    assert skins[0].albedo.shape[:2] == skins[0].ambient_occlusion.shape
+    places = [skin.uv[skin.face_uv].reshape(-1, 2) for skin in skins]
+    colours = [sampled(skin.albedo, at) for skin, at in zip(skins, places, strict=True)]
+    corners = [scene.rest_positions[scene.faces].reshape(-1, 3) for scene in (alone, dense)]
+    nearest = cKDTree(corners[1]).query(corners[0])[1]
+    off = np.abs(colours[0].astype(float) - colours[1][nearest]).mean(axis=1)
+    assert np.percentile(off, 90) < 12.0
+    with pytest.raises(AssetError, match="are simulated as they are"):
+        simplified_head(alone.head)
 
 
 def test_lips_keep_their_own_vertices(dense):

@@ -1,5 +1,6 @@
 """`risorius export`: files whole or not at all, and one line for what cannot be."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -58,7 +59,7 @@ def test_every_format_is_written_and_leaves_nothing_else(name, folder):
         arguments = ("plane.toml", "--as", name, "-o", OUTPUTS[name], "--overwrite")
         result = export(*arguments)
         assert result.exit_code == 0, result.output
-        assert "7 frames" in result.output
+        assert re.search(r"7 frames, 154 triangles, [1-9]\d* kB$", result.output, re.MULTILINE)
     chosen = next(each for each in FORMATS if each.name == name)
     allowed = {path.name for path in chosen.outputs(Path(OUTPUTS[name]))}
     found = {item.name for item in folder.iterdir()} - {"plane.toml", "face.toml"}
@@ -75,6 +76,13 @@ def test_curves_need_muscles():
     result = export("face.toml", "-o", "x.csv")
     assert result.exit_code == 0
     assert Path("x.csv").stat().st_size > 1000
+
+
+def test_only_a_dense_head_has_a_simplified_mesh():
+    """The built-in head is simulated as it is: one line says so, before anything is written."""
+    line = refusal(export("face.toml", "-o", "x.npz", "--simplified"))
+    assert line.startswith("risorius: --simplified: this mesh is simulated as it is; leave it out")
+    assert not Path("x.npz").exists()
 
 
 def test_files_of_somebody_else_stay(folder):

@@ -1,0 +1,73 @@
+"""The simplified mesh of a dense head as a head of its own, for files that have to be small."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from risorius.geometry.normals import vertex_normals
+
+from ..data_files import Image
+from ..errors import AssetError
+from ..loading import load
+from .head import FittedHead
+from .organs import with_eyelid_rims
+from .painting import Layout, plain_skin, sampled, texels_within
+from .simplifying import MOST_SIMULATED
+from .warp import nearest_on
+
+
+def simplified_head(head: FittedHead) -> FittedHead:
+    """The head whose own triangles are those that are simulated; it moves as `head` does.
+
+    Its picture is that of `head`, drawn anew in the layout of the built-in one. Raises AssetError
+    for a head that has no simplified mesh.
+    """
+    coarse = head.simplified
+    if coarse is None:
+        raise AssetError(
+            f"its {len(head.faces)} triangles are simulated as they are; give a head of more than "
+            f"{MOST_SIMULATED}"
+        )
+    known = load("head")
+    picture, light = plain_skin(known)
+    normals = vertex_normals(coarse.vertices, coarse.faces)
+    nearest = nearest_on(coarse.vertices, normals, head.vertices, head.faces)
+    corner = nearest.weights.argmax(axis=1)
+    nearest_vertex = nearest.corners[np.arange(len(corner)), corner]
+    return replace(
+        head,
+        vertices=coarse.vertices,
+        faces=coarse.faces,
+        landmarks=coarse.landmarks,
+        bone_depth=coarse.bone_depth,
+        parts=with_eyelid_rims(coarse.parts, coarse.vertices, coarse.faces, coarse.eyes),
+        uv=coarse.uv,
+        face_uv=coarse.faces,
+        albedo=_drawn_anew(head, picture, Layout(coarse.uv, coarse.faces)),
+        wrinkles=replace(known.wrinkles, across=head.wrinkles.across[nearest_vertex]),
+        segments=known.segments,
+        ambient_occlusion=light,
+        file_vertices=head.file_vertices[nearest_vertex],
+        simplified=None,
+    )
+
+
+def _drawn_anew(head: FittedHead, picture: Image, layout: Layout) -> Image:
+    """The picture of a head's skin in the layout of its simplified mesh, over another picture."""
+    assert head.simplified is not None
+    coarse = head.simplified
+    texels = texels_within(layout, picture.shape[:2])
+    normals = vertex_normals(coarse.vertices, coarse.faces)
+    nearest = nearest_on(
+        texels.interpolate(coarse.vertices[coarse.faces]),
+        texels.interpolate(normals[coarse.faces]),
+        head.vertices,
+        head.faces,
+    )
+    corners = Layout(head.uv, head.face_uv).corners[nearest.triangles]
+    places = np.einsum("nc,nck->nk", nearest.weights, corners)
+    drawn = picture.copy()
+    drawn[texels.rows, texels.columns] = sampled(head.albedo, places)
+    return drawn
