@@ -12,6 +12,7 @@ from .documents.file_dialogs import FileDialogs
 from .documents.scripts import Question, ScriptCommands
 from .interface.gui import Gui, wake_up
 from .messages import Messages
+from .picture.portraits import Portraits
 from .picture.stage import SceneView, Stage
 from .session.live_commands import LiveCommands
 from .session.physics import FrameTimes
@@ -34,6 +35,8 @@ class ApplicationContext:
             self.gui = Gui(surface.handle)
             stack.callback(self.gui.close)
             self.stage = Stage(surface, session.scene, settings.display, self.times)
+            self.portraits = Portraits(surface.gl, wake_up)
+            stack.callback(self.portraits.close)
             self.close = stack.pop_all().close  # called with the window's end
         self.view = SceneView(session, settings, surface)
         self.wanted_tab = ""  # of the panel, to be brought to the front, by its title

@@ -94,9 +94,9 @@ def set_by_hand(session: Session, **values: float) -> None:
     session.note()
 
 
-def wait_for(condition: Callable[[], object]) -> None:
+def wait_for(condition: Callable[[], object], seconds: float = DEADLINE) -> None:
     """Wait until another process has done something; AssertionError after too long."""
-    end = time.monotonic() + DEADLINE
+    end = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end
         time.sleep(0.02)

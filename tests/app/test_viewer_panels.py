@@ -15,6 +15,7 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.captions import plate
 from risorius.app.viewer.interface.gui import THEMES
 from risorius.app.viewer.settings import SKINS, Display
+from risorius.assets.identities import NAMED
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -28,6 +29,7 @@ from .driving import (
     settle,
     show_controls,
     until,
+    wait_for,
 )
 
 from risorius import render  # isort: skip - after the viewer, see app/viewer/gui.py
@@ -124,6 +126,31 @@ def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
     assert viewer.settings.display == changed
     click(viewer, "Reset all")
     assert isinstance(viewer.context.stage.refined.stream, render.Stream)
+
+
+@pytest.mark.slow
+def test_persons_are_chosen_by_their_pictures(viewer):
+    """Each has a picture of its own, which a process draws; a click shows that person."""
+    viewer.context.wanted_tab = "Scene"
+    click(viewer, "Person")
+    people = [name for name in viewer.gui.places if name.startswith("Person: ")]
+    assert {"Person: Ada, woman, about 25", "Person: Coarse head"} <= set(people)
+    assert len(people) == 2 + len(NAMED) + 20
+    portraits = viewer.context.portraits
+    first = ("built-in", "coarse", "ada")
+    wait_for(lambda: all(map(portraits.of, first)), 600.0)  # of low priority: others go first
+    settle(viewer)
+    shot = viewer.surface.read()
+    drawn = []
+    for left, top, _, bottom in (viewer.gui.places[name] for name in people[:3]):
+        square = shot[round(top) : round(bottom), round(left) : round(left + bottom - top)]
+        assert square.std() > 20.0
+        drawn.append(square.tobytes())
+    assert len(set(drawn)) == len(first)
+    click(viewer, "Person: Ada, woman, about 25")
+    assert until(viewer, lambda: viewer.session.scene.called == "ada")
+    viewer.file_drop.show_person(None)
+    settle(viewer)
 
 
 def test_the_scene_has_light_lens_and_hair(viewer):

@@ -5,13 +5,13 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from risorius import render
-from risorius.assets.identities import HAIR, NAMED
+from risorius.assets.identities import HAIR
 
-from ...scenes import BUILT_IN, COARSE, OWN, head_in_words
 from ..context import ApplicationContext
 from ..documents.file_drop import FileDrop
 from ..settings import BACKGROUNDS, TONES
 from .display_rows import DisplayRows
+from .people import PeopleList
 
 HINTS = {
     "Light": "hangs on the camera; the shadow follows the key",
@@ -29,10 +29,10 @@ class ScenePanel:
     """Everything in front of the camera but the face's motion."""
 
     def __init__(self, app: ApplicationContext, file_drop: FileDrop) -> None:
-        self._file_drop = file_drop
         self._stage = app.stage
         self._view = app.view
         self._rows = DisplayRows(app, HINTS)
+        self._people = PeopleList(app, file_drop, self._rows)
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel; of a plane only its rows."""
@@ -48,22 +48,9 @@ class ScenePanel:
         if chosen != now:
             camera.change_lens(chosen)
         if scene.called:
-            self._draw_people(scene.called)
+            self._people.draw(scene.called)
         if scene.skin.in_tone is not None:
             rows.pick("Skin tone", tuple(TONES))
         if any(part.name.startswith(HAIR) for part in scene.parts):
             rows.switch("Hair")
         imgui.end_child()
-
-    def _draw_people(self, called: str) -> None:
-        """The list of heads, of which the one called so is seen."""
-        listed = (COARSE, *NAMED, *range(20))  # and some of those without names
-        people = {head_in_words(who): who for who in listed}
-        who = int(called) if called.isdecimal() else called
-        present = called if who in (BUILT_IN, OWN) else head_in_words(who)
-
-        def show(name: str) -> None:
-            """Make the head with this name."""
-            self._file_drop.show_person(people.get(name))
-
-        self._rows.put("Person", present, (BUILT_IN, *people), show)
