@@ -129,17 +129,22 @@ def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> H
 
 
 class Scalp(NamedTuple):
-    """Where hair grows: vertices (n, 3) [mm], unit normals, faces, and mm behind the hairline."""
+    """Where hair grows: vertices (n, 3) [mm], unit normals, faces, and mm behind the hairline.
+
+    covers: the least heights of hair over them [mm], shape (n,), at which coarse triangles of a
+    hollow skin do not hide it.
+    """
 
     points: Points
     normals: Points
     faces: Integers32
     behind: Floats64
+    covers: Floats64
 
 
 def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Part, ...]:
     """The parts drawn as hair; colour: sRGB, shape (3,); length: beside that of the cut."""
-    points, normals, faces, behind = scalp
+    points, normals, faces, behind, covers = scalp
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     whorl = unit_vectors(np.array([cut.whorl]))[0]
     beside = unit_vectors(np.cross([[0.0, 0.3, 1.0]], whorl))[0]
@@ -159,6 +164,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     points = points[rows]
     normals = normals[rows]
     behind = behind[rows]
+    covers = covers[rows]
     out = unit_vectors(out[rows])
     away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
     radius = np.linalg.norm(scalp.points - middle, axis=1).mean()
@@ -169,6 +175,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     flat_depths = 0.0, 45.0
     lift = cut.lift * smooth_step(*flat_depths, behind)[:, None]
     way = long[:, None] * (lift * normals + np.sqrt(1.0 - lift**2) * comb)
+    way += covers[:, None] * normals
     clearance = 0.7  # [mm] over the skin
     sinking = 0.3  # [mm] down for each from 4 before the hairline on
     off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
@@ -193,8 +200,9 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
         striation=striation.astype(np.float32),
     )
     loose = loose_hairs(hair, min(0.5 * length * cut.top, LOOSE_LENGTH))
-    upward_share = 0.8  # of normals: nothing below is seen
-    hangs = (points[:, 2] > middle[2]) & (normals[:, 1] < upward_share)  # over the skin
+    upward_share = 0.8  # of normals: nothing below is seen, but at the hem of a bald crown
+    hangs = (normals[:, 1] < upward_share) | ((0.3 < dense) & (behind < 2.0 * hem_depth))
+    hangs &= points[:, 2] > middle[2]  # over the skin
     return from_within(hair, faces[hangs[faces].all(axis=1)]), loose, hair
 
 
@@ -268,6 +276,7 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
     faces, normals = number.reshape(-1, 3).astype(np.int32), vertex_normals(vertices, faces)[used]
     points = vertices[used]
     uv = uv[used]
+    covers = np.zeros(len(points))
     level_count = 2  # cuts of the scalp's triangles into four
     bulge_share = 0.75  # of the way to the planes of an edge's ends
     for _ in range(level_count):
@@ -275,10 +284,12 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
         faces = cut.faces
         ends = points[cut.edges]
         middle = ends.mean(axis=1, keepdims=True)
-        # Where skin is hollow its triangles, which may be seen, lie over it.
         above = ((middle - ends) * normals[cut.edges]).sum(axis=2, keepdims=True)
-        bulge = -bulge_share * (np.minimum(above, 0.0) * normals[cut.edges]).mean(axis=1)
+        bulge = -bulge_share * (above * normals[cut.edges]).mean(axis=1)
+        # Where skin is hollow, its unrefined triangles lie over it.
+        hollow = bulge_share * np.maximum(above, 0.0).mean(axis=(1, 2))
+        covers = np.concatenate([covers, covers[cut.edges].mean(axis=1) + hollow])
         points = np.vstack([points, middle[:, 0] + bulge])
         normals = np.vstack([normals, unit_vectors(normals[cut.edges].mean(axis=1))])
         uv = np.vstack([uv, uv[cut.edges].mean(axis=1)])
-    return Scalp(points, normals, faces, far(uv))
+    return Scalp(points, normals, faces, far(uv), covers)

@@ -21,6 +21,7 @@ from risorius.assets.identities import (
     sample_identity,
 )
 from risorius.assets.identities.hair import CUTS, Fall, Hairline
+from risorius.render import Style
 from tests.assets.checks import check_part
 
 
@@ -160,3 +161,25 @@ def test_lobes_of_ears_stay_under_hair_that_falls():
     nearest = cKDTree(hair.vertices).query(points)[1]
     off = ((points - hair.vertices[nearest]) * hair.normals[nearest]).sum(axis=1)
     assert off.max() < -2.0
+
+
+def gaps(person, rows):
+    """How many pixels of some rows, from the left outline to the right one, show nothing."""
+    options = CaptureOptions((700, 700), camera="60,5", style=Style(background=None))
+    with Capture(FaceScene(person), options) as capture:
+        is_seen = capture.draw_image()[rows, :, 3] >= 128
+    is_inside = np.logical_or.accumulate(is_seen, axis=1)
+    is_inside &= np.logical_or.accumulate(is_seen[:, ::-1], axis=1)[:, ::-1]
+    return int((is_inside & ~is_seen).sum())
+
+
+def test_no_slit_is_between_hair_and_the_refined_nape():
+    """From behind the ear, where skin that is hollow lies deeper than its coarse triangles."""
+    assert gaps(load("head"), slice(370, 450)) < 30
+
+
+def test_no_slit_is_below_the_hem_of_a_bald_crown():
+    """Where hair lies on a horizon of skin, it shows no light behind it."""
+    features = Features(hairline=Hairline(front=6.0, temples=12.0, crown=0.5))
+    person = make_person(replace(sample_identity(0), cut="swept", hair=1.0))
+    assert gaps(coloured(person, angle=30.0, features=features), slice(30, 70)) < 40
