@@ -26,6 +26,7 @@ from .driving import (
     moved,
     on_screen,
     press_keys,
+    set_by_hand,
     settle,
     show_controls,
     until,
@@ -285,6 +286,28 @@ def test_any_size_can_be_drawn(viewer):
     assert until(viewer, lambda: viewer.schedule.is_idle)
     assert viewer.surface.read().shape == (SIZE[1], SIZE[0], 3)
     assert viewer.face.view.area == before  # the panel is as wide as it was
+
+
+def test_what_is_not_keyed_is_read_in_a_small_window(viewer):
+    """The line has its whole length; without room a script's name is left out, not cut."""
+    import glfw
+
+    def shown(*size):
+        """The line below the timeline: left and right, None where it is left out."""
+        glfw.set_window_size(viewer.surface.handle, *size)
+        settle(viewer)
+        left, _, right, _ = viewer.gui.places.get("status", (0.0,) * 4)
+        assert right <= size[0]
+        return right - left
+
+    try:
+        assert shown(1500, 600) > 0.0
+        assert shown(1024, 600) == 0.0
+        set_by_hand(viewer.session, joy=0.5)
+        assert shown(1024, 600) == shown(1500, 600) > 0.0
+    finally:
+        glfw.set_window_size(viewer.surface.handle, *SIZE)
+        settle(viewer)
 
 
 @pytest.mark.slow

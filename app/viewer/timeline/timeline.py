@@ -96,7 +96,10 @@ class Timeline:
         hint("speed of the script")
 
     def _draw_status(self, differing: int) -> None:
-        """Draw the time, then a recording, or how many controls differ, or else the script."""
+        """Draw the time, then a recording, or how many controls differ, or else the script.
+
+        Where there is no room for both, news go first, and the script's name is left out.
+        """
         session = self._session
         theme = self._gui.theme
         status = session.work.name
@@ -111,10 +114,18 @@ class Timeline:
             ink = theme.error
             status += "" if session.is_playing else ", paused"
         time = f"{session.time:.2f} of {session.script.duration:.2f} s"
-        stay_in_line(imgui.calc_text_size(time).x)
-        imgui.text(shortened(time, imgui.get_content_region_avail().x))
-        hint("the time shown, and the script's length, whose end is in the ruler")
-        imgui.same_line(0.0, em(1.2))
+        gap = em(1.2)
+        widths = [imgui.calc_text_size(text).x for text in (time, status)]
+        stay_in_line(widths[0])
+        is_tight = imgui.get_content_region_avail().x < sum(widths) + gap
+        is_news = bool(differing) or session.is_recording
+        if not (is_tight and is_news):
+            imgui.text(shortened(time, imgui.get_content_region_avail().x))
+            hint("the time shown, and the script's length, whose end is in the ruler")
+            if is_tight:  # the title has the script's name, too
+                return
+            imgui.same_line(0.0, gap)
         imgui.text_colored(colour(ink), shortened(status, imgui.get_content_region_avail().x))
+        self._gui.remember("status")
         where = session.file.path or "not kept in a file yet"
         hint(f"{session.script.title or session.work.name}: {where}")
