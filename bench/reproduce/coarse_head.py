@@ -1,7 +1,7 @@
 """A head of a quarter of the triangles: where the paper's rule is seen, and where it helps.
 
 Kähler, Haber, Seidel 2003, section 1: "when the surface is animated by moving the mesh nodes, the
-resulting mesh doesn't adapt well to the deformation." On 524 triangles everybody sees that. As in
+resulting mesh doesn't adapt well to the deformation." On 536 triangles everybody sees that. As in
 Figure 10 the built-in head with 16 times its triangles is moved by the same muscles, drawn alike
 and taken for the truth; the coarse head has some of its vertices. Below the pictures stands which
 pixels a rule changed: green where they came nearer to the dense mesh, red where they went away.

@@ -12,10 +12,11 @@ from risorius import refine, render
 from risorius.app import capture as capture_room
 from risorius.app.capture.drawing import camera_for
 from risorius.app.refining.drawn_mesh import bind
-from risorius.app.refining.presets import PRESETS, Refinement
+from risorius.app.refining.presets import PRESETS, STATIC, Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import FaceScene, called_head
 from risorius.assets.topology import boundary_loops
+from risorius.geometry.rays import crossings
 from tests.app.command_line import refusal, risorius, succeeded
 
 STEPS = 40  # of 1/60 s, after which a pose is reached
@@ -83,6 +84,21 @@ def test_lips_and_lids_of_the_coarse_head_close(scene):
     shut = held(scene, eyeBlinkLeft=1.0, eyeBlinkRight=1.0)
     for lids in ((43, 47), (44, 46), (37, 41), (38, 40)):
         assert gap(scene, shut, *lids) < 0.35 * gap(scene, rest, *lids)
+
+
+def test_closed_lids_cover_the_eyes_by_every_look(scene):
+    """Seen from in front, as moved and as refined: the paper's rule draws lids apart."""
+    shut = held(scene, blink=1.0)
+    for look in (STATIC, "paper", "smooth"):
+        refinement = Refinement(refiner=STATIC) if look == STATIC else Refinement(look)
+        mesh = refiner_for(scene, refinement).refine(shut)
+        corners = np.asarray(mesh.positions, float)[mesh.triangles]
+        for eye in scene.head.eyes:
+            for x, y in product(np.linspace(-0.8, 0.8, 17), repeat=2):
+                front = eye.centre + eye.radius * np.array([x, y, 0.0])
+                volume, u, v, ahead = crossings(front, np.array([0.0, 0.0, -1.0]), corners)
+                is_met = (volume > 0.0) & (np.minimum(u, v) >= 0.0) & (u + v <= 1.0)
+                assert (is_met & (ahead < 0.0)).any(), (look, x, y)
 
 
 def test_smile_of_the_coarse_head_lifts_the_corners(scene):
