@@ -53,7 +53,7 @@ class StoredPiece:
     node, mesh, primitive: numbers, of the primitive within its mesh. count: of its vertices, which
     follow those of the pieces before. to_scene: how a change of stored places changes the places
     in the scene, a matrix (3, 3) or one for each vertex, (V, 3, 3). triangles: corners as the file
-    runs around them, numbers within the piece, shape (F, 3).
+    runs around them, numbers within the piece, shape (F, 3). name: of the node, or of its mesh.
     """
 
     node: int
@@ -62,6 +62,7 @@ class StoredPiece:
     count: int
     to_scene: Floats64
     triangles: Integers64
+    name: str
 
 
 class _Piece(NamedTuple):
@@ -126,7 +127,7 @@ def read_gltf(content: bytes, folder: Path) -> GltfSurface:
 
 def stored_pieces(content: bytes, folder: Path) -> list[StoredPiece]:
     """Where the vertices of `read_gltf` are in their file, in its order; errors as there."""
-    pieces = _Reader(GltfFile(content, folder)).pieces()
+    reader = _Reader(GltfFile(content, folder))
     return [
         StoredPiece(
             each.node,
@@ -135,8 +136,9 @@ def stored_pieces(content: bytes, folder: Path) -> list[StoredPiece]:
             len(each.seen),
             each.to_scene,
             each.faces[:, ::-1] if each.is_turned else each.faces,
+            reader.name_of(each.node),
         )
-        for each in pieces
+        for each in reader.pieces()
     ]
 
 
@@ -169,6 +171,11 @@ class _Reader:
                 )
                 if has_surface and primitive.attributes.POSITION is not None:
                     yield self._piece(number, place, weights)
+
+    def name_of(self, number: int) -> str:
+        """The name of a node that shows a mesh, or of this mesh; empty where neither has one."""
+        node = self._document.nodes[number]
+        return str(node.name or self._document.meshes[node.mesh].name or "")
 
     def _shown(self) -> list[int]:
         """The nodes of the scene, from its last root down: so vertices have always been counted."""

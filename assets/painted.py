@@ -41,6 +41,8 @@ class PaintedMesh:
     uv: texture coordinates, v up, shape (U, 2). face_uv: their numbers, -1 for none, shape (F, 3).
     normals: shape (N, 3). face_normals: their numbers, -1 for none, shape (F, 3).
     material: place in `materials` of each triangle, -1 for none, shape (F,).
+    part: place in `parts` of each triangle, -1 for none, shape (F,). parts: names of the file's
+    objects or groups, or of materials in a file without these.
     """
 
     mesh: Mesh
@@ -50,6 +52,8 @@ class PaintedMesh:
     face_normals: Integers64
     material: Integers64
     materials: tuple[Material, ...]
+    part: Integers64
+    parts: tuple[str, ...]
 
 
 def read_painted(path: Path) -> PaintedMesh:
@@ -68,9 +72,14 @@ def read_painted(path: Path) -> PaintedMesh:
             _within(surface.face_normals, len(surface.normals)),
             surface.material,
             tuple(_materials(surface, path.parent)),
+            surface.part if surface.parts else surface.material,
+            surface.parts or surface.materials,
         )
     none = np.full(mesh.faces.shape, -1, np.int64)
-    return PaintedMesh(mesh, np.zeros((0, 2)), none, np.zeros((0, 3)), none, none[:, 0], ())
+    of_triangles = none[:, 0]
+    return PaintedMesh(
+        mesh, np.zeros((0, 2)), none, np.zeros((0, 3)), none, of_triangles, (), of_triangles, ()
+    )
 
 
 def _within(numbers: Integers64, count: int) -> Integers64:

@@ -35,6 +35,7 @@ class ObjSurface:
     normals: as written, shape (N, 3). face_normals: their numbers, -1 for none, shape (F, 3).
     material: place in `materials` of each triangle, -1 for none, shape (F,).
     libraries: names of files that define materials.
+    part: place in `parts`, the names of objects and groups, of each triangle, -1 for none, (F,).
     """
 
     vertices: Floats64
@@ -46,6 +47,8 @@ class ObjSurface:
     material: Integers64
     materials: tuple[str, ...]
     libraries: tuple[str, ...]
+    part: Integers64
+    parts: tuple[str, ...]
 
 
 def read_obj(content: bytes, *, most: int) -> ObjSurface:
@@ -57,11 +60,11 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
     places = array("d")
     normals = array("d")
     corners = array("q")  # vertex, texture coordinates and normal of each
-    material = array("q")
+    labels = array("q")  # material and part of each triangle
     materials: dict[str, int] = {}
     libraries: list[str] = []
-    current = -1
-    excerpt_length = 30  # bytes of a faulty line in a message
+    parts: dict[str, int] = {}
+    current = [-1, -1]  # material and part
     for number, line in enumerate(io.BytesIO(_joined(content)), start=1):
         word, *fields = line.split(b"#", 1)[0].split() or [b""]
         try:
@@ -79,17 +82,15 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
                 for second, third in pairwise(polygon[1:]):
                     for corner in (polygon[0], second, third):
                         corners.extend(corner)
-                    material.append(current)
+                    labels.extend(current)
             elif word == b"usemtl":  # names may hold blanks and number signs
-                current = materials.setdefault(_parted(line.decode())[1], len(materials))
+                current[0] = materials.setdefault(_parted(line.decode())[1], len(materials))
+            elif word in (b"o", b"g"):
+                current[1] = parts.setdefault(_parted(line.decode())[1], len(parts))
             elif word == b"mtllib":
                 libraries.append(_parted(line.decode())[1])
         except (ValueError, IndexError, OverflowError):
-            shown = line[:excerpt_length].decode().strip()
-            raise AssetError(
-                f"line {number}: '{shown}' cannot be used; right are 'v x y z', 'vt u v', and 'f' "
-                "with three or more vertex numbers, from 1 on, or from -1 back"
-            ) from None
+            raise _unusable(number, line) from None
         if max(len(coordinates), len(normals), len(corners) // 3, len(places)) > 3 * most:
             raise AssetError(
                 f"line {number}: more than {most} vertices or triangles; reduce it in a modelling "
@@ -103,9 +104,21 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
         np.ascontiguousarray(numbers[:, :, 1]),
         np.frombuffer(normals, np.float64).reshape(-1, 3),
         np.ascontiguousarray(numbers[:, :, 2]),
-        np.frombuffer(material, np.int64),
+        np.frombuffer(labels, np.int64)[::2],
         tuple(materials),
         tuple(libraries),
+        np.frombuffer(labels, np.int64)[1::2],
+        tuple(parts),
+    )
+
+
+def _unusable(number: int, line: bytes) -> AssetError:
+    """The error of a line with its number."""
+    excerpt_length = 30  # bytes
+    shown = line[:excerpt_length].decode().strip()
+    return AssetError(
+        f"line {number}: '{shown}' cannot be used; right are 'v x y z', 'vt u v', and 'f' "
+        "with three or more vertex numbers, from 1 on, or from -1 back"
     )
 
 

@@ -44,8 +44,9 @@ class Rigging:
     pieces: tuple[str, ...] = option(
         "--piece",
         multiple=True,
-        metavar="NUMBER=ROLE",
-        help="What a piece of the file is, where the printed line is wrong: 3=tongue, 4-20=hair.",
+        metavar="PIECE=ROLE",
+        help="What a piece of the file is, where the printed line is wrong: 3=tongue, 4-20=hair, "
+        "Beard=on_skin.",
     )
     parts: bool = option(
         is_flag=True, help="Add built-in eyes, teeth, tongue and mouth where HEAD has none."

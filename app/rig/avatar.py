@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from risorius.assets.fitting import FittedHead
+from risorius.assets.gltf import StoredPiece, stored_pieces
 from risorius.assets.meshes import read_mesh
 from risorius.assets.painted import PaintedMesh, read_painted
 from risorius.geometry.arrays import Floats64
@@ -60,12 +62,14 @@ class FileHead:
     """A head of a file: its own bytes, which are written again, and the face that moves it.
 
     painted: colours and pictures of the file; None for a glTF file, which is copied.
+    stored: the meshes of a glTF file, see `stored_pieces`; none for others.
     """
 
     head: FittedHead
     body: FileBody
     pieces: tuple[FilePiece, ...]
     painted: PaintedMesh | None
+    stored: tuple[StoredPiece, ...]
     path: Path
 
 
@@ -156,6 +160,7 @@ def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
     is_gltf = path.suffix.lower() in GLTF
     painted = None if is_gltf else read_painted(path)
     mesh = read_mesh(path) if painted is None else painted.mesh
+    stored = tuple(stored_pieces(path.read_bytes(), path.parent)) if is_gltf else ()
     if head.lip_cut is not None:
         mesh = head.lip_cut.applied(mesh)
         painted = painted and replace(painted, mesh=mesh)
@@ -164,7 +169,9 @@ def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
         raise UserError(f"{path}: has changed since it was read; open it again")
     same = merged_vertices(mesh, head)
     faces = same[mesh.faces].astype(np.int32)
-    pieces = corrected(find_pieces(rest, faces, head.file_vertices, head), request.corrections)
+    names = _names_of_vertices(len(rest), painted, stored)
+    found = find_pieces(rest, faces, head.file_vertices, head, names)
+    pieces = corrected(found, request.corrections)
     tongues = [piece.vertices for piece in pieces if piece.role == "tongue"]
     if tongues:
         parts = with_own_tongue(head, rest, np.concatenate(tongues), faces)
@@ -177,7 +184,22 @@ def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
         say(f"skin behind the lips: {len(body.in_bag)} vertices, stretches between both jaws")
     for line in described(pieces):
         say(line)
-    return FileHead(head, body, tuple(pieces), painted, path)
+    return FileHead(head, body, tuple(pieces), painted, stored, path)
+
+
+def _names_of_vertices(
+    count: int, painted: PaintedMesh | None, stored: Sequence[StoredPiece]
+) -> npt.NDArray[np.object_]:
+    """The name of the file's object or group that each vertex belongs to, empty for none, (V,)."""
+    names = np.full(count, "", object)
+    start = 0
+    for piece in stored:
+        names[start : start + piece.count] = piece.name
+        start += piece.count
+    if painted is not None:
+        labels = np.array([*painted.parts, ""], object)  # the last for those without a name
+        names[painted.mesh.faces] = labels[painted.part][:, None]
+    return names
 
 
 def _is_as_fitted(rest: Floats64, head: FittedHead) -> bool:

@@ -67,13 +67,13 @@ class FileBody:
             for role in {piece.role for piece in pieces}
         }
         self._eyes_are_nodes = eyes_are_nodes
-        self.pivots = {
-            f"eye_{eye.name}": sphere_of(
-                self.rest[self._pieces[f"eye_{eye.name}"]], eye.centre, eye.radius
-            )[0]
-            for eye in head.eyes
-            if f"eye_{eye.name}" in self._pieces
-        }
+        self.pivots: dict[str, Floats64] = {}
+        for eye in head.eyes:
+            role = f"eye_{eye.name}"
+            layers = [self.rest[piece.vertices] for piece in pieces if piece.role == role]
+            balls = [sphere_of(points, eye.centre, eye.radius) for points in layers]
+            if balls:  # of which an iris is a smaller one
+                self.pivots[role] = max(balls, key=lambda ball: ball[1])[0]
         piece = pieces_of(self.faces, len(self.rest))
         own = piece == piece[same[head.file_vertices[head.landmarks[0]]]]
         own &= np.isin(np.arange(len(own)), self.faces)

@@ -29,15 +29,16 @@ ROLES = {  # of a piece, and how it moves
     "lower_teeth": "lower teeth or gums, moves with the mandible",
     "tongue": "tongue, bends",
     "mouth": "inside of the mouth, stretches between both jaws",
-    "on_skin": "lies on the skin, moves with it: lashes, brows",
+    "on_skin": "lies on the skin, moves with it: lashes, brows, a beard",
     "hair": "hair or a helmet, still with the cranium",
     "body": "body or clothes, still",
 }
 IN_MOUTH = ("teeth", "gums", "tongue")  # how names of built-in parts begin
-AROUND_MOUTH = 6.0  # [mm] about these parts, in which parts of a mouth are looked for
 FACE = slice(17, 68)  # landmarks, without the jaw line
 BESIDE = 12.0  # [mm] about these, in which lashes and brows are looked for
 CHIN = 8  # landmark
+LOWER_LIP = 57  # landmark, below its middle
+NOSE_BRIDGE = 27  # landmark
 
 
 @dataclass(frozen=True)
@@ -45,21 +46,27 @@ class FilePiece:
     """Vertices of a file that hang together, and their role.
 
     number: by which an option names it. vertices: their numbers, shape (n,). role: of ROLES.
-    middle: of its box [mm], shape (3,).
+    middle: of its box [mm], shape (3,). name: of its object or group in the file, or empty.
     """
 
     number: int
     vertices: npt.NDArray[np.integer]
     role: str
     middle: Floats64
+    name: str = ""
 
 
 def find_pieces(
-    rest: Floats64, faces: Integers32, skin: npt.NDArray[np.integer], head: FittedHead
+    rest: Floats64,
+    faces: Integers32,
+    skin: npt.NDArray[np.integer],
+    head: FittedHead,
+    names: npt.NDArray[np.object_],
 ) -> list[FilePiece]:
     """The pieces of a file beside the one that the skin belongs to, in the order of the file.
 
     rest: all vertices [mm], shape (V, 3). faces: shape (F, 3). skin: vertices of the skin.
+    names: of the object or group of each vertex, shape (V,).
     """
     piece = pieces_of(faces, len(rest))
     order = np.argsort(piece, kind="stable")
@@ -78,7 +85,8 @@ def find_pieces(
     for number, group in enumerate(groups, start=1):
         points = rest[group]
         middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-        found.append(FilePiece(number, group, _role_of(points, middle, head, near), middle))
+        role = _role_of(points, middle, head, near)
+        found.append(FilePiece(number, group, role, middle, names[group[0]]))
     return found
 
 
@@ -93,16 +101,38 @@ def _role_of(
     if role is not None:
         return role
     landmarks = head.vertices[head.landmarks]
-    face = landmarks[FACE]
-    is_on_face = (middle > face.min(axis=0) - BESIDE) & (middle < face.max(axis=0) + BESIDE)
     distance = near.query(points)[0]
-    # A lash ends 20 mm off the lid; a piece farther off hangs before the face, as glasses do.
-    if is_on_face.all() and distance.min() < 4.0 and distance.max() < 20.0:
+    if distance.min() < 4.0 and (
+        _is_on_face(points, middle, distance, landmarks) or _is_beard(points, middle, landmarks)
+    ):
         return "on_skin"
     # A collar reaches up to the chin; long hair hangs down from above it.
     if points[:, 1].max() < landmarks[CHIN, 1]:
         return "body"
     return "hair"
+
+
+def _is_on_face(
+    points: Floats64, middle: Floats64, distance: Floats64, landmarks: Floats64
+) -> bool:
+    """Whether a piece is a lash, a brow or the like. distance: of its points from the skin [mm]."""
+    face = landmarks[FACE]
+    is_on_face = (middle > face.min(axis=0) - BESIDE) & (middle < face.max(axis=0) + BESIDE)
+    # Glasses span both eyes and hang before them.
+    is_before = np.ptp(points[:, 0]) > 60.0 and np.median(distance) > 5.0
+    # A lash ends 20 mm off the lid.
+    return bool(is_on_face.all() and distance.max() < 20.0 and not is_before)
+
+
+def _is_beard(points: Floats64, middle: Floats64, landmarks: Floats64) -> bool:
+    """Whether a piece lies around the mouth or on the chin, below the eyes and before the ears."""
+    low = points.min(axis=0)
+    high = points.max(axis=0)
+    jaw_line = landmarks[:17]
+    is_low = low[1] < landmarks[LOWER_LIP, 1] and high[1] < landmarks[NOSE_BRIDGE, 1]
+    is_ahead = low[2] > jaw_line[:, 2].min() - 30.0 and middle[2] > jaw_line[:, 2].mean()
+    is_amid = abs(middle[0] - landmarks[CHIN, 0]) < 15.0
+    return bool(is_low and is_ahead and is_amid)
 
 
 def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str | None:
@@ -111,8 +141,9 @@ def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str 
     if not {"teeth_upper", "teeth_lower", "tongue"} <= set(parts):
         return None
     around = np.vstack([*parts.values()])
-    low = around.min(axis=0) - np.array([AROUND_MOUTH, AROUND_MOUTH, 25.0])
-    high = around.max(axis=0) + np.array([AROUND_MOUTH, AROUND_MOUTH, 2.0])
+    # Roots of teeth reach far up and down, a throat far back; ahead are lips.
+    low = around.min(axis=0) - np.array([6.0, 12.0, 25.0])
+    high = around.max(axis=0) + np.array([6.0, 12.0, 2.0])
     is_in = ((points > low) & (points < high)).all(axis=1)
     if is_in.mean() < 0.8:
         return None
@@ -121,7 +152,8 @@ def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str 
     # A row of teeth is hollow in its middle, where a tongue and a palate have their bodies.
     is_middle = np.abs(points[:, 0] - middle[0]) < 0.15 * width
     is_filled = _extent(points[is_middle, 2]) > 0.6 * depth
-    if width > 20.0 and height > 35.0:
+    # Walls of a mouth go around the gums; a tongue that reaches into the throat is as high.
+    if width > 0.85 * np.ptp(around[:, 0]) and height > 35.0:
         return "mouth"
     if width > 20.0 and depth > 25.0 and is_filled:
         # A palate is above the teeth's edges, the floor of a mouth below.
@@ -136,24 +168,31 @@ def _extent(values: Floats64) -> float:
 
 
 def corrected(pieces: Sequence[FilePiece], corrections: Sequence[str]) -> list[FilePiece]:
-    """Pieces with the roles that options give them, each "NUMBER=ROLE" or "FIRST-LAST=ROLE".
+    """Pieces with the roles that options give them: "NUMBER=ROLE", "FIRST-LAST=ROLE", "NAME=ROLE".
 
-    Raises UserError for a number or a role that there is not.
+    Raises UserError for a number, a name or a role that there is not.
     """
     roles: dict[int, str] = {}
     for text in corrections:
-        written = re.fullmatch(r"(\d{1,6})(?:-(\d{1,6}))?=(\w+)", text)
-        if written is None or written[3] not in ROLES:
+        which, _, role = text.rpartition("=")
+        if role not in ROLES:
             raise UserError(
-                f"--piece: was '{text}', must be NUMBER=ROLE as the printed lines number them; "
-                f"roles are {', '.join(ROLES)}"
+                f"--piece: was '{text}', must be NUMBER=ROLE or NAME=ROLE as the printed lines "
+                f"have them; roles are {', '.join(ROLES)}"
             )
-        first = int(written[1])
-        last = int(written[2] or first)
-        if not 1 <= first <= last <= len(pieces):
-            raise UserError(f"--piece: '{text}': the file has pieces 1 to {len(pieces)}")
-        roles.update(dict.fromkeys(range(first, last + 1), written[3]))
+        named = [piece.number for piece in pieces if piece.name == which]
+        roles.update(dict.fromkeys(named or _numbers_in(which, len(pieces)), role))
     return [replace(piece, role=roles.get(piece.number, piece.role)) for piece in pieces]
+
+
+def _numbers_in(text: str, count: int) -> range:
+    """The numbers of "3" or "4-20", UserError for those beyond 1 to `count` and for all else."""
+    written = re.fullmatch(r"(\d{1,6})(?:-(\d{1,6}))?", text)
+    first = int(written[1]) if written else 0
+    last = int(written[2] or first) if written else 0
+    if not 1 <= first <= last <= count:
+        raise UserError(f"--piece: '{text}': the file has pieces 1 to {count}, none of this name")
+    return range(first, last + 1)
 
 
 def described(pieces: Sequence[FilePiece]) -> list[str]:
@@ -171,12 +210,20 @@ def described(pieces: Sequence[FilePiece]) -> list[str]:
         what = ROLES[group[0].role]
         if len(group) == 1:
             x, y, z = group[0].middle
-            name = f"piece {group[0].number}"
+            label = f"piece {group[0].number}"
             where = f" at {x:.0f} {y:.0f} {z:.0f} mm"
         else:
-            name = f"pieces {group[0].number}-{group[-1].number}"
+            label = f"pieces {group[0].number}-{group[-1].number}"
             where = ""
         vertices = "1 vertex" if count == 1 else f"{count} vertices"
-        lines.append(f"{name}: {vertices}{where}: {what}")
+        lines.append(f"{label}{_names_in(group)}: {vertices}{where}: {what}")
         first = last + 1
     return lines
+
+
+def _names_in(group: Sequence[FilePiece]) -> str:
+    """The names of some pieces in brackets, at most three of them; empty where none has one."""
+    names = list(dict.fromkeys(piece.name for piece in group if piece.name))
+    if len(names) > 3:
+        names[2:] = [f"{len(names) - 2} more"]
+    return f" ({', '.join(names)})" if names else ""

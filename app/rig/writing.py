@@ -9,7 +9,6 @@ import numpy as np
 import scipy
 
 from risorius.assets.fitting import FittedHead
-from risorius.assets.gltf import stored_pieces
 from risorius.assets.gltf_file import GltfFile
 from risorius.geometry.arrays import Floats64
 
@@ -68,12 +67,11 @@ def _copied(avatar: Avatar, file: FileHead, title: str) -> bytes:
     content = file.path.read_bytes()
     glb = Glb(None, *read_document(content, file.path.parent))
     cut = file.head.lip_cut
-    pieces = stored_pieces(content, file.path.parent)
-    vertices = vertices_of(pieces, cut)
+    vertices = vertices_of(file.stored, cut)
     if cut is not None:
-        cut_primitives(glb, GltfFile(content, file.path.parent), pieces, vertices, cut)
+        cut_primitives(glb, GltfFile(content, file.path.parent), file.stored, vertices, cut)
     writer = GltfShapes(glb, avatar.shapes[0], file.head.to_millimetres, cut)
-    writer.append(pieces, vertices, avatar.names, avatar.extras)
+    writer.append(file.stored, vertices, avatar.names, avatar.extras)
     roots = [_add_parts(glb, avatar, file)] if len(avatar.shapes) > 1 else []
     return glb.to_bytes(title, roots)
 

@@ -200,6 +200,7 @@ def test_each_piece_of_a_file_moves_as_what_it_is(whole, face):
         assert max(np.abs(each).max() for each in own[name].values()) < 0.1, name
     assert "eyeball, turns with the left eye" in whole.lines
     assert "tongue, bends" in whole.lines
+    assert re.search(r"^piece \d+ \(shirt\): \d+ vertices at .*: body", whole.lines, re.M)
     assert "body or clothes, still" in whole.lines
     skin = rest_in(face, {"jawOpen": 1.0}).skin - face.rest_positions
     off = np.abs(own["skin"]["jawOpen"] - skin)
@@ -227,7 +228,7 @@ def test_an_option_corrects_what_a_piece_is(whole, tmp_path):
     """Beside it eyes turn by the shapes, where that is asked for."""
     landmarks = whole.mesh.with_suffix(".json")
     path = tmp_path / "other.glb"
-    given = ("--piece", "2=hair", "--eyes", "targets", "--shapes", "expressions,arkit")
+    given = ("--piece", "tongue=hair", "--eyes", "targets", "--shapes", "expressions,arkit")
     result = risorius("rig", whole.mesh, "--landmarks", landmarks, "-o", path, *given)
     assert result.exit_code == 0, result.output
     shapes = Player(path).shapes("head")

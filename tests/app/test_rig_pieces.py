@@ -1,0 +1,155 @@
+"""The pieces of a head's file: what each is taken for, how lines and options name it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+import trimesh
+
+from risorius.app.errors import UserError
+from risorius.app.rig.pieces import FilePiece, corrected, described, find_pieces
+from risorius.app.scenes import FaceScene
+from risorius.geometry.normals import vertex_normals
+
+Points = npt.NDArray[np.float64]
+Faces = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Maker:
+    """Makes pieces about the built-in head [mm]: places and triangles."""
+
+    scene: FaceScene
+
+    def landmark(self, number: int) -> Points:
+        """Where a landmark lies."""
+        place: Points = self.scene.rest_positions[self.scene.landmarks[number]]
+        return place
+
+    def part(self, name: str) -> tuple[Points, Faces]:
+        """A part of the head itself."""
+        part = next(each for each in self.scene.parts if each.name == name)
+        return np.array(part.vertices, np.float64), np.array(part.faces, np.int64)
+
+    def shell(self, chosen: npt.NDArray[np.bool_], off: float) -> tuple[Points, Faces]:
+        """A piece that lies so far outside of chosen skin."""
+        points = self.scene.rest_positions
+        faces = self.scene.faces
+        used, number = np.unique(faces[chosen[faces].all(axis=1)], return_inverse=True)
+        normals = vertex_normals(points, faces)
+        return points[used] + off * normals[used], number.reshape(-1, 3)
+
+    def ball(self, side: str, share: float, forward: float) -> tuple[Points, Faces]:
+        """A ball in an eye, of a share of its radius, moved forward by another share."""
+        eye = next(each for each in self.scene.face.head.eyes if each.name == side)
+        ball = trimesh.creation.icosphere(subdivisions=2, radius=share * eye.radius)
+        centre = eye.centre + np.array([0.0, 0.0, forward * eye.radius])
+        return np.asarray(ball.vertices) + centre, np.asarray(ball.faces)
+
+
+def beard(maker: Maker) -> tuple[Points, Faces]:
+    """Skin of the chin and the jaw, once more; long hairs hang below it."""
+    points = maker.scene.rest_positions
+    lip = maker.landmark(57)[1]
+    chin = maker.landmark(8)[1]
+    is_low = (points[:, 1] < lip - 4.0) & (points[:, 1] > chin - 5.0) & (points[:, 2] > 15.0)
+    shell, faces = maker.shell(is_low, 2.0)
+    shell[:, 1] -= 2.0 * np.maximum(chin + 5.0 - shell[:, 1], 0.0)
+    return shell, faces
+
+
+def sideburns(maker: Maker) -> tuple[Points, Faces]:
+    """A full beard: from the ears to the chin, without the lips."""
+    points = maker.scene.rest_positions
+    is_lip = (np.abs(points[:, 0]) < 27.0) & (points[:, 1] < maker.landmark(33)[1] - 4.0)
+    is_lip &= points[:, 1] > maker.landmark(57)[1] - 3.0
+    is_low = (points[:, 1] < maker.landmark(33)[1]) & (points[:, 2] > 0.0) & ~is_lip
+    return maker.shell(is_low & (points[:, 1] > maker.landmark(8)[1] - 8.0), 1.5)
+
+
+def glasses(maker: Maker) -> tuple[Points, Faces]:
+    """Two rims and a bridge before the eyes, which touches the nose."""
+    ring = trimesh.creation.torus(22.0, 1.2, 24, 6)
+    rims = []
+    for side in ("left", "right"):
+        centre = maker.ball(side, 0.1, 0.0)[0].mean(axis=0)
+        rims.append(np.asarray(ring.vertices) + centre + np.array([0.0, 0.0, 27.0]))
+    bridge = maker.landmark(28) + np.array([0.0, 0.0, 2.0])
+    count = len(ring.vertices)
+    between = [[0, count, 2 * count]]
+    faces = np.vstack([ring.faces, np.asarray(ring.faces) + count, between])
+    return np.vstack([*rims, bridge]), faces
+
+
+def deep_tongue(maker: Maker) -> tuple[Points, Faces]:
+    """A tongue whose root reaches down into the throat."""
+    points, faces = maker.part("tongue")
+    share = (points[:, 2].max() - points[:, 2]) / np.ptp(points[:, 2])
+    points[:, 1] -= 30.0 * share**2
+    points[:, 2] -= 20.0 * share
+    return points, faces
+
+
+def incisor(maker: Maker) -> tuple[Points, Faces]:
+    """An upper tooth of its own, with a long root."""
+    points, _ = maker.part("teeth_upper")
+    front = points[points[:, 2].argmax()]
+    tooth = trimesh.creation.box((8.0, 30.0, 6.0)).subdivide().subdivide()
+    place = np.array([front[0], points[:, 1].min() + 15.0, front[2] - 4.0])
+    return np.asarray(tooth.vertices) + place, np.asarray(tooth.faces)
+
+
+CASES = {
+    "ball": (lambda maker: maker.ball("left", 1.0, 0.0), "eye_left"),
+    "cornea": (lambda maker: maker.ball("right", 0.62, 0.45), "eye_right"),
+    "iris": (lambda maker: maker.ball("left", 0.4, 0.62), "eye_left"),
+    "teeth": (lambda maker: maker.part("teeth_lower"), "lower_teeth"),
+    "incisor": (incisor, "upper_teeth"),
+    "tongue": (lambda maker: maker.part("tongue"), "tongue"),
+    "deep tongue": (deep_tongue, "tongue"),
+    "lashes": (lambda maker: maker.part("lashes"), "on_skin"),
+    "beard": (beard, "on_skin"),
+    "sideburns": (sideburns, "on_skin"),
+    "glasses": (glasses, "hair"),
+    "hair": (lambda maker: maker.part("hair"), "hair"),
+}
+
+
+def pieces_with(scene: FaceScene, own: tuple[Points, Faces], name: str = "") -> list[FilePiece]:
+    """The pieces of a file with the built-in skin and something else."""
+    points, faces = own
+    count = len(scene.rest_positions)
+    places = np.vstack([scene.rest_positions, points])
+    corners = np.vstack([scene.faces, faces + count]).astype(np.int32)
+    names = np.full(len(places), name, object)
+    return find_pieces(places, corners, np.arange(count), scene.face.head, names)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_piece_is_taken_for_what_it_is(face, case):
+    """Eyes by layers, teeth with roots, a tongue into the throat, a beard, glasses."""
+    make, role = CASES[case]
+    assert {piece.role for piece in pieces_with(face, make(Maker(face)))} == {role}
+
+
+def test_lines_have_the_names_of_the_file(face):
+    """A piece, a few pieces and many of one role are named as objects of the file are."""
+    (piece,) = pieces_with(face, Maker(face).part("tongue"), "Tongue")
+    (line,) = described([piece])
+    assert line.startswith("piece 1 (Tongue): ") and line.endswith("tongue, bends")
+    middle = np.zeros(3)
+    strands = [FilePiece(n, np.arange(4), "hair", middle, f"strand{n}") for n in range(1, 6)]
+    assert described(strands)[0].startswith("pieces 1-5 (strand1, strand2, 3 more): 20 vertices")
+    assert described([FilePiece(1, np.arange(4), "hair", middle)])[0].startswith("piece 1: ")
+
+
+def test_an_option_names_pieces_by_number_or_name():
+    """All of a name; a name or number that there is not is refused in one line."""
+    middle = np.zeros(3)
+    pieces = [FilePiece(n, np.arange(4), "hair", middle, name) for n, name in enumerate("abba", 1)]
+    roles = [piece.role for piece in corrected(pieces, ["a=on_skin", "2-3=body", "3=tongue"])]
+    assert roles == ["on_skin", "body", "tongue", "on_skin"]
+    for wrong, words in (("5=hair", "1 to 4"), ("c=hair", "none of this name"), ("a=hat", "roles")):
+        with pytest.raises(UserError, match=words):
+            corrected(pieces, [wrong])
