@@ -93,6 +93,10 @@ def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
         counts.append(len(mesh.triangles))
         topologies.add(hash(mesh.triangles.tobytes()))
         splits = refiner.splits if len(counts) == 1 else np.maximum(splits, refiner.splits)
+    plug_ins = plug_ins_of(*refinement.on(clip.scene.name))
+    with reported(plug_ins):  # at rest it may have other triangles than in all frames
+        at_rest = refiner.refine(clip.scene.rest_positions)
+    topologies.add(hash(at_rest.triangles.tobytes()))
     changing = refiner
     if len(topologies) > 1:
         name = refinement.on(clip.scene.name)[0]
@@ -102,7 +106,6 @@ def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
                 "take another --refiner, or add --changing for USD, OBJ and VTKHDF"
             )
         refiner = clip.refiner(refinement, splits)
-    plug_ins = plug_ins_of(*refinement.on(clip.scene.name))
     with reported(plug_ins):
         rest = deepcopy(refiner.refine(clip.scene.rest_positions))
         origins = refiner.origins()

@@ -1,5 +1,6 @@
 """Files with the refined skin: one topology in all frames, read back by other readers."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -129,6 +130,22 @@ def test_arrays_and_point_caches_have_the_refined_vertices(refined, tmp_path):
     write(refined.clip, cache, format_for(cache, None), ExportRequest(progress=False))
     count = sum(len(each.rest) for each in refined.clip.surfaces)
     assert cache.stat().st_size == 32 + 12 * count * refined.clip.frame_count
+
+
+@pytest.mark.parametrize("look", ["paper", "smooth"])
+def test_a_pose_that_is_held(look):
+    """All frames have the same triangles, and rest others; the file has those of the frames."""
+    held = "duration = 0.2\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
+    scene = FaceScene()
+    scene.pose({"joy": 1.0})
+    for _ in range(60):
+        scene.step(1.0 / 60.0)
+    clip = record(parse_script(held, source="test"), scene, 10.0, progress=False)
+    shapes = np.repeat(clip.skin.shapes[-1:], clip.frame_count, axis=0)
+    still = replace(clip, surfaces=(replace(clip.skin, shapes=shapes), *clip.surfaces[1:]))
+    refined = with_refined_skin(still, Refinement(look))
+    assert refined.fewest == refined.most <= len(refined.clip.skin.faces)
+    assert refined.clip.skin.shapes.shape[1:] == refined.clip.skin.rest.shape
 
 
 def test_a_refiner_that_never_changes_needs_no_splits(clip):
