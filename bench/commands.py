@@ -51,10 +51,18 @@ def bench() -> None:
     show_default=True,
     help="kahler-gl: on the graphics card, beside kahler.",
 )
-def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str) -> None:
+@click.option(
+    "--threads", "by_threads", is_flag=True, help="Pairs of frames: by one thread, and by all."
+)
+def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str, by_threads: bool) -> None:
     """Time refinement on the face and on meshes of up to a million triangles."""
-    from . import refine
+    from . import refine, threads
 
+    if by_threads:
+        if refiner != "kahler":
+            raise UserError("--threads goes with --refiner kahler alone; leave one of them out")
+        click.echo(threads.report(threads.measure(sizes, seconds, say_progress)))
+        return
     on_card = refiner == "kahler-gl"
     rows = refine.measure(sizes or refine.SIZES, seconds, say_progress, on_card=on_card)
     click.echo(refine.report(rows))

@@ -46,6 +46,7 @@ Faces = npt.NDArray[np.int32]
 SIZES = ("face", "20k", "200k", "1M")
 """The meshes of a run by default; 2k is for a quick look."""
 WINDOWS_LOOK: Mapping[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
+RULES: Mapping[str, Mapping[str, Any]] = {"paper's rule": {}, "window's look": WINDOWS_LOOK}
 
 
 @dataclass(frozen=True)
@@ -193,7 +194,7 @@ def _waving_cases(load: Load) -> list[_Case]:
 def _card_cases(load: Load) -> list[_Case]:
     """The paper's rule and the window's look, by the processor and on the graphics card."""
     cases = []
-    for title, options in {"paper's rule": {}, "window's look": WINDOWS_LOOK}.items():
+    for title, options in RULES.items():
         card = refine.create("kahler-gl", load.faces, load.rest, **options)
         if not isinstance(card, KahlerGl):
             raise UserError("--refiner kahler-gl: needs OpenGL 4.3; `risorius doctor` says more")

@@ -41,6 +41,11 @@ MEAN_NORMAL_SHARE = np.float32(0.02)
 in the middle. Chosen: where an edge is folded until nothing is left across it, this decides. More
 looks softer in deep folds and is farther from dense faces: 0.3 costs five points of thirty."""
 
+OfEdges = tuple[Unsigned32, Unsigned32, Flags, Floats32, Floats32, Floats32]
+"""What kernels of all edges read: `around.points`, `edge_sides`, `around.is_interior` (mesh/), rows
+of vertices and middles, shape (V + E, 6), centres of triangles, (F, 3), normals, (V + E, 3). It is
+a plain tuple, which is sooner handed over than a named one."""
+
 
 class WholeSurface:
     """The surface of a frame where every edge is split once, and its normals."""
@@ -65,6 +70,8 @@ class WholeSurface:
         seen from the first vertex in use, so that a mesh far from the origin loses nothing."""
         self.normals = np.zeros((vertex_count + edge_count, 3), dtype=np.float32)
         """Unit normals there, shape (V + E, 3); in middles after `find_normals_of_edges` alone."""
+        around = mesh.around.points, mesh.edge_sides, mesh.around.is_interior
+        self._of_edges: OfEdges = (*around, rows, self._centres, self.normals)
 
     def split(self, frame: FrameBuffers) -> FrameBuffers:
         """The mesh of `frame`, as seen from its first vertex, every edge split once; unplaced."""
@@ -91,10 +98,7 @@ class WholeSurface:
         """Work the normals in the middles of these out, numbers of shape (N,), unless all have."""
         if self._has_all_edges:
             return
-        mesh = self._mesh
-        around = mesh.around.points, mesh.edge_sides, mesh.around.is_interior
-        arrays = self.rows, self._centres, self.normals
-        share(surface_normals_of_edges, len(edges), edges, *around, *arrays)
+        share(surface_normals_of_edges, len(edges), edges, self._of_edges)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far middles stand out of their edges, and their normals turn; shape (E,) each.
@@ -102,11 +106,8 @@ class WholeSurface:
         Against the straight edge, and against the mean of the normals at its ends [rad], times the
         length of the edge. All middles have their normals then.
         """
-        mesh = self._mesh
-        around = mesh.around.points, mesh.edge_sides, mesh.around.is_interior
-        arrays = self.rows, self._centres, self.normals
         means = self._corners  # which have done their work, and are more than edges
-        share(measure_edges, len(mesh.edges), *around, *arrays, means, displacements, turns)
+        share(measure_edges, len(turns), self._of_edges, means, displacements, turns)
         self._has_all_edges = True
 
 
@@ -222,22 +223,12 @@ def across_middle(
 
 
 @njit
-def surface_normals_of_edges(
-    first: int,
-    last: int,
-    edges: Unsigned32,
-    points: Unsigned32,
-    edge_sides: Unsigned32,
-    is_interior: Flags,
-    rows: Floats32,
-    centres: Floats32,
-    normals: Floats32,
-) -> None:
-    """Write unit normals of the middles of edges, the last of `normals`, shape (V + E, 3).
+def surface_normals_of_edges(first: int, last: int, edges: Unsigned32, of_edges: OfEdges) -> None:
+    """Write unit normals of the middles of edges; the vertices have theirs.
 
-    `edges`: those that want theirs, shape (N,); `points`: of edges, shape (E, 4). The vertices have
-    theirs.
+    `edges`: those that want theirs, shape (N,).
     """
+    points, edge_sides, is_interior, rows, centres, normals = of_edges
     vertex_count = normals.shape[0] - points.shape[0]
     for k in range(first, last):
         e = edges[k]
@@ -252,15 +243,10 @@ def surface_normals_of_edges(
 
 
 @njit
-def measure_edges(  # noqa: PLR0913 - arrays: tuples take longer to hand over
+def measure_edges(
     first: int,
     last: int,
-    points: Unsigned32,
-    edge_sides: Unsigned32,
-    is_interior: Flags,
-    rows: Floats32,
-    centres: Floats32,
-    normals: Floats32,
+    of_edges: OfEdges,
     means: Floats32,
     displacements: Floats32,
     turns: Floats32,
@@ -268,8 +254,9 @@ def measure_edges(  # noqa: PLR0913 - arrays: tuples take longer to hand over
     """Write unit normals of the middles of edges in a row, and measure the edges.
 
     The distance of each middle from its edge, and the turn of its normal x length, (E,) each.
-    `means`: scratch, at least (E, 3); the others as in `surface_normals_of_edges`.
+    `means`: scratch, at least (E, 3).
     """
+    points, edge_sides, is_interior, rows, centres, normals = of_edges
     assert centres.shape[1] == normals.shape[1] == means.shape[1] == WIDTH
     vertex_count = np.uint32(normals.shape[0] - points.shape[0])
     for k in range(first, last):

@@ -1,0 +1,29 @@
+"""`risorius bench refine --threads` times both sides of each pair, by the threads that it says."""
+
+import pytest
+
+from risorius.app.errors import UserError
+from risorius.bench import threads
+from tests.app.command_line import refusal, risorius
+
+
+def test_pairs(monkeypatch):
+    """A row for each rule, with times that fit its gain; the number of threads comes back."""
+    monkeypatch.setattr(threads.threads, "THREAD_COUNT", 2)
+    rows = threads.measure(["2k"], 0.1)
+    assert [row.rule for row in rows] == ["paper's rule", "window's look"]
+    for row in rows:
+        assert abs(row.triangles - 2000) < 100
+        assert 0.0 < row.alone < 1000.0
+        assert 0.1 < row.gain < 10.0
+    assert threads.threads.THREAD_COUNT == 2
+    assert "by 2, in pairs" in threads.report(rows)
+
+
+def test_one_thread_has_no_pair(monkeypatch):
+    """One line says how to get more, and that a graphics card has no such threads."""
+    monkeypatch.setattr(threads.threads, "THREAD_COUNT", 1)
+    with pytest.raises(UserError, match="NUMBA_NUM_THREADS=2"):
+        threads.measure(["2k"], 0.1)
+    line = refusal(risorius("bench", "refine", "--threads", "--refiner", "kahler-gl"))
+    assert line.startswith("risorius: --threads goes with --refiner kahler alone")
