@@ -255,6 +255,19 @@ class PlacedView:
         covered = x + int(low[0]), y + int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
         return intersection(covered, self.clip)
 
+    @cached_property
+    def depth_range(self) -> tuple[float, float]:
+        """Where the scene begins in depths of the target, 0..1, and 1 over how far it reaches."""
+        camera = self.camera
+        middle = float(np.dot(camera.eye - camera.scene_centre, camera.axes()[2]))
+        reach = 1.3 * camera.scene_radius  # a face moves beyond its rest pose
+        least_distance = 1e-3 * camera.scene_radius
+        distances = np.maximum([middle - reach, middle + reach], least_distance)
+        at_infinity = 1.0 - self.projection[2, 2]
+        depths = np.clip(0.5 * (at_infinity + self.projection[3, 2] / distances), 0.0, 1.0)
+        least_reach = 1e-6  # for a camera that has the scene behind it
+        return float(depths[0]), 1.0 / max(float(depths[1] - depths[0]), least_reach)
+
 
 def box_corners(points: npt.NDArray[Any]) -> Floats64:
     """The corners of the box that holds all points (n, 3), shape (8, 3), float64."""

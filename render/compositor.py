@@ -54,7 +54,6 @@ class Compositor:
         """Lay the scene into an area (None: all) of this frame or a `target`, which stays bound."""
         gl = self._gl
         target = target or self.frame
-        scene.flush()
         frame = scene.frame
         colour = scene.colour
         if not scene.samples:

@@ -66,7 +66,7 @@ class GeometryBuffer:
             skin["first"] = float(first)
             frame.skin.stream.draw(skin)
             first += frame.skin.stream.triangle_count
-        for buffers, part in parts:
+        for buffers, part, _ in parts:
             write_uniform(program, "model_view", part.transform.T @ view.world_to_view)
             program["first"] = float(first)
             buffers.draw(program)

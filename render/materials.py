@@ -26,6 +26,7 @@ def mesh_shader(style: Style, has_texture: bool, maps: Iterable[BumpMap], fades:
         style.shading.name,
         *(["WIREFRAME"] if style.has_wires else []),
         *([] if style.colour_by is ColourBy.NONE else [style.colour_by.name]),
+        *(["TRIANGLES"] if style.has_numbered_triangles else []),
         *(["TEXTURED"] if has_texture else []),
         *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
         *(["SHADOWS"] if style.shadows else []),

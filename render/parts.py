@@ -2,14 +2,14 @@
 
 import weakref
 from collections.abc import Callable, Iterable
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import moderngl
 import numpy as np
 
 from risorius.geometry.colour import to_linear
 
-from ..geometry.arrays import Flags, Floats32, Floats64, Integers32
+from ..geometry.arrays import Floats32, Floats64, Integers32
 from ..geometry.transforms import moved_points
 from .camera import PlacedView, box_corners
 from .frame import DrawnPart, PlacedPart
@@ -21,8 +21,6 @@ STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("SHELLS", " 2f 3f 1f", *OF_SHEL
 LAYERS = 9  # of shells; with more a picture takes longer, with fewer one sees between
 FEWEST_LAYERS = 2  # shells
 LAYER_PIXELS = 10.0  # that a layer is there for, where they are thickest
-ROOT = -0.6  # of that way, from vertices
-TIP = 0.4  # of that way, from vertices
 SHADING_DENSITY = 0.6  # of shells, from which on they throw a shadow
 
 
@@ -57,8 +55,6 @@ class PartBuffers:
         self._uploaded: Floats32 | None = None
         self._striation = part.striation
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
-        self._chosen = gl.buffer(reserve=self._indices.size, dynamic=True)
-        self._chosen_count = 0
         self._throwing = self._indices
         self._throwing_count = len(part.faces)
         if self._way is not None and part.striation is not None:
@@ -80,31 +76,12 @@ class PartBuffers:
         self._vertices.write(rows.astype(np.float32).tobytes())
         self._uploaded = vertices
 
-    def choose(self, is_chosen: Flags) -> None:
-        """Choose among its faces, (m,), for `draw` of the chosen."""
-        chosen = np.ascontiguousarray(np.asarray(self.faces)[is_chosen], np.uint32)
-        self._chosen_count = len(chosen)
-        self._chosen.orphan()
-        if len(chosen):
-            self._chosen.write(chosen)
-
-    def sides(self) -> list[Floats32]:
-        """Its vertices; of shells those of the innermost and of the outermost."""
-        assert self._uploaded is not None
-        if self._way is None:
-            return [self._uploaded]
-        return [self._uploaded + at * self._way for at in (ROOT, TIP)]
-
-    def draw(self, program: moderngl.Program, *, chosen: bool = False, layers: int = 1) -> None:
+    def draw(self, program: moderngl.Program, *, layers: int = 1) -> None:
         """Draw it; the program has in_position, and in_normal and in_colour if it wants them.
 
-        chosen: only the faces that were chosen last. layers: how often, of shells.
+        layers: how often, of shells.
         """
-        if chosen and not self._chosen_count:
-            return
-        indices = self._chosen if chosen else self._indices
-        count = self._chosen_count if chosen else len(self.faces)
-        self._render(program, indices, count, layers)
+        self._render(program, self._indices, len(self.faces), layers)
 
     def draw_shadow(self, program: moderngl.Program) -> None:
         """Draw what of it throws a shadow: of shells no hem, which lets light through."""
@@ -127,17 +104,21 @@ class PartBuffers:
         self._arrays[program, indices].render(vertices=3 * count, instances=layers)
         self._gl.disable(moderngl.CULL_FACE)
 
-    def draw_shells(self, program: moderngl.Program, view: PlacedView, *, chosen: bool) -> None:
-        """Draw its layers from the inside out; the outer ones, which are thin, hide nothing."""
+    def layer_count(self, view: PlacedView) -> int:
+        """How many layers its shells have in a view."""
         _, _, width, height = view.viewport
         pixels = view.camera.focal(width / height, height) / view.camera.distance
-        layers = int(np.clip(np.ceil(self._thick * pixels / LAYER_PIXELS), FEWEST_LAYERS, LAYERS))
+        return int(np.clip(np.ceil(self._thick * pixels / LAYER_PIXELS), FEWEST_LAYERS, LAYERS))
+
+    def draw_shells(self, program: moderngl.Program, view: PlacedView) -> None:
+        """Draw its layers from the inside out; the outer ones, which are thin, hide nothing."""
+        layers = self.layer_count(view)
         inner = -(-layers // 2)
         program["layers"] = layers
         for first, count in ((0, inner), (inner, layers - inner)):
             program["first"] = first
             with blending(self._gl, hides=first == 0):
-                self.draw(program, chosen=chosen, layers=count)
+                self.draw(program, layers=count)
 
 
 def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
@@ -155,10 +136,18 @@ def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
 
 
 class PlacedBuffers(NamedTuple):
-    """A placed part, and the buffers that hold it."""
+    """A placed part, and the buffers that hold it.
+
+    number: of its surface, see surface_number.glsl; of the skin see coverage.py.
+    """
 
     buffers: PartBuffers
     part: PlacedPart
+    number: int
+
+    def as_background(self) -> Self:
+        """The same, whose edges are smooth already."""
+        return self._replace(number=0)
 
     @property
     def corners(self) -> Floats64:
@@ -181,7 +170,10 @@ class PartStore:
     def uploaded(self, parts: Iterable[PlacedPart]) -> list[PlacedBuffers]:
         """Each part, uploaded when it is first seen or has another shape than at last."""
         self._forget_lost()
-        return [PlacedBuffers(self._buffers_of(each), each) for each in parts]
+        return [
+            PlacedBuffers(self._buffers_of(each), each, 2 + index % 187)
+            for index, each in enumerate(parts)
+        ]
 
     def _buffers_of(self, placed: PlacedPart) -> PartBuffers:
         """The buffers of a part, which hold the shape that it has in its place."""

@@ -15,9 +15,9 @@ import numpy as np
 from ..geometry.arrays import Floats64
 from .backdrop import Backdrop
 from .camera import PlacedView, box_corners
+from .coverage import SKIN_NUMBERS, Drawn, part_numbers, set_numbers
 from .frame import Frame, Plane, Skin
 from .geometry_buffer import Geometry, GeometryBuffer
-from .hidden import FarthestDepths, Occluder, draw_sides
 from .lines import Lines
 from .materials import (
     mesh_shader,
@@ -29,9 +29,10 @@ from .materials import (
 )
 from .parts import PartStore, PlacedBuffers
 from .programs import compile_program, write_uniform
+from .sample_mixer import SampleMixer
 from .shadow import Shadow, ShadowMap
-from .stream import GpuStream, Share, Stream
-from .style import ColourBy, Style
+from .stream import GpuStream, MeshBuffers, Share, Stream
+from .style import ColourBy, Shading, Style
 from .surface import NEWEST_VERSION, Image, Surface
 from .texture import BumpMap
 from .translucency import SUNK_DEPTH, blending, draw_nearest, fade_seen, set_cut, set_translucency
@@ -56,7 +57,7 @@ class Renderer:
         self._backdrop = Backdrop(self._gl)
         self._shadow_map: ShadowMap | None = None
         self._geometry_buffer: GeometryBuffer | None = None
-        self._occluder: Occluder | None = None
+        self._mixer: SampleMixer | None = None
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
         """Lend arrays for a mesh of at most so many vertices and triangles (see Stream)."""
@@ -126,15 +127,48 @@ class Renderer:
         and depths they need, and mixed ones after solid ones.
         """
         parts = self._parts.uploaded(frame.parts)
+        later = parts
         if frame.is_opened:
             solid = [each for each in parts if not each.buffers.is_mixed]
-            parts = [each for each in parts if each.buffers.is_mixed]
+            later = [each for each in parts if each.buffers.is_mixed]
             self._draw_under(frame, view, solid)
-        shadow = self._shadow(frame, view, parts, with_skin=True)
-        depths = None if frame.skin is None else self._draw_skin(frame, view, shadow)
-        self._draw_parts(parts, frame.style, view, shadow, depths=depths)
+            self._smooth(frame, view, solid, with_skin=False)
+            parts = [each.as_background() for each in solid] + later
+        shadow = self._shadow(frame, view, later, with_skin=True)
+        if frame.skin is not None:
+            self._draw_skin(frame, view, shadow)
+        self._draw_parts(later, frame.style, view, shadow)
+        self._smooth(frame, view, parts, with_skin=True)
         for lines in frame.overlays:
             self._draw_lines(lines, view)
+
+    def _smooth(
+        self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers], *, with_skin: bool
+    ) -> None:
+        """Smooth the edges of parts, and of the skin if it was drawn."""
+        target = self.surface.target
+        if not target.samples:
+            return
+        if self._mixer is None or self._mixer.target is not target:
+            self._mixer = SampleMixer(self._gl, target, is_software=self.surface.is_software)
+        skin = frame.skin if with_skin else None
+        boxes = [each.corners for each in parts]
+        if skin is not None:
+            boxes.append(skin.stream.corners)
+        areas = [area for area in map(view.covered_pixels, boxes) if min(area[2:]) > 0]
+        if areas:
+            has_triangles = skin is not None and frame.style.has_numbered_triangles
+            drawn = Drawn(
+                skin,
+                parts,
+                frame.cut,
+                frame.is_opened,
+                has_triangles,
+                frame.style.shading is Shading.PIXEL,
+            )
+            self._mixer.mix(drawn, view, areas)
+            if skin is None:
+                target.forget_surfaces()
 
     def _draw_under(self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers]) -> None:
         """Draw solid parts that an opened skin will show; it lets the light through to them."""
@@ -155,18 +189,16 @@ class Renderer:
         throwers = [each for each in parts if each.part.throws_shadow]
         return self._shadow_map.draw(frame, view, throwers, with_skin=with_skin)
 
-    def _draw_skin(
-        self, frame: Frame, view: PlacedView, shadow: Shadow | None
-    ) -> FarthestDepths | None:
-        """Draw the mesh; the depths behind which nothing can be seen, where they were read."""
+    def _draw_skin(self, frame: Frame, view: PlacedView, shadow: Shadow | None) -> None:
+        """Draw the mesh."""
         assert frame.skin is not None
         stream = frame.skin.stream
         style = frame.style
         values = None
         if style.colour_by is not ColourBy.NONE:
             values = value_texture(self._gl, frame.skin.values, stream.triangle_count)
-        if not self._use_layer(view, stream.corners):
-            return None
+        if not self._use_surfaces(view, stream.corners):
+            return
         fade = fade_seen(frame.skin, view)
         if values is not None:
             values.use(_VALUE_UNIT)
@@ -178,23 +210,25 @@ class Renderer:
             for program, _ in drawn:
                 set_translucency(program, frame, view)
             draw_nearest(self._gl, stream, drawn)
-            return None
+            return
         with nullcontext() if fade is None else blending(self._gl, hides=True):
             if self.surface.is_software:
-                occluder = self._target_occluder()
-                return draw_sides(self._gl, frame, drawn, view, occluder, blends=fade is not None)
+                self._draw_sides(stream, drawn)
+                return
             for program, share in drawn:
                 stream.draw(program, share)
-        return None
 
-    def _target_occluder(self) -> Occluder | None:
-        """The occluder of the target; None where pixels have one sample."""
-        target = self.surface.target
-        if not target.samples:
-            return None
-        if self._occluder is None or self._occluder.target is not target:
-            self._occluder = Occluder(self._gl, target)
-        return self._occluder
+    def _draw_sides(
+        self, stream: MeshBuffers, drawn: Sequence[tuple[moderngl.Program, Share]]
+    ) -> None:
+        """Draw back faces last: most are hidden then, and software does not shade them."""
+        self._gl.enable(moderngl.CULL_FACE)
+        for side in ("back", "front"):
+            self._gl.cull_face = side
+            for program, share in drawn:
+                stream.draw(program, share)
+        self._gl.cull_face = "back"
+        self._gl.disable(moderngl.CULL_FACE)
 
     def _skin_program(
         self,
@@ -214,6 +248,7 @@ class Renderer:
         write_uniform(program, "projection", view.projection)
         if fade is not None:
             program["fade"] = fade
+        set_numbers(program, SKIN_NUMBERS, view)
         set_mesh(program, style, view, self._line_scale)
         if shadow is not None:
             shadow.set_uniforms(program, _SHADOW_UNIT)
@@ -233,18 +268,14 @@ class Renderer:
         shadow: Shadow | None,
         *,
         cut: Plane | None = None,
-        depths: FarthestDepths | None = None,
     ) -> None:
         """Draw coloured parts; mixed ones last.
 
         cut: in front of it an opaque mesh will hide them, even where they come out of it.
-        depths: of the mesh; faces that are surely behind them are left out.
         """
         corners = [each.corners for each in parts]
-        if not parts or not self._use_layer(view, np.concatenate(corners)):
+        if not parts or not self._use_surfaces(view, np.concatenate(corners)):
             return
-        if depths is not None:
-            depths.choose_parts(parts)
         programs = {}
         is_around = bool(style.light.around)
         for kind, opening in {_kind_of(each, style) for each in parts}:
@@ -257,18 +288,19 @@ class Renderer:
             if shadow is not None and "shadow_map" in program:
                 shadow.set_uniforms(program, _SHADOW_UNIT)
         for each in sorted(parts, key=lambda each: each.buffers.is_mixed):
-            buffers, part = each
+            buffers, part, _ = each
             kind, opening = _kind_of(each, style)
             program = programs[kind, opening]
             write_uniform(program, "model_view", part.transform.T @ view.world_to_view)
+            set_numbers(program, part_numbers(each), view)
             set_part(program, buffers, style.light, view)
             if opening and part.opening is not None:
                 part.opening.set_uniforms(program, view)
             if buffers.kind == "SHELLS":
-                buffers.draw_shells(program, view, chosen=depths is not None)
+                buffers.draw_shells(program, view)
                 continue
             with blending(self._gl) if buffers.is_mixed else nullcontext():
-                buffers.draw(program, chosen=depths is not None)
+                buffers.draw(program)
 
     def _draw_lines(self, lines: Lines, view: PlacedView) -> None:
         """Draw polylines over the scene; where something hides them they shine through."""
@@ -280,8 +312,10 @@ class Renderer:
         write_uniform(program, "world_to_clip", view.world_to_clip)
         program["viewport_size"] = view.viewport[2:]
         program["half_width"] = 0.5 * width
-        if not self._use_layer(view, box_corners(rows[:, :3]), padding=2.0 + width):
+        covered = view.covered_pixels(box_corners(rows[:, :3]), 2.0 + width)
+        if min(covered[2:]) <= 0:
             return
+        self.surface.target.use(view.viewport, covered)
         content = [(self._gl.buffer(rows), "3f 3f", "in_position", "in_colour")]
         drawn = self._gl.vertex_array(program, content, self._gl.buffer(segments))
         with blending(self._gl):
@@ -304,11 +338,11 @@ class Renderer:
             )
         return self._programs[key]
 
-    def _use_layer(self, view: PlacedView, corners: Floats64, padding: float = 2.0) -> bool:
+    def _use_surfaces(self, view: PlacedView, corners: Floats64) -> bool:
         """Set the drawing area to the hull of corners; False where the view does not see it."""
-        covered = view.covered_pixels(corners, padding)
+        covered = view.covered_pixels(corners)
         if is_seen := min(covered[2:]) > 0:
-            self.surface.target.use_layer(view.viewport, covered)
+            self.surface.target.use(view.viewport, covered, has_numbers=True)
         return is_seen
 
 

@@ -148,6 +148,11 @@ class Style:
         return self.wireframe or self.colour_by is ColourBy.SPLIT_WIRES
 
     @property
+    def has_numbered_triangles(self) -> bool:
+        """Whether each triangle has a colour of its own, so that edges between them are seen."""
+        return self.shading is Shading.FLAT or self.colour_by is ColourBy.SPLITS
+
+    @property
     def shows_bumps(self) -> bool:
         """Whether anything of a bump map is to be seen: only pixel shading has them."""
         return self.bumps > 0.0 and self.shading is Shading.PIXEL

@@ -27,7 +27,7 @@ class Surface:
     """The interface of both kinds; made by `open_offscreen` and `open_window`.
 
     gl: the OpenGL context; objects without references are given back to it when a frame begins.
-    samples: per pixel, 0 = none. target: where the Renderer draws.
+    samples: per pixel, by which edges are smoothed, 0 = none. target: where the Renderer draws.
     pixel_scale: pixels per unit of line width: 1, or 2 on a dense screen.
     scale: pixels of the target per pixel of the surface; below 1 only in a window in a hurry.
     """
@@ -71,7 +71,7 @@ class Surface:
                 lost.release()
 
     def resolve(self) -> None:
-        """End the scene: later drawings (a panel) lie on top, not multisampled."""
+        """End the scene: later drawings (a panel) lie on top, and their edges are not smoothed."""
         self.make_current()
         self.target.use_frame()
 
@@ -162,7 +162,7 @@ class OffscreenSurface(Surface):
 
 
 def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurface:
-    """Open a frame of `size` pixels that needs no screen, with up to `samples` samples per pixel.
+    """Open a frame of `size` pixels that needs no screen; up to `samples` a pixel smooth its edges.
 
     Raises ValueError for a size that no picture has, GLError where OpenGL 3.3 cannot be had.
     The environment variables of glcontext choose device and libraries: GLCONTEXT_DEVICE_INDEX,
@@ -232,7 +232,7 @@ def check_size(size: tuple[int, int]) -> None:
 
 
 def possible_samples(gl: moderngl.Context, samples: int) -> int:
-    """The largest power of two up to `samples` that the driver has; 0 = no multisampling."""
+    """The largest power of two up to `samples` that the driver has; 0 = edges are not smoothed."""
     if samples < 0:
         raise ValueError(f"samples is {samples}; it must be 0 (none) or a number such as 4")
     # For both attachments of the layer.

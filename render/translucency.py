@@ -71,7 +71,8 @@ def set_translucency(program: moderngl.Program, frame: Frame, view: PlacedView) 
 def set_cut(program: moderngl.Program, view: PlacedView, cut: Plane, width: float) -> None:
     """Where skin is cut, and how far from there that is seen [of the scene's radius]."""
     program["cut"] = in_view(cut, view)
-    program["cut_width"] = width * view.camera.scene_radius
+    if "cut_width" in program:
+        program["cut_width"] = width * view.camera.scene_radius
 
 
 def in_view(plane: Plane, view: PlacedView) -> Plane:

@@ -235,7 +235,7 @@ def _hint(glfw: ModuleType, is_scaled: bool, version: int) -> None:
     glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)  # macOS refuses 3.3 core without it
     glfw.window_hint(glfw.VISIBLE, False)
     glfw.window_hint(glfw.SCALE_TO_MONITOR, is_scaled)
-    # The scene is multisampled already; the window needs neither samples nor depth.
+    # The scene has smooth edges already; the window needs neither samples nor depth.
     glfw.window_hint(glfw.SAMPLES, 0)
     glfw.window_hint(glfw.DEPTH_BITS, 0)
     glfw.window_hint(glfw.STENCIL_BITS, 0)

@@ -46,12 +46,11 @@ uniform float first;  // number of the first triangle of this drawing call, coun
 layout(location = 0) out vec4 normal_and_depth;
 layout(location = 1) out vec4 number_side_uv;
 
-const float HALF = 0.5;  // of the strands: where fewer are there, a pixel shows the surface behind
-const float LEAST_FACING = 0.05;  // from which on, as in shells.glsl
+#include "shell_layers.glsl"
 
 void main() {
     float facing = abs(dot(normalize(surface.normal), normalize(surface.position)));
-    if (surface.dense < HALF * clamp(2.5 * facing, LEAST_FACING, 1.0)) discard;
+    if (!is_hair(surface.dense, facing)) discard;
     float side = gl_FrontFacing ? 1.0 : -1.0;
     // From OpenGL's axes of the camera to those of pictures: x right, y down, z away from the eye.
     vec3 normal = side * surface.normal / max(length(surface.normal), 1e-20);

@@ -5,12 +5,11 @@
 // of the hair's colour, as in Scheuermann 2004, "Practical real-time hair rendering and shading".
 
 #include "lighting.glsl"
+#include "shell_layers.glsl"
 
 #define VARYINGS vec3 diffuse; vec3 shine; vec3 colour; vec2 strand; float cosine; float layer; float dense; float facing;
 
 uniform int layers;         // of all
-const float MEAN = 0.6;     // of the strands' way to the tips of the longest
-const float LOWEST = 0.15;  // place of the first layer, beside their distance: no gap is below it
 
 #if defined(VERTEX_STAGE)
 
@@ -27,7 +26,7 @@ uniform int first;  // of the layers that are drawn, from the inside out
 out Surface { VARYINGS } surface;
 
 void main() {
-    float layer = (float(first + gl_InstanceID) + LOWEST) / float(layers);
+    float layer = layer_place(float(first + gl_InstanceID), layers);
     vec4 position = model_view * vec4(in_position + (layer - MEAN) * in_way, 1.0);
     vec3 normal = normalize(mat3(model_view) * in_normal), along = mat3(model_view) * in_way;
     // Hair scatters light, so it is lit some way past where it turns away.
@@ -49,7 +48,9 @@ void main() {
 #elif defined(FRAGMENT_STAGE)
 
 in Surface { VARYINGS } surface;
-out vec4 pixel_colour;
+#include "surface_number.glsl"
+layout(location = 0) out vec4 pixel_colour;
+layout(location = 1) out vec4 pixel_surface;
 
 const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks of them
 const float LONG = 11.0;                 // [mm] after which a strand is another one
@@ -58,7 +59,6 @@ const float SHARPNESS = 70.0, SOFTNESS = 14.0;
 const vec2 SIDEWAYS = vec2(0.45, 0.75);  // facing, from which on single strands are seen
 const vec2 RAGGED = vec2(0.4, 0.08);     // of density, by strands: so hems are no lines
 const vec2 CRISP = vec2(1.1, 1.6);       // how abruptly hems end: where locks are seen, and single strands
-const float LEAST_FACING = 0.05;        // from which on all of a layer is passed
 const float DARK = 0.45;                 // of the light, at roots
 const float COVERED = 0.7;               // layers above one, from which on it gets less light
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
@@ -82,11 +82,10 @@ void main() {
     vec2 at = surface.strand.x / vec2(THIN, THICK), number = floor(at), place = at - number;
     vec2 share = clamp(1.5 - fwidth(surface.strand.x) / vec2(THIN, THICK), 0.0, 1.0);
     vec2 tones = share * (mix(reach(number), reach(number + 1.0), smoothstep(0.0, 1.0, place)) - 0.5);
-    // Seen from the side, a look goes past many strands; but of the tips it sees lines with gaps.
-    float seen = clamp(2.5 * surface.facing, LEAST_FACING, 1.0);
+    // Of the tips a look from the side sees lines with gaps.
+    float seen = seen_share(surface.facing);
     float single = smoothstep(SIDEWAYS.x, SIDEWAYS.y, surface.facing);
-    // Its outline is the layer about the mean, for any number of layers.
-    float outline = (floor(MEAN * float(layers) - LOWEST + 0.5) + LOWEST) / float(layers) + SHARP;
+    float outline = outline_place(layers) + SHARP;
     vec2 apart = vec2(0.5, 0.4) * clamp(surface.dense, 0.25, 1.0);  // where hems begin no teeth
     float tall = mix(outline, 0.65 + dot(apart, tones), single);
     // Toward hems there are fewer strands, and shorter ones; where they are finer than a pixel, a veil.
@@ -104,6 +103,8 @@ void main() {
     float open = mix(1.0, DARK, smoothstep(COVERED, COVERED + max(1.0, 0.5 * float(layers)), above));
     vec3 front = surface.colour * (1.0 + 1.0 * uneven) * open;
     vec3 shine = surface.shine * open * max(1.0 + 2.0 * uneven, 0.0) * (bright * (0.06 + 0.4 * front) + 0.3 * glow * front);
+    // Of no depth: it is none, but several layers.
+    pixel_surface = is_hair(surface.dense, surface.facing) ? vec4(surface_number(0.0), 0.0, 0.0, 1.0) : vec4(0.0);
     pixel_colour = vec4(display(front * surface.diffuse + shine), cover);
 }
 

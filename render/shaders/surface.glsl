@@ -4,7 +4,7 @@
 // from a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), STRANDS (thin cones of
 // three sides; pixels take as much of them as they cover), FIBRES (striation), TRANSLUCENT (skin that
 // shows the parts under it), SUNK (those parts, hidden where skin is opaque), FADED (skin that fades
-// toward a plane), FILLED or BEHIND (parts to which light comes through an opening; opening.glsl).
+// toward a plane), TRIANGLES (numbered singly), FILLED or BEHIND (parts to which light comes through an opening; opening.glsl).
 
 #include "lighting.glsl"
 #if defined(FILLED) || defined(BEHIND)
@@ -21,10 +21,14 @@ uniform float sharpness;
 
 #if defined(PIXEL)
 #define NORMAL_VARYING vec3 normal;
+#define RISE surface.normal.y
 #elif defined(FLAT)
 #define NORMAL_VARYING flat vec3 to_eye;
 #else
 #define NORMAL_VARYING
+#endif
+#if !defined(RISE)
+#define RISE 0.0
 #endif
 #if defined(GOURAUD)
 #define LIT_VARYING vec3 key; vec3 rest; vec3 specular; vec3 inner; float facing;
@@ -99,7 +103,7 @@ uniform float shadow_reach;
 #endif
 #if defined(SUNK)
 uniform vec4 cut;  // plane, view space; in front of it the skin is whole
-uniform float cut_width;
+#include "sunk.glsl"
 #endif
 #if defined(STRANDS)
 uniform float half_strand;   // of a strand's thickness
@@ -161,10 +165,7 @@ void main() {
     gl_Position.z = own.z / own.w * gl_Position.w;
 #endif
 #if defined(SUNK)
-    // In its place, but as deep as if it were farther off.
-    float beyond = clamp(dot(cut, position), 0.0, cut_width);
-    vec4 sunk = projection * vec4(position.xyz * (1.0 + beyond / length(position.xyz)), 1.0);
-    gl_Position.z = sunk.z / sunk.w * gl_Position.w;
+    gl_Position.z = sunk_depth(position);
 #endif
 }
 
@@ -279,7 +280,9 @@ const vec3 FAT = vec3(0.78, 0.50, 0.34);  // linear light
 #if defined(FADED)
 uniform vec4 fade;  // view space: at a place it says how much of the skin shows, from 0 to 1
 #endif
-out vec4 pixel_colour;
+#include "surface_number.glsl"
+layout(location = 0) out vec4 pixel_colour;
+layout(location = 1) out vec4 pixel_surface;
 
 // How open to light from all around.
 float ambient_occlusion = 1.0;
@@ -394,6 +397,11 @@ void main() {
     light = mix(light, inner_albedo * inner, inwardness);
 #endif
     vec3 shown = display(light);
+#if defined(STRANDS)
+    pixel_surface = vec4(0.0);  // invisible, so that of what is behind stays
+#else
+    pixel_surface = surface_and_depth(RISE);
+#endif
 #if defined(WIREFRAME)
     vec3 edge = surface.edge_distance;
     float nearest = min(min(edge.x, edge.y), edge.z);

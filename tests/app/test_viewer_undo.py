@@ -133,7 +133,7 @@ def test_detail_falls_once_and_does_not_flicker():
     chosen = LevelOfDetail(is_software=False)
     assert chosen.detail == FULL_DETAIL
     for _ in range(PATIENCE_FRAMES):
-        chosen.note(0.09)
+        chosen.note(0.063)
     assert chosen.detail.scale == 0.75
     for _ in range(CALM_FRAMES - 1):
         chosen.note(0.01)

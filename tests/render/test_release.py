@@ -95,7 +95,7 @@ def test_a_lost_part_leaves_nothing(monkeypatch):
             del parts
             surface.begin()
             left.append(count())
-    assert left[0]["Buffer"] == 6
+    assert left[0]["Buffer"] == 4
     assert left[1:] == left[:-1]
 
 

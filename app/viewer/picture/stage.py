@@ -284,8 +284,8 @@ LEVELS = (
     render.Detail(samples=0, scale=0.5),
 )
 # Processor time of a whole frame of the window at 1280 x 720, as parts of the first level
-# (measured 2026-11-28).
-COSTS = 1.0, 0.53, 0.42, 0.36, 0.33
+# (measured 2026-11-29).
+COSTS = 1.0, 0.8, 0.7, 0.61, 0.54
 PATIENCE_FRAMES = 4  # frames in a row that decide
 CALM_FRAMES = 40  # frames in a row after which a picture may become finer while it moves
 

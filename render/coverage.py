@@ -1,0 +1,115 @@
+"""Which surface each sample of the pixels sees: meshes and parts, drawn without light.
+
+That takes a fifth of the time of shading them, and less where only some triangles are drawn.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import moderngl
+
+from .camera import PlacedView
+from .edge_tiles import INNER_NUMBER, EdgeTiles
+from .frame import Plane, Skin
+from .parts import PlacedBuffers
+from .programs import compile_program, write_uniform
+from .render_target import Rectangle, RenderTarget
+from .stream import Share
+from .translucency import CUT_WIDTH, SUNK_DEPTH, set_cut
+
+Numbers = tuple[float, float, float]  # of a surface, see surface_number.glsl
+SKIN_NUMBERS = 190.0, 63.0, float(INNER_NUMBER)
+
+
+class Drawn(NamedTuple):
+    """The surfaces that were drawn in a view: as a frame has them.
+
+    skin: None where it was not drawn yet. cut: of an opened skin, else None. has_triangles: whether
+    each triangle of the skin is a surface of its own.
+    """
+
+    skin: Skin | None
+    parts: Sequence[PlacedBuffers]
+    cut: Plane | None = None
+    is_opened: bool = False
+    has_triangles: bool = False
+    has_normals: bool = True
+
+
+class Coverage:
+    """Several samples of each pixel of a target: numbers and depths."""
+
+    def __init__(self, gl: moderngl.Context, target: RenderTarget) -> None:
+        self._gl = gl
+        self.numbers = gl.texture(target.size, 1, samples=target.samples)
+        self.depths = gl.depth_texture(target.size, samples=target.samples)
+        self._frame = gl.framebuffer([self.numbers], self.depths)
+        self._programs: dict[tuple[str, ...], moderngl.Program] = {}
+
+    def draw(
+        self, drawn: Drawn, view: PlacedView, area: Rectangle, tiles: EdgeTiles | None
+    ) -> None:
+        """Draw surfaces within an area; with tiles only what can be seen in them."""
+        gl = self._gl
+        gl.scissor = None
+        self._frame.clear(depth=1.0)
+        self._frame.use()
+        gl.viewport = view.viewport
+        gl.scissor = area
+        gl.enable_only(moderngl.DEPTH_TEST)
+        if drawn.skin is not None:
+            self._draw_skin(drawn, drawn.skin, view, tiles)
+        for each in drawn.parts:
+            is_solid = each.buffers.kind != "STRANDS"
+            if is_solid and (tiles is None or each.number in tiles.numbers):
+                self._draw_part(each, drawn.cut if each.part.lies_beneath else None, view)
+
+    def _draw_skin(
+        self, drawn: Drawn, skin: Skin, view: PlacedView, tiles: EdgeTiles | None
+    ) -> None:
+        """Draw the skin, both sides."""
+        defines = ["TRANSLUCENT"] * drawn.is_opened + ["TRIANGLES"] * drawn.has_triangles
+        defines += ["PIXEL"] * drawn.has_normals
+        program = self._program(view, SKIN_NUMBERS, *defines)
+        write_uniform(program, "model_view", view.world_to_view)
+        if drawn.is_opened:
+            set_cut(program, view, drawn.cut or (0.0, 0.0, 0.0, -1.0), CUT_WIDTH)
+        stream = skin.stream
+        if tiles is None:
+            stream.draw(program)
+            return
+        stream.choose(tiles.touched(view, stream.mesh.vertices[:, :3], stream.mesh.triangles))
+        stream.draw(program, Share.CHOSEN)
+
+    def _draw_part(self, placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> None:
+        """Draw a solid part, or the outline of short hair."""
+        is_hair = placed.buffers.kind == "SHELLS"
+        defines = ["SHELLS"] * is_hair + ["SUNK"] * (cut is not None)
+        program = self._program(view, part_numbers(placed), *defines)
+        write_uniform(program, "model_view", placed.part.transform.T @ view.world_to_view)
+        if is_hair:
+            program["layers"] = placed.buffers.layer_count(view)
+        if cut is not None:
+            set_cut(program, view, cut, SUNK_DEPTH)
+        placed.buffers.draw(program)
+
+    def _program(self, view: PlacedView, numbers: Numbers, *defines: str) -> moderngl.Program:
+        """The program of surfaces of a kind, ready for one of these numbers."""
+        if defines not in self._programs:
+            self._programs[defines] = compile_program(self._gl, "coverage.glsl", *defines)
+        program = self._programs[defines]
+        write_uniform(program, "projection", view.projection)
+        set_numbers(program, numbers, view)
+        return program
+
+
+def part_numbers(placed: PlacedBuffers) -> Numbers:
+    """The numbers of a part."""
+    return placed.number, 0.0, placed.number
+
+
+def set_numbers(program: moderngl.Program, numbers: Numbers, view: PlacedView) -> None:
+    """Let a program write which surface is seen."""
+    for name, value in (("numbers", numbers), ("depth_range", view.depth_range)):
+        if name in program:  # not where it draws strands, or no depths
+            program[name] = value

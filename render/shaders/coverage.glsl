@@ -1,0 +1,71 @@
+// The surface that each sample of a pixel sees: its number and its depth, and no light.
+// SHELLS: the outline of short hair. PIXEL, TRANSLUCENT, SUNK, TRIANGLES: as in surface.glsl.
+
+#if defined(SHELLS)
+#include "shell_layers.glsl"
+#define VARYINGS float dense; float facing;
+#else
+#define VARYINGS float from_cut; float rise;
+#endif
+
+#if defined(VERTEX_STAGE)
+
+in vec3 in_position;
+in vec3 in_normal;
+#if defined(SHELLS)
+in vec3 in_way;
+in float in_dense;
+uniform int layers;
+#endif
+uniform mat4 model_view;
+uniform mat4 projection;
+#if defined(SUNK) || defined(TRANSLUCENT)
+uniform vec4 cut;  // plane, view space
+#endif
+#if defined(SUNK)
+#include "sunk.glsl"
+#endif
+out Surface { VARYINGS } surface;
+
+void main() {
+    vec4 position = model_view * vec4(in_position, 1.0);
+#if defined(SHELLS)
+    position.xyz += (outline_place(layers) - MEAN) * (mat3(model_view) * in_way);
+    surface.dense = in_dense;
+    surface.facing = abs(dot(normalize(mat3(model_view) * in_normal), normalize(position.xyz)));
+#else
+    surface.rise = 0.0;
+    surface.from_cut = 0.0;
+#endif
+#if defined(PIXEL)
+    surface.rise = normalize(mat3(model_view) * in_normal).y;
+#endif
+#if defined(TRANSLUCENT)
+    surface.from_cut = dot(cut, position);
+#endif
+    gl_Position = projection * position;
+#if defined(SUNK)
+    gl_Position.z = sunk_depth(position);
+#endif
+}
+
+#elif defined(FRAGMENT_STAGE)
+
+#include "surface_number.glsl"
+in Surface { VARYINGS } surface;
+out float sample_number;
+
+void main() {
+#if defined(SHELLS)
+    if (!is_hair(surface.dense, surface.facing)) discard;
+#elif defined(TRANSLUCENT)
+    if (!gl_FrontFacing && surface.from_cut < 0.0) discard;
+#endif
+#if defined(SHELLS)
+    sample_number = surface_number(0.0);
+#else
+    sample_number = surface_number(surface.rise);
+#endif
+}
+
+#endif
