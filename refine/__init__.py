@@ -10,7 +10,7 @@ Visual Computer 2003. It needs numpy and numba, and jit.py and geometry/ beside 
 Refiners by name: `none` hands the mesh through, `kahler` is the paper's, `loop` subdivides the
 whole mesh for comparison. `refine(positions, out=stream)` writes straight into lent arrays.
 `Shortening` measures how far the skin is. `Embedding` carries a fine mesh with a coarse one.
-`check` is for tests: it names the relation that a refined mesh breaks.
+`check` and `check_embedding` are for tests: they name the relation that is broken.
 
 `kahler` follows the paper by default. Its options: `scheme` says where points go, `criterion` which
 edges are split, `splits` that they are the same in every frame, `blend` that nothing pops,
@@ -49,6 +49,7 @@ from .border.option import Option
 from .border.plugin import GpuRefiner, GpuStream, Origins, RefinedMesh, Refiner, Stream, View
 from .border.registry import Registry, create, parameters, refiners, takes_attributes
 from .border.stream import StreamArrays
+from .embedding.checker import check_embedding
 from .embedding.embedding import EmbeddedPoints, Embedding
 from .hosts import WeldedRefiner
 from .kahler.coherence import Coherent
@@ -108,6 +109,7 @@ __all__ = [
     "View",
     "WeldedRefiner",
     "check",
+    "check_embedding",
     "connect",
     "create",
     "create_kahler",

@@ -48,6 +48,49 @@ SURFACES = {
 }
 
 
+POINTS = around(SURFACES["ball"])
+
+
+class Flawed:
+    """An embedding with one flaw."""
+
+    def __init__(self, embedding, flaw):
+        self._embedding = embedding
+        self._flaw = flaw
+
+    def evaluate(self, positions):
+        found = self._embedding.evaluate(positions)
+        return found._replace(positions=self._flaw(found.positions))
+
+
+@pytest.mark.parametrize("mesh", SURFACES.values(), ids=SURFACES)
+def test_the_checker_passes_embeddings(mesh):
+    """Of any surface, and of meshes far from the origin, with points that no triangle uses."""
+    points = around(mesh)
+    refine.check_embedding(
+        refine.Embedding(mesh.faces, mesh.vertices, points), mesh.vertices, points
+    )
+    away = np.vstack([mesh.vertices + 1e4, [[np.nan] * 3]])
+    refine.check_embedding(refine.Embedding(mesh.faces, away, points + 1e4), away, points + 1e4)
+
+
+@pytest.mark.parametrize(
+    ("flaw", "relation"),
+    [
+        (lambda points: points + np.array([0.0, 1e-3, 0.0]), "at rest points are where they were"),
+        (lambda points: points * np.nan, "at rest points are where they were"),
+        (lambda points: points - points[:1] + POINTS[:1], "a shift carries"),
+        (lambda points: points.mean(axis=0) + POINTS - POINTS.mean(axis=0), "a turn carries"),
+    ],
+)
+def test_the_checker_names_what_is_broken(flaw, relation):
+    """Points that are off at rest, that stay behind, and that do not turn."""
+    ball = SURFACES["ball"]
+    embedding = Flawed(refine.Embedding(ball.faces, ball.vertices, POINTS), flaw)
+    with pytest.raises(refine.BrokenMeshError, match=relation):
+        refine.check_embedding(embedding, ball.vertices, POINTS)
+
+
 @pytest.mark.parametrize("mesh", SURFACES.values(), ids=SURFACES)
 def test_rest_is_rest_and_rigid_motion_is_exact(mesh):
     """A fine mesh is where it was when the coarse one is, and goes along with it as one piece."""
