@@ -65,7 +65,7 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
     libraries: list[str] = []
     parts: dict[str, int] = {}
     current = [-1, -1]  # material and part
-    for number, line in enumerate(io.BytesIO(_joined(content)), start=1):
+    for number, line in enumerate(io.BytesIO(joined_lines(content)), start=1):
         word, *fields = line.split(b"#", 1)[0].split() or [b""]
         try:
             if word == b"v":
@@ -176,7 +176,7 @@ def looks_of(content: bytes) -> dict[str, MaterialLook]:
     """The colours and opacities in a material library (MTL), by material; wrong numbers count 1."""
     looks: dict[str, MaterialLook] = {}
     material = ""
-    for line in _joined(content).decode().split("\n"):
+    for line in joined_lines(content).decode().split("\n"):
         word, rest = _parted(line)
         numbers = [float(each) for each in rest.split() if _is_number(each)]
         look = looks.get(material, MaterialLook())
@@ -203,7 +203,7 @@ def pictures_of(content: bytes) -> dict[str, MaterialPicture]:
     """The pictures of colour in a material library (MTL), by material."""
     pictures = {}
     material = ""
-    for line in _joined(content).decode().split("\n"):
+    for line in joined_lines(content).decode().split("\n"):
         word, rest = _parted(line)
         if word == "newmtl":
             material = rest
@@ -261,7 +261,7 @@ def _parted(line: str) -> tuple[str, str]:
     return words[0], words[1].strip()
 
 
-def _joined(content: bytes) -> bytes:
+def joined_lines(content: bytes) -> bytes:
     """Plain text in which a backslash at the end of a line joins it with the next.
 
     A remark ends with its line: a path in it may end in a backslash.

@@ -1,25 +1,28 @@
 """An avatar as a folder of OBJs, one a shape, for programs that make targets of meshes.
 
 All have the same vertices in the same order: `neutral.obj` at rest, and each other where its shape
-is at 1. An OBJ that was brought keeps its lines, but for those of vertices that a shape moves. Any
-other head, and one whose lips were sealed, is written as triangles, body by body: in the unit of
-its file, the built-in one in metres.
+is at 1. An OBJ that was brought keeps its lines, but for those of vertices that a shape moves, and
+of polygons that a cut between sealed lips touches. Any other head is written as triangles, body by
+body: in the unit of its file, the built-in one in metres.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from risorius.assets.fitting.lips import LipCut
+from risorius.assets.wavefront import joined_lines
 from risorius.geometry.arrays import Floats64
 
 from .avatar import Avatar, FileHead
 from .surface import METRES
 
 OWN = re.compile(r"\w[\w.]*\.obj")  # names of files in such a folder
+ELEMENT = re.compile(rb"(?m)^[ \t]*([vf])[ \t]+([^\r\n#]*)")
 VERTEX = re.compile(rb"(?m)^[ \t]*v[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)")
 
 
@@ -27,9 +30,8 @@ def write_obj_folder(avatar: Avatar, folder: Path) -> None:
     """Write all of them."""
     file = avatar.file
     text = None
-    is_kept = file is not None and file.head.lip_cut is None
-    if is_kept and file is not None and file.path.suffix.lower() == ".obj":
-        text = file.path.read_bytes()
+    if file is not None and file.path.suffix.lower() == ".obj":
+        text = _own_text(file)
     for name, changes in _shapes(avatar):
         path = folder / f"{name}.obj"
         if text is None or file is None:
@@ -50,6 +52,72 @@ def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats64]]]:
                 for shaped, zeros in zip(avatar.shapes, still, strict=True)
             ],
         )
+
+
+def _own_text(file: FileHead) -> bytes:
+    """The text of an OBJ that was brought; a cut between its lips doubles vertices in it."""
+    content = file.path.read_bytes()
+    cut = file.head.lip_cut
+    count = len(file.body.rest) - (0 if cut is None else len(cut.sources))
+    is_continued = re.search(rb"\\[ \t]*\r?\n", content) is not None
+    if is_continued or len(VERTEX.findall(content)) != count:  # old ends of lines, UTF-16
+        content = joined_lines(content)
+    return content if cut is None else _with_lips_cut(content, cut, count)
+
+
+def _with_lips_cut(text: bytes, cut: LipCut, count: int) -> bytes:
+    """An OBJ of so many vertices, those that a cut doubles behind the last of them.
+
+    Polygons of the lower lip take the new ones. One that the cut crosses becomes triangles.
+    """
+    below = set(map(tuple, cut.below.tolist()))
+    new = {int(source): count + place for place, source in enumerate(cut.sources)}
+    rows: list[bytes] = []
+
+    def line(found: re.Match[bytes]) -> bytes:
+        """The line of the next vertex, or of a polygon."""
+        if found[1] == b"v":
+            rows.append(found[0].rstrip())
+            is_last = len(rows) == count
+            return b"\n".join([rows[-1], *(rows[each] for each in new)]) if is_last else found[0]
+        numbers = []
+        others = []
+        for corner in found[2].split():
+            number, slash, other = corner.partition(b"/")
+            vertex = int(number)
+            numbers.append(vertex - 1 if vertex > 0 else len(rows) + vertex)
+            others.append(slash + other)
+        lines = []
+        for polygon in _cut_polygons(numbers, below, new):
+            words = [b"%d%s" % (vertex + 1, others[place]) for place, vertex in polygon]
+            lines.append(b"f " + b" ".join(words))
+        return b"\n".join(lines)
+
+    return ELEMENT.sub(line, text)
+
+
+def _cut_polygons(
+    corners: Sequence[int], below: Collection[tuple[int, ...]], new: Mapping[int, int]
+) -> list[list[tuple[int, int]]]:
+    """A polygon after the cut, or its triangles if that crosses it: places in it and vertices.
+
+    below: triangles of the lower lip, the least number first. new: vertices that these take.
+    """
+    pieces = []
+    becomes: dict[int, set[int]] = {}
+    for place in range(1, len(corners) - 1):
+        triangle = (0, place, place + 1)
+        is_below = tuple(sorted(corners[each] for each in triangle)) in below
+        piece = []
+        for each in triangle:
+            vertex = corners[each]
+            piece.append((each, new.get(vertex, vertex) if is_below else vertex))
+        for each, vertex in piece:
+            becomes.setdefault(each, set()).add(vertex)
+        pieces.append(piece)
+    if any(len(vertices) > 1 for vertices in becomes.values()):
+        return pieces
+    return [[(place, vertex) for place in range(len(corners)) for vertex in becomes[place]]]
 
 
 def _rewritten(text: bytes, file: FileHead, change: Floats64) -> bytes:

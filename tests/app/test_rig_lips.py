@@ -152,10 +152,57 @@ def test_an_avatar_has_the_files_vertices_and_few_more(shut, tmp_path, kind):
     assert len(read_mesh(path).vertices) == len(points)
 
 
+def write_polygons(shut, mesh):
+    """The sealed head as an artist has it: quads where two triangles make one, and groups.
+
+    Triangles behind the ears and the last vertex are another group, whose numbers count back.
+    """
+    faces = shut.mesh.faces.tolist()
+    vertices = shut.mesh.vertices
+    partner = {}
+    for number, (a, b, c) in enumerate(faces):
+        partner.update({(a, b): number, (b, c): number, (c, a): number})
+    lines = [
+        "# An artist's",
+        "g head",
+        *(f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in vertices[:-1]),
+    ]
+    lines += ["vt 0.5 0.5", "usemtl skin"]
+    quads = []
+    joined = set()
+    for number, (a, b, c) in enumerate(faces):
+        other = partner.get((a, c))
+        if (
+            number in joined
+            or other is None
+            or other in joined
+            or len(vertices) - 1 in faces[other]
+        ):
+            continue
+        (d,) = set(faces[other]) - {a, c}
+        joined |= {number, other}
+        quads.append((a, b, c, d))
+        lines.append("f " + " ".join(f"{each + 1}/1" for each in (a, b, c, d)))
+    lines += ["g rest", "v {:.9f} {:.9f} {:.9f}".format(*vertices[-1])]
+    for number, corners in enumerate(faces):
+        if number not in joined:
+            lines.append("f " + " ".join(f"{each - len(vertices)}/-1" for each in corners))
+    mesh.write_text("\r\n".join(lines) + "\r\n")
+    return quads
+
+
+def polygons_of(path):
+    """The corners of the polygons of an OBJ whose numbers are absolute."""
+    lines = path.read_text().splitlines()
+    rows = [line.split()[1:] for line in lines if line.startswith("f ")]
+    return [[int(corner.split("/")[0]) - 1 for corner in row] for row in rows]
+
+
 @pytest.mark.slow
 def test_a_folder_of_objs_has_the_cut(shut, tmp_path):
-    """All files have the same vertices, those of the file first."""
+    """All files have the same vertices, those of the file first, and its polygons and groups."""
     mesh, marks = shut.write(tmp_path)
+    quads = write_polygons(shut, mesh)
     folder = tmp_path / "shapes"
     words = ("--as", "obj", "--shapes", "visemes", "--quiet", "-o", folder)
     assert risorius("rig", mesh, "--landmarks", marks, *words).exit_code == 0
@@ -164,3 +211,13 @@ def test_a_folder_of_objs_has_the_cut(shut, tmp_path):
     assert np.abs(neutral.vertices[:count] - shut.mesh.vertices).max() < 1e-5
     opened = read_mesh(folder / "viseme_aa.obj")
     assert len(opened.vertices) == len(neutral.vertices) > count
+    cut = fit_head(mesh, marks).lip_cut.applied(read_mesh(mesh))
+    expected = {tuple(sorted(corners)) for corners in cut.faces.tolist()}
+    assert {tuple(sorted(corners)) for corners in neutral.faces.tolist()} == expected
+    kept = [corners for corners in polygons_of(folder / "neutral.obj") if len(corners) == 4]
+    assert len(quads) - 20 < len(kept) < len(quads)  # some are crossed
+    lines = (folder / "neutral.obj").read_text().splitlines()
+    assert [line for line in lines if line[:2] not in ("v ", "f ")] == [
+        line for line in mesh.read_text().splitlines() if line[:2] not in ("v ", "f ")
+    ]
+    assert all(line.count("/") in (3, 4) for line in lines if line.startswith("f "))
