@@ -119,8 +119,9 @@ def parts_without_hair(scene: Scene) -> tuple[Any, ...]:
 
 def image_table(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Image:
     """Lay pictures of one size out in rows, each row with a title above and each cell a caption."""
-    first = rows[0][1][0][1]
-    height, width = first.shape[:2]
+    _, first_cells = rows[0]
+    _, first_image = first_cells[0]
+    height, width = first_image.shape[:2]
     columns = max(len(cells) for _, cells in rows)
     # Pages show it about 1000 pixels wide: then a caption is no smaller than about 12.
     size = max(16.0, min(width, height) / 17.0, columns * width / 72.0)
@@ -134,7 +135,8 @@ def image_table(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Imag
         draw.text((0.6 * size, top + title / 2), heading, font=font(size), fill=INK, anchor="lm")
         for column, (caption, image) in enumerate(cells):
             left = column * width
+            below = top + title + height
             page.paste(PIL.Image.fromarray(image), (left, top + title))
-            middle = (left + width / 2, top + title + height + caption_height / 2)
+            middle = (left + width / 2, below + caption_height / 2)
             draw.text(middle, caption, font=font(0.85 * size), fill=INK, anchor="mm")
     return np.asarray(page)

@@ -22,6 +22,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial.transform import Rotation
 
 from risorius import assets, refine, sim
 from risorius.app.dataset.openings import LOWER_EDGES, around, cut_by, opening, to_viewer
@@ -158,10 +159,8 @@ def widest_slit(positions: Floats64, triangles: Triangles, landmarks: Floats64) 
 
 def _turned_by(yaw: float, pitch: float) -> Floats64:
     """Rotation that brings the look from `yaw`, `pitch` [degrees] to the front."""
-    a, b = np.radians([yaw, pitch])
-    about_y = [[np.cos(a), 0.0, np.sin(a)], [0.0, 1.0, 0.0], [-np.sin(a), 0.0, np.cos(a)]]
-    about_x = [[1.0, 0.0, 0.0], [0.0, np.cos(b), -np.sin(b)], [0.0, np.sin(b), np.cos(b)]]
-    return np.array(about_x) @ np.array(about_y)
+    about_y_then_x = Rotation.from_euler("yx", [yaw, pitch], degrees=True)
+    return np.asarray(about_y_then_x.as_matrix())
 
 
 def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Floats64]:
@@ -225,14 +224,17 @@ def _front(triangles: Floats64, x: float, heights: Floats64) -> Floats64:
 
     -inf where there is none at that height.
     """
-    is_crossed = (triangles[:, :, 0].min(axis=1) < x) & (triangles[:, :, 0].max(axis=1) > x)
+    across = triangles[:, :, 0]
+    is_crossed = (across.min(axis=1) < x) & (across.max(axis=1) > x)
     cut, meets = cut_by(triangles[is_crossed], x)
-    y = np.where(meets, cut[:, :, 1], np.inf)
-    ends = np.take_along_axis(cut, np.argsort(y, axis=1)[:, :2, None], axis=1)  # lower, upper
-    low = ends[:, 0, 1:, None]
-    high = ends[:, 1, 1:, None]
-    share = (heights - low[:, 0]) / np.maximum(high[:, 0] - low[:, 0], 1e-9)
-    depth = low[:, 1] + share * (high[:, 1] - low[:, 1])
+    height = np.where(meets, cut[:, :, 1], np.inf)
+    order = np.argsort(height, axis=1)[:, :, None]
+    lower = np.take_along_axis(cut, order[:, :1], axis=1)
+    upper = np.take_along_axis(cut, order[:, 1:2], axis=1)
+    low = lower[:, :, 1]
+    high = upper[:, :, 1]
+    share = (heights - low) / np.maximum(high - low, 1e-9)
+    depth = lower[:, :, 2] + share * (upper[:, :, 2] - lower[:, :, 2])
     inside = (share >= 0.0) & (share <= 1.0)
     reach: Floats64 = np.where(inside, depth, -np.inf).max(axis=0, initial=-np.inf)
     return reach
@@ -245,14 +247,16 @@ def _inverted(rest: Floats64, now: Floats64, faces: Triangles) -> int:
     count = 0
     compared_radius = 12.0  # mm around a triangle whose mean turn it is compared with
     for face in np.flatnonzero((before * after).sum(axis=1) < 0.0):
-        away = np.linalg.norm(rest - rest[faces[face]].mean(axis=0), axis=1)
-        reach = max(compared_radius, 2.0 * away[faces[face]].max())  # never the triangle alone
+        corners = faces[face]
+        middle = rest[corners].mean(axis=0)
+        away = np.linalg.norm(rest - middle, axis=1)
+        reach = max(compared_radius, 2.0 * away[corners].max())  # never the triangle alone
         near = away < reach
-        a = rest[near] - rest[near].mean(axis=0)
-        b = now[near] - now[near].mean(axis=0)
-        left, _, right = np.linalg.svd(a.T @ b)
-        turn = right.T @ np.diag([1.0, 1.0, np.linalg.det(right.T @ left.T)]) @ left.T
-        count += int((turn @ before[face]) @ after[face] < 0.0)
+        around_before = rest[near] - rest[near].mean(axis=0)
+        around_now = now[near] - now[near].mean(axis=0)
+        turn, _ = Rotation.align_vectors(around_now, around_before)
+        expected = turn.apply(before[face])
+        count += int(expected @ after[face] < 0.0)
     return count
 
 

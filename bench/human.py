@@ -104,18 +104,22 @@ class IdentitySpace:
     def _hidden(self) -> Flags:
         """Which vertices look at skin: straight ahead, or in three of seven directions, (V,)."""
         facing = vertex_normals(self.mean, self.triangles)
-        aside = np.cross(facing, np.roll(facing, 1, axis=1))
-        aside = unit_vectors(aside)
+        aside = unit_vectors(np.cross(facing, np.roll(facing, 1, axis=1)))
+        upward = np.cross(facing, aside)
         angles = np.radians(np.arange(0.0, 360.0, 60.0))[:, None, None]
-        slanted = facing + np.cos(angles) * aside + np.sin(angles) * np.cross(facing, aside)
-        ways = np.concatenate([facing[None], np.sqrt(0.5) * slanted])
+        outward = np.cos(angles) * aside + np.sin(angles) * upward
+        slanted = np.sqrt(0.5) * (facing + outward)
+        ways = np.concatenate([facing[None], slanted])
         opposite_depth = 12.0  # [mm] on a line of sight within which skin hides a vertex
-        points = self.mean + np.arange(1.0, opposite_depth)[:, None, None, None] * ways
-        at = closest_points(points.reshape(-1, 3), self.mean, self.triangles)
-        away = points.reshape(-1, 3) - at.interpolate(self.mean)
-        is_within = (away * at.interpolate(facing)).sum(axis=1) < 0.0
-        is_met = is_within.reshape(points.shape[:3]).any(axis=0)
-        return np.asarray(is_met[0] | (is_met.sum(axis=0) > 2))
+        distances = np.arange(1.0, opposite_depth)
+        points = self.mean + distances[:, None, None, None] * ways
+        rows = points.reshape(-1, 3)
+        nearest = closest_points(rows, self.mean, self.triangles)
+        away = rows - nearest.interpolate(self.mean)
+        height = (away * nearest.interpolate(facing)).sum(axis=1)
+        is_met = (height < 0.0).reshape(points.shape[:3]).any(axis=0)
+        is_met_ahead = is_met[0]
+        return np.asarray(is_met_ahead | (is_met.sum(axis=0) > 2))
 
 
 @dataclass(frozen=True)
@@ -165,10 +169,13 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
     """
     asked = np.flatnonzero(labels != "").astype(np.int32)
     count = len(space.modes)
-    weights = np.zeros(len(space.modes))
+    weights = np.zeros(count)
     marked = space.mean[space.landmarks]
-    turn = Rotation.align_vectors(*(x - x.mean(axis=0) for x in (surface.landmarks, marked)))[0]
-    shift = surface.landmarks.mean(axis=0) - turn.apply(marked).mean(axis=0)
+    wanted_middle = surface.landmarks.mean(axis=0)
+    turn, _ = Rotation.align_vectors(
+        surface.landmarks - wanted_middle, marked - marked.mean(axis=0)
+    )
+    shift = wanted_middle - turn.apply(marked).mean(axis=0)
     rounds = 18  # of nearest points
     landmark_rounds = 6  # of the first rounds, which landmarks lead, too
     landmark_weight = 0.3  # of 1/mm^2
@@ -180,23 +187,19 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
         modes = space.modes @ turn.as_matrix().T
         foot, facing, _ = _feet(points, space.triangles, asked, surface)
         near = np.linalg.norm(foot - points[asked], axis=1) < farthest_distance
-        i = asked[near]
-        n = facing[near]
-        # A small turn w about the origin moves a point p along n by (p x n) w.
-        columns = [np.einsum("kij,ij->ki", modes[:, i], n).T, np.cross(points[i], n), n]
-        system = np.hstack(columns)
-        left = ((foot[near] - points[i]) * n).sum(axis=1)
-        share = independent_points / max(len(i), 1)
+        found = asked[near]
+        system = _changes(modes, points, found, facing[near])
+        left = ((foot[near] - points[found]) * facing[near]).sum(axis=1)
+        share = independent_points / max(len(found), 1)
         normal = share * system.T @ system
         right = share * system.T @ left
         if number < landmark_rounds:
             marks = space.landmarks[face_landmarks]
+            off = surface.landmarks[face_landmarks] - points[marks]
             for axis in np.eye(3):
-                to = np.broadcast_to(axis, (len(marks), 3))
-                rows = np.hstack([(modes[:, marks] @ axis).T, np.cross(points[marks], to), to])
-                off = (surface.landmarks[face_landmarks] - points[marks]) @ axis
-                normal += landmark_weight * rows.T @ rows
-                right += landmark_weight * rows.T @ off
+                system = _changes(modes, points, marks, np.tile(axis, (len(marks), 1)))
+                normal += landmark_weight * system.T @ system
+                right += landmark_weight * system.T @ off @ axis
         normal[:count, :count] += np.eye(count)  # a weight is as likely as among people
         right[:count] -= weights
         step = np.linalg.solve(normal, right)
@@ -216,6 +219,17 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
         {name: _rms(distance[group]) for name, group in groups.items()},
         {name: _median(angle[group]) for name, group in groups.items()},
     )
+
+
+def _changes(modes: Points, points: Points, numbers: Faces, ways: Points) -> Points:
+    """How far modes, turns and shifts move some points along their ways (n, 3), (n, K + 6).
+
+    modes: turned, shape (K, V, 3). numbers: of the points, shape (n,).
+    """
+    by_modes = np.einsum("kij,ij->ik", modes[:, numbers], ways)
+    # A small turn w about the origin moves a point p along n by (p x n) w.
+    by_turns = np.cross(points[numbers], ways)
+    return np.hstack([by_modes, by_turns, ways])
 
 
 def _feet(

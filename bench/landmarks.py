@@ -17,7 +17,7 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -164,8 +164,10 @@ def points_of_mesh(mesh: Floats64) -> Floats64:
     right = _half_of_mesh(mesh, 0)
     left = _half_of_mesh(mesh, 1)
     points = np.empty((68, 2))
-    for number, place in {**right, **{int(MIRRORED[k]): left[k] for k in left}}.items():
+    for number, place in right.items():
         points[number] = place
+    for number, place in left.items():
+        points[MIRRORED[number]] = place
     return points
 
 
@@ -174,11 +176,6 @@ def _half_of_mesh(mesh: Floats64, side: int) -> dict[int, Floats64]:
 
     Numbers of the mesh stand in pairs, right and left.
     """
-
-    def line(pairs: Sequence[tuple[int, int]], count: int) -> Floats64:
-        corners = mesh[[pair[side] for pair in pairs]]
-        return evenly_spaced(corners, arc_lengths(corners), count)
-
     jaw = [(127, 356), (234, 454), (93, 323), (132, 361), (58, 288), (172, 397), (136, 365),
            (150, 379), (149, 378), (176, 400), (148, 377), (152, 152)]  # fmt: skip
     upper_brow = [(70, 300), (63, 293), (105, 334), (66, 296), (107, 336)]
@@ -197,13 +194,20 @@ def _half_of_mesh(mesh: Floats64, side: int) -> dict[int, Floats64]:
     outer, inner = mesh[[(46, 276)[side], (55, 285)[side]]]
     mesh[upper_brow[0][side]] = 0.5 * (mesh[upper_brow[0][side]] + outer)
     mesh[upper_brow[-1][side]] = 0.35 * (mesh[upper_brow[-1][side]] + inner) + 0.3 * mesh[9]
-    found = dict(zip(range(9), line(jaw, 9), strict=True))
-    found |= dict(zip(range(17, 22), line(upper_brow, 5), strict=True))
-    found |= dict(zip(range(27, 31), line(ridge, 4), strict=True))
-    found |= dict(zip((36, 37, 38, 39), line(upper_lid, 4), strict=True))
-    found |= dict(zip((36, 41, 40, 39), line(lower_lid, 4), strict=True))
-    found |= dict(zip((48, 49, 50), line(upper_lip, 3), strict=True))
-    found[59] = line(lower_lip, 3)[1]
+    lines = [
+        (range(9), jaw),
+        (range(17, 22), upper_brow),
+        (range(27, 31), ridge),
+        ((36, 37, 38, 39), upper_lid),
+        ((36, 41, 40, 39), lower_lid),
+        ((48, 49, 50), upper_lip),
+    ]
+    found: dict[int, Floats64] = {}
+    for numbers, pairs in lines:
+        corners = mesh[[pair[side] for pair in pairs]]
+        places = evenly_spaced(corners, arc_lengths(corners), len(numbers))
+        found.update(zip(numbers, places, strict=True))
+    found[59] = mesh[[pair[side] for pair in lower_lip]].mean(axis=0)
     single = {31: (240, 460), 32: (97, 326), 33: (2, 2), 51: (0, 0), 57: (17, 17), 58: (84, 314),
               60: (78, 308), 61: (82, 312), 62: (13, 13), 66: (14, 14), 67: (87, 317)}  # fmt: skip
     return found | {number: mesh[pair[side]] for number, pair in single.items()}
@@ -228,15 +232,23 @@ def measure(folder: Path, name: str, detector: Detector) -> Finding:
 
 def errors_of(found: Floats64, labels: Mapping[str, Any]) -> Floats64:
     """How far points (68, 2) are from those of labels; see `Finding.errors`, shape (68, 2)."""
-    pixels = np.array(labels["landmarks"]["pixels"])[:68]
-    points = np.array(labels["landmarks"]["points"])[[36, 45]]
+    landmarks = labels["landmarks"]
     camera = labels["camera"]
-    depths = (points @ np.array(camera["R"]).T + camera["t"])[:, 2]
-    apart = np.linalg.norm(points[0] - points[1]) * camera["K"][0][0] / depths.mean()
-    across = pixels[42:48].mean(axis=0) - pixels[36:42].mean(axis=0)
+    pixels = np.array(landmarks["pixels"])[:68]
+    right_corner = np.array(landmarks["points"][36])
+    left_corner = np.array(landmarks["points"][45])
+    forward = np.array(camera["R"])[2]
+    depth = forward @ (right_corner + left_corner) / 2.0 + camera["t"][2]
+    focal_length = camera["K"][0][0]
+    apart = focal_length * np.linalg.norm(left_corner - right_corner) / depth
+    right_eye = pixels[36:42].mean(axis=0)
+    left_eye = pixels[42:48].mean(axis=0)
+    across = left_eye - right_eye
     across /= np.linalg.norm(across)
-    axes = np.array([across, [-across[1], across[0]]])
-    return np.asarray(100.0 * (found - pixels) @ axes.T / apart)
+    down = (-across[1], across[0])
+    axes = np.array([across, down])
+    percent = 100.0 * (found - pixels) / apart
+    return np.asarray(percent @ axes.T)
 
 
 def report(finding: Finding) -> str:

@@ -42,9 +42,9 @@ def _manifold3d(faces: Faces, rest: Points, adaptive: bool) -> Frame:
     manifold3d = import_module("manifold3d")
     lids: list[tuple[int, int, int]] = []
     loops = boundary_loops(faces)
-    for number, loop in enumerate(loops):
-        middle = len(rest) + number
-        lids += [(b, a, middle) for a, b in zip(loop, [*loop[1:], loop[0]], strict=True)]
+    for middle, loop in enumerate(loops, start=len(rest)):
+        behind = [*loop[1:], loop[0]]
+        lids += [(b, a, middle) for a, b in zip(loop, behind, strict=True)]
     count = len(faces)
     closed = np.concatenate([faces, np.array(lids, dtype=np.int32).reshape(-1, 3)])
     closed = closed.astype(np.uint32)

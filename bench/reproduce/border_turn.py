@@ -92,8 +92,10 @@ def turns_of(positions: Floats64, normals: Floats32, curves: Integers64) -> Floa
     u = _units(positions[a] - positions[p])
     v = _units(positions[q] - positions[a])
     n = normals[a].astype(np.float64)
-    parts = [(u * v).sum(axis=1), (n * np.cross(u, v)).sum(axis=1), (n * (v - u)).sum(axis=1)]
-    return np.stack(parts, axis=1)
+    along = (u * v).sum(axis=1)
+    aside = (n * np.cross(u, v)).sum(axis=1)
+    up = (n * (v - u)).sum(axis=1)
+    return np.stack([along, aside, up], axis=1)
 
 
 def _units(vectors: Floats64) -> Floats64:
@@ -107,11 +109,11 @@ def find_nearby(mesh: refine.Connectivity, rest_positions: Floats64) -> Nearby:
 
     A vertex that has no normal at rest, because all triangles around are slivers, has no turn.
     """
-    neighbours = port.border_neighbours(mesh, rest_positions)
+    before, after = port.border_neighbours(mesh, rest_positions).T
     undefined = np.empty(mesh.vertex_count, dtype=np.bool_)
     port.find_undefined_normals(mesh.faces, rest_positions, undefined)
-    vertices = np.flatnonzero((neighbours[:, 0] != neighbours[:, 1]) & ~undefined)
-    curves = np.column_stack([neighbours[vertices, 0], vertices, neighbours[vertices, 1]])
+    vertices = np.flatnonzero((before != after) & ~undefined)
+    curves = np.column_stack([before[vertices], vertices, after[vertices]])
     directions = _units(np.diff(rest_positions[mesh.edges], axis=1)[:, 0])
     ring = rings_from_border(mesh)
     ways, shares = ways_inward(mesh, ring)
@@ -120,15 +122,20 @@ def find_nearby(mesh: refine.Connectivity, rest_positions: Floats64) -> Nearby:
     squares = np.zeros((mesh.vertex_count, 3, 3))
     is_border = ~mesh.around.is_interior
     along = directions[is_border]
+    halves = 0.5 * along[:, :, None] * along[:, None, :]
     for end in mesh.edges[is_border].T:
-        np.add.at(squares, end, 0.5 * along[:, :, None] * along[:, None, :])
+        np.add.at(squares, end, halves)
     for (end, start), means in zip(ways, shares, strict=True):
-        np.add.at(squares, end, means[:, None, None] * squares[start])
+        parts = means[:, None, None] * squares[start]
+        np.add.at(squares, end, parts)
 
     is_near = (ring[mesh.edges] < REACH_RINGS).any(axis=1)
     near = squares[mesh.edges[is_near]].mean(axis=1)
-    cosines = np.einsum("ei,eij,ej->e", directions[is_near], near, directions[is_near])
-    faded = [means * (REACH_RINGS - k) / (REACH_RINGS - k + 1) for k, means in enumerate(shares, 1)]
+    across = directions[is_near]
+    cosines = np.einsum("ei,eij,ej->e", across, near, across)
+    faded = []
+    for rings_left, means in zip(range(REACH_RINGS, 0, -1), shares, strict=False):
+        faded.append(means * (rings_left - 1) / rings_left)
     edge_shares = 0.5 * np.where(is_border[is_near], 1.0, cosines)
     return Nearby(curves.astype(np.int64), ways, faded, np.flatnonzero(is_near), edge_shares)
 

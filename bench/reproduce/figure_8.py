@@ -107,36 +107,63 @@ def measure(refiner: refine.Refiner, faces: Faces, positions: Points) -> tuple[S
 def find_folds(faces: Faces, positions: Points) -> tuple[Points, Flags]:
     """The direction of least curvature in each triangle (F, 3), and whether it lies in a fold."""
     static = refine.create("none", faces, positions).refine(positions)
-    x, normals = (each.astype(np.float64)[static.triangles] for each in static[:2])
-    edges = np.roll(x, -1, axis=1) - x
+    corners = static.positions.astype(np.float64)[static.triangles]
+    normals = static.normals.astype(np.float64)[static.triangles]
+    edges = np.roll(corners, -1, axis=1) - corners
     turns = np.roll(normals, -1, axis=1) - normals
-    across = np.cross(edges[:, 0], edges[:, 1])
+    first_edge = edges[:, 0]
+    across = np.cross(first_edge, edges[:, 1])
     areas = np.linalg.norm(across, axis=1) / 2.0
-    axes = np.stack([edges[:, 0], np.cross(across, edges[:, 0])], axis=2)  # of the triangle's plane
-    axes /= np.maximum(np.linalg.norm(axes, axis=1, keepdims=True), 1e-12)
-    # Curvature (a b, b c) turns normals along an edge (u, v) by (a u + b v, b u + c v).
-    (u, v) = np.moveaxis(edges @ axes, 2, 0)
-    zero = np.zeros(edges.shape[:2])
-    rows = np.concatenate([np.stack([u, v, zero], -1), np.stack([zero, u, v], -1)], axis=1)
-    wanted = np.moveaxis(turns @ axes, 2, 1).reshape(len(faces), 6, 1)
-    a, b, c = np.moveaxis((np.linalg.pinv(rows) @ wanted)[..., 0], 1, 0)
-    values, vectors = np.linalg.eigh(np.stack([np.stack([a, b], -1), np.stack([b, c], -1)], 1))
-    least = np.abs(values).argmin(axis=1)
-    directions = (axes @ vectors[np.arange(len(faces)), :, least][..., None])[..., 0]
-    low, high = np.sort(np.abs(values), axis=1).T
+    axes = np.stack([first_edge, np.cross(across, first_edge)], axis=2)  # of the triangle's plane
+    lengths = np.linalg.norm(axes, axis=1, keepdims=True)
+    axes /= np.maximum(lengths, 1e-12)
+    curvatures = _fitted_curvatures(edges @ axes, turns @ axes)
+    values, vectors = np.linalg.eigh(curvatures)
+    sizes = np.abs(values)
+    triangle = np.arange(len(faces))
+    least = vectors[triangle, :, sizes.argmin(axis=1)]
+    directions = np.einsum("fki,fi->fk", axes, least)
+    low = sizes.min(axis=1)
+    high = sizes.max(axis=1)
     bent_angle = 0.2  # [rad] that the normal turns across a triangle of a fold, at least
+    is_bent = high * np.sqrt(2.0 * areas) > bent_angle
     # Of the curvature across, at most: a triangle that bends along, too, is in a dome.
     along_share = 0.4
-    return directions, (high * np.sqrt(2.0 * areas) > bent_angle) & (low < along_share * high)
+    is_straight = low < along_share * high
+    return directions, is_bent & is_straight
+
+
+def _fitted_curvatures(edges: Points, turns: Points) -> Points:
+    """Curvature of triangles in their planes, symmetric, shape (F, 2, 2), by least squares.
+
+    Curvature (a b, b c) turns the normal along an edge (u, v) by (a u + b v, b u + c v). edges,
+    turns: in the plane, shape (F, 3, 2).
+    """
+    u = edges[:, :, 0]
+    v = edges[:, :, 1]
+    zero = np.zeros(u.shape)
+    rows_of_u = np.stack([u, v, zero], axis=2)
+    rows_of_v = np.stack([zero, u, v], axis=2)
+    rows = np.concatenate([rows_of_u, rows_of_v], axis=1)
+    wanted = np.concatenate([turns[:, :, 0], turns[:, :, 1]], axis=1)
+    a, b, c = np.einsum("fij,fj->if", np.linalg.pinv(rows), wanted)
+    first_row = np.stack([a, b], axis=1)
+    second_row = np.stack([b, c], axis=1)
+    return np.stack([first_row, second_row], axis=1)
 
 
 def _shapes(corners: Points, directions: Points) -> Shapes:
     """Measure triangles with these corners (n, 3, 3) against directions (n, 3)."""
     edges = np.roll(corners, -1, axis=1) - corners
     areas = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
-    _, _, axes = np.linalg.svd(corners - corners.mean(axis=1, keepdims=True))
     units = unit_vectors(edges)
-    angles = np.arccos(np.clip(-(units * np.roll(units, 1, axis=1)).sum(axis=2), -1.0, 1.0))
-    off = np.arccos(np.clip(np.abs((axes[:, 0] * directions).sum(axis=1)), 0.0, 1.0))
-    smallest, off_fold = (np.average(each, weights=areas) for each in (angles.min(axis=1), off))
+    before = np.roll(units, 1, axis=1)
+    cosines = -(units * before).sum(axis=2)
+    angles = np.arccos(np.clip(cosines, -1.0, 1.0))
+    smallest = np.average(angles.min(axis=1), weights=areas)
+    middles = corners.mean(axis=1, keepdims=True)
+    _, _, axes = np.linalg.svd(corners - middles)
+    along_fold = np.abs((axes[:, 0] * directions).sum(axis=1))
+    off_angles = np.arccos(np.clip(along_fold, 0.0, 1.0))
+    off_fold = np.average(off_angles, weights=areas)
     return Shapes(float(np.degrees(smallest)), float(np.degrees(off_fold)))
