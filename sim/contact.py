@@ -88,7 +88,8 @@ def pair_lips(
     line = mouth_line(landmarks)
     lip_edge = 5.0  # mm around the mouth line in which lip vertices are looked for
     at_edge = polyline_distance(x, line) < lip_edge
-    at_edge &= np.abs(x[:, 0] - line[2, 0]) < 0.51 * abs(line[-1, 0] - line[0, 0])
+    width = abs(line[-1, 0] - line[0, 0])
+    at_edge &= np.abs(x[:, 0] - line[2, 0]) < 0.51 * width
     own_side_level = 0.1  # of the lip side field: nearer to the corner lips are one
     upper = np.flatnonzero(at_edge & (lip_side > own_side_level))
     lower = np.flatnonzero(at_edge & (lip_side < -own_side_level))
@@ -114,18 +115,25 @@ def _point_beside(
     x: Floats64, vertex: int, other: Integers64
 ) -> tuple[tuple[int, int], float] | None:
     """The other lip's point beside a lip's vertex: nearest vertices right and left, mixed."""
-    reach = np.linalg.norm(x[other] - x[vertex], axis=1)
-    right = x[other, 0] <= x[vertex, 0] + 1e-9
-    left = x[other, 0] >= x[vertex, 0] - 1e-9
+    here = x[vertex]
+    reach = np.linalg.norm(x[other] - here, axis=1)
+    across = x[other, 0]
+    right = across <= here[0] + 1e-9
+    left = across >= here[0] - 1e-9
     if not right.any() or not left.any():
         return None
     a = int(other[right][reach[right].argmin()])
     b = int(other[left][reach[left].argmin()])
     span = x[b, 0] - x[a, 0]
-    share = float((x[b, 0] - x[vertex, 0]) / span) if span > 1e-6 else 1.0
-    apart = np.abs(share * x[a] + (1.0 - share) * x[b] - x[vertex])
-    overhang = 3.0  # mm that one lip's edge may lie in front of the other's
-    return ((a, b), share) if apart[1] < PAIR_GAP and apart[2] < overhang else None
+    share = 1.0
+    if span > 1e-6:
+        share = float((x[b, 0] - here[0]) / span)
+    mixed = share * x[a] + (1.0 - share) * x[b]
+    _, gap, overhang = np.abs(mixed - here)
+    most_overhang = 3.0  # mm that one lip's edge may lie in front of the other's
+    if gap >= PAIR_GAP or overhang >= most_overhang:
+        return None
+    return (a, b), share
 
 
 def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipPairs:
@@ -134,9 +142,10 @@ def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipP
     beside = np.array([pair.beside for pair in pairs], dtype=np.int32).reshape(-1, 2)
     share = np.array([pair.share for pair in pairs], dtype=np.float64)
     below = np.array([pair.below for pair in pairs], dtype=np.float64)
-    count = np.bincount(vertex, minlength=surface.vertex_count)
-    count += np.bincount(beside[share > 0.0, 0], minlength=surface.vertex_count)
-    count += np.bincount(beside[share < 1.0, 1], minlength=surface.vertex_count)
+    first = beside[share > 0.0, 0]
+    second = beside[share < 1.0, 1]
+    paired = np.concatenate([vertex, first, second])
+    count = np.bincount(paired, minlength=surface.vertex_count)
     most = np.maximum(count[vertex], count[beside].max(axis=1, initial=1))
     strength = seal * surface.areas[vertex]
     members = np.flatnonzero(count).astype(np.int32)

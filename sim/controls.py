@@ -85,21 +85,22 @@ class Controls:
             groups[control.group] = (*groups.get(control.group, ()), control.name)
         self.groups = MappingProxyType({**groups, **layers.groups})
         self.layers = layers.groups
-        self.actions = MappingProxyType({**{c.name: c.action for c in controls}, **layers.actions})
+        actions = {control.name: control.action for control in controls}
+        self.actions = MappingProxyType({**actions, **layers.actions})
         self._places = {name: n for n, name in enumerate(self.names)}
         bounds = np.array([*self.limits.values()], np.float64).reshape(-1, 2)
         slack = 1e-6  # beyond a limit by rounding is not an error
         self._least = bounds[:, 0] - slack
         self._most = bounds[:, 1] + slack
         self._low, self._high = bounds[: len(controls)].T.copy()
-        self._rate = np.array([c.rate for c in controls], dtype=np.float64)
+        self._rate = np.array([control.rate for control in controls], dtype=np.float64)
         self._shares = np.array([layers.shares[name] for name in layers.shares])  # (N - C, C)
         floors = np.array([*layers.floors.values()]).reshape(len(layers.floors), len(controls))
         self._floored = np.flatnonzero(floors.any(axis=1))  # few rows of layers have any
         self._floors = floors[self._floored]
-        self._share_of = [
-            (self._places[name], self._places[whole]) for name, whole in layers.share_of.items()
-        ]
+        self._share_of: list[tuple[int, int]] = []
+        for name, whole in layers.share_of.items():
+            self._share_of.append((self._places[name], self._places[whole]))
         self._values: Floats64 = np.zeros(len(self.names))
         self._wanted, self._speed = np.zeros((2, len(controls)))
         self._reached: Floats64 = np.zeros(len(controls) + 1)

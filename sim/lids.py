@@ -202,38 +202,43 @@ def _one_eye(
     height = np.maximum(upper.front - lower.front, 0.0)
     wide = _smoothed(height)
     least_opening = 0.05  # rad: at the corners lids do not overlap
-    slide *= np.interp(column, where, wide, 0.0, 0.0) / max(height.max(), least_opening)
+    widest = height.max()
+    slide *= np.interp(column, where, wide, 0.0, 0.0) / max(widest, least_opening)
     slide_ends = (0.1, 1.7)  # x the slide at the outer and the inner corner
     slide *= np.interp(column, (0.0, 1.0), slide_ends)
-    exact, broad = (np.interp(column, where, h) for h in (height, np.minimum(wide, height.max())))
+    exact = np.interp(column, where, height)
+    broad = np.interp(column, where, np.minimum(wide, widest))
     weight = upper.weight + lower.weight
     opening = weight * exact + (1.0 - weight) * broad
-    share = np.where(side > 0.0, eyes.blink_meeting - 1.0, eyes.blink_meeting)
+    is_upper = side > 0.0
+    share = np.where(is_upper, eyes.blink_meeting - 1.0, eyes.blink_meeting)
     closing = share * weight * opening
-    arrives = column + slide * np.where(side > 0.0, *eyes.blink_slide) / np.linalg.norm(axes.axis)
+    inward = slide * np.where(is_upper, *eyes.blink_slide)
+    arrives = column + inward / np.linalg.norm(axes.axis)
     plain_seam = lower.front + eyes.blink_meeting * height
     seam = _raised_at_corners(plain_seam, upper.front)  # where closed lids meet
-    meeting, rises = (
-        np.interp(c, where, each) for c, each in ((arrives, seam), (column, plain_seam))
-    )
+    meeting = np.interp(arrives, where, seam)
+    rises = np.interp(column, where, plain_seam)
     closing += weight * (meeting - rises)
     margins = _margin(upper, 1.0, column, angle) | _margin(lower, -1.0, column, angle)
     closing[margins] = (meeting - angle)[margins]
     closing = _evened(surface, closing, np.minimum(upper.distance, lower.distance), margins)
     before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is no lid
     corner_share = 0.5  # of the motion of the open lid is there: their ligaments give
-    at_middle = corner_share + (1.0 - corner_share) * np.sin(np.pi * np.clip(column, 0.0, 1.0))
+    rounded = np.sin(np.pi * np.clip(column, 0.0, 1.0))
+    at_middle = corner_share + (1.0 - corner_share) * rounded
     fold = before * (upper.fold + lower.fold) * at_middle
     weight = before * weight
     closing = before * closing
     proud_height = 0.7  # mm that the closed upper lid lies in front of the lower one
     sink = np.interp(column, where, upper.depth - lower.depth) - proud_height
-    sink *= (side > 0.0) * weight
+    sink *= is_upper * weight
     least_turn = 1e-3  # lid vertices that move less are not lid
-    vertex = np.flatnonzero(np.maximum(np.maximum(weight, fold), slide) > least_turn)
+    most_moved = np.maximum.reduce([weight, fold, slide])
+    vertex = np.flatnonzero(most_moved > least_turn)
     overlap = weight * _pressed_turn(opening, least_opening)
-    values = (weight, closing, overlap, sink, fold, opening, slide)
-    return _OneEye(vertex, side[vertex] > 0.0, *(each[vertex] for each in values))
+    values = (is_upper, weight, closing, overlap, sink, fold, opening, slide)
+    return _OneEye(vertex, *(each[vertex] for each in values))
 
 
 def _margin(lid: _OneLid, sign: float, column: Floats64, angle: Floats64) -> Flags:

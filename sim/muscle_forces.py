@@ -216,25 +216,29 @@ def _carries(
 
     A vertex is carried by the line of a muscle that it hangs on most.
     """
-    lies = np.zeros((len(stack.rows) - 1, FIBRE_POINTS), dtype=np.bool_)
-    lies[np.repeat(np.arange(len(lies)), np.diff(stack.rows)), stack.point] = True
+    line_count = len(stack.rows) - 1
+    lies = np.zeros((line_count, FIBRE_POINTS), dtype=np.bool_)
+    line_of_row = np.repeat(np.arange(line_count), np.diff(stack.rows))
+    lies[line_of_row, stack.point] = True
     parts: list[Part] = []
     least_carried = 0.05  # likewise those by which one muscle carries the skin on another
     nothing = np.zeros(len(strength)), np.zeros(len(strength))
     for n in order:
         lines = placed[n].lines
-        if not lies[len(parts) : len(parts) + len(lines)].any():
+        lies_here = lies[len(parts) : len(parts) + len(lines)]
+        if not lies_here.any():
             parts += [nothing] * len(lines)
             continue
         k = placed[n].muscle.stiffness * strength
         weights = np.stack([line.skin.weight for line in lines])
         hangs_on = weights.argmax(axis=0)
         for f, line in enumerate(lines):
+            is_carried = (hangs_on == f) & (weights[f] > least_carried)
+            on = np.flatnonzero(is_carried)
             place = np.zeros(len(k))
-            on = np.flatnonzero((hangs_on == f) & (weights[f] > least_carried))
             place[on] = points_along(line, line.skin.arc[on])
             before = np.minimum(place[on].astype(np.int64), FIBRE_POINTS - 2)
-            lies_there = lies[len(parts), before] | lies[len(parts), before + 1]
+            lies_there = lies_here[f, before] | lies_here[f, before + 1]
             weight = np.zeros(len(k))
             weight[on] = k[on] * weights[f][on] * lies_there
             parts.append((weight, place))

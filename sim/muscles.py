@@ -207,13 +207,16 @@ def _within_ring(
     """How far out places lie, 1 on the ellipse, and how firmly a sphincter holds them, (n,)."""
     x = places.positions
     lateral, up, down = muscle.radii
-    d = x - _middle(muscle, landmarks, side)
-    rho = np.hypot(d[:, 0] / lateral, np.where(d[:, 1] > 0.0, d[:, 1] / up, d[:, 1] / down))
+    aside, height, _ = (x - _middle(muscle, landmarks, side)).T
+    radius = np.where(height > 0.0, up, down)
+    rho = np.hypot(aside / lateral, height / radius)
     outside, inside = muscle.edge
-    weight = np.exp(-0.5 * (np.maximum(rho - 1.0, 0.0) / outside) ** 2)
-    weight *= np.exp(-0.5 * (np.maximum(1.0 - rho, 0.0) / inside) ** 2)
+    beyond = np.maximum(rho - 1.0, 0.0) / outside
+    within = np.maximum(1.0 - rho, 0.0) / inside
+    weight = np.exp(-0.5 * beyond**2)
+    weight *= np.exp(-0.5 * within**2)
     at, half, fade = muscle.arc_deg
-    angle = np.degrees(np.arctan2(d[:, 1], d[:, 0] * side.sign))
+    angle = np.degrees(np.arctan2(height, aside * side.sign))
     off = np.abs((angle - at + 180.0) % 360.0 - 180.0)
     weight *= smoothstep(1.0 - (off - half) / max(fade, 1e-3))
     face_depth = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
@@ -239,9 +242,11 @@ def _ring_pull(
     mouth_round = 1.08  # half widths of the mouth at which flare and parting end
     # On an ellipse through the mouth's corners, or an open mouth has straight edges.
     corner = mouth_round * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
-    across = np.sqrt(np.maximum(1.0 - (x[:, 0] / corner) ** 2, 0.0))
+    place = x[:, 0] / corner
+    across = np.sqrt(np.maximum(1.0 - place**2, 0.0))
     flare_height = 3.0  # mm from the mouth line where the flare is three quarters of its full size
-    pull[:, 1] += muscle.flare * np.tanh((x[:, 1] - seam) / flare_height) * across
+    height = (x[:, 1] - seam) / flare_height
+    pull[:, 1] += muscle.flare * np.tanh(height) * across
     pull += muscle.bulge * places.normals
     return pull
 
@@ -255,13 +260,14 @@ def _round_mouth(muscle: RingMuscle, x: Floats64, landmarks: Floats64) -> Floats
     """
     seam = landmarks[[62, 66], 1].mean()
     corner = abs(landmarks[54, 0])
-    across = np.clip(x[:, 0] / corner, -1.0, 1.0)
+    place = x[:, 0]
+    across = np.clip(place / corner, -1.0, 1.0)
     height = x[:, 1] - seam
     side = {"upper_lip": 1.0, "lower_lip": -1.0}.get(muscle.gate, np.sign(height))
     outward = np.maximum(height * side, 0.0)
     wide, high = muscle.opening
-    aside = np.sign(x[:, 0]) * np.maximum(np.abs(x[:, 0]) - corner, 0.0)
-    lateral = (wide + outward) * np.sin(across * np.pi / 2.0) + aside
+    beside = np.sign(place) * np.maximum(np.abs(place) - corner, 0.0)
+    lateral = (wide + outward) * np.sin(across * np.pi / 2.0) + beside
     up = seam + side * (high + outward) * np.sqrt(1.0 - across**2)
     return np.stack([lateral, up], axis=1)
 

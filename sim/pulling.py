@@ -102,8 +102,10 @@ class Pull:
             self._value = self._start = np.array([values[first] for first in firsts], np.float64)
             self._slope = np.zeros((len(firsts), *self._from.shape))
             self._measure(np.arange(len(firsts)))
-            here = np.sqrt([self._square(slope[self._vertices]) for slope in self._slope])
-            largest = np.linalg.norm(self._slope, axis=2).max(axis=1, initial=0.0)
+            squares = [self._square(slope[self._vertices]) for slope in self._slope]
+            here = np.sqrt(squares)
+            motions = np.linalg.norm(self._slope, axis=2)
+            largest = motions.max(axis=1, initial=0.0)
             # Share of a control's largest motion of skin: with less at the finger it is not used.
             least_motion = 0.1
             is_meant = here > least_motion * largest

@@ -256,9 +256,13 @@ def mandible_weight_from_landmarks(
     fixed |= z < min(landmarks[0, 2], landmarks[16, 2]) - behind_ears
     half_mouth = 0.9 * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
     middle = landmarks[list(UPPER_LIP)].mean(axis=0)
-    lips = (np.abs(lip_side) > 0.9) & (np.abs(x - middle[0]) < half_mouth)
+    lips = np.abs(lip_side) > 0.9
+    lips &= np.abs(x - middle[0]) < half_mouth
     lips &= np.linalg.norm(surface.positions - middle, axis=1) < half_mouth
+    of_lips = np.where(lip_side[lips] < 0.0, 1.0, 0.0)
+    of_fixed = np.zeros(fixed.sum())
     seeds = np.concatenate([vertices, np.flatnonzero(fixed), np.flatnonzero(lips)])
-    wanted = np.concatenate([values, np.zeros(fixed.sum()), (lip_side[lips] < 0.0) * 1.0])
+    wanted = np.concatenate([values, of_fixed, of_lips])
     seed_hold = 3.0  # seeds are advice, not nails: a soft hold gives a smooth border
-    return np.clip(surface.harmonic(seeds.astype(np.int64), wanted, hold=seed_hold), 0.0, 1.0)
+    weight = surface.harmonic(seeds.astype(np.int64), wanted, hold=seed_hold)
+    return np.clip(weight, 0.0, 1.0)

@@ -68,14 +68,16 @@ class SkinSurface:
         stops = np.asarray(vertices, dtype=np.int64)
         i, j = self.edges.T
         lengths = self.lengths * (1.0 + (hindrance[i] + hindrance[j]) / 2.0)
-        graph = sparse.csr_array((lengths, (i, j)), shape=(self.vertex_count,) * 2)
-        found = csgraph.dijkstra(graph, directed=False, indices=stops, return_predecessors=True)[1]
+        shape = (self.vertex_count, self.vertex_count)
+        graph = sparse.csr_array((lengths, (i, j)), shape=shape)
+        _, before = csgraph.dijkstra(graph, directed=False, indices=stops, return_predecessors=True)
         way = [int(stops[0])]
-        for n, stop in enumerate(stops[1:]):
-            back = [int(stop)]
-            while back[-1] != stops[n] and found[n, back[-1]] >= 0:
-                back.append(int(found[n, back[-1]]))
-            way += back[-2::-1] if len(back) > 1 else []
+        for start, end, steps in zip(stops[:-1], stops[1:], before[:-1], strict=True):
+            back = [int(end)]
+            while back[-1] != start and steps[back[-1]] >= 0:
+                back.append(int(steps[back[-1]]))
+            forward = back[::-1]
+            way += forward[1:]
         return np.array(way, dtype=np.int32)
 
     def smoothed(self, field: Floats64, extent: float) -> Floats64:
@@ -106,13 +108,14 @@ def build_surface(positions: Floats64, faces: Integers32) -> SkinSurface:
     areas: Floats64 = np.maximum(vertex_areas(positions, faces), least_area)
 
     edges, edge_of_side = _edges_of(faces.tobytes())
-    lengths = np.linalg.norm(positions[edges[:, 1]] - positions[edges[:, 0]], axis=1)
+    i, j = edges.T
+    lengths = np.linalg.norm(positions[j] - positions[i], axis=1)
     # In mm per edge: bounds the stiffness of collapsed edges (Van Gelder's is 1/l2).
     least_length = 0.05
     lengths = np.maximum(lengths, least_length)
-    stiffness = np.bincount(edge_of_side, np.tile(face_areas, 3), minlength=len(edges)) / lengths**2
+    areas_beside = np.bincount(edge_of_side, np.tile(face_areas, 3), minlength=len(edges))
+    stiffness = areas_beside / lengths**2
 
-    i, j = edges.T
     both = (np.concatenate([i, j]), np.concatenate([j, i]))
     weights = sparse.coo_array((np.tile(stiffness, 2), both), shape=(count, count)).tocsr()
     degree = np.asarray(weights.sum(axis=1)).ravel()

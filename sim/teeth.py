@@ -61,8 +61,10 @@ def watch_teeth(parts: Any, surface: SkinSurface, space: FaceSpace) -> Teeth:
             arch = _arch(space.to_standard(found))
             inside = _inside(surface.positions, arch)
             off = surface.positions - (0.0, 0.0, arch[2])
-            near = inside < 1.0 + teeth_reach / min(arch[0], arch[1])
-            near &= (off[:, 1] > arch[3] - teeth_reach) & (off[:, 1] < arch[4] + teeth_reach)
+            width, depth, _, low, high = arch
+            near = inside < 1.0 + teeth_reach / min(width, depth)
+            near &= off[:, 1] > low - teeth_reach
+            near &= off[:, 1] < high + teeth_reach
             near &= off[:, 2] > 0.0
             vertices = np.flatnonzero(near)
             rows.append((vertices, part.bone == "mandible", arch, inside[vertices]))

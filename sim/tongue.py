@@ -54,58 +54,68 @@ class Tongue:
         """
         lips = (x[self.lips] - mandible.shift) @ mandible.rotation
         upper_edge = (self.upper_edge - mandible.shift) @ mandible.rotation
-        room = min(lips[0, 1], upper_edge[1]) - max(lips[1, 1], self.lower_edge[1])
+        ceiling = min(lips[0, 1], upper_edge[1])
+        floor = max(lips[1, 1], self.lower_edge[1])
+        room = ceiling - floor
         least_room = 1.0  # mm between teeth and lips: with less the tongue stays in
         # In mm between teeth and lips: with more the tongue comes out as far as it is set.
         free_room = 3.5
-        out *= float(np.clip((room - least_room) / (free_room - least_room), 0.0, 1.0))
+        free_share = (room - least_room) / (free_room - least_room)
+        out *= float(np.clip(free_share, 0.0, 1.0))
         filled_share = 0.8  # of the room between teeth and lips: thickness of the tongue there
         most_thickness = 8.5  # mm: its thickness there at most
         thickness = float(np.clip(filled_share * room, least_room, most_thickness))
         # Of tongue_out, by which the tip has risen from behind the incisors onto the path.
         rise_share = 0.25
         risen = float(smoothstep(np.array(out / rise_share)))
-        spine = self.spine + risen * (self._on_path(out, lips, thickness) - self.spine)
-        # In mm up and forward from the upper incisors' edges: where a risen tip is.
-        palate = (5.0, -6.0)
-        tip_up = upper_edge[[2, 1]] + (palate[1], palate[0]) - self.spine[0]
+        path = self._on_path(out, lips, thickness)
+        spine = self.spine + risen * (path - self.spine)
+        # In mm forward and up from the upper incisors' edges: where a risen tip is.
+        palate = (-6.0, 5.0)
+        tip_up = upper_edge[[2, 1]] + palate - self.spine[0]
         highest_rise = 24.0  # mm that the tip rises
         tip_up *= min(1.0, highest_rise / float(np.linalg.norm(tip_up)))
         place = np.linspace(0.0, 1.0, SAMPLES)
         front_share = 0.75  # of the spine that rises with the tip
         falloff = np.maximum(1.0 - place / front_share, 0.0)[:, None] ** 2
         spine += up * (1.0 - risen) * falloff * tip_up
+        ahead = spine[:, 0] - self.lower_edge[2]  # of the lower teeth
         # Flat where it passes between the teeth.
-        between = (spine[:, 0] - self.lower_edge[2] + 2.0 * self.PATH_SETBACK) / (
-            1.5 * self.PATH_SETBACK
-        )
+        between = (ahead + 2.0 * self.PATH_SETBACK) / (1.5 * self.PATH_SETBACK)
         flat = risen * smoothstep(between)
-        height = 1.0 + flat * (np.minimum(0.5 * thickness / self.half, 1.0) - 1.0)
+        flat_height = np.minimum(0.5 * thickness / self.half, 1.0)
+        height = 1.0 + flat * (flat_height - 1.0)
         least_width_share = 0.7  # of its width and height
-        slender = np.clip(np.sqrt(_length(self.spine) / _length(spine)), least_width_share, 1.0)
+        shortening = np.sqrt(_length(self.spine) / _length(spine))
+        slender = np.clip(shortening, least_width_share, 1.0)
         turn = _direction(spine) - _direction(self.spine)
         sunk_share = 0.25  # of the way to where it lies on the lip
         # The thin tip hangs lower than the middle of the thick rest.
         sunk = sunk_share * risen * np.maximum(0.5 * thickness - self.half, 0.0)
         # The lower lip is lowest in its middle: the tongue lies in it.
-        over_lip = smoothstep((spine[:, 0] - self.lower_edge[2]) / self.PATH_SETBACK)
-        rise = max(float(lips[3:, 1].mean()) - lips[1, 1], 0.0)
-        hollow = risen * over_lip * rise / max(abs(lips[3, 0] - lips[4, 0]) / 2.0, 1.0) ** 2
+        over_lip = smoothstep(ahead / self.PATH_SETBACK)
+        sides = lips[3:]
+        rise = max(float(sides[:, 1].mean()) - lips[1, 1], 0.0)
+        half_lip = max(abs(sides[0, 0] - sides[1, 0]) / 2.0, 1.0)
+        hollow = risen * over_lip * rise / half_lip**2
 
         def here(samples: Floats64) -> Floats64:
             return np.interp(self.along, place, samples)
 
         beside = self.rest[:, 0] * slender
-        off = self.off * here(height) * slender + here(hollow) * beside**2 - here(sunk)
+        off = self.off * here(height) * slender
+        off += here(hollow) * beside**2
+        off -= here(sunk)
         # Flat, it shows the groove in its middle, which runs out before the tip.
         groove_depth = 1.6  # mm at most
         groove_width = 2.6  # mm
         groove = groove_depth * risen * smoothstep((self.along - 0.03) / 0.2)
         off -= groove * np.exp(-((beside / groove_width) ** 2)) * (self.off > 0.0)
         bent = self.rest.copy()
+        angle = here(turn)
         bent[:, 0] = beside
-        bent[:, 1] = here(spine[:, 1]) + off * np.cos(here(turn))
-        bent[:, 2] = here(spine[:, 0]) - off * np.sin(here(turn))
+        bent[:, 1] = here(spine[:, 1]) + off * np.cos(angle)
+        bent[:, 2] = here(spine[:, 0]) - off * np.sin(angle)
         return bent
 
     def _on_path(self, out: float, lips: Floats64, thickness: float) -> Floats64:
@@ -163,7 +173,9 @@ def place_tongue(parts: Any, space: FaceSpace, landmarks: Integers64 | None) -> 
     middle = np.polynomial.Polynomial.fit(along, rest[:, 1], degree)
     off = rest[:, 1] - middle(along)
     slices = np.array_split(np.argsort(along), slice_count)
-    half = np.interp(place, [along[s].mean() for s in slices], [np.ptp(off[s]) / 2 for s in slices])
+    middles = [along[numbers].mean() for numbers in slices]
+    halves = [np.ptp(off[numbers]) / 2 for numbers in slices]
+    half = np.interp(place, middles, halves)
     spine = np.stack([tip - place * (tip - root), middle(place)], axis=1)
     # Landmarks: upper; middle, lower edge and both sides of the lower lip.
     lips = (62, 66, 57, 65, 67)

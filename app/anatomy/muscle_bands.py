@@ -74,7 +74,8 @@ class Muscles:
         self.names: list[tuple[str, int]] = []  # of linear muscles, and the number of a fibre
         widths = list[float]()
         for name, lines in simulation.anatomy.fibres().items():
-            row = face.head.rig["muscle"].get(name.removesuffix("_left").removesuffix("_right"), {})
+            stem = name.removesuffix("_left").removesuffix("_right")
+            row = face.head.rig["muscle"].get(stem, {})
             if name.startswith("platysma"):  # it lies on structures that are not drawn
                 continue
             for number, (fibre, _) in enumerate(zip(row.get("fibre", ()), lines, strict=False)):
@@ -87,8 +88,8 @@ class Muscles:
         self._controls: list[list[str]] = [[name] for name, _ in self.names]  # that move each band
         for start, end, numbers, bands in RINGS:
             edge = _resampled(marks[None, list(numbers)])[0]
-            away = (edge - marks[AROUND_OF[end]].mean(axis=0)) * (1.0, 1.0, 0.0)
-            away = unit_vectors(away)
+            middle = marks[AROUND_OF[end]].mean(axis=0)
+            away = unit_vectors((edge - middle) * (1.0, 1.0, 0.0))
             names = simulation.controls.sums
             own = [name for name in names if name.startswith(start) and name.endswith(end)]
             for outward, width in bands:
@@ -134,20 +135,21 @@ class Muscles:
             outside, normal, depth = skin.at(lines)
             lines = lines - outside[..., None] * normal
         u = np.linspace(0.0, 1.0, ROWS)
+        arch = np.sin(np.pi * u)  # 1 in the middle
         end = np.sqrt(np.clip(1.0 - (2.0 * u - 1.0) ** 8, 0.0, 1.0))  # round
-        swollen = 1.0 + (swollen[:, None] - 1.0) * np.sin(np.pi * u)  # in the middle
+        swollen = 1.0 + (swollen[:, None] - 1.0) * arch
         half = 0.5 * self._width * swollen**0.35 * end
         # Measures [mm], chosen by eye after anatomical plates.
         most_thickness = 2.8
-        thick = (
-            0.5 * most_thickness * (0.45 + 0.55 * np.sin(np.pi * u) ** 0.8) * swollen**0.65 * end
-        )
+        plump = 0.45 + 0.55 * arch**0.8
+        thick = 0.5 * most_thickness * plump * swollen**0.65 * end
         end_depth = 3.4  # below the skin, at the end of a band
-        deep = depth[:, :1] + (end_depth - depth[:, :1]) * u * u * (3.0 - 2.0 * u)
+        start_depth = depth[:, :1]
+        deep = start_depth + (end_depth - start_depth) * u * u * (3.0 - 2.0 * u)
         deep[len(self.names) :] = end_depth  # sphincters have no origin on a bone
-        side = np.cross(np.gradient(lines, axis=1), normal)
-        side = unit_vectors(side)
-        rails = np.stack([lines + each * half[..., None] * side for each in (-1.0, 0.0, 1.0)])
+        side = unit_vectors(np.cross(np.gradient(lines, axis=1), normal))
+        to_edge = half[..., None] * side
+        rails = np.stack([lines - to_edge, lines, lines + to_edge])
         for _ in range(2):
             outside, normal, bone_depth = skin.at(rails)
             below = np.minimum(deep, np.maximum(bone_depth - thick, 0.0))
@@ -156,8 +158,10 @@ class Muscles:
         angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
         a = np.cos(angle)
         blend = np.stack([0.5 * a * (a - 1.0), 1.0 - a * a, 0.5 * a * (a + 1.0)])
-        raised = np.tensordot(normal, blend, (0, 0)) * thick[:, :, None, None] * np.sin(angle)
-        grid = (np.tensordot(rails, blend, (0, 0)) + raised).swapaxes(2, 3)
+        middle = np.tensordot(rails, blend, (0, 0))
+        outward = np.tensordot(normal, blend, (0, 0))
+        raised = outward * thick[:, :, None, None] * np.sin(angle)
+        grid = (middle + raised).swapaxes(2, 3)
         active = [max((sums[name] for name in own), default=0.0) for own in self._controls]
         self._set(grid, np.array(active), u)
 
@@ -173,13 +177,14 @@ class Muscles:
         light = 0.42 + 0.58 * np.clip(0.5 + 0.75 * np.sin(angle), 0.0, 1.0)
         colours = colour[:, :, None] * light[:, None]
         along = np.gradient(grid, axis=1)
-        normals = np.cross(along, np.roll(grid, -1, axis=2) - np.roll(grid, 1, axis=2))
+        around = np.roll(grid, -1, axis=2) - np.roll(grid, 1, axis=2)
+        normals = np.cross(along, around)
         normals[:, 0] = normals[:, 1]  # the ends are points
         normals[:, -1] = normals[:, -2]
         normals = unit_vectors(normals)
-        self.vertices, self.normals, self.colours = (
-            each.reshape(-1, 3).astype(np.float32) for each in (grid, normals, colours)
-        )
+        self.vertices = grid.reshape(-1, 3).astype(np.float32)
+        self.normals = normals.reshape(-1, 3).astype(np.float32)
+        self.colours = colours.reshape(-1, 3).astype(np.float32)
 
     def _lay_out(self) -> None:
         """Faces and places of striation."""
@@ -187,12 +192,16 @@ class Muscles:
         number = np.arange(count * ROWS * AROUND).reshape(count, ROWS, AROUND)
         here = number[:, :-1]
         ahead = number[:, 1:]
-        quads = [here, ahead, np.roll(ahead, -1, axis=2), np.roll(here, -1, axis=2)]
-        self.faces = np.concatenate(
-            [np.stack([quads[k] for k in ks], -1).reshape(-1, 3) for ks in ((0, 1, 2), (0, 2, 3))]
-        ).astype(np.int32)
+        beside_here = np.roll(here, -1, axis=2)
+        beside_ahead = np.roll(ahead, -1, axis=2)
+        first = np.stack([here, ahead, beside_ahead], axis=-1)
+        second = np.stack([here, beside_ahead, beside_here], axis=-1)
+        faces = np.concatenate([first.reshape(-1, 3), second.reshape(-1, 3)])
+        self.faces = faces.astype(np.int32)
         a = np.cos(2.0 * np.pi * np.arange(AROUND) / AROUND)
-        across = 0.5 * self._width[:, None] * a + 40.0 * np.arange(count)[:, None, None]
+        # Each band has a stretch of 40 mm of its own in the pattern.
+        start = 40.0 * np.arange(count)[:, None, None]
+        across = start + 0.5 * self._width[:, None] * a
         along = self._length[:, None, None] * np.linspace(0.0, 1.0, ROWS)[:, None]
         both = np.broadcast_arrays(across, along)
         self.striation = np.stack(both, axis=-1).reshape(-1, 2).astype(np.float32)

@@ -76,7 +76,8 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
     corners = camera.project(face.annotation.inner_points(positions)[corner_numbers])
     seen = camera.project(ways.reshape(-1, 3)).reshape(*ways.shape[:3], 2)
     upright = camera.rotation @ face.bone_transforms()["cranium"][:3, :2]
-    aside, up = (axis / np.linalg.norm(axis) for axis in (upright[:2, 0], upright[:2, 1]))
+    aside = upright[:2, 0] / np.linalg.norm(upright[:2, 0])
+    up = upright[:2, 1] / np.linalg.norm(upright[:2, 1])
     across = np.array([-up[1], up[0]])
     across *= np.sign(across @ aside) or 1.0  # to the subject's left
     turn = np.linspace(0.0, 0.5 * np.pi, ways.shape[1])[:, None]
@@ -84,10 +85,12 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
     for side, sign in enumerate((-1.0, 1.0)):
         outward = sign * across * np.cos(turn) - up * np.sin(turn)
         for _ in range(3):
-            farthest = (seen[side] * outward[:, None]).sum(axis=2).argmax(axis=1)
+            distances = (seen[side] * outward[:, None]).sum(axis=2)
+            farthest = distances.argmax(axis=1)
             line = _smoothed(ways[side, np.arange(len(farthest)), farthest])
             outward = _normals(camera.project(line), outward)
-        line = _below(line, camera.project(line) @ up, float(corners[side] @ up))
+        heights = camera.project(line) @ up
+        line = _below(line, heights, float(corners[side] @ up))
         halves.append(_spread(line, camera.project(line), JAW_COUNT // 2 + 1))
     right, left = halves
     return np.vstack([right, left[-2::-1]])

@@ -140,14 +140,18 @@ def _painted_tongue(part: Any) -> Floats32:
     depth = vertices[:, 2].max() - vertices[:, 2]
     above = np.clip(part.normals[:, 1], 0.0, 1.0)
     groove_width = 1.6  # [mm]
-    groove = above * np.exp(-((beside / groove_width) ** 2)) * np.clip(depth / 8.0, 0.0, 1.0)
-    coat = above * np.clip(1.0 - across / 0.7, 0.0, 1.0) * np.clip(depth / 20.0, 0.0, 1.0)
+    off_tip = np.clip(depth / 8.0, 0.0, 1.0)
+    groove = above * np.exp(-((beside / groove_width) ** 2)) * off_tip
+    off_edge = np.clip(1.0 - across / 0.7, 0.0, 1.0)
+    coat = above * off_edge * np.clip(depth / 20.0, 0.0, 1.0)
     edge = 1.0 - above * np.clip(1.6 - 1.6 * across, 0.0, 1.0)
     grain = np.random.default_rng(0).normal(0.0, 0.025, len(vertices))
     pale = np.array([0.80, 0.62, 0.585])
-    colours = part.colours * (1.0 - edge[:, None] * [0.05, 0.2, 0.2])
+    reddened = 1.0 - edge[:, None] * [0.05, 0.2, 0.2]
+    darkened = 1.0 - groove[:, None] * [0.22, 0.32, 0.32]
+    colours = part.colours * reddened
     colours += 0.6 * coat[:, None] * (pale - colours)
-    colours *= (1.0 + grain[:, None]) * (1.0 - groove[:, None] * [0.22, 0.32, 0.32])
+    colours *= (1.0 + grain[:, None]) * darkened
     return np.asarray(np.clip(colours, 0.0, 1.0), np.float32)
 
 

@@ -51,11 +51,13 @@ class Peaks:
 
     def __init__(self, sound: Sound) -> None:
         self._rate = sound.rate
-        swings = sound.samples.min(axis=1), sound.samples.max(axis=1)
-        starts = np.arange(0, len(sound.samples), self.BLOCK)
-        blocks = np.minimum.reduceat(swings[0], starts), np.maximum.reduceat(swings[1], starts)
-        self._levels = {self.BLOCK: blocks, 1: swings}
-        self._loudest = max(-int(blocks[0].min()), int(blocks[1].max()), 1)
+        low = sound.samples.min(axis=1)
+        high = sound.samples.max(axis=1)
+        starts = np.arange(0, len(low), self.BLOCK)
+        low_blocks = np.minimum.reduceat(low, starts)
+        high_blocks = np.maximum.reduceat(high, starts)
+        self._levels = {self.BLOCK: (low_blocks, high_blocks), 1: (low, high)}
+        self._loudest = max(-int(low_blocks.min()), int(high_blocks.max()), 1)
 
     def between(self, start: float, end: float, count: int) -> tuple[Floats64, Floats64]:
         """The lowest and highest value in each of `count` equal stretches of a time [s].
@@ -68,14 +70,18 @@ class Peaks:
         length = self.BLOCK if edges[-1] - edges[0] >= count * 4 * self.BLOCK else 1
         low, high = self._levels[length]
         places = np.floor(edges / length).astype(np.int64)
-        begins = places[:-1][places[:-1] < len(low)]
-        swings = np.zeros((2, count))
-        if len(begins):
-            last = max(min(int(places[len(begins)]), len(low)), int(begins[-1]) + 1)
-            part = slice(begins[0], last)
-            swings[0, : len(begins)] = np.minimum.reduceat(low[part], begins - begins[0])
-            swings[1, : len(begins)] = np.maximum.reduceat(high[part], begins - begins[0])
-        return swings[0] / self._loudest, swings[1] / self._loudest
+        begins = places[:-1]
+        begins = begins[begins < len(low)]
+        filled = len(begins)
+        lowest = np.zeros(count)
+        highest = np.zeros(count)
+        if filled:
+            first = int(begins[0])
+            last = min(int(places[filled]), len(low))
+            last = max(last, int(begins[-1]) + 1)
+            lowest[:filled] = np.minimum.reduceat(low[first:last], begins - first)
+            highest[:filled] = np.maximum.reduceat(high[first:last], begins - first)
+        return lowest / self._loudest, highest / self._loudest
 
 
 def ffmpeg() -> str:

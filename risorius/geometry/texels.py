@@ -37,8 +37,9 @@ class Texels:
         low = np.ceil(places.min(axis=1) - margin).clip(0, [width, height]).astype(np.int64)
         high = np.floor(places.max(axis=1) + margin).clip(-1, [width - 1, height - 1])
         boxes = np.concatenate([low, high.astype(np.int64)], axis=1)
+        sides = np.maximum(boxes[:, 2:] - boxes[:, :2] + 1, 0)
         most_tries = 60_000_000  # a fair layout needs two for each texel that it has
-        if np.maximum(boxes[:, 2:] - boxes[:, :2] + 1, 0).prod(axis=1).sum() > most_tries:
+        if sides.prod(axis=1).sum() > most_tries:
             raise ValueError("texture coordinates cover the picture many times over")
         found = np.empty((0, 3), np.int64)
         weights = np.empty((0, 3))
@@ -48,8 +49,9 @@ class Texels:
         _walk(places, boxes, margin, found, weights)
         order = np.argsort(weights.min(axis=1), kind="stable")
         inside = np.maximum(weights[order], 0.0)
+        inside /= inside.sum(axis=1, keepdims=True)
         rows, columns, faces = found[order].T
-        return cls(rows, columns, faces, inside / inside.sum(axis=1, keepdims=True))
+        return cls(rows, columns, faces, inside)
 
     def interpolate(self, values: npt.NDArray[np.floating]) -> Floats64:
         """Values of corners, (F, 3, ...), at the texels, shape (n, ...)."""
@@ -62,7 +64,8 @@ def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -
 
     corners: their texture coordinates, (F, 3, 2); triangles without area have no rates, 0.
     """
-    steps, changes = (np.diff(each, axis=1).astype(np.float64) for each in (corners, values))
+    steps = np.diff(corners, axis=1).astype(np.float64)
+    changes = np.diff(values, axis=1).astype(np.float64)
     is_flat = np.abs(np.linalg.det(steps)) < 1e-14
     steps[is_flat] = np.eye(2)
     changes[is_flat] = 0.0
@@ -77,17 +80,22 @@ def _walk(
     count = 0
     for t in range(places.shape[0]):
         a, b, c = places[t]
-        area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        ab = b - a
+        ac = c - a
+        bc = c - b
+        area = ab[0] * ac[1] - ab[1] * ac[0]
         if abs(area) < 1e-9:
             continue
         # How much of a corner's weight is lost within a margin beyond the side opposite to it.
-        slack_a = margin * np.hypot(c[0] - b[0], c[1] - b[1]) / abs(area) + 1e-9
-        slack_b = margin * np.hypot(a[0] - c[0], a[1] - c[1]) / abs(area) + 1e-9
-        slack_c = margin * np.hypot(b[0] - a[0], b[1] - a[1]) / abs(area) + 1e-9
+        slack_a = margin * np.hypot(bc[0], bc[1]) / abs(area) + 1e-9
+        slack_b = margin * np.hypot(ac[0], ac[1]) / abs(area) + 1e-9
+        slack_c = margin * np.hypot(ab[0], ab[1]) / abs(area) + 1e-9
         for y in range(boxes[t, 1], boxes[t, 3] + 1):
             for x in range(boxes[t, 0], boxes[t, 2] + 1):
-                of_b = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area
-                of_c = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area
+                right = x - a[0]
+                down = y - a[1]
+                of_b = (right * ac[1] - down * ac[0]) / area
+                of_c = (ab[0] * down - ab[1] * right) / area
                 of_a = 1.0 - of_b - of_c
                 if of_a > -slack_a and of_b > -slack_b and of_c > -slack_c:
                     if count < found.shape[0]:
