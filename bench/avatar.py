@@ -144,8 +144,10 @@ def mesh_called(name: str, content: bytes) -> tuple[Points, list[str]]:
     """The vertices of a mesh of a binary glTF file, (n, 3), and the names of its shapes."""
     document, numbers = read_document(content, Path())
     mesh: dict[str, Any] = next(each for each in document["meshes"] if each["name"] == name)
-    accessor = document["accessors"][mesh["primitives"][0]["attributes"]["POSITION"]]
-    start = document["bufferViews"][accessor["bufferView"]]["byteOffset"]
+    attributes = mesh["primitives"][0]["attributes"]
+    accessor = document["accessors"][attributes["POSITION"]]
+    view = document["bufferViews"][accessor["bufferView"]]
+    start = view["byteOffset"]
     points = np.frombuffer(numbers, np.float32, 3 * accessor["count"], start)
     return points.reshape(-1, 3), list(mesh["extras"]["targetNames"])
 

@@ -61,8 +61,11 @@ def sphere(levels: int) -> Surface:
 def tube(around: int, along: int) -> Surface:
     """An open cylinder along x, of radius 0.5 and length 4, that looks outward."""
     angles = 2.0 * np.pi * np.arange(around) / around
-    x, angle = np.meshgrid(np.linspace(-2.0, 2.0, along + 1), angles, indexing="ij")
-    rings = np.stack([x, 0.5 * np.cos(angle), 0.5 * np.sin(angle)], axis=2)
+    places = np.linspace(-2.0, 2.0, along + 1)
+    x, angle = np.meshgrid(places, angles, indexing="ij")
+    y = 0.5 * np.cos(angle)
+    z = 0.5 * np.sin(angle)
+    rings = np.stack([x, y, z], axis=2)
     number = np.arange(x.size).reshape(x.shape)
     return rings.reshape(-1, 3), grid_faces(number[:, ::-1], closed=True)
 

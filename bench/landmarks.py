@@ -95,8 +95,8 @@ def is_installed(detector: str) -> bool:
 def opened(detector: str, model: Path | None) -> Iterator[Detector]:
     """A detector of `DETECTORS`, with its model; UserError where it is missing or no such file.
 
-    It takes a picture (H, W, 3) to its 68 points (68, 2) [pixels, the middle of the first one is
-    0.5], or to None where it finds no face.
+    The detector gives the 68 points of a picture (H, W, 3), shape (68, 2) [pixels, the middle of
+    the first one is 0.5], or None where it finds no face.
     """
     if detector == "dlib":
         yield _dlib(model)

@@ -119,8 +119,9 @@ def measure(
             truth = _shoot(canvas, cameras, dense)
             for method, make in bound.items():
                 mesh = make(pose.coarse)
-                distances = closest_points(pose.dense, mesh[0], mesh[2]).distances
-                share = len(mesh[2]) / len(subject.coarse_faces)
+                positions, _, triangles = mesh
+                distances = closest_points(pose.dense, positions, triangles).distances
+                share = len(triangles) / len(subject.coarse_faces)
                 distance = float(np.sqrt((distances**2).mean()))
                 errors = _apart(_shoot(canvas, cameras, mesh), truth)
                 scores.append(Score(method, name, share, distance, *errors))

@@ -17,10 +17,12 @@ def table(columns: str, rows: Iterable[Sequence[object]], *, indent: str = "") -
 
     columns: "title:format" with the width in front, as in "name:<9|ms:8.3f"; "<" sets text left.
     """
-    titles, formats = zip(*(column.rsplit(":", 1) for column in columns.split("|")), strict=True)
+    parts = [column.rsplit(":", 1) for column in columns.split("|")]
+    titles, formats = zip(*parts, strict=True)
     sides = [re.findall(r"^[<>]?\d+", each)[0] for each in formats]
     sides = [side if side[0] in "<>" else f">{side}" for side in sides]
-    lines = [" ".join(f"{title:{side}}" for title, side in zip(titles, sides, strict=True))]
+    headings = [f"{title:{side}}" for title, side in zip(titles, sides, strict=True)]
+    lines = [" ".join(headings)]
     for row in rows:
         cells = [
             f"{'':{side}}" if value is None else f"{value:{style}}"

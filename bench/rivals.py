@@ -114,7 +114,8 @@ def cases(subjects: Sequence[tuple[str, Subject]]) -> Iterator[Case]:
     coarse = trimesh.creation.icosphere(2)
     faces = np.array(coarse.faces, dtype=np.int32)
     points = np.array(coarse.vertices)
-    yield Case("sphere", faces, points, points, np.array(trimesh.creation.icosphere(5).vertices))
+    fine = trimesh.creation.icosphere(5)
+    yield Case("sphere", faces, points, points, np.array(fine.vertices))
 
     plane = PlaneScene()
     plane.pose({"amplitude": 1.0})

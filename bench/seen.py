@@ -146,7 +146,9 @@ def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
         if not side:
             yield name, (name,)
         elif side == "Left":
-            yield stem if stem not in ("jaw", "mouth") else f"{name}, Right", (name, twin_of(name))
+            is_way = stem in ("jaw", "mouth")  # jawLeft is where the jaw goes
+            title = f"{name}, Right" if is_way else stem
+            yield title, (name, twin_of(name))
 
 
 def compared(

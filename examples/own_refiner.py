@@ -49,17 +49,19 @@ class Quarters(BaseRefiner):
         # seam. The lowest bit of a triangle's attribute edge is its direction, which middles do
         # not need.
         mesh = self.connectivity
-        rows = mesh.triangle_attribute_edges[~mesh.is_degenerate] >> 1
-        corners = mesh.corners[~mesh.is_degenerate]
+        sound = np.flatnonzero(~mesh.is_degenerate)
+        degenerate = np.flatnonzero(mesh.is_degenerate)
+        rows = mesh.triangle_attribute_edges[sound] >> 1
+        corners = mesh.corners[sound]
+        ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2)
         self._attribute_edge_ends = np.zeros((len(mesh.attribute_edges), 2), dtype=np.int64)
-        self._attribute_edge_ends[rows] = np.stack([corners, np.roll(corners, -1, axis=1)], 2)
+        self._attribute_edge_ends[rows] = ends
         a, b, c = corners.T
         ab, bc, ca = len(mesh.wedge_vertices) + rows.T
         four = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
         pieces = np.array(four).transpose(2, 0, 1).reshape(-1, 3)
-        self._cut = np.concatenate([pieces, mesh.corners[mesh.is_degenerate]])
-        numbers = np.flatnonzero(~mesh.is_degenerate), np.flatnonzero(mesh.is_degenerate)
-        self._cut_source = np.concatenate([np.repeat(numbers[0], 4), numbers[1]])
+        self._cut = np.concatenate([pieces, mesh.corners[degenerate]])
+        self._cut_source = np.concatenate([np.repeat(sound, 4), degenerate])
 
     @property
     def vertex_capacity(self) -> int:
@@ -72,7 +74,7 @@ class Quarters(BaseRefiner):
         return len(self._cut)
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
-        """Write one frame; where the eye is, is all the same to this one."""
+        """Write one frame; the view has no effect."""
         mesh = self.connectivity
         self.edge_splits[:] = self._longest_edge(self.positions) > self._limit
         triangles = mesh.corners
@@ -89,7 +91,8 @@ class Quarters(BaseRefiner):
         rows[: len(self.points), 3:6] = self.normals
         self.write_wedges(rows)
         middles = rows[first:vertex_count]
-        middles[:] = rows[self._attribute_edge_ends[: len(middles)]].mean(axis=1)
+        ends = self._attribute_edge_ends[: len(middles)]
+        middles[:] = rows[ends].mean(axis=1)
         length = np.linalg.norm(middles[:, 3:6], axis=1, keepdims=True)
         middles[:, 3:6] /= np.where(length > 0.0, length, 1.0)
         out_triangles[: len(triangles)] = triangles

@@ -23,18 +23,18 @@ LENGTH = 8.0
 def tube() -> tuple[Points, Faces]:
     """A straight tube along y, open at both ends."""
     around = 12  # cells of the tube
-    angle = 2.0 * np.pi * np.arange(around) / around
-    radius = 1.0
-    circle = radius * np.stack([np.cos(angle), np.zeros(around), -np.sin(angle)], axis=1)
-    along = 16  # cells of the tube
+    along = 16
+    angles = 2.0 * np.pi * np.arange(around) / around
     heights = LENGTH * np.linspace(0.0, 1.0, along + 1)
-    vertices = (circle[None] + heights[:, None, None] * [0.0, 1.0, 0.0]).reshape(-1, 3)
+    height, angle = np.meshgrid(heights, angles, indexing="ij")
+    vertices = np.stack([np.cos(angle), height, -np.sin(angle)], axis=2)  # radius 1
     ring, k = np.meshgrid(np.arange(along), np.arange(around), indexing="ij")
     a = ring * around + k
     b = ring * around + (k + 1) % around
     lower = np.stack([a, b, b + around], axis=2)
     upper = np.stack([a, b + around, a + around], axis=2)
-    return vertices, np.concatenate([lower, upper]).reshape(-1, 3).astype(np.int32)
+    faces = np.concatenate([lower, upper]).reshape(-1, 3)
+    return vertices.reshape(-1, 3), faces.astype(np.int32)
 
 
 def bent(rest: Points, angle: float) -> Points:

@@ -27,20 +27,37 @@ from risorius.sim.landmarks import MIRRORED
 def tensors(faces: list[Face]) -> tuple[Tensor, Tensor]:
     """Pictures (n, 3, 144, 144) 0..255 and points (n, 68, 2)."""
     pictures = np.stack([picture for picture, _ in faces])
-    return torch.from_numpy(pictures), torch.from_numpy(np.stack([points for _, points in faces]))
+    points = np.stack([points for _, points in faces])
+    return torch.from_numpy(pictures), torch.from_numpy(points)
 
 
 def seen(pictures: Tensor, points: Tensor, changes: Tensor | None = None) -> tuple[Tensor, Tensor]:
-    """What the network sees: the middle of pictures, 0..1, or what `changes` (n, 2, 3) shows."""
+    """Pictures and points as the network sees them: their middle, or what `changes` shows.
+
+    changes: of each, from places in the result to places in the picture, shape (n, 2, 3).
+    """
     middle = torch.tensor([[SIDE / WIDE, 0.0, 0.0], [0.0, SIDE / WIDE, 0.0]])
     view = middle.expand(len(pictures), 2, 3) if changes is None else changes
     grid = functional.affine_grid(view, [len(pictures), 3, SIDE, SIDE], align_corners=False)
     inside = functional.grid_sample(pictures.float() / 255.0, grid, align_corners=False)
-    return inside, (points - view[:, None, :, 2]) @ torch.linalg.inv(view[:, :, :2]).transpose(1, 2)
+    turn = view[:, :, :2]
+    shift = view[:, None, :, 2]
+    places = (points - shift) @ torch.linalg.inv(turn).transpose(1, 2)
+    return inside, places
 
 
 def varied(pictures: Tensor, points: Tensor) -> tuple[Tensor, Tensor]:
-    """What the network sees in training: turned, moved, mirrored, of other colours and quality."""
+    """Pictures and points for training: turned, moved, mirrored, of other colours and quality."""
+    inside, places = _turned(pictures, points)
+    inside = _recoloured(inside)
+    _blur(inside)
+    inside += torch.randn_like(inside) * torch.rand(len(inside), 1, 1, 1) * 0.06
+    _cover(inside)
+    return inside, places
+
+
+def _turned(pictures: Tensor, points: Tensor) -> tuple[Tensor, Tensor]:
+    """Turn, scale, shift and mirror at random."""
     count = len(pictures)
     angle = torch.randn(count) * 0.25  # radians
     size = SIDE / WIDE * torch.exp(torch.randn(count) * 0.12)
@@ -51,23 +68,47 @@ def varied(pictures: Tensor, points: Tensor) -> tuple[Tensor, Tensor]:
     changes = torch.stack([across, down], dim=1)
     changes[:, :, :2] *= size[:, None, None]
     inside, places = seen(pictures, points, changes)
-    places[is_mirrored] = places[is_mirrored][:, torch.from_numpy(MIRRORED)]
-
-    grey = inside.mean(dim=1, keepdim=True)
-    inside = torch.lerp(grey, inside, torch.rand(count, 1, 1, 1) * 1.3)
-    gains = torch.exp(torch.randn(count, 3, 1, 1) * 0.12 + torch.randn(count, 1, 1, 1) * 0.2)
-    bends = torch.exp(torch.randn(count, 1, 1, 1) * 0.25)
-    inside = (inside * gains).clamp(1e-4, 1.0) ** bends
-    for number in torch.nonzero(torch.rand(count) < 0.4).flatten().tolist():
-        small = int(torch.randint(28, 80, ()))
-        soft = functional.interpolate(inside[number : number + 1], (small, small), mode="area")
-        inside[number] = functional.interpolate(soft, (SIDE, SIDE), mode="bilinear")[0]
-    inside += torch.randn_like(inside) * torch.rand(count, 1, 1, 1) * 0.06
-    for number in torch.nonzero(torch.rand(count) < 0.4).flatten().tolist():  # something before it
-        row, column, height, width = torch.randint(8, 72, (4,)).tolist()
-        rows = slice(row, row + height // 2)
-        inside[number, :, rows, column : column + width // 2] = torch.rand(3, 1, 1)
+    mirrored_numbers = torch.from_numpy(MIRRORED)
+    places[is_mirrored] = places[is_mirrored][:, mirrored_numbers]
     return inside, places
+
+
+def _recoloured(pictures: Tensor) -> Tensor:
+    """Change saturation, the colour of the light, exposure and contrast at random."""
+    count = len(pictures)
+    grey = pictures.mean(dim=1, keepdim=True)
+    saturation = torch.rand(count, 1, 1, 1) * 1.3
+    light = torch.randn(count, 3, 1, 1) * 0.12
+    exposure = torch.randn(count, 1, 1, 1) * 0.2
+    contrast = torch.exp(torch.randn(count, 1, 1, 1) * 0.25)
+    saturated = torch.lerp(grey, pictures, saturation)
+    lit = saturated * torch.exp(light + exposure)
+    return lit.clamp(1e-4, 1.0) ** contrast
+
+
+def _some(pictures: Tensor) -> list[int]:
+    """Numbers of about four tenths of the pictures."""
+    is_taken = torch.rand(len(pictures)) < 0.4
+    numbers: list[int] = torch.nonzero(is_taken).flatten().tolist()
+    return numbers
+
+
+def _blur(pictures: Tensor) -> None:
+    """Make some pictures as soft as small ones."""
+    for number in _some(pictures):
+        small = int(torch.randint(28, 80, ()))
+        picture = pictures[number : number + 1]
+        soft = functional.interpolate(picture, (small, small), mode="area")
+        pictures[number] = functional.interpolate(soft, (SIDE, SIDE), mode="bilinear")[0]
+
+
+def _cover(pictures: Tensor) -> None:
+    """Hold something before some faces: a rectangle of one colour."""
+    for number in _some(pictures):
+        top, left, height, width = torch.randint(8, 72, (4,)).tolist()
+        rows = slice(top, top + height // 2)
+        columns = slice(left, left + width // 2)
+        pictures[number, :, rows, columns] = torch.rand(3, 1, 1)
 
 
 def block(before: int, after: int, stride: int = 1) -> nn.Sequential:

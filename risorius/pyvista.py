@@ -156,10 +156,9 @@ class Cells(NamedTuple):
 def triangles_of(mesh: pyvista.PolyData) -> tuple[Integers64, Integers64]:
     """Cut the surface of a mesh into triangles, shape (F, 3), and name the cell of each, (F,).
 
-    Lines, lone points and polygons of less than three points have no surface and drop out. VTK is
-    asked to cut polygons of more than three points and nothing else: beside lines and lone points
-    its filter hands out memory that nobody has written. Raises ValueError for cells that name
-    points which are not there.
+    Lines, lone points and polygons of less than three points have no surface and drop out. VTK
+    cuts only polygons of more than three points, because its filter returns unwritten memory
+    beside lines and lone points. Raises ValueError for cells that name missing points.
     """
     polygons = _cells_of(mesh.GetPolys(), mesh.n_points)
     strips = _cells_of(mesh.GetStrips(), mesh.n_points)
@@ -197,10 +196,11 @@ def _cells_of(array: Any, point_count: int) -> Cells:
 
 def _cut_polygons(points: npt.ArrayLike, polygons: Cells) -> tuple[Integers64, Integers64]:
     """Triangles of the polygons with more than three points, (T, 3), and the polygon of each."""
-    large = np.flatnonzero(polygons.sizes > 3)
+    is_large = polygons.sizes > 3
+    large = np.flatnonzero(is_large)
     if len(large) == 0:
         return np.zeros((0, 3), dtype=np.int64), large
-    is_of_large = np.repeat(polygons.sizes > 3, polygons.sizes)
+    is_of_large = np.repeat(is_large, polygons.sizes)
     starts = np.concatenate([[0], np.cumsum(polygons.sizes[large])])
     uncut = pyvista.PolyData()
     uncut.points = points
@@ -224,9 +224,11 @@ def _cut_polygons(points: npt.ArrayLike, polygons: Cells) -> tuple[Integers64, I
             fans += fan
             fan_of += [k] * len(fan)
     is_whole = ~is_short[polygon_of]
+    fan_triangles = np.array(fans, dtype=np.int64).reshape(-1, 3)
+    fan_polygons = np.array(fan_of, dtype=np.int64)
     return (
-        np.concatenate([triangles[is_whole], np.array(fans, dtype=np.int64).reshape(-1, 3)]),
-        np.concatenate([polygon_of[is_whole], np.array(fan_of, dtype=np.int64)]),
+        np.concatenate([triangles[is_whole], fan_triangles]),
+        np.concatenate([polygon_of[is_whole], fan_polygons]),
     )
 
 

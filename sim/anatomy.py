@@ -32,8 +32,8 @@ class Anatomy:
     def tongue(self) -> Floats64 | None:
         """Vertices of the part "tongue" now, shape (T, 3); None for a head without one.
 
-        As the mandible's motion finds them: its bone's matrix has still to be applied. A tongue at
-        rest is the same array each time.
+        They are in the space of the mandible: the matrix of this bone puts them in their place.
+        A tongue at rest is the same array each time.
         """
         model = self._model
         if model.tongue is None:

@@ -185,18 +185,15 @@ def _one_eye(
     forward: Floats64,
 ) -> _OneEye:
     """Find the lids of one eye and the turn of each of their vertices."""
-    outer, upper_outer, upper_inner, inner, lower_inner, lower_outer = EYE_LANDMARKS[ball.side]
     side = lid_side(surface, landmarks, ball.side)
     x = surface.positions
-    axes = _LidAxes(ball.centre, up, forward, landmarks[outer], landmarks[inner] - landmarks[outer])
+    outline = landmarks[list(EYE_LANDMARKS[ball.side])]
+    outer = outline[0]
+    inner = outline[3]
+    axes = _LidAxes(ball.centre, up, forward, outer, inner - outer)
     column = axes.column(x)
     angle = axes.angle(x)
-    upper_line = landmarks[[outer, upper_outer, upper_inner, inner]]
-    lower_line = landmarks[[outer, lower_outer, lower_inner, inner]]
-    upper_ends = (eyes.fold_plateau, eyes.fold_reach)
-    lower_ends = (eyes.lid_plateau, eyes.lid_reach)
-    upper = _one_lid(eyes, surface, axes, upper_line, side > 0.0, upper_ends)
-    lower = _one_lid(eyes, surface, axes, lower_line, side < 0.0, lower_ends)
+    upper, lower = _both_lids(eyes, surface, axes, outline, side)
     where = np.linspace(0.0, 1.0, COLUMNS)
     slide = upper.slide + lower.slide
     height = np.maximum(upper.front - lower.front, 0.0)
@@ -237,8 +234,21 @@ def _one_eye(
     most_moved = np.maximum.reduce([weight, fold, slide])
     vertex = np.flatnonzero(most_moved > least_turn)
     overlap = weight * _pressed_turn(opening, least_opening)
-    values = (is_upper, weight, closing, overlap, sink, fold, opening, slide)
-    return _OneEye(vertex, *(each[vertex] for each in values))
+    values = (weight, closing, overlap, sink, fold, opening, slide)
+    return _OneEye(vertex, is_upper[vertex], *(each[vertex] for each in values))
+
+
+def _both_lids(
+    eyes: Eyes, surface: SkinSurface, axes: _LidAxes, outline: Floats64, side: Floats64
+) -> tuple[_OneLid, _OneLid]:
+    """The upper and the lower lid; outline: an eye's landmarks from the outer corner, (6, 3)."""
+    upper_line = outline[[0, 1, 2, 3]]
+    lower_line = outline[[0, 5, 4, 3]]
+    upper_ends = (eyes.fold_plateau, eyes.fold_reach)
+    lower_ends = (eyes.lid_plateau, eyes.lid_reach)
+    upper = _one_lid(eyes, surface, axes, upper_line, side > 0.0, upper_ends)
+    lower = _one_lid(eyes, surface, axes, lower_line, side < 0.0, lower_ends)
+    return upper, lower
 
 
 def _margin(lid: _OneLid, sign: float, column: Floats64, angle: Floats64) -> Flags:

@@ -63,7 +63,8 @@ class SkinSurface:
     def way_through(self, vertices: npt.ArrayLike, hindrance: Floats64) -> Integers32:
         """Numbers of the vertices on the shortest way along edges from each vertex to the next.
 
-        hindrance: of each vertex, shape (V,): an edge counts 1 + its mean times its length.
+        hindrance: of each vertex, shape (V,). An edge costs its length times 1 + the mean
+        hindrance of its ends.
         """
         stops = np.asarray(vertices, dtype=np.int64)
         i, j = self.edges.T

@@ -54,17 +54,8 @@ class Tongue:
         """
         lips = (x[self.lips] - mandible.shift) @ mandible.rotation
         upper_edge = (self.upper_edge - mandible.shift) @ mandible.rotation
-        ceiling = min(lips[0, 1], upper_edge[1])
-        floor = max(lips[1, 1], self.lower_edge[1])
-        room = ceiling - floor
-        least_room = 1.0  # mm between teeth and lips: with less the tongue stays in
-        # In mm between teeth and lips: with more the tongue comes out as far as it is set.
-        free_room = 3.5
-        free_share = (room - least_room) / (free_room - least_room)
-        out *= float(np.clip(free_share, 0.0, 1.0))
-        filled_share = 0.8  # of the room between teeth and lips: thickness of the tongue there
-        most_thickness = 8.5  # mm: its thickness there at most
-        thickness = float(np.clip(filled_share * room, least_room, most_thickness))
+        free_share, thickness = self._passage(lips, upper_edge)
+        out *= free_share
         # Of tongue_out, by which the tip has risen from behind the incisors onto the path.
         rise_share = 0.25
         risen = float(smoothstep(np.array(out / rise_share)))
@@ -112,11 +103,24 @@ class Tongue:
         groove = groove_depth * risen * smoothstep((self.along - 0.03) / 0.2)
         off -= groove * np.exp(-((beside / groove_width) ** 2)) * (self.off > 0.0)
         bent = self.rest.copy()
-        angle = here(turn)
         bent[:, 0] = beside
-        bent[:, 1] = here(spine[:, 1]) + off * np.cos(angle)
-        bent[:, 2] = here(spine[:, 0]) - off * np.sin(angle)
+        bent[:, 1] = here(spine[:, 1]) + off * np.cos(here(turn))
+        bent[:, 2] = here(spine[:, 0]) - off * np.sin(here(turn))
         return bent
+
+    def _passage(self, lips: Floats64, upper_edge: Floats64) -> tuple[float, float]:
+        """How far the tongue may come out, 0..1, and its thickness between the teeth [mm]."""
+        ceiling = min(lips[0, 1], upper_edge[1])
+        floor = max(lips[1, 1], self.lower_edge[1])
+        room = ceiling - floor
+        least_room = 1.0  # mm between teeth and lips: with less the tongue stays in
+        # In mm between teeth and lips: with more the tongue comes out as far as it is set.
+        free_room = 3.5
+        free_share = (room - least_room) / (free_room - least_room)
+        filled_share = 0.8  # of the room between teeth and lips: thickness of the tongue there
+        most_thickness = 8.5  # mm: its thickness there at most
+        thickness = np.clip(filled_share * room, least_room, most_thickness)
+        return float(np.clip(free_share, 0.0, 1.0)), float(thickness)
 
     def _on_path(self, out: float, lips: Floats64, thickness: float) -> Floats64:
         """The spine on its way out, shape (SAMPLES, 2)."""

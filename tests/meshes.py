@@ -159,15 +159,18 @@ def irregular(seed: int, columns: int = 12, rows: int = 10, holes: int = 3) -> M
     x = grid.vertices[:, 0]
     y = grid.vertices[:, 1]
     jitter = generator.uniform(-0.3, 0.3, (len(x), 2))
-    height = 0.8 * np.sin(0.5 * x) * np.cos(0.4 * y) + 0.1 * generator.standard_normal(len(x))
-    vertices = np.stack([x + jitter[:, 0], y + jitter[:, 1], height], axis=1)
+    waves = 0.8 * np.sin(0.5 * x) * np.cos(0.4 * y)
+    height = waves + 0.1 * generator.standard_normal(len(x))
+    vertices = np.column_stack([grid.vertices[:, :2] + jitter, height])
 
     pairs = grid.faces.reshape(-1, 2, 3)
     a = pairs[:, 0, 0]
     b = pairs[:, 0, 1]
     c = pairs[:, 0, 2]
     d = pairs[:, 1, 2]
-    other = np.stack([np.stack([a, b, d], axis=1), np.stack([b, c, d], axis=1)], axis=1)
+    first = np.stack([a, b, d], axis=1)
+    second = np.stack([b, c, d], axis=1)
+    other = np.stack([first, second], axis=1)
     is_flipped = generator.random(len(pairs)) < 0.5
     faces = np.where(is_flipped[:, None, None], other, pairs).reshape(-1, 3)
 
@@ -182,7 +185,8 @@ def irregular(seed: int, columns: int = 12, rows: int = 10, holes: int = 3) -> M
     shuffled[new_number] = vertices
     faces = new_number[faces][generator.permutation(len(faces))]
     turns = generator.integers(3, size=len(faces))
-    faces = np.take_along_axis(faces, (np.arange(3) + turns[:, None]) % 3, axis=1)
+    corners = (np.arange(3) + turns[:, None]) % 3
+    faces = np.take_along_axis(faces, corners, axis=1)
     return _mesh(shuffled, faces)
 
 

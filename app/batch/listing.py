@@ -49,7 +49,7 @@ def lines_of(path: Path) -> Iterator[tuple[int, str]]:
 
 
 def words_of(text: str) -> list[str]:
-    """A line as a shell would part it; UserError for a quotation without an end, and for NUL."""
+    """The words of a line, as a shell reads it; UserError for an open quotation, and for NUL."""
     if "\0" in text:
         raise UserError("holds a NUL character, which no name of a file can have")
     try:

@@ -61,7 +61,7 @@ MAP_BACKGROUND = "map"
 class BackgroundName(click.ParamType["render.Background | str | None"]):
     """The background of the scene, by name or as a colour; None is transparent.
 
-    The word map stays: which map lights the scene, other options say.
+    The word "map" is kept as it is: other options choose the map that lights the scene.
     """
 
     name = "COLOUR"

@@ -136,9 +136,9 @@ class SetFolder:
         return all(_length(self.path / name) == length for name, length in lengths.items())
 
     def write_sample(self, index: int, write: Callable[[Path], object]) -> int:
-        """Put the files of a sample in place, .json last; how many bytes they have.
+        """Put the files of a sample in place, .json last; returns their size [bytes].
 
-        write: writes a picture to the path that it gets, and the sample's other files beside it.
+        write: writes the picture to a path, and the sample's other files beside it.
         """
         name = name_of(index)
         with cannot_be_written(self.path / name):

@@ -44,9 +44,11 @@ def opening(near: Array, edge: Array) -> float:
     end_width = 1.0  # mm beside a corner that do not count: lips and lids are joined there
     # Vertical planes across the opening, in which lines of sight lie.
     columns = np.linspace(left + end_width, right - end_width, 40)
-    heights = np.interp(columns, *edge[np.argsort(edge[:, 0]), :2].T)
+    from_left = edge[np.argsort(edge[:, 0])]
+    heights = np.interp(columns, from_left[:, 0], from_left[:, 1])
     x = near[:, :, 0]
-    is_crossed = (x.min(axis=1) < columns[:, None]) & (x.max(axis=1) > columns[:, None])
+    is_begun = x.min(axis=1) < columns[:, None]
+    is_crossed = is_begun & (x.max(axis=1) > columns[:, None])
     column, triangle = np.nonzero(is_crossed)
     cut, meets = cut_by(near[triangle], columns[column, None])
     low = np.where(meets, cut[:, :, 1], np.inf).min(axis=1)
@@ -78,7 +80,8 @@ def _widest_gap(low: Array, high: Array, middle: float) -> float:
 
 def to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
     """Whether triangles (n, 3, 3) turn their outside to the viewer, shape (n,)."""
-    one, other = (triangles[:, k, :2] - triangles[:, 0, :2] for k in (1, 2))
+    one = triangles[:, 1] - triangles[:, 0]
+    other = triangles[:, 2] - triangles[:, 0]
     facing: npt.NDArray[np.bool_] = one[:, 0] * other[:, 1] > one[:, 1] * other[:, 0]
     return facing
 
@@ -89,7 +92,10 @@ def cut_by(triangles: Array, x: float | Array) -> tuple[Array, npt.NDArray[np.bo
     x: of all, or of each, shape (n, 1).
     """
     end = np.roll(triangles, -1, axis=1)
-    run = end[:, :, 0] - triangles[:, :, 0]
-    share = (x - triangles[:, :, 0]) / np.where(run == 0.0, np.inf, run)
+    start_x = triangles[:, :, 0]
+    run = end[:, :, 0] - start_x
+    is_flat = run == 0.0
+    share = (x - start_x) / np.where(is_flat, np.inf, run)
     points = triangles + share[:, :, None] * (end - triangles)
-    return points, (share >= 0.0) & (share <= 1.0) & (run != 0.0)
+    meets = (share >= 0.0) & (share <= 1.0) & ~is_flat
+    return points, meets

@@ -169,10 +169,11 @@ class _Face:
         if random.random() < 0.5 and any(units.values()):
             for name in dict.fromkeys(chosen(random, units) for _ in range(2)):
                 self._add(name, self._intensity())
-        for name, part in zip(names, (share, 1.0 - share), strict=True):
-            if part > 0.0:
-                self.controls[name] = self.controls.get(name, 0.0) + strength * part
-        return "+".join(dict.fromkeys(names[: 1 + (share < 1.0)]))
+        parts = [share, 1.0 - share] if share < 1.0 else [share]
+        spoken = names[: len(parts)]
+        for name, part in zip(spoken, parts, strict=True):
+            self.controls[name] = self.controls.get(name, 0.0) + strength * part
+        return "+".join(dict.fromkeys(spoken))
 
     def _add(self, unit: str, value: float) -> bool:
         """Add a unit unless one that is set excludes it."""

@@ -18,7 +18,7 @@ THERE = 0.05  # from which value on a unit counts as there: a quarter of A
 
 @dataclass
 class Counts:
-    """In how many samples is what: kinds, persons by number, action units."""
+    """How many samples have each kind, each person (by number) and each action unit."""
 
     kinds: Counter[str] = field(default_factory=Counter)
     persons: Counter[int] = field(default_factory=Counter)

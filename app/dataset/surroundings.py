@@ -53,7 +53,8 @@ class Backgrounds:
         hue, saturation, value = random.uniform([0.0, 0.0, 0.15], [1.0, 0.35, 0.95])
         change = random.uniform(0.7, 1.15)
         centre = colorsys.hsv_to_rgb(hue, saturation, value)
-        return Background(centre, colorsys.hsv_to_rgb(hue, saturation, min(change * value, 1.0)))
+        edge = colorsys.hsv_to_rgb(hue, saturation, min(change * value, 1.0))
+        return Background(centre, edge)
 
     def picture(self, random: np.random.Generator, size: tuple[int, int]) -> tuple[str, Image]:
         """The name of one picture, and a part of it of `size`, sRGB, shape (H, W, 3).
@@ -70,9 +71,8 @@ class Backgrounds:
         height = scale * size[1]
         left = across * (whole.width - width)
         top = along * (whole.height - height)
-        part = whole.resize(
-            size, PIL.Image.Resampling.LANCZOS, (left, top, left + width, top + height)
-        )
+        box = (left, top, left + width, top + height)
+        part = whole.resize(size, PIL.Image.Resampling.LANCZOS, box)
         return as_text(path.name), np.asarray(part)
 
 

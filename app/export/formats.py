@@ -85,7 +85,7 @@ class Format:
     beside: tuple[str, ...] = ()
 
     def outputs(self, output: Path) -> tuple[Path, ...]:
-        """All files that are written, that of this name first."""
+        """All files that are written; the file of this name comes first."""
         return (output, *(output.with_name(output.stem + end) for end in self.beside))
 
     def load(self) -> Writer:

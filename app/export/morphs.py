@@ -56,18 +56,23 @@ def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) ->
     # More rounds of weighing vertices save hardly a shape.
     for _ in range(8):
         weighed = shapes * np.repeat(weighing, 3)
-        mixing = np.linalg.eigh(weighed @ weighed.T)[1][:, ::-1][:, :limit]
+        _, vectors = np.linalg.eigh(weighed @ weighed.T)
+        mixing = vectors[:, ::-1][:, :limit]  # the strongest first
         mixed_curves = curves @ mixing
         mixed_shapes = mixing.T @ shapes
         while low < high:
             count = (low + high) // 2
             off = _farthest(moved, mixed_curves[:, :count], mixed_shapes[:count])
-            low, high = (low, count) if off.max() <= tolerance else (count + 1, high)
+            if off.max() <= tolerance:
+                high = count
+            else:
+                low = count + 1
         found.append(_shifted(moved, mixed_curves[:, :high], mixed_shapes[:high]))
         fewer = max(high - 1, 0)
         left = _farthest(moved, mixed_curves[:, :fewer], mixed_shapes[:fewer])
         # In each round a vertex counts at least 0.03 of the one that is farthest off.
-        weighing *= np.sqrt(np.maximum(left / max(left.max(), NOTHING), 0.03))
+        share = left / max(left.max(), NOTHING)
+        weighing *= np.sqrt(np.maximum(share, 0.03))
         weighing /= weighing.max()
         low = max(high - 15, 0)  # a round saves no more shapes
     return min(found, key=lambda each: (max(each.error, tolerance), len(each.targets)))
@@ -84,7 +89,8 @@ def follow(weights: Floats64, changes: Floats64) -> Floats64:
 def _farthest(moved: Floats64, curves: Floats64, shapes: Floats64) -> Floats64:
     """How far off the sum of the shapes is at most at each vertex, shape (V,)."""
     off = (curves @ shapes).reshape(moved.shape) - moved
-    return np.asarray(np.sqrt(np.einsum("nvc,nvc->nv", off, off).max(axis=0)))
+    squares = np.einsum("nvc,nvc->nv", off, off)
+    return np.asarray(np.sqrt(squares.max(axis=0)))
 
 
 def _shifted(moved: Floats64, curves: Floats64, shapes: Floats64) -> Morphs:
@@ -96,7 +102,8 @@ def _shifted(moved: Floats64, curves: Floats64, shapes: Floats64) -> Morphs:
     lengths = curves.max(axis=0) - lowest
     targets = np.vstack([lowest @ shapes, lengths[:, None] * shapes])
     shifted = (curves - lowest) / np.where(lengths > 0.0, lengths, 1.0)
-    weights = np.column_stack([np.ones(len(moved)), np.clip(shifted, 0.0, 1.0)])
+    shares = np.clip(shifted, 0.0, 1.0)
+    weights = np.column_stack([np.ones(len(moved)), shares])
     kept = np.abs(targets).max(axis=1, initial=0.0) > NOTHING
     targets = targets[kept]
     weights = weights[:, kept]

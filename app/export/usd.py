@@ -89,8 +89,12 @@ def _add_surface(mesh: Any, surface: MovingSurface, request: ExportRequest) -> N
     if surface.matrices is not None:
         moves = np.ptp(surface.matrices, axis=0).any()
         operation = mesh.AddTransformOp()
-        for frame, matrix in enumerate(surface.matrices if moves else surface.matrices[:1]):
-            operation.Set(Gf.Matrix4d(matrix.T), frame if moves else ALWAYS)  # vectors are rows
+        matrices = [Gf.Matrix4d(matrix.T) for matrix in surface.matrices]  # vectors are rows
+        if not moves:
+            operation.Set(matrices[0], ALWAYS)
+        else:
+            for frame, matrix in enumerate(matrices):
+                operation.Set(matrix, frame)
     if surface.uv is not None and surface.face_uv is not None:
         st = _primvar(mesh, "st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.faceVarying)
         st.Set(Vt.Vec2fArray.FromNumpy(surface.uv))

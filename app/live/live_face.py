@@ -44,8 +44,8 @@ class LiveFace(Receiver):
     """The received frames, as a face.
 
     calibration: of the channels; may be replaced at any time.
-    channels: those of the newest frame, and older ones that it did not name; as they came.
-    subject: whose face it is, "" where nobody says so.
+    channels: the newest value of each channel, before calibration.
+    subject: the name of the person, "" where the sender has none.
     presence: how far it overrides our face, 0 to 1.
     """
 

@@ -23,10 +23,10 @@ ANYWHERE = "0.0.0.0"
 
 @dataclass(frozen=True)
 class Protocol:
-    """How faces come in packets.
+    """A way to send faces in packets.
 
-    title: as people call it. port: the usual one of receivers. module: in this room, with the
-    parser. library: a module that not everybody has installed, "" for none.
+    title: its usual name. port: the usual port of receivers. module: the module of this room with
+    the parser. library: an optional library that the parser needs, "" for none.
     """
 
     title: str

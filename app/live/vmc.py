@@ -104,13 +104,14 @@ def _put_bones(channels: dict[str, float], bones: Mapping[str, Quaternion]) -> N
 def _angles(*turns: Quaternion) -> tuple[float, float, float]:
     """Yaw, pitch and roll [degrees] as names.py counts them, of turns one upon the other.
 
-    NaN for what turns nothing.
+    NaN where a quaternion is too near to 0, or too large, to be a turn.
     """
     if not all(1e-6 < math.hypot(*turn) < 1e6 for turn in turns):
         return math.nan, math.nan, math.nan
-    matrix = Rotation.from_quat(turns[0]).as_matrix()
-    for turn in turns[1:]:
-        matrix = matrix @ Rotation.from_quat(turn).as_matrix()
+    whole = Rotation.identity()
+    for turn in turns:
+        whole *= Rotation.from_quat(turn)
+    matrix = whole.as_matrix()
     yaw = -math.atan2(matrix[0, 2], matrix[2, 2])
     pitch = math.asin(min(max(matrix[1, 2], -1.0), 1.0))
     roll = math.atan2(matrix[1, 0], matrix[1, 1])

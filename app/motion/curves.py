@@ -100,15 +100,16 @@ def _sums(values: Floats64, shares: Floats64, floors: Floats64) -> Floats64:
     least = np.zeros((len(values), floors.shape[1]))
     for value, floor in zip(values.T, floors, strict=True):
         np.maximum(least, np.outer(value, floor), out=least)
-    return np.where(least > 0.0, np.maximum(values @ shares, least), values @ shares)
+    sums = values @ shares
+    return np.where(least > 0.0, np.maximum(sums, least), sums)
 
 
 def _fitted(shares: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
     """Values (N, L) whose sums are nearest to the frames (N, C)."""
     rays = _rays(shares)
-    reach = np.array([(np.linalg.norm(shares[ray], axis=1) * highest[ray]).sum() for ray in rays])
-    directions = np.stack([shares[ray].sum(axis=0) for ray in rays])
-    directions = unit_vectors(directions)
+    strengths = np.linalg.norm(shares, axis=1)
+    reach = np.array([(strengths[ray] * highest[ray]).sum() for ray in rays])
+    directions = unit_vectors(np.stack([shares[ray].sum(axis=0) for ray in rays]))
     # Values count a little beside the fit: of all that fit alike, those in between are taken.
     matrix = np.vstack([directions.T, 1e-3 * np.eye(len(rays))])
     values = np.zeros((len(frames), len(shares)))
@@ -117,9 +118,8 @@ def _fitted(shares: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
         lengths = scipy.optimize.lsq_linear(matrix, wanted, (0.0, reach), method="bvls").x
         for ray, length in zip(rays, lengths, strict=True):
             for control in ray:  # the weakest first: a jaw drops (AU26) before it stretches (AU27)
-                strength = float(np.linalg.norm(shares[control]))
-                row[control] = min(length / strength, highest[control])
-                length -= row[control] * strength
+                row[control] = min(length / strengths[control], highest[control])
+                length -= row[control] * strengths[control]
     return values
 
 

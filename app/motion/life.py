@@ -58,7 +58,7 @@ class Life:
     def parts(self, time: float) -> dict[str, Values]:
         """Amounts to add to controls at `time` [s] from the start; 0 for controls not named.
 
-        In parts, each of which is moved together: lids, eyes, head.
+        By the part of the face that moves as one: lids, eyes, head.
         """
         across, along = self._glance(time)
         strays = zip(HEAD_STRAYS.items(), self._drifts(time), strict=True)

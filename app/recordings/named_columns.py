@@ -80,7 +80,7 @@ class Columns:
         return found
 
     def notes_of(self, names: tuple[str, ...]) -> list[str]:
-        """A sentence where two columns with different names hold one channel."""
+        """A note for each channel that two columns with different names hold."""
         twice = [names[each] for each in self.repeated if names.index(names[each]) == each]
         if not twice:
             return []

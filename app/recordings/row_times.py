@@ -36,10 +36,10 @@ def frame_times(
 
 
 def spread(values: Floats64, notes: list[str]) -> Floats64:
-    """Values of which several rows in a row have the same, so that each row has its own.
+    """Values that repeat over several rows, spread evenly so that each row has its own.
 
-    A clock that counts seconds, or timecode of 30 for rows of 60 a second, says when a group of
-    rows was seen; they are spread evenly.
+    A clock that counts seconds, or timecode of 30 for rows of 60 a second, gives one time to a
+    group of rows.
     """
     known = np.isfinite(values)
     there = values[known]
@@ -52,8 +52,9 @@ def spread(values: Floats64, notes: list[str]) -> Floats64:
     quantum = float(np.median(jumps[jumps > 0.0]))
     place = np.arange(len(there)) - np.repeat(starts, lengths).astype(np.float64)
     place[: lengths[0]] += max(usual - lengths[0], 0.0)  # the first group began before the file
+    whole_lengths = np.maximum(lengths, usual)
     found = values.copy()
-    found[known] = there + quantum * place / np.repeat(np.maximum(lengths, usual), lengths)
+    found[known] = there + quantum * place / np.repeat(whole_lengths, lengths)
     notes.append(f"About {usual:g} rows have the same time, and were spread evenly.")
     return found
 

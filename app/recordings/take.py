@@ -13,7 +13,7 @@ from ..errors import UserError
 
 @dataclass(frozen=True)
 class TakeRequest:
-    """face: which one, where a file has several. rate: frames a second, known better."""
+    """face: the name of one, where a file has several. rate: replaces the file's [1 / s]."""
 
     face: str | None = None
     rate: float | None = None

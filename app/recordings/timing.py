@@ -58,9 +58,10 @@ SPELLED_UNITS = {
 
 @dataclass(frozen=True)
 class Stamp:
-    """A name that means time.
+    """A column name that stands for time.
 
-    place: among STAMPS; the lower counts first. unit: that the name says [s], None without one.
+    place: in STAMPS; of several columns the first in STAMPS counts. unit: the unit in the name
+    [s], None where it has none.
     """
 
     place: int
@@ -231,10 +232,10 @@ def _seconds_in(cell: str) -> float:
 def stamp_times(
     stamps: Floats64, notes: list[str], unit_of_name: float | None = None
 ) -> Floats64 | None:
-    """Time stamps of any unit in seconds; None where they are of no use.
+    """Time stamps of any unit in seconds; None where no unit fits.
 
-    unit_of_name: the unit that the column's name says [s]; it counts if frames are then 0.5 ms to
-    10 s apart.
+    unit_of_name: the unit in the column's name [s]. It counts if frames are then 0.5 ms to 10 s
+    apart.
     """
     if len(stamps) == 1:
         return None

@@ -159,18 +159,22 @@ def of_percent(
 
 
 def _rows_of_zeros(shapes: Mapping[str, Floats64]) -> Rows:
-    """The rows in which all shapes are 0 although those that never rest are not, elsewhere."""
+    """The rows that have no face: all shapes are 0, even shapes that are above 0 elsewhere."""
     if not shapes:
         return np.zeros(0, dtype=bool)
-    is_zero = np.all([np.abs(np.nan_to_num(values)) <= ZERO for values in shapes.values()], axis=0)
-    is_empty = np.all([np.isnan(values) for values in shapes.values()], axis=0)
+    table = np.stack([*shapes.values()])
+    is_empty = np.all(np.isnan(table), axis=0)
+    is_zero = np.all(np.abs(np.nan_to_num(table)) <= ZERO, axis=0)
     is_zero &= ~is_empty
     others = ~(is_zero | is_empty)
+    nowhere = np.zeros(len(is_zero), dtype=bool)
     if not (is_zero.any() and others.any()):
-        return np.zeros(len(is_zero), dtype=bool)
-    resting = [shapes[name][others] for name in NEVER_AT_REST if name in shapes]
-    raised = sum(bool(np.nanmin(values, initial=1.0) > 0.02) for values in resting)
-    return is_zero if raised >= 3 else np.zeros(len(is_zero), dtype=bool)
+        return nowhere
+    raised = 0
+    for name in NEVER_AT_REST:
+        if name in shapes and np.nanmin(shapes[name][others], initial=1.0) > 0.02:
+            raised += 1
+    return is_zero if raised >= 3 else nowhere
 
 
 def _flag_in(cell: str) -> float:

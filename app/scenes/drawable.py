@@ -48,10 +48,10 @@ BARE = SkinImages()
 
 @dataclass(frozen=True, eq=False)
 class Framing:
-    """Points that say where a camera stands [mm].
+    """Points that place a camera [mm].
 
-    extent: it sees all of the scene if it sees these, (n, 3). framed: they fill its frame, (n, 3).
-    focus: a camera close by looks there, (3,).
+    extent: points around the whole scene, (n, 3). framed: points that fill the picture, (n, 3).
+    focus: the point that a near camera looks at, (3,).
     """
 
     extent: Points

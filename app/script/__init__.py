@@ -162,13 +162,17 @@ class Channel:
         first, last = np.searchsorted(self.times, (start, end))
         keys = self.times[first:last]
         values = self.values[first:last]
-        if len(keys) <= count:  # "hold" jumps at a key: it needs a point just before as well
-            times = np.unique(np.concatenate([edges, keys, np.nextafter(keys, -np.inf)]))
+        if len(keys) <= count:
+            # "hold" jumps at a key: it needs a point just before as well.
+            just_before = np.nextafter(keys, -np.inf)
+            times = np.unique(np.concatenate([edges, keys, just_before]))
             return times, self.values_at(times)
         begins = np.unique(np.searchsorted(keys, edges[:-1]))
         begins = begins[begins < len(keys)]
-        ends = [extreme.reduceat(values, begins) for extreme in (np.minimum, np.maximum)]
-        return np.repeat(keys[begins], 2), np.stack(ends, axis=1).ravel()
+        lowest = np.minimum.reduceat(values, begins)
+        highest = np.maximum.reduceat(values, begins)
+        times = np.repeat(keys[begins], 2)
+        return times, np.stack([lowest, highest], axis=1).ravel()
 
 
 @dataclass(frozen=True)

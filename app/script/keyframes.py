@@ -165,13 +165,13 @@ def keyed(script: Script, time: float, values: ControlValues) -> Script:
     rest = {name: values[name] - posed[name] for name in changed if name in script.tracks}
     keys = {name: value for name, value in rest.items() if abs(value - added[name]) > SAME}
     present = pose_at(script, time)
-    pose = Pose(
-        present.time if present else time,
-        {name: value for name, value in posed.items() if value},
-        present.easing if present else _easing_at(script.poses, time),
-        present.name if present else None,
-    )
-    with_pose = _with(script, {POSES: _joined(_pose_columns(script.poses), _pose_columns([pose]))})
+    nonzero = {name: value for name, value in posed.items() if value}
+    if present:
+        pose = replace(present, values=nonzero)
+    else:
+        pose = Pose(time, nonzero, _easing_at(script.poses, time), None)
+    poses = _joined(_pose_columns(script.poses), _pose_columns([pose]))
+    with_pose = _with(script, {POSES: poses})
     return _reaching(_with_track_keys(with_pose, time, keys), time)
 
 
@@ -210,10 +210,12 @@ def _with_track_keys(script: Script, time: float, values: Values) -> Script:
     changed = {}
     for name, value in values.items():
         track = script.tracks.get(name, Channel([], []))
-        near = np.flatnonzero(np.abs(track.times - time) < SAME)[:1]
-        after = near if len(near) else np.flatnonzero(track.times > time)[:1]
+        present = np.flatnonzero(np.abs(track.times - time) < SAME)
+        later = np.flatnonzero(track.times > time)
+        key_time = float(track.times[present[0]]) if len(present) else time
+        after = present if len(present) else later
         easing = track.easing(after[0]).name if len(after) else "smooth"
-        key = Key(float(track.times[near[0]]) if len(near) else time, rounded(value), easing)
+        key = Key(key_time, rounded(value), easing)
         changed[name] = _joined(_channel_columns(track), _channel_columns(Channel.of([key])))
     return _with(script, changed)
 

@@ -98,7 +98,8 @@ class Recorder:
             keys.append(Key(free, taken.value(free), "linear"))
             keys.append(Key(end, self._track_value(name, end), "linear"))
         if start:
-            keys[:1] = _along(old, head[-1].time if head else start, start)
+            last = head[-1].time if head else start
+            keys[:1] = _along(old, last, start)
         if tail and len(tail) < len(old):
             tail[:1] = _along(old, end, tail[0].time)
         return Channel.of([*head, *keys, *tail])
@@ -106,9 +107,10 @@ class Recorder:
 
 def _along(track: Channel, first: float, last: float) -> list[Key]:
     """Keys that follow a track after one time, up to another [s], with no key of its between."""
-    following = np.searchsorted(track.times, last)
-    easing = track.easing(int(following)).name if following < len(track) else "linear"
-    end = Key(last, track.value(last) if len(track) else 0.0, easing)
+    following = int(np.searchsorted(track.times, last))
+    easing = track.easing(following).name if following < len(track) else "linear"
+    value = track.value(last) if len(track) else 0.0
+    end = Key(last, value, easing)
     if easing in ("linear", "hold") or {first, last} <= set(track.times.tolist()):
         return [end]  # a part of such a way is eased as all of it
     # Straight lines between so many samples of an eased way are off by 0.0002.

@@ -171,7 +171,7 @@ class Display(Record):
         self.overlays = others if name in self.overlays else [*others, name]
 
     def remove_missing_overlays(self, scene: Drawable) -> None:
-        """Show none that this scene has no data for."""
+        """Hide the overlays that this scene has no data for."""
         self.overlays = [] if scene.face is None else self.overlays
 
 

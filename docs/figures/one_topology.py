@@ -16,6 +16,7 @@ from risorius import assets, refine, sim
 from risorius.app.pictures import Image
 from risorius.bench.subjects import SETTLE, settled_positions
 from risorius.geometry.arrays import Flags
+from risorius.geometry.normals import unit_vectors
 
 Points = npt.NDArray[np.float64]
 
@@ -32,24 +33,31 @@ def shaded(colour: Colour, light: float) -> Colour:
 
 def draw_frame(diagram: Diagram, mesh: refine.RefinedMesh, is_split: Flags, left: float) -> Points:
     """Draw the triangles that look at the reader; return where all vertices are, (N, 2)."""
-    centre = np.array([left + PANEL[0] / 2.0, CAPTION + PANEL[1] / 2.0])
+    width, height = PANEL
+    centre = np.array([left + width / 2.0, CAPTION + height / 2.0])
     pixels = 2.45  # of a millimetre
     middle = (0.0, -22.0)  # of the face [mm], in the middle of a panel
     places = centre + pixels * (mesh.positions[:, :2].astype(np.float64) - middle)
     corners = mesh.positions[mesh.triangles].astype(np.float64)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    is_inside = (np.abs(places[mesh.triangles, 0] - centre[0]) < PANEL[0] / 2.0).all(axis=1)
+    a, b, c = corners.swapaxes(0, 1)
+    normals = unit_vectors(np.cross(b - a, c - a))
+    aside = np.abs(places[mesh.triangles, 0] - centre[0])
+    is_inside = (aside < width / 2.0).all(axis=1)
+    is_shown = is_inside & (normals[:, 2] > 0.0)
+    depth = corners[:, :, 2].mean(axis=1)
     split = (163, 204, 232)  # of triangles that are part of one that is split
     whole = (242, 240, 236)
-    for k in np.argsort(corners[:, :, 2].mean(axis=1)):
-        if normals[k, 2] <= 0.0 or not is_inside[k]:
+    edge = (150, 154, 162)
+    for k in np.argsort(depth):
+        if not is_shown[k]:
             continue
         outline = places[mesh.triangles[k]]
         fill = split if is_split[mesh.source[k]] else whole
-        diagram.polygon(list(outline), shaded(fill, max(float(normals[k] @ LIGHT), 0.0)))
-        diagram.line([*outline, outline[0]], (150, 154, 162), 0.5)
-    strip = [(left, 0), (left + PANEL[0], 0), (left + PANEL[0], CAPTION), (left, CAPTION)]
+        light = max(float(normals[k] @ LIGHT), 0.0)
+        diagram.polygon(list(outline), shaded(fill, light))
+        diagram.line([*outline, outline[0]], edge, 0.5)
+    right = left + width
+    strip = [(left, 0), (right, 0), (right, CAPTION), (left, CAPTION)]
     diagram.polygon(strip, PAPER)
     return places
 
@@ -60,7 +68,8 @@ def one_topology() -> Image:
     simulation = sim.create(head)
     expressions = ("joy", "surprise")
     frames = [settled_positions(simulation, head.expressions[each], SETTLE) for each in expressions]
-    splits = refine.splits_of_clip(refine.create("kahler", head.faces, head.vertices), frames)
+    free = refine.create("kahler", head.faces, head.vertices)
+    splits = refine.splits_of_clip(free, frames)
     refiner = refine.create("kahler", head.faces, head.vertices, splits=splits)
     is_split: Flags = np.any(splits[refiner.triangle_edges], axis=1)
     diagram = Diagram(2 * PANEL[0], PANEL[1] + CAPTION)
@@ -80,9 +89,14 @@ def one_topology() -> Image:
 
 def numbered(mesh: refine.RefinedMesh, count: int) -> list[int]:
     """Vertices near a brow, a cheek, a corner of the mouth and the chin."""
-    wanted = np.array([(-28.0, 28.0), (34.0, -28.0), (-26.0, -50.0), (0.0, -82.0)])
+    brow = (-28.0, 28.0)
+    cheek = (34.0, -28.0)
+    corner = (-26.0, -50.0)
+    chin = (0.0, -82.0)
+    wanted = np.array([brow, cheek, corner, chin])
     front = np.flatnonzero(mesh.normals[:count, 2] > 0.4)
-    apart = np.linalg.norm(mesh.positions[front, None, :2] - wanted, axis=2)
+    places = mesh.positions[front, None, :2]
+    apart = np.linalg.norm(places - wanted, axis=2)
     return [int(front[k]) for k in apart.argmin(axis=0)]
 
 

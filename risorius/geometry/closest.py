@@ -94,9 +94,11 @@ def _boxes(corners: Floats64) -> Floats64:
     boxes = np.full((2 * leaf_count, 6), np.inf)
     boxes[:, 3:] = -np.inf
     starts = np.arange(0, len(corners), LEAF_SIZE)
+    low = corners.min(axis=1)
+    high = corners.max(axis=1)
     leaves = slice(leaf_count, leaf_count + len(starts))
-    boxes[leaves, :3] = np.minimum.reduceat(corners.min(axis=1), starts)
-    boxes[leaves, 3:] = np.maximum.reduceat(corners.max(axis=1), starts)
+    boxes[leaves, :3] = np.minimum.reduceat(low, starts)
+    boxes[leaves, 3:] = np.maximum.reduceat(high, starts)
     level = leaf_count
     while level > 1:
         pairs = boxes[level : 2 * level].reshape(-1, 2, 6)

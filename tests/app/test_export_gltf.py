@@ -213,9 +213,8 @@ def test_fine_shape_is_a_normal_map(clip, glb):
     skin = clip.skin
     fine = clip.scene.skin.fine_shape
     scene = trimesh.load_scene(glb, process=False)
-    material = next(
-        mesh.visual.material for name, mesh in scene.geometry.items() if name.startswith("skin")
-    )
+    skins = [mesh for name, mesh in scene.geometry.items() if name.startswith("skin")]
+    material = skins[0].visual.material
     image = np.asarray(material.normalTexture.convert("RGB"), np.float64)
     assert image.shape == (*fine.slopes.shape[:2], 3)
     assert np.asarray(material.occlusionTexture).min() < 100
@@ -224,12 +223,15 @@ def test_fine_shape_is_a_normal_map(clip, glb):
     for face in range(0, len(skin.faces), 7):
         uv = skin.uv[skin.face_uv[face]].astype(float)
         points = skin.rest[skin.faces[face]]
-        column, row = ((uv.mean(axis=0) * [1, -1] + [0, 1]) * size).astype(int)
+        across, up = uv.mean(axis=0)
+        column, row = (size * [across, 1.0 - up]).astype(int)
         slope = (fine.slopes[row, column] - 128.0) * fine.steepest / 127.0
-        along, aside = np.linalg.solve(np.diff(uv, axis=0), np.diff(points, axis=0))
-        if abs(np.linalg.det(np.diff(uv, axis=0))) < 4.0 / size.prod():
+        uv_steps = np.diff(uv, axis=0)
+        if abs(np.linalg.det(uv_steps)) < 4.0 / size.prod():
             continue  # smaller than a few texels: another may have drawn there
-        normal = np.cross(along, aside) / norm(np.cross(along, aside))
+        along, aside = np.linalg.solve(uv_steps, np.diff(points, axis=0))
+        outward = np.cross(along, aside)
+        normal = outward / norm(outward)
         gradient = np.linalg.solve(np.stack([along, aside, normal]), [*slope, 0.0])
         right = along / norm(along)
         tilted = np.stack([right, np.cross(normal, right), normal]) @ (normal - gradient)

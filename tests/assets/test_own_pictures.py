@@ -127,16 +127,18 @@ def test_maps_turn_with_the_layout(head):
     vars(known)["wrinkles"] = replace(head.wrinkles, map=smooth.round().astype(np.uint8))
     theirs = Layout(known.uv, known.face_uv)
     turned = 0.5 * np.column_stack([-known.uv[:, 1], known.uv[:, 0]]) + [0.5, 0.0]
-    wrinkles, _, light = maps_in(known, theirs, Layout(turned.astype(np.float32), known.face_uv))
-    place, image = ((layout[known.face_uv].mean(axis=1)) for layout in (known.uv, turned))
-    before, after = (
-        (sampled(each.map, where.astype(np.float64))[:, :2] - 128.0) * (each.steepest / 127.0)
-        for each, where in ((known.wrinkles, place), (wrinkles, image))
-    )
-    dark, found = (
-        sampled(each, where.astype(np.float64)).astype(int)
-        for each, where in ((known.ambient_occlusion, place), (light, image))
-    )
+    own = Layout(turned.astype(np.float32), known.face_uv)
+    wrinkles, _, light = maps_in(known, theirs, own)
+    place = known.uv[known.face_uv].mean(axis=1).astype(np.float64)
+    image = turned[known.face_uv].mean(axis=1)
+
+    def slopes(shape, where):
+        return (sampled(shape.map, where)[:, :2] - 128.0) * (shape.steepest / 127.0)
+
+    before = slopes(known.wrinkles, place)
+    after = slopes(wrinkles, image)
+    dark = sampled(known.ambient_occlusion, place).astype(int)
+    found = sampled(light, image).astype(int)
     assert np.median(abs(found - dark)) < 3
     assert (dark < 128).sum() > 50 < (found < 128).sum()
     wanted = 2.0 * np.column_stack([-before[:, 1], before[:, 0]])

@@ -1,6 +1,5 @@
 """The criterion of Fig. 10, made of public names: mouths that open."""
 
-from collections import defaultdict
 from itertools import pairwise
 
 import numpy as np
@@ -132,23 +131,24 @@ def plain_metric(mesh, normals, pose, rest_normals):
     turns = {}
     squares = {}
     for v, ring in around.border_ring.items():
-        squares[v] = sum((np.outer(unit(v, w, mesh.vertices), unit(v, w, mesh.vertices)) / 2
-                          for w in ring), np.zeros((3, 3)))  # fmt: skip
+        squares[v] = np.zeros((3, 3))
+        for w in ring:
+            way = unit(v, w, mesh.vertices)
+            squares[v] += np.outer(way, way) / 2
         points = [tuple(map(float, mesh.vertices[w])) for w in (ring[0], v, ring[-1])]
         turns[v] = 0.0
         if len(ring) == 2 and not is_corner(*points):
             change = turn(v, pose, normals) - turn(v, mesh.vertices, rest_normals)
             turns[v] = float(norm(change))
     for k in range(1, 5):
-        nearer = defaultdict(list)
+        fade = (5 - k) / (6 - k)
+        added = {}
         for v, ring in around.ring.items():
-            if v not in turns:
-                nearer[v] = [w for w in ring if w in turns]
-        for v, from_ in nearer.items():
-            if from_:
-                squares[v] = np.mean([squares[w] for w in from_], axis=0)
-        added = {v: (5 - k) / (6 - k) * float(np.mean([turns[w] for w in from_]))
-                 for v, from_ in nearer.items() if from_}  # fmt: skip
+            nearer = [w for w in ring if w in turns]
+            if v in turns or not nearer:
+                continue
+            squares[v] = np.mean([squares[w] for w in nearer], axis=0)
+            added[v] = fade * float(np.mean([turns[w] for w in nearer]))
         turns |= added
     metrics = {}
     for a, b in around.opposite:

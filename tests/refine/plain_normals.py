@@ -69,12 +69,16 @@ class RefinedNormals:
             # 0.511 x (middle - half of both ends): every corner is an end of two edges.
             centre = mix(*((1 / 3 - 0.511, p) for p in corners), *((0.511, m) for m in middles))
             for i in range(3):
+                k = (i + 1) % 3
+                here = face[i]
+                there = face[k]
+                edge = names[i]
                 first = area(corners[i], middles[i], centre)
-                second = area(middles[i], corners[(i + 1) % 3], centre)
-                for v, piece in ((face[i], first), (face[(i + 1) % 3], second)):
-                    of_vertices[v] = mix((1, of_vertices[v]), (1, piece))
-                of_middles[names[i]] = mix((1, of_middles[names[i]]), (1, first), (1, second))
-                sheets[names[i]] += 1
+                second = area(middles[i], corners[k], centre)
+                of_vertices[here] = mix((1, of_vertices[here]), (1, first))
+                of_vertices[there] = mix((1, of_vertices[there]), (1, second))
+                of_middles[edge] = mix((1, of_middles[edge]), (1, first), (1, second))
+                sheets[edge] += 1
             self.fans[source] = [p for pair in zip(corners, middles, strict=True) for p in pair]
         at_vertices = [unit(total) for total in of_vertices]
         at_middles = {}

@@ -116,12 +116,13 @@ def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> Cur
     def tangents(a: int, b: int) -> tuple[Vector, Vector]:
         d = mix((1, positions[b]), (-1, positions[a]))
         if (a, b) in around.inner:
-            along = [mix((1, d), (-1.2 * dot(d, steeper[v]), steeper[v])) for v in (a, b)]
-            return along[0], along[1]
+            at_a = mix((1, d), (-1.2 * dot(d, steeper[a]), steeper[a]))
+            at_b = mix((1, d), (-1.2 * dot(d, steeper[b]), steeper[b]))
+            return at_a, at_b
         ends: list[Vector | None] = []
         for here, there in ((a, b), (b, a)):
             ring = around.border_ring[here]
-            if len(ring) != 2 or is_corner(*(rest[v] for v in (ring[0], here, ring[1]))):
+            if len(ring) != 2 or is_corner(rest[ring[0]], rest[here], rest[ring[1]]):
                 ends.append(None)
                 continue
             other = ring[0] if ring[1] == there else ring[1]
@@ -129,18 +130,21 @@ def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> Cur
             before = length(mix((1, positions[here]), (-1, positions[other])))
             share = length(d) / (length(d) + before)
             ends.append(mix((share if here == a else -share, chord)))
-        at_a, at_b = ends
+        first, last = ends
         # Beside a corner the middle of a parabola has the direction of the chord.
-        return (
-            at_a or (mix((2, d), (-1, at_b)) if at_b else d),
-            at_b or (mix((2, d), (-1, at_a)) if at_a else d),
-        )
+        from_first = mix((2, d), (-1, first)) if first else d
+        from_last = mix((2, d), (-1, last)) if last else d
+        return first or from_last, last or from_first
 
     def curve(edge: EdgeName, quarters: int) -> Vector:
-        t, (at_a, at_b) = quarters / 4, tangents(*edge)
-        hermite = (2 * t**3 - 3 * t**2 + 1, t**3 - 2 * t**2 + t, t**3 - t**2, 3 * t**2 - 2 * t**3)
-        a = positions[edge[0]]
-        b = positions[edge[1]]
-        return mix(*zip(hermite, (a, at_a, at_b, b), strict=True))
+        a, b = edge
+        at_a, at_b = tangents(a, b)
+        t = quarters / 4
+        return mix(
+            (2 * t**3 - 3 * t**2 + 1, positions[a]),
+            (t**3 - 2 * t**2 + t, at_a),
+            (t**3 - t**2, at_b),
+            (3 * t**2 - 2 * t**3, positions[b]),
+        )
 
     return CurveRules(positions, faces, curve, normals)

@@ -233,14 +233,18 @@ def _smoothed(
     around = Surroundings(faces)
     moved = []
     for v, position in enumerate(positions):
-        share = max((once for edge, (once, _) in grown.items() if v in edge), default=0.0)
-        moved.append(mix((1 - share, position), (share, moved_vertex(v, positions, around))))
+        shares = [once for edge, (once, _) in grown.items() if v in edge]
+        share = max(shares, default=0.0)
+        target = moved_vertex(v, positions, around)
+        moved.append(mix((1 - share, position), (share, target)))
     first = {e: first_level_point(e, positions, around) for e in grown}
 
     def first_or_middle(u: int, v: int) -> Vector:
+        edge = edge_name(u, v)
         middle = mix((0.5, positions[u]), (0.5, positions[v]))
-        share = grown.get(edge_name(u, v), (0.0, 0.0))[0]
-        return mix((1 - share, middle), (share, first.get(edge_name(u, v), middle)))
+        share, _ = grown.get(edge, (0.0, 0.0))
+        point = first.get(edge, middle)
+        return mix((1 - share, middle), (share, point))
 
     points: dict[EdgeName, dict[int, Vector]] = {}
     for edge, m in first.items():
@@ -252,11 +256,13 @@ def _smoothed(
             points[edge] = {2: mix((1 - once, straight), (once, m))}
         elif edge in around.inner:
             c, d = around.opposite[edge]
-            beside = {end: [first_or_middle(end, c), first_or_middle(end, d)] for end in edge}
-            near = {
-                end: mix((3 / 8, moved[end]), (3 / 8, m), *((1 / 8, p) for p in beside[end]))
-                for end in edge
-            }
+            beside = {}
+            near = {}
+            for end in edge:
+                left = first_or_middle(end, c)
+                right = first_or_middle(end, d)
+                beside[end] = [left, right]
+                near[end] = mix((3 / 8, moved[end]), (3 / 8, m), (1 / 8, left), (1 / 8, right))
             ring = [moved[a], moved[b], *beside[a], *beside[b]]
             centre = mix((5 / 8, m), *((1 / 16, p) for p in ring))
             points[edge] = {
@@ -279,7 +285,10 @@ def _fan(
     centre: Name = ("centre", *sorted(face))
     edges = [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
     sums = {}
-    grown_by = [grown.get(edge, (0.0, 0.0))[0] if count[edge] else 0.0 for edge in edges]
+    grown_by = []
+    for edge in edges:
+        once, _ = grown.get(edge, (0.0, 0.0))
+        grown_by.append(once if count[edge] else 0.0)
     corner_weights, edge_weights = centre_weights(grown_by)
     for kind in ("positions", "normals"):
         values = getattr(twin, kind)

@@ -158,11 +158,14 @@ def test_muscle_pull(stirred, model, state):
     owner = np.repeat(np.arange(len(a)), np.diff(skin.holds.rows))
     i = skin.holds.vertex
     steady = skin.holds.value
+    held = (1.0 - skin.passive) * a
     expected_hold = np.zeros_like(hold)
-    np.add.at(expected_hold, i, ((1.0 - skin.passive) * a)[owner] * skin.holds.weight)
-    turned = steady + weight[i, None] * (steady @ mandible.rotation.T - steady)
+    np.add.at(expected_hold, i, held[owner] * skin.holds.weight)
+    turned = steady @ mandible.rotation.T
+    carried = steady + weight[i, None] * (turned - steady)
+    pull = tight * a
     expected = np.zeros_like(force)
-    np.add.at(expected, i, (tight * a)[owner, None] * turned)
+    np.add.at(expected, i, pull[owner, None] * carried)
     of_line = muscles.bundle.muscle
     pulled = np.where(a[of_line] > 0.0, tight[of_line], 0.0)
     ridden = np.where(motion.is_carried, tight[of_line], 0.0)
@@ -175,7 +178,8 @@ def test_muscle_pull(stirred, model, state):
         s = np.minimum(attached.value.astype(int), last)
         t = (attached.value - s)[:, None]
         along = (1.0 - t) * table[line, s] + t * table[line, s + 1]
-        np.add.at(expected, attached.vertex, (scale[line] * attached.weight)[:, None] * along)
+        strength = scale[line] * attached.weight
+        np.add.at(expected, attached.vertex, strength[:, None] * along)
     assert np.allclose(hold, expected_hold, rtol=1e-9)
     assert np.allclose(force, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
@@ -204,9 +208,10 @@ def test_lids_turn_about_the_eyeball(simulation, model, state):
     centre = lids.centres[lids.eye]
     flat = lids._replace(sink=np.zeros_like(lids.sink))
     turn_lids(state, rest, flat, closed, gaze)
+    away = state.carried[lids.vertex] - centre
     before = norm(rest[lids.vertex] - centre, axis=1)
-    after = norm(state.carried[lids.vertex] - centre, axis=1)
-    is_inner = ((state.carried[lids.vertex] - centre) * lids.inward[lids.eye]).sum(axis=1) > 0.0
+    after = norm(away, axis=1)
+    is_inner = (away * lids.inward[lids.eye]).sum(axis=1) > 0.0
     assert np.allclose(before[~is_inner], after[~is_inner])
     assert (after > before - 1e-9).all()
     assert (after < before + 1.5).all()
@@ -216,8 +221,9 @@ def test_lids_turn_about_the_eyeball(simulation, model, state):
 
     def angle(x):
         """Angle [rad] about the axis of the lids."""
-        high = ((x[lids.vertex] - centre) * lids.up[lids.eye]).sum(axis=1)
-        far = ((x[lids.vertex] - centre) * lids.forward[lids.eye]).sum(axis=1)
+        away = x[lids.vertex] - centre
+        high = (away * lids.up[lids.eye]).sum(axis=1)
+        far = (away * lids.forward[lids.eye]).sum(axis=1)
         return np.arctan2(high, far)
 
     turned = angle(state.carried) - angle(rest)

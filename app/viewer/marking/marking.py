@@ -52,7 +52,7 @@ class Group:
 
     @property
     def numbers(self) -> tuple[int, ...]:
-        """Its landmarks, each once, in the order of marking."""
+        """The landmarks to mark, each once, in the order of marking."""
         return tuple(dict.fromkeys(number for line in self.lines for number in line))
 
 

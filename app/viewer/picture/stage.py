@@ -307,7 +307,7 @@ class LevelOfDetail:
 
     @property
     def unhurried(self) -> render.Detail:
-        """The detail for a scene that moves a little now and then: as software begins, or finer."""
+        """The detail for a scene that seldom moves: the first one for software, or a finer one."""
         return LEVELS[min(self.level, self.FIRST_SOFTWARE_LEVEL)]
 
     def begin_motion(self) -> None:

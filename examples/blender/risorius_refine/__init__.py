@@ -170,7 +170,7 @@ def changed(settings: "RisoriusSettings", context: bpy.types.Context) -> None:
 
 
 def source_changed(settings: "RisoriusSettings", context: bpy.types.Context) -> None:
-    """Follow another source, and have it evaluated even where it is hidden."""
+    """Follow another source, which Blender then evaluates even while it is hidden."""
     copy = settings.id_data
     copy.parent = settings.source
     # A hidden mesh moves in renders only if a modifier asks for it; this one transfers nothing.

@@ -201,16 +201,20 @@ def cut_at(places, inside):
     mesh = refine.connect([[0, 1, 2], [0, 2, 3]], 4)
     splits = np.zeros(len(mesh.edges), dtype=np.uint8)
     splits[mesh.triangle_edges[0, 2]] = 1
-    vertices = [[k, k, k] for k in range(4)] + [[0, 2, 1], [2, 0, 3], [0, 1, 2]]
+    one, other = places
+    vertices = [[0, 0, 0], [1, 1, 1], [2, 2, 2], [3, 3, 3]]
     weights = [[1.0, 0.0, 0.0]] * 4
-    weights += [[1 - places[0], places[0], 0.0], [places[1], 1 - places[1], 0.0], [*inside]]
+    vertices += [[0, 2, 1], [2, 0, 3], [0, 1, 2]]
+    weights += [[1 - one, one, 0.0], [other, 1 - other, 0.0], [*inside]]
     origins = refine.Origins(np.array(vertices, np.int32), np.array(weights, np.float32))
     # Places within a tenth of a part of each other are one, so they have one position.
-    points = np.concatenate([rest, [rest[2] * places[0]] * 2, [[0.7, 0.2, 0.0]]])
+    cut = rest[2] * one
+    points = np.vstack([rest, cut, cut, [0.7, 0.2, 0.0]])
     triangles = [[0, 1, 6], [1, 2, 6], [2, 4, 6], [4, 0, 6], [0, 5, 3], [5, 2, 3]]
+    upward = np.array([0, 0, 1], dtype=np.float32)
     refined = refine.RefinedMesh(
         points.astype(np.float32),
-        np.tile(np.array([[0, 0, 1]], dtype=np.float32), (7, 1)),
+        np.tile(upward, (7, 1)),
         np.array(triangles, dtype=np.uint32),
         np.array([0, 0, 0, 0, 1, 1], dtype=np.int32),
         None,
