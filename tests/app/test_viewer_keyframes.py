@@ -13,6 +13,8 @@ from risorius.app.script import Script, keyframes
 from risorius.app.script.keyframes import POSES
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.script.script_file import load_script, parse_script
+from risorius.app.viewer.documents.file_dialogs import FileDialogs
+from risorius.app.viewer.documents.scripts import Question, ScriptCommands
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.timeline.keys import KeySelection
 
@@ -171,6 +173,23 @@ def test_a_new_script_keeps_the_face(session):
     session.undo()
     assert session.script == before
     assert session.values["jaw_open"] == 0.4
+
+
+def test_a_new_script_asks_for_no_pose(session):
+    """The pose stays, and stays unsaved; a changed script is asked for."""
+    question = Question(session)
+    commands = ScriptCommands(session, FileDialogs(), question, lambda *_: None)
+    session.set("jaw_open", 0.4)
+    session.note()
+    commands.new()
+    assert not question.is_open
+    assert session.file.path is None
+    assert session.values["jaw_open"] == 0.4
+    assert session.work.unsaved == "the pose"
+    session.set("joy", 0.5)
+    session.set_key()
+    commands.new()
+    assert question.is_open
 
 
 def test_losses_of_a_file_are_noticed(session):

@@ -88,13 +88,16 @@ class ScriptCommands:
         self.note_recent = note_recent
 
     def new(self) -> Message:
-        """Begin with an empty script, unless work would be lost: then ask first."""
+        """Begin with an empty script; ask first where the script or a recording would be lost."""
 
         def begin() -> Message:
             """Do so."""
             self._session.work.begin_script()
             return "A new script of this face; [Set key] keys the controls that you move"
 
+        session = self._session
+        if not (session.is_recording or session.work.script_is_unsaved):
+            return begin()
         return self._question.before("Begin", begin)
 
     def ask_open(self) -> None:

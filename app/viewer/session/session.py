@@ -351,9 +351,12 @@ class Work:
 
     def begin_script(self) -> None:
         """Begin a script of one pose: the face as it is, to which keys can be added."""
-        old = self._session.script
-        script = new_script(old.scene, old.camera, self._session.values)
-        self._session.replace_script(script, ScriptFile(None, script))
+        session = self._session
+        old = session.script
+        is_unsaved = session.pose_is_unsaved
+        script = new_script(old.scene, old.camera, session.values)
+        session.replace_script(script, ScriptFile(None, script))
+        session.pose_is_unsaved = is_unsaved
 
     def save_script(self, path: Path) -> None:
         """Write the script to a file; UserError where it cannot be written."""
