@@ -18,7 +18,7 @@ from scipy.ndimage import map_coordinates
 
 from risorius.geometry.normals import vertex_normals
 
-from ...geometry.arrays import Floats32, Floats64, Integers32
+from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
 from ...geometry.directions import unit_vectors
 from ..model import Part
 from ..smooth import Points, smooth_step
@@ -151,16 +151,8 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     out = points - middle
     angle = np.arctan2(out @ np.cross(whorl, beside), out @ beside)
     painted_depth = 1.0  # [mm] behind the hairline, where hairs lie on the skin only
-    faces = faces[(behind[faces] > painted_depth).any(axis=1)]
-    # Where angles begin anew strands do not cross from one side to the other.
-    crosses = np.ptp(angle[faces], axis=1) > np.pi
-    again, number = np.unique(faces[crosses], return_inverse=True)
-    faces[crosses] = len(points) + number.reshape(-1, 3)
-    angle = np.concatenate([angle, angle[again] + 2.0 * np.pi * (angle[again] < 0.0)])
-    used, number = np.unique(faces, return_inverse=True)
-    faces = number.reshape(-1, 3).astype(np.int32)
-    angle = angle[used]
-    rows = np.concatenate([np.arange(len(points)), again])[used]
+    is_hairy = (behind[faces] > painted_depth).any(axis=1)
+    faces, rows, angle = _parted(faces[is_hairy], angle)
     points = points[rows]
     normals = normals[rows]
     behind = behind[rows]
@@ -204,6 +196,23 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     hangs = (normals[:, 1] < upward_share) | ((0.3 < dense) & (behind < 2.0 * hem_depth))
     hangs &= points[:, 2] > middle[2]  # over the skin
     return from_within(hair, faces[hangs[faces].all(axis=1)]), loose, hair
+
+
+def _parted(faces: Integers32, angle: Floats64) -> tuple[Integers32, Integers64, Floats64]:
+    """Give faces (F, 3) vertices of their own where angles (V,) begin anew.
+
+    So strands do not cross from one side to the other. Returns the faces, and of each of their
+    vertices the number that it had and its angle.
+    """
+    crosses = np.ptp(angle[faces], axis=1) > np.pi
+    doubled, number = np.unique(faces[crosses], return_inverse=True)
+    faces = faces.copy()
+    faces[crosses] = len(angle) + number.reshape(-1, 3)
+    turned = angle[doubled] + 2.0 * np.pi * (angle[doubled] < 0.0)
+    used, number = np.unique(faces, return_inverse=True)
+    rows = np.concatenate([np.arange(len(angle)), doubled])[used]
+    angles = np.concatenate([angle, turned])[used]
+    return number.reshape(-1, 3).astype(np.int32), rows, angles
 
 
 def from_within(hair: Part, faces: Integers32) -> Part:
