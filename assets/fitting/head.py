@@ -2,11 +2,11 @@
 
     landmarks  ->  similarity to millimetres and the face space
                ->  warp of the built-in head  ->  depth of bone, texture
+                                              ->  share of the mandible
                                               ->  eyes, teeth, tongue, mouth
 
-Muscles, jaw axis and what belongs to the mandible need no fitting: the rig is written in landmarks
-(sim/rig.py) and its seeds for the jaw were fitted on scans. Carried over from the built-in head
-instead, an open jaw was less like a scanned one (cosine 0.88 against 0.93, 2026-11-21).
+Muscles need no fitting: the rig is written in landmarks (sim/rig.py). The mandible's share of the
+skin is carried over, so that a chin goes as stiffly with its bone as the built-in one.
 
 Source: Kähler, Haber, Yamauchi, Seidel 2002, "Head shop".
 Differs from it: no mesh is fitted to scanned points; the mesh that is brought is animated itself.
@@ -67,9 +67,8 @@ from .warp import Similarity, ThinPlateSpline, nearest_on
 class FittedHead(simplifying.SimulatedHead):
     """A head that somebody brought, with all that `sim.create` and a renderer read.
 
-    The attributes are those of `Head`, in its millimetres and axes, but for the mandible's share,
-    which `sim.create` finds by the landmarks. What hangs together with no landmark (eyeballs,
-    teeth of the mesh's own) was left away.
+    The attributes are those of `Head`, in its millimetres and axes. What hangs together with no
+    landmark (eyeballs, teeth of the mesh's own) was left away.
 
     to_millimetres: takes the file's coordinates to these.
     file_vertices: numbers in the file of the vertices, or of the nearest, shape (V,), int32.
@@ -239,6 +238,7 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
         faces=skin.faces,
         landmarks=skin.landmarks,
         bone_depth=carried.bone_depth,
+        mandible_weight=carried.mandible_weight,
         eyes=carried.eyes,
         parts=with_eyelid_rims(carried.parts, skin.vertices, skin.faces, carried.eyes),
         uv=layout.uv,
@@ -286,6 +286,7 @@ class _Carried(NamedTuple):
     uv: Floats32  # (V, 2) in the built-in picture
     across: Floats32  # (V, 3) of wrinkles
     bone_depth: Floats64  # (V,) [mm]
+    mandible_weight: Floats64  # (V,)
 
 
 def _carried_over(
@@ -309,6 +310,7 @@ def _carried_over(
         uv=spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces)),
         across=nearest.interpolate(known.wrinkles.across).astype(np.float32),
         bone_depth=nearest.interpolate(known.bone_depth),
+        mandible_weight=weight,
     )
 
 
@@ -321,6 +323,7 @@ def _simulated(
         faces=coarse.faces,
         landmarks=coarse.landmarks,
         bone_depth=carried.bone_depth,
+        mandible_weight=carried.mandible_weight,
         eyes=carried.eyes,
         parts=carried.parts,
         jaw_axis=jaw.axis,
@@ -338,6 +341,7 @@ def _on_finer(carried: _Carried, coarse: SkinPiece, fine: SkinPiece) -> _Carried
         uv=nearest.interpolate(carried.uv).astype(np.float32),
         across=nearest.interpolate(carried.across).astype(np.float32),
         bone_depth=nearest.interpolate(carried.bone_depth),
+        mandible_weight=nearest.interpolate(carried.mandible_weight),
     )
 
 

@@ -45,21 +45,24 @@ def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> F
 def opening_as_people(
     rig: Mapping[str, Any], axis: Floats64, landmarks: Floats64
 ) -> dict[str, Any]:
-    """A rig whose jaw lowers the teeth as far as people do; it turns and glides more or less.
+    """A rig whose jaw parts the teeth as far as people do; it turns and glides more or less.
 
     axis: of the jaw (2, 3) [mm]. landmarks: (68, 3) [mm]; the lower lip stands for the teeth. The
-    opening is seven tenths of the widest, 50 mm between the teeth of men, and grows with the
-    distance from the axis to the teeth.
+    opening is three quarters of the widest, 50 mm between the edges of men's incisors, and grows
+    with the distance from the axis to the teeth. Teeth far below their axis move back as much as
+    down, so the whole way counts.
     """
     jaw = dict(rig["jaw"])
     down, forward = (landmarks[66] - axis.mean(axis=0))[1:] * (-1.0, 1.0)
     reach = float(np.hypot(down, forward))
-    opening = 0.7 * 50.0 / 100.0  # share of the reach, which is 100 mm in men
+    opening = 0.75 * 50.0 / 100.0  # share of the reach, which is 100 mm in men
     gains = np.linspace(0.8, 1.3, 51)
     angles = gains * np.radians(jaw["opening_deg"])
     sunk = forward * np.sin(angles) - down * (1.0 - np.cos(angles))
     sunk -= gains * jaw["opening_glide"][1]
-    gain = float(np.interp(opening * reach, sunk, gains))
+    receded = forward * (1.0 - np.cos(angles)) + down * np.sin(angles)
+    receded -= gains * jaw["opening_glide"][2]
+    gain = float(np.interp(opening * reach, np.hypot(sunk, receded), gains))
     jaw["opening_deg"] *= gain
     jaw["opening_glide"] = [gain * way for way in jaw["opening_glide"]]
     return {**rig, "jaw": jaw}

@@ -34,6 +34,7 @@ class SimulatedHead:
     faces: Integers32
     landmarks: Integers32
     bone_depth: Floats64
+    mandible_weight: Floats64
     eyes: tuple[Eye, ...]
     parts: tuple[Part, ...]
     rig: dict[str, Any]

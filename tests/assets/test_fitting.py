@@ -145,6 +145,30 @@ def test_a_fitted_head_makes_faces(fitted, simulation):
     assert lip_gap(simulation, fitted) > 20.0
 
 
+def test_the_chin_goes_stiffly_with_the_jaw(fitted, simulation):
+    """An open jaw takes the tip of the chin along by nine tenths of the way of its bone."""
+    chin = fitted.vertices[fitted.landmarks[8]]
+    displacement = settled_displacement(simulation, {"jaw_open": 1.0})
+    jaw = simulation.bones.transforms()["mandible"]
+    way = jaw[:3, :3] @ chin + jaw[:3, 3] - chin
+    moved = displacement[fitted.landmarks[8]]
+    assert moved @ way / (way @ way) > 0.88
+
+
+def test_the_neck_of_a_fitted_head_does_not_tear(fitted, simulation):
+    """Below an open jaw no edge of the neck's skin becomes twice as long."""
+    settled_displacement(simulation, {"jaw_open": 1.0})
+    edges = np.array(list(edge_faces(fitted.faces)))
+    rest = fitted.vertices
+    away = norm(rest[edges].mean(axis=1) - rest[fitted.landmarks[8]], axis=1)
+    is_below = rest[edges, 1].max(axis=1) < rest[fitted.landmarks[8], 1] + 10.0
+    edges = edges[is_below & (away < 90.0)]
+    ends = simulation.positions[edges]
+    length = norm(ends[:, 1] - ends[:, 0], axis=1)
+    at_rest = norm(rest[edges[:, 1]] - rest[edges[:, 0]], axis=1)
+    assert (length / at_rest).max() < 2.0
+
+
 def test_the_tongue_of_a_fitted_head_comes_out(fitted, simulation):
     """It lies on its own lips."""
     settled_displacement(simulation, {"jaw_open": 0.4, "tongue_out": 1.0})

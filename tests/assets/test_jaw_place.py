@@ -41,4 +41,6 @@ def test_the_opening_grows_with_the_mandible(head):
     down, forward = (points[66] - head.jaw_axis.mean(axis=0))[1:] * (-1.0, 1.0)
     sunk = forward * np.sin(angle) - down * (1.0 - np.cos(angle))
     sunk -= rig["jaw"]["opening_glide"][1]
-    assert sunk == pytest.approx(0.35 * np.hypot(down, forward), abs=0.1)
+    receded = forward * (1.0 - np.cos(angle)) + down * np.sin(angle)
+    receded -= rig["jaw"]["opening_glide"][2]
+    assert np.hypot(sunk, receded) == pytest.approx(0.375 * np.hypot(down, forward), abs=0.1)
