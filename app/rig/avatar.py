@@ -126,7 +126,6 @@ def avatar_of(head: FittedHead | None, request: RigRequest, say: Say) -> Avatar:
             )
     names = shape_names(scene, request.kinds)
     poses = dict(poses_of(scene, names, progress=request.progress))
-    sums = table(scene, poses)
     pairs: list[tuple[str, str]] = []
     take = None
     if request.take is not None and "arkit" in request.kinds:
@@ -139,10 +138,12 @@ def avatar_of(head: FittedHead | None, request: RigRequest, say: Say) -> Avatar:
             pairs = worth_correcting(scene, poses, count, progress=request.progress)
         poses.update(corrective_poses(scene, pairs))
         names = tuple(poses)
+        say(f"correctives: {', '.join(names[len(names) - len(pairs) :]) or 'none pays'}")
+    sums = table(scene, poses, pairs)
     if take is not None:
         sums.append(difference_on(take, scene, poses, pairs))
     for difference in sums:
-        say(f"sum of shapes off the simulation: {difference}")
+        say(f"sums of shapes, off the simulation: {difference}")
     shapes = tuple(_without_sums(each, pairs, names) for each in moving(bodies, poses))
     return Avatar(scene, file, shapes, names, tuple(pairs), eyes_are_nodes, tuple(sums))
 

@@ -53,12 +53,23 @@ class Difference:
 
 
 class Sums:
-    """Sums of the shapes of a scene's skin, compared with its simulation."""
+    """Sums of the shapes of a scene's skin, compared with its simulation.
 
-    def __init__(self, scene: FaceScene, poses: Mapping[str, tuple[Pose, Pose]]) -> None:
+    corrected: pairs whose correctives are added; `poses` has those of the pairs, too.
+    """
+
+    def __init__(
+        self,
+        scene: FaceScene,
+        poses: Mapping[str, tuple[Pose, Pose]],
+        corrected: Sequence[tuple[str, str]] = (),
+    ) -> None:
         self._scene = scene
         self._areas = vertex_areas(scene.rest_positions, scene.faces)
         self._ways = {name: pose.skin - base.skin for name, (pose, base) in poses.items()}
+        self._corrected = corrected
+        for first, second in corrected:
+            self._ways[f"{first}_{second}"] -= self._ways[first] + self._ways[second]
 
     @property
     def pairs(self) -> list[tuple[str, str]]:
@@ -82,6 +93,10 @@ class Sums:
         total = np.zeros_like(self._scene.rest_positions)
         for name, weight in weights.items():
             total += weight * self._ways[name]
+        for first, second in self._corrected:
+            product = weights.get(first, 0.0) * weights.get(second, 0.0)
+            if product:
+                total += product * self._ways[f"{first}_{second}"]
         return total
 
     def _difference(self, names: tuple[str, ...], summed: Floats64, way: Floats64) -> Difference:
@@ -98,9 +113,13 @@ class Sums:
         return float((self._areas * lengths[0] * lengths[1]).sum())
 
 
-def table(scene: FaceScene, poses: Mapping[str, tuple[Pose, Pose]]) -> list[Difference]:
-    """The differences of PAIRS, as far as there are such shapes."""
-    sums = Sums(scene, poses)
+def table(
+    scene: FaceScene,
+    poses: Mapping[str, tuple[Pose, Pose]],
+    corrected: Sequence[tuple[str, str]] = (),
+) -> list[Difference]:
+    """The differences of PAIRS, as far as there are such shapes; arguments as of `Sums`."""
+    sums = Sums(scene, poses, corrected)
     return [sums.difference(names) for names in PAIRS if set(names) <= set(poses)]
 
 

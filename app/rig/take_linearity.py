@@ -136,20 +136,14 @@ def difference_on(
 
     poses: of ARKit's shapes, and of the pairs whose correctives are added.
     """
-    ways = {name: poses[name][0].skin - poses[name][1].skin for name in ARKIT}
-    weights = dict(zip(ARKIT, take.curves.T, strict=True))
-    for first, second in pairs:
-        name = f"{first}_{second}"
-        pose, rest = poses[name]
-        ways[name] = pose.skin - rest.skin - ways[first] - ways[second]
-        weights[name] = weights[first] * weights[second]
+    sums = Sums(scene, poses, pairs)
     areas = vertex_areas(scene.rest_positions, scene.faces)
     shares = areas / areas.sum()
     farthest = 0.0
     squares = []
     for frame, way in enumerate(take.ways):
-        summed = sum(weights[name][frame] * each for name, each in ways.items())
-        off = np.linalg.norm(summed - way, axis=1)
+        weights = dict(zip(ARKIT, take.curves[frame].tolist(), strict=True))
+        off = np.linalg.norm(sums.sum(weights) - way, axis=1)
         farthest = max(farthest, float(off.max()))
         squares.append(float(shares @ off**2))
     return Difference((take.title,), farthest, float(np.sqrt(np.mean(squares))))

@@ -15,6 +15,7 @@ from risorius.app.errors import UserError
 from risorius.app.recordings.names import ARKIT
 from risorius.app.rig.avatar import RigRequest, file_head
 from risorius.app.rig.glb import Glb
+from risorius.app.rig.linearity import corrective_poses, table
 from risorius.app.rig.poses import rest_in
 from risorius.app.rig.scene_meshes import Piece, add_mesh
 from risorius.app.rig.surface import MovingSurface
@@ -256,6 +257,17 @@ def test_correctives_make_sums_come_true(tmp_path, face):
         assert np.abs(plain - together).max() > 3.0
 
 
+def test_what_is_printed_of_sums_has_the_correctives(face):
+    """The table of pairs is that of the file: a pair that has a shape of its own is met."""
+    pair = ("jawOpen", "mouthPucker")
+    rest = rest_in(face, {})
+    poses = {name: (rest_in(face, {name: 1.0}), rest) for name in pair}
+    (plain,) = table(face, poses)
+    (corrected,) = table(face, {**poses, **corrective_poses(face, [pair])}, [pair])
+    assert plain.most > 3.0
+    assert corrected.most < SEEN
+
+
 @pytest.mark.slow
 def test_a_take_shows_how_far_sums_are_off(tmp_path, face):
     """A take of one shape is met; where two are at 1, the line has the distance of the pair."""
@@ -276,6 +288,8 @@ def test_a_take_shows_how_far_sums_are_off(tmp_path, face):
     assert both == pytest.approx(expected, abs=0.2)
     path = tmp_path / "corrected.glb"
     result = risorius("rig", "-o", path, "--take", take, "--correctives", 2)
+    assert "correctives: jawOpen_mouthPucker" in result.output
+    assert "jawOpen + mouthPucker: at most 0.0 mm" in result.output
     (first, *_) = document(path)["meshes"][0]["extras"]["correctives"]
     assert first["product"] == ["jawOpen", "mouthPucker"]  # chosen by the take, which plays them
     line = next(line for line in result.output.splitlines() if "Still" in line)
