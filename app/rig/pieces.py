@@ -191,7 +191,10 @@ def _numbers_in(text: str, count: int) -> range:
     first = int(written[1]) if written else 0
     last = int(written[2] or first) if written else 0
     if not 1 <= first <= last <= count:
-        raise UserError(f"--piece: '{text}': the file has pieces 1 to {count}, none of this name")
+        there = f"pieces 1 to {count}, none of this name" if count else "no piece beside the skin"
+        raise UserError(
+            f"--piece: '{text}': the file has {there}; leave the option out, or mend it"
+        )
     return range(first, last + 1)
 
 

@@ -153,3 +153,5 @@ def test_an_option_names_pieces_by_number_or_name():
     for wrong, words in (("5=hair", "1 to 4"), ("c=hair", "none of this name"), ("a=hat", "roles")):
         with pytest.raises(UserError, match=words):
             corrected(pieces, [wrong])
+    with pytest.raises(UserError, match="no piece beside the skin"):
+        corrected([], ["1=hair"])
