@@ -52,12 +52,12 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
     """
     is_man = identity.sex is Sex.MAN
     years = identity.age
-    beard, _, fair, grey, line, hairs = random.uniform(0.0, 1.0, 6)
+    beard, fibres, fair, grey, line, hairs = random.uniform(0.0, 1.0, 6)
     fair_skin = 45.0  # ITA above which hair may be fair
     shaved_density = 0.12  # of hair in the shipped picture
     brows = drawn_brows(is_man, years, random)
     hairline = drawn_hairline(is_man, years, random)
-    iris = drawn_iris(random)
+    iris = drawn_iris(years, fibres, random)
     blood_chance, pale_chance = np.clip(random.normal(size=2), -2.0, 2.0).tolist()
     fading = 1.0 - 0.006 * (years - 20.0)
     blood = -0.05 + 0.13 * blood_chance if is_man else fading * (0.48 + 0.2 * blood_chance)

@@ -24,7 +24,7 @@ from risorius.assets.identities import (
 )
 from risorius.assets.identities.brows import Brows
 from risorius.assets.identities.complexion import _tints, typology_angle
-from risorius.assets.identities.eyes import drawn_iris
+from risorius.assets.identities.eyes import Iris, drawn_iris
 from risorius.assets.identities.hair import Hairline
 from risorius.assets.identities.population import IRIS_SHARES
 from risorius.assets.model import Segment
@@ -169,11 +169,41 @@ def test_no_two_irises_are_alike():
     """Of one colour they differ in lightness and in the ring around the pupil."""
     person = make_person(sample_identity(1))
     random = np.random.default_rng(2)
-    drawn = [Features(iris=drawn_iris(random)) for _ in range(8)]
+    drawn = [Features(iris=drawn_iris(30.0, chance, random)) for chance in random.random(8)]
     eyes = [coloured(person, angle=45.0, irises="blue", features=f).parts[0].colours for f in drawn]
     assert np.ptp([each.mean() for each in eyes]) > 0.02
     spread = np.std(eyes, axis=0).mean(axis=1)
     assert (spread > 0.03).sum() > 100
+
+
+def test_irises_have_fibres_and_edges_of_their_own():
+    """Fibres of another seed lie elsewhere; a limbus darkens the edge alone."""
+    person = make_person(sample_identity(1))
+
+    def light_of(**own):
+        """Light of the vertices of the left eyeball."""
+        features = Features(iris=Iris(**own))
+        eyes = coloured(person, angle=45.0, irises="blue", features=features).parts
+        return {part.name: part.colours.mean(axis=1) for part in eyes}["eyeball_left"]
+
+    plain = light_of()
+    dark = light_of(limbus=1.0)
+    first = light_of(fibres=0.4, seed=1) - plain
+    second = light_of(fibres=0.4, seed=2) - plain
+    is_iris = first != 0.0
+    assert is_iris.sum() > 400
+    assert abs(np.corrcoef(first[is_iris], second[is_iris])[0, 1]) < 0.3
+    assert 0.02 < np.std(first[is_iris]) < 0.12
+    assert 100 < (dark < plain - 0.02).sum() < 250
+    assert (dark[~is_iris] == plain[~is_iris]).all()
+
+
+def test_the_dark_edge_of_irises_fades_with_age():
+    """The young have a darker one than the old, drawn by the same numbers."""
+    ages = 20.0, 75.0
+    young, old = (drawn_iris(years, 0.5, np.random.default_rng(1)) for years in ages)
+    assert young.limbus > old.limbus + 0.3
+    assert young.fibres == old.fibres
 
 
 @pytest.mark.parametrize("angle", [60.0, 0.0, -50.0])
