@@ -241,11 +241,20 @@ def bench_gaps(mixtures: int) -> None:
 @click.option(
     "--seconds", type=FiniteRange(0.3, 600.0), default=5.0, show_default=True, help="Of each case."
 )
-def bench_window(size: tuple[int, int], seconds: float) -> None:
+@click.option("--head", type=FILE, help="A mesh of yours in place of the built-in head.")
+@click.option("--landmarks", type=FILE, help="Its landmark file, where it needs one.")
+def bench_window(
+    size: tuple[int, int], seconds: float, head: Path | None, landmarks: Path | None
+) -> None:
     """Time the window while a smile plays, and while nothing happens; needs a screen."""
+    from risorius.app.scenes import own_head
+
     from . import window
 
-    conclude(*window.measure(seconds, size))
+    if landmarks is not None and head is None:
+        raise UserError("--landmarks goes with --head; add the mesh, or leave out --landmarks")
+    fitted = None if head is None else own_head(head, landmarks)
+    conclude(*window.measure(seconds, size, fitted))
 
 
 @bench.command("capture")

@@ -4,7 +4,9 @@ import os
 
 import pytest
 
+from risorius.assets.coarse import coarse_head
 from risorius.bench import window
+from tests.app.command_line import refusal, risorius
 
 pytestmark = [
     pytest.mark.window,
@@ -18,9 +20,21 @@ def test_the_window_is_timed(monkeypatch):
     monkeypatch.setattr(window, "IDLE_SECONDS", 0.1)
     monkeypatch.setattr(window, "WARM_UP", 0.02)
     table, targets = window.measure(0.1, (640, 400))
+    assert ", 2030 triangles," in table
     rates = [float(line[30:39]) for line in table.splitlines() if line.startswith("smile")]
     assert len(rates) == 5
     assert min(rates) > 0.0
     assert len(targets) in (0, 4)  # where software draws
     assert "Nothing moves:" in table
     assert "% of a core" in table
+
+
+def test_a_head_of_the_users_is_timed(monkeypatch):
+    """Its triangles are named, and no rate is promised for it; landmarks alone are refused."""
+    monkeypatch.setattr(window, "IDLE_SECONDS", 0.1)
+    monkeypatch.setattr(window, "WARM_UP", 0.02)
+    table, targets = window.measure(0.1, (640, 400), coarse_head())
+    assert ", 524 triangles," in table
+    assert not targets
+    line = refusal(risorius("bench", "window", "--landmarks", __file__))
+    assert line.startswith("risorius: --landmarks goes with --head")
