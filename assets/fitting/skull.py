@@ -47,7 +47,8 @@ def build_skull(
     # Above and behind these there are no landmarks; the ears lie aside [mm].
     is_behind = (known[:, 2] < -20.0) & (abs(known[:, 0]) < 65.0)
     is_far = (known[:, 1] > 55.0) | is_behind
-    if hasattr(head, "anatomy"):  # it has the built-in head's vertices
+    has_built_in_vertices = hasattr(head, "anatomy") and len(head.vertices) == len(known)
+    if has_built_in_vertices:
         ears = [row for name, row in load("head").rings.items() if "ear_" in name]
         bare = np.setdiff1d(bare, np.concatenate(ears))  # bone lies under no ear
         named = [at for name, at in head.anatomy.items() if not name.startswith("tragion")]

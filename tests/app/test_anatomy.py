@@ -15,6 +15,7 @@ from risorius.app.anatomy.muscle_bands import AROUND, ROWS, Muscles
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import FaceScene
+from risorius.assets.coarse import coarse_head
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
 
@@ -140,6 +141,18 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path):
     posed(scene, jaw_open=1.0)
     anatomy.dissect(BOTH)
     assert (before[:, 1] - parts["muscles"].vertices[:, 1]).max() > 8.0
+
+
+def test_the_coarse_head_has_muscles_and_a_skull():
+    """Its vertices are others than the built-in head's, though it names the same points."""
+    scene = FaceScene(coarse_head())
+    parts = {each.part.name: each.part for each in Anatomy(scene).dissect(BOTH).parts}
+    low = scene.rest_positions.min(axis=0) - 12.0
+    high = scene.rest_positions.max(axis=0) + 2.0
+    for name in ("skull_cranium", "skull_mandible", "muscles"):
+        points = parts[name].vertices
+        assert np.isfinite(points).all()
+        assert ((low < points) & (points < high)).all()
 
 
 @pytest.mark.slow
