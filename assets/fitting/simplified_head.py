@@ -42,6 +42,7 @@ def simplified_head(head: FittedHead) -> FittedHead:
         faces=coarse.faces,
         landmarks=coarse.landmarks,
         bone_depth=coarse.bone_depth,
+        mandible_weight=coarse.mandible_weight,
         parts=with_eyelid_rims(coarse.parts, coarse.vertices, coarse.faces, coarse.eyes),
         uv=coarse.uv,
         face_uv=coarse.faces,
