@@ -28,6 +28,7 @@ from .nostrils import lit_nostrils
 from .topology import quarter
 
 GLASSES = "glasses"  # the name of the part
+MASK = "mask"  # likewise
 
 
 class Segment(IntEnum):
@@ -52,6 +53,7 @@ class Segment(IntEnum):
     HAIR = 13
     CLOTHING = 15
     GLASSES = 16
+    FACE_WEAR = 18
     IGNORE = 255
 
 
@@ -113,7 +115,7 @@ class Part:
     @property
     def is_enclosed(self) -> bool:
         """Whether it is in the head, where light from behind does not get."""
-        if self.name == GLASSES:
+        if self.name in (GLASSES, MASK):
             return False
         return self.bone in ("cranium", "mandible", "eye_right", "eye_left")
 

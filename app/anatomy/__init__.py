@@ -14,7 +14,7 @@ import numpy as np
 
 from risorius import render
 from risorius.assets.fitting.skull import build_skull, neck_sections
-from risorius.assets.identities import GLASSES, HAIR
+from risorius.assets.identities import GLASSES, HAIR, MASK
 
 from ..scenes import Drawable, Face
 from ..scenes.mouth import BentPart
@@ -81,7 +81,7 @@ class Anatomy:
                     place(
                         each,
                         bones,
-                        throws_shadow=each.name in (*OUTER_HAIR, GLASSES),
+                        throws_shadow=each.name in (*OUTER_HAIR, GLASSES, MASK),
                         opening=openings.get(opening_before(each.name, each.bone)),
                     )
                     for each in parts

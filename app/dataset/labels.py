@@ -21,11 +21,18 @@ DIGITS = 5
 
 
 def labels_of_face(
-    scene: FaceScene, camera: render.OrbitCamera, size: tuple[int, int], depth: Any
+    scene: FaceScene,
+    camera: render.OrbitCamera,
+    size: tuple[int, int],
+    depth: Any,
+    covered: Any = None,
 ) -> dict[str, Any]:
-    """All that is known of a face as it is now; `depth`: the depth map of its picture, (H, W)."""
+    """All that is known of a face as it is now; `depth`: the depth map of its picture, (H, W).
+
+    covered: where a mask hides all landmarks behind it, (H, W); None: nowhere.
+    """
     arkit = solved(scene, ARKIT_SHAPES, _in_one_frame(scene.simulation.controls.sums))
-    labels = labels_of(scene, camera, size, depth)
+    labels = labels_of(scene, camera, size, depth, covered)
     pixels = np.array(labels["landmarks"]["pixels"])[:68]
     positions = scene.positions @ scene.bone_transforms()["cranium"][:3, :3]  # as if not turned
     low, high = (np.clip(each, 0.0, size) for each in (pixels.min(axis=0), pixels.max(axis=0)))

@@ -16,6 +16,7 @@ import numpy as np
 import PIL.Image
 
 from risorius import render
+from risorius.assets import Segment
 from risorius.assets.identities import (
     in_colours,
     make_person,
@@ -39,7 +40,7 @@ from .labels import labels_of_face
 from .request import SetRequest
 from .sampling import Sample, SampleCamera, chosen, draw
 from .surroundings import laid_over, light_of
-from .table import NO_GLASSES
+from .table import BARE
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,10 @@ class Studio:
         camera = _posed(scene, sample, request.size)
         image, surroundings = self._taken(model, camera, sample)
         style = render.Style()  # neither light nor background counts in passes
-        images = model.passes.draw(camera, style, {"depth", *request.passes})
+        is_masked = model.labels["mask"] != BARE
+        needed = {"depth", "segmentation"} if is_masked else {"depth"}
+        images = model.passes.draw(camera, style, {*needed, *request.passes})
+        covered = images["segmentation"] == Segment.FACE_WEAR if is_masked else None
         labels = {
             "id": name_of(index),
             "index": index,
@@ -96,7 +100,7 @@ class Studio:
             "name": sample.name,
             "person": model.labels,
             **surroundings,
-            **labels_of_face(scene, camera, request.size, images["depth"]),
+            **labels_of_face(scene, camera, request.size, images["depth"], covered),
         }
         if request.degrade:
             image = degraded(image, sample.degradation)
@@ -137,6 +141,7 @@ class Studio:
         random = np.random.default_rng([number, 19])  # 18 is that of colours
         shirt = chosen(random, self._request.table.shirts)
         glasses = chosen(random, self._request.table.glasses)
+        mask = chosen(random, self._request.table.masks)
         labels = {
             "number": number,
             "tone": round(colours.angle, 2),
@@ -146,11 +151,13 @@ class Studio:
             "hair": person.identity.cut,
             "shirt": shirt,
             "glasses": glasses,
+            "mask": mask,
             "measures": {code: round(value, 3) for code, value in person.measures.items()},
         }
         head = in_colours(person, colours, shrink=_shrink_for(self._request.size))
-        frame = None if glasses == NO_GLASSES else glasses
-        scene = FaceScene(wearing(head, shirt=shirt, frame=frame))
+        frame = None if glasses == BARE else glasses
+        cover = None if mask == BARE else mask
+        scene = FaceScene(wearing(head, shirt=shirt, frame=frame, cover=cover))
         pipeline = Pipeline(scene, self._renderer)
         drawn = pipeline.bind(Refinement(refiner=self._request.refiner))
         return _Model(scene, pipeline, Passes(pipeline, drawn), labels)

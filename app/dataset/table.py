@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from risorius import assets
-from risorius.assets.identities import DARKEST, FRAMES, LIGHTEST, SHIRTS, Population
+from risorius.assets.identities import DARKEST, FRAMES, LIGHTEST, MASKS, SHIRTS, Population
 from risorius.assets.identities.hair import CUTS
 from risorius.assets.identities.population import IRIS_SHARES
 from risorius.render import LIGHTS
@@ -24,7 +24,7 @@ from ..files import NoSuchFileError, read_text
 
 LETTERS = ("A", "B", "C", "D", "E")
 BLINK = "AU45"
-NO_GLASSES = "none"  # in the table
+BARE = "none"  # in the table: neither glasses nor a mask
 PERSONS = 1_000_000  # of each seed: no other seed has them
 Shares = Mapping[str, float]
 Range = tuple[float, float]
@@ -184,7 +184,8 @@ class SampleTable(Record):
     cuts_of_women: Annotated[Shares, _drawn_from(CUTS)]
     cuts_of_men: Annotated[Shares, _drawn_from(CUTS)]
     shirts: Annotated[Shares, _drawn_from(SHIRTS)]
-    glasses: Annotated[Shares, _drawn_from((NO_GLASSES, *FRAMES))]
+    glasses: Annotated[Shares, _drawn_from((BARE, *FRAMES))]
+    masks: Annotated[Shares, _drawn_from((BARE, *MASKS))]
     lights: Annotated[Shares, _drawn_from(LIGHTS)]
     degradations: Degradations
 

@@ -24,7 +24,7 @@ import numpy.typing as npt
 import PIL.Image
 
 from risorius import render
-from risorius.geometry.arrays import Floats32, Floats64
+from risorius.geometry.arrays import Flags, Floats32, Floats64
 
 from ..errors import UserError
 from ..extras import needed
@@ -43,11 +43,13 @@ def labels_of(
     camera: render.OrbitCamera,
     size: tuple[int, int],
     depth: Floats32 | None = None,
+    covered: Flags | None = None,
 ) -> dict[str, Any]:
     """The labels of the picture that `camera` takes of `scene` now, `size` pixels large.
 
-    depth: its depth map, for the landmarks; None leaves them out. `docs/passes.md` describes
-    the keys. A scene without a face has its camera and controls alone.
+    depth: its depth map, for the landmarks; None leaves them out. covered: where a mask hides
+    landmarks, (H, W); None: nowhere. `docs/passes.md` describes the keys. A scene without a face
+    has its camera and controls alone.
     """
     placed = CameraLabels.of(camera, size)
     labels: dict[str, Any] = {
@@ -86,9 +88,9 @@ def labels_of(
         for side, way in ways.items()
     }
     if depth is not None:
-        on_bone = jaw_on_bone(face, placed, depth)
+        on_bone = jaw_on_bone(face, placed, depth, covered)
         labels["landmarks"] = {
-            **_plain_landmarks(landmarks_in(face, placed, depth)),
+            **_plain_landmarks(landmarks_in(face, placed, depth, covered)),
             "jaw_on_bone": _plain_landmarks(on_bone),
         }
     return labels

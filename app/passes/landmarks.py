@@ -36,8 +36,13 @@ class Landmarks:
     visible: Flags
 
 
-def landmarks_in(face: Face, camera: CameraLabels, depth: Floats32) -> Landmarks:
-    """The landmarks of a face in the picture of which `depth`, (H, W), is the depth map."""
+def landmarks_in(
+    face: Face, camera: CameraLabels, depth: Floats32, covered: Flags | None = None
+) -> Landmarks:
+    """The landmarks of a face in the picture of which `depth`, (H, W), is the depth map.
+
+    covered: where a mask lies on the face, however near, (H, W); None: nowhere.
+    """
     positions = face.positions
     jaw = outline(face, camera)
     inner = face.annotation.inner_points(positions)
@@ -52,15 +57,18 @@ def landmarks_in(face: Face, camera: CameraLabels, depth: Floats32) -> Landmarks
             _is_on_surface(points[JAW_COUNT:], tolerance, camera, depth),
         ]
     )
-    return Landmarks(points, pixels, visible)
+    return Landmarks(points, pixels, visible & ~_is_covered(pixels, covered))
 
 
-def jaw_on_bone(face: Face, camera: CameraLabels, depth: Floats32) -> Landmarks:
+def jaw_on_bone(
+    face: Face, camera: CameraLabels, depth: Floats32, covered: Flags | None = None
+) -> Landmarks:
     """The rig's landmarks of the jaw, which keep to the bone however the head turns."""
     points = face.marked[:JAW_COUNT]
     tolerance = np.full(JAW_COUNT, MOST_BEHIND)
     visible = _is_on_surface(points, tolerance, camera, depth)
-    return Landmarks(points, camera.project(points), visible)
+    pixels = camera.project(points)
+    return Landmarks(points, pixels, visible & ~_is_covered(pixels, covered))
 
 
 def outline(face: Face, camera: CameraLabels) -> Floats64:
@@ -176,3 +184,12 @@ def _depths_at(pixels: Floats64, depth: Floats32) -> tuple[Floats64, Flags]:
     is_inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
     seen = depth[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)]
     return seen.astype(np.float64), is_inside
+
+
+def _is_covered(pixels: Floats64, covered: Flags | None) -> Flags:
+    """Which of pixels (n, 2) are among those that are covered, (H, W)."""
+    if covered is None:
+        return np.zeros(len(pixels), dtype=np.bool_)
+    height, width = covered.shape
+    columns, rows = np.floor(pixels).astype(int).T
+    return np.asarray(covered[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)])

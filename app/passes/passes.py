@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from risorius import render
 from risorius.assets import Segment
-from risorius.assets.identities import GLASSES, HAIR
+from risorius.assets.identities import GLASSES, HAIR, MASK
 
 from ..pipeline import Pipeline, Viewport
 from ..refining.drawn_mesh import DrawnMesh
@@ -101,6 +101,8 @@ def _classes(part: Any) -> Bytes:
         return np.full(len(part.faces), Segment.HAIR, np.uint8)
     if part.name == GLASSES:
         return np.full(len(part.faces), Segment.GLASSES, np.uint8)
+    if part.name == MASK:
+        return np.full(len(part.faces), Segment.FACE_WEAR, np.uint8)
     by_side = {"eye_right": Segment.RIGHT_EYE, "eye_left": Segment.LEFT_EYE}
     if part.bone == "neck":
         return np.full(len(part.faces), Segment.CLOTHING, np.uint8)

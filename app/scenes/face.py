@@ -11,6 +11,7 @@ import numpy as np
 from risorius import assets
 from risorius.assets.fitting import FittedHead
 from risorius.assets.identities import Person, built_in_hair, recoloured
+from risorius.assets.model import MASK
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.read_only import read_only
 
@@ -18,6 +19,7 @@ from ..control_names import parted
 from ..control_names.limits import ControlValues, Limits
 from .drawable import Framing, SkinImages
 from .face_under_skin import Face
+from .mask import Mask
 from .mouth import MouthWalls, Tongue, shaded_mouth
 from .openings import Rim, rims_of
 from .scene import Scene
@@ -109,6 +111,10 @@ class FaceScene(Scene):
                     part.follow(self.positions, bones[part.bone])
                 elif isinstance(part, Tongue) and tongue is not None:
                     part.bend(tongue)
+                elif isinstance(part, Mask):
+                    cranium = bones["cranium"]
+                    mandible = np.linalg.inv(cranium) @ bones["mandible"]
+                    part.follow(self.positions, cranium, mandible)
                 elif isinstance(part, MouthWalls):
                     to_cranium = np.linalg.inv(bones["cranium"])
                     part.stretch(self.simulation.bones.jaw, to_cranium @ bones["mandible"])
@@ -129,6 +135,13 @@ class FaceScene(Scene):
             shares = zip(controls.lowest, sums, strict=True)
             self._moved_by[name] = {each: abs(share) for each, share in shares if share}
         return self._moved_by[name]
+
+
+def _on_skin(part: Any, rest_positions: Floats64, faces: Any) -> Any:
+    """A part, such that it follows the skin if it lies on that."""
+    if part.name == MASK:
+        return Mask(part, rest_positions)
+    return part if part.roots is None else SkinPart(part, rest_positions, faces)
 
 
 def _images_of(head: assets.Head | FittedHead) -> SkinImages:
@@ -153,10 +166,7 @@ def _parts_of(
     faces: Integers32,
 ) -> tuple[Any, ...]:
     """The parts of a head, some of which can bend, and the hair of the built-in one."""
-    parts = tuple(
-        part if part.roots is None else SkinPart(part, rest_positions, faces)
-        for part in shaded_mouth(head.parts)
-    )
+    parts = tuple(_on_skin(part, rest_positions, faces) for part in shaded_mouth(head.parts))
     return (*parts, *built_in_hair(head)) if isinstance(head, assets.Head) else parts
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.assets.fitting.mouth_walls import stretched_walls
+from risorius.assets.model import MASK
 from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.read_only import read_only
@@ -100,9 +101,9 @@ class MouthWalls(BentPart):
         self.take_shape(stretched_walls(self.rest.astype(np.float64), self.shares, mandible))
 
 
-def _drawn(part: Any) -> dict[str, Any]:
+def drawn_attributes(part: Any) -> dict[str, Any]:
     """The attributes of a part that are drawn."""
-    names = ("name", "vertices", "normals", "faces", "colours", "bone", "shine")
+    names = ("name", "vertices", "normals", "faces", "colours", "bone", "shine", "is_enclosed")
     return {name: getattr(part, name) for name in names}
 
 
@@ -115,13 +116,13 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
         if part.name == "tongue":
             unlit = read_only(_painted_tongue(part))
             colours = read_only(_shaded(part.vertices, unlit, front, TONGUE))
-            drawn = {**_drawn(part), "colours": colours, "shine": 0.42}  # it is wet
+            drawn = {**drawn_attributes(part), "colours": colours, "shine": 0.42}  # it is wet
             return Tongue(**drawn, unlit=unlit, front=float(front))
-        if part.mandible_shares is not None:
+        if part.mandible_shares is not None and part.name != MASK:
             shares = part.mandible_shares
             rest = part.vertices
             return MouthWalls(
-                **_drawn(part), shares=shares, rest=rest, resting_normals=part.normals
+                **drawn_attributes(part), shares=shares, rest=rest, resting_normals=part.normals
             )
         if not part.name.startswith(IN_MOUTH):
             return part

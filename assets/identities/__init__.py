@@ -6,10 +6,11 @@
 Any of them goes where the built-in head goes: `sim.create(person)`, `FaceScene(person)`.
 """
 
-from ..model import GLASSES
+from ..model import GLASSES, MASK
 from .complexion import built_in_hair, coloured, recoloured
 from .features import Features, features_of
 from .hair import HAIR
+from .mask import MASKS
 from .named import (
     NAMED,
     Colours,
@@ -31,6 +32,8 @@ __all__ = [
     "GLASSES",
     "HAIR",
     "LIGHTEST",
+    "MASK",
+    "MASKS",
     "NAMED",
     "SHIRTS",
     "Colours",

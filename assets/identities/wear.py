@@ -1,4 +1,4 @@
-"""What persons wear: shirts of several colours, and glasses on the bridge of the nose and the ears.
+"""What persons wear: shirts of several colours, masks, and glasses on nose and ears.
 
 Lenses are clear, so only their frame is there. It moves with the head, and keeps off the skin at
 rest. All sizes are chosen by eye, after usual frames (lens 48 mm, bridge 18 mm, temple 140 mm).
@@ -9,18 +9,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import NamedTuple
 
 import numpy as np
 import scipy
 
-from ...geometry.arrays import Floats64, Integers32
-from ...geometry.directions import unit_vectors
+from ...geometry.arrays import Floats64
 from ..model import GLASSES, Part
-from ..topology import grid_faces
+from .mask import MASKS, mask
 from .person import Person
+from .wires import Colour, Tube, beside_head, tube
 
-Colour = tuple[float, float, float]
 SHIRTS: Mapping[str, Colour] = MappingProxyType(
     {
         "blue": (0.22, 0.24, 0.28),  # of the built-in head
@@ -61,8 +59,13 @@ FRAMES: Mapping[str, Frame] = MappingProxyType(
 )
 
 
-def wearing(person: Person, *, shirt: str, frame: str | None = None) -> Person:
-    """A person in a shirt of SHIRTS, and with a frame of FRAMES or none; KeyError for others."""
+def wearing(
+    person: Person, *, shirt: str, frame: str | None = None, cover: str | None = None
+) -> Person:
+    """A person in a shirt of SHIRTS, with a frame of FRAMES or none, and a mask of MASKS or none.
+
+    Raises KeyError for others.
+    """
     usual = np.array(SHIRTS["blue"])
     parts = []
     for part in person.parts:
@@ -71,14 +74,20 @@ def wearing(person: Person, *, shirt: str, frame: str | None = None) -> Person:
             colours = np.clip(shade * SHIRTS[shirt], 0.0, 1.0)
             part = replace(part, colours=colours.astype(np.float32))
         parts.append(part)
+    nose = person.vertices
+    if cover is not None:
+        sheet = mask(person, MASKS[cover])
+        parts.append(sheet)
+        nose = np.vstack([nose, sheet.vertices])
     if frame is not None:
-        parts.append(glasses(person, FRAMES[frame]))
+        parts.append(glasses(person, FRAMES[frame], nose))
     return replace(person, parts=tuple(parts))
 
 
-def glasses(person: Person, frame: Frame) -> Part:
-    """Glasses that fit a person."""
+def glasses(person: Person, frame: Frame, nose: Floats64 | None = None) -> Part:
+    """Glasses that fit a person; nose: points that they sit on, (n, 3), else the skin's."""
     skin = person.vertices
+    nose = skin if nose is None else nose
     eyes = {eye.name: eye for eye in person.eyes}
     middle = 0.5 * (eyes["left"].centre + eyes["right"].centre)
     apart = 0.5 * (eyes["left"].centre[0] - eyes["right"].centre[0])
@@ -97,16 +106,16 @@ def glasses(person: Person, frame: Frame) -> Part:
     front = [_in_front(each, lens, cornea) for each in (rim, rim * [-1.0, 1.0], bridge)]
     front[2][:, 2] += 2.0 * bow
     clearance = 0.5 * frame.thickness + 1.0  # [mm] between the frame and the skin
-    lacking = max(_depth_at(skin, each) + clearance for each in front)
+    lacking = max(_depth_at(nose, each) + clearance for each in front)
     forward = float(np.clip(lacking, -2.0, 9.0))
     moved = [each + np.array([0.0, 0.0, forward]) for each in front]
-    tubes = [_tube(each, frame.thickness, closed=True) for each in moved[:2]]
-    tubes.append(_tube(moved[2], frame.thickness, closed=False))
+    tubes = [tube(each, frame.thickness, closed=True) for each in moved[:2]]
+    tubes.append(tube(moved[2], frame.thickness, closed=False))
     for side, name in ((1.0, "left"), (-1.0, "right")):
         hinge = moved[0][np.argmax(rim[:, 0] + 0.4 * rim[:, 1])]
         ear = skin[person.anatomy[f"tragion_{name}"]]
         temple = _temple(skin, hinge * [side, 1.0, 1.0], ear, frame.thickness)
-        tubes.append(_tube(temple, 0.9 * frame.thickness, closed=False))
+        tubes.append(tube(temple, 0.9 * frame.thickness, closed=False))
     return _joined(tubes, frame)
 
 
@@ -134,53 +143,13 @@ def _temple(skin: Floats64, hinge: Floats64, ear: Floats64, thickness: float) ->
     """From the hinge along the side of the head over the ear, and down behind it, (n, 3)."""
     side = np.sign(hinge[0])
     top = np.array([ear[0] + side * 2.5, ear[1] + 21.0, ear[2] - 4.0])
-    share = np.linspace(0.0, 1.0, 24)[:, None]
-    straight = hinge + share * (top - hinge)
-    head = skin[skin[:, 2] > ear[2] + 6.0]  # without the ear
-    tree = scipy.spatial.cKDTree(head[:, 1:])
-    near = tree.query_ball_point(straight[:, 1:], 6.0)
-    widest = np.array([max((side * head[found, 0]).max(initial=0.0), 0.0) for found in near])
-    wanted = np.maximum(side * straight[:, 0], widest + 0.5 * thickness + 1.8)
-    wanted[0] = side * straight[0, 0]
-    for _ in range(3):
-        smooth = wanted.copy()
-        smooth[1:-1] = 0.25 * wanted[:-2] + 0.5 * wanted[1:-1] + 0.25 * wanted[2:]
-        wanted = np.maximum(wanted, smooth)
-    straight[:, 0] = side * wanted
+    straight = beside_head(skin, hinge, top, 0.5 * thickness)
     turn = np.linspace(0.0, 1.0, 9)[1:, None]
     behind = straight[-1] + turn * [0.0, 0.0, -16.0] + turn**2 * [-side * 2.0, -17.0, 0.0]
     return np.vstack([straight, behind])
 
 
-class _Tube(NamedTuple):
-    """A part of a frame."""
-
-    points: Floats64
-    normals: Floats64
-    faces: Integers32
-
-
-def _tube(path: Floats64, thickness: float, *, closed: bool) -> _Tube:
-    """A round tube along a path (n, 3)."""
-    corners = 8
-    if closed:
-        along = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0)
-    else:
-        along = np.gradient(path, axis=0)
-    along = unit_vectors(along)
-    first = np.cross(along, [0.31, 0.52, 0.79])
-    first = unit_vectors(first)
-    second = np.cross(along, first)
-    angle = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)[:, None, None]
-    normals = np.cos(angle) * first + np.sin(angle) * second  # (corners, n, 3)
-    points = path + 0.5 * thickness * normals
-    numbers = np.arange(points.shape[0] * points.shape[1]).reshape(points.shape[:2])
-    rows = np.vstack([numbers, numbers[:1]])
-    faces = grid_faces(rows, closed=closed)
-    return _Tube(points.reshape(-1, 3), normals.reshape(-1, 3), faces)
-
-
-def _joined(tubes: list[_Tube], frame: Frame) -> Part:
+def _joined(tubes: list[Tube], frame: Frame) -> Part:
     """One part of several tubes."""
     firsts = np.cumsum([0, *(len(each.points) for each in tubes[:-1])])
     faces = [each.faces + first for each, first in zip(tubes, firsts, strict=True)]

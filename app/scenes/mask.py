@@ -1,0 +1,68 @@
+"""A mask on a face: it goes with both jaws, and gives way where skin comes out against it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy
+
+from risorius.assets.fitting.mouth_walls import stretched_walls
+from risorius.assets.identities.mask import SHAPE
+from risorius.geometry.arrays import Floats64
+from risorius.geometry.normals import vertex_normals
+
+from .mouth import BentPart, drawn_attributes
+
+
+class Mask(BentPart):
+    """A mask before the mouth, drawn as any other part."""
+
+    def __init__(self, part: Any, skin: Floats64) -> None:
+        """The mask that lies on a skin at rest, (V, 3)."""
+        super().__init__(**drawn_attributes(part))
+        self._rest = part.vertices.astype(np.float64)
+        self._shares = part.mandible_shares
+        count = SHAPE[0] * SHAPE[1]
+        sheet = self._rest[:count]
+        # Smoothly over the pleats.
+        normals = vertex_normals(self._rest, part.faces)[:count].reshape(*SHAPE, 3)
+        smooth = scipy.ndimage.gaussian_filter(normals, (4.0, 4.0, 0.0), mode="nearest")
+        smooth /= np.linalg.norm(smooth, axis=-1, keepdims=True)
+        self._outward = smooth.reshape(-1, 3)
+        self._near = scipy.spatial.cKDTree(skin).query(sheet, k=24)[1]
+        self._resting_heights = self._heights(skin, sheet)
+        # The inner side and the loops go with the sheet: the loops less, the nearer to the ear.
+        distances, self._held_by = scipy.spatial.cKDTree(sheet).query(self._rest)
+        reach = 60.0  # [mm]
+        self._held = np.clip(1.0 - distances / reach, 0.0, 1.0)[:, None]
+
+    def follow(self, skin: Floats64, cranium: Floats64, mandible: Floats64) -> None:
+        """Lie on the skin as it is now, (V, 3).
+
+        cranium: where that is, a matrix (4, 4). mandible: how it has moved, seen from the cranium.
+        """
+        moved = stretched_walls(self._rest, self._shares, mandible)
+        there = (skin - cranium[:3, 3]) @ np.linalg.inv(cranium[:3, :3]).T
+        clearance = 2.0  # [mm]
+        heights = self._heights(there, moved[: len(self._outward)])
+        pushed = np.minimum(heights + clearance, heights - self._resting_heights).max(axis=1)
+        least = np.maximum(pushed, 0.0).reshape(SHAPE)
+        push = least
+        for _ in range(40):  # a sheet makes a tent over what pushes it
+            around = np.pad(push, 1, mode="edge")
+            mean = around[:-2, 1:-1] + around[2:, 1:-1] + around[1:-1, :-2] + around[1:-1, 2:]
+            push = np.maximum(least, 0.25 * mean)
+        away = push.reshape(-1, 1) * self._outward
+        self.take_shape(moved + self._held * away[self._held_by])
+
+    def _heights(self, skin: Floats64, sheet: Floats64) -> Floats64:
+        """How far skin around each vertex of the sheet lies outside it, (n, 24) [mm].
+
+        Skin bends away beside its vertices, as on a ball.
+        """
+        apart = skin[self._near] - sheet[:, None]
+        outside = (apart * self._outward[:, None]).sum(axis=-1)
+        beside = (apart * apart).sum(axis=-1) - outside**2
+        diameter = 16.0  # [mm]
+        return np.asarray(outside - beside / diameter)

@@ -1,0 +1,187 @@
+"""Surgical masks: a pleated sheet from the bridge of the nose to below the chin, and ear loops.
+
+The sheet is a membrane: it hangs on the skin that stands out farthest, the tip of the nose and the
+chin, and lies on the cheeks. It goes with the skull and the mandible as the skin below it does.
+All sizes are chosen by eye, after usual masks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+
+from ...geometry.arrays import Floats64
+from ...geometry.normals import vertex_normals
+from ..model import MASK, Part
+from ..smooth import smooth_step
+from ..topology import grid_faces
+from .person import Person
+from .wires import Colour, Tube, beside_head, tube
+
+MASKS: Mapping[str, Colour] = MappingProxyType(
+    {
+        "blue": (0.50, 0.68, 0.78),
+        "white": (0.84, 0.85, 0.85),
+        "black": (0.07, 0.07, 0.08),
+    }
+)
+SHAPE = (57, 49)  # rows from the nose to the chin, columns from right to left
+
+
+def mask(person: Person, colour: Colour) -> Part:
+    """A mask that fits a person; colour: sRGB."""
+    middle = person.vertices[person.anatomy["tragion_left"]] * [0.0, 0.0, 1.0]
+    middle[2] += 30.0
+    turn, height = _places(person)
+    outward = np.stack([np.sin(turn), np.zeros(SHAPE), np.cos(turn)], axis=-1)
+    level = np.stack([np.zeros(SHAPE), height, np.zeros(SHAPE)], axis=-1)
+    reach = _membrane(_skin_below(person, middle, turn, height))
+    down = np.linspace(0.0, 1.0, SHAPE[0])[:, None]
+    aside = np.abs(np.linspace(-1.0, 1.0, SHAPE[1]))
+    pleats, creases = _pleats(down, aside)
+    outer = middle + level + (reach + pleats)[..., None] * outward
+    thickness = 0.7  # [mm]
+    inner = middle + level + (reach - thickness)[..., None] * outward
+    is_seam = (down < 0.07) | (down > 0.94) | (aside > 0.94)
+    shades = np.stack([(1.0 - 0.06 * is_seam) * (1.0 - 0.3 * creases), np.ones(SHAPE)])
+    shares = _mandible_shares(person, outer)
+    sheet = _Piece(_sheet(outer, inner), shades.reshape(-1, 1) * colour, np.tile(shares.ravel(), 2))
+    return _joined([sheet, *_loops(person, outer, shares, colour)])
+
+
+class _Piece(NamedTuple):
+    """The sheet, or a loop."""
+
+    surface: Tube
+    colours: Floats64  # (n, 3)
+    shares: Floats64  # of the mandible, (n,)
+
+
+def _joined(pieces: list[_Piece]) -> Part:
+    """One part of several pieces."""
+    surfaces = [each.surface for each in pieces]
+    firsts = np.cumsum([0, *(len(each.points) for each in surfaces[:-1])])
+    faces = [each.faces + first for each, first in zip(surfaces, firsts, strict=True)]
+    return Part(
+        name=MASK,
+        vertices=np.vstack([each.points for each in surfaces]).astype(np.float32),
+        normals=np.vstack([each.normals for each in surfaces]).astype(np.float32),
+        faces=np.vstack(faces).astype(np.int32),
+        colours=np.vstack([each.colours for each in pieces]).astype(np.float32),
+        bone="cranium",
+        shine=0.0,
+        mandible_shares=np.concatenate([each.shares for each in pieces]).astype(np.float32),
+    )
+
+
+def _loops(person: Person, sheet: Floats64, shares: Floats64, colour: Colour) -> list[_Piece]:
+    """The elastics from the corners of the sheet (r, c, 3) to behind the ears."""
+    pale = 0.5 * (np.array(colour) + max(colour))
+    loops = []
+    for name, column in (("right", 0), ("left", -1)):
+        ear = person.vertices[person.anatomy[f"tragion_{name}"]]
+        for row, rise in ((1, 21.0), (-2, -27.0)):  # [mm] above the tragion
+            path = _loop(person, sheet[row, column], ear, rise)
+            surface = tube(path, 1.8, closed=False)
+            along = np.linspace(1.0, 0.0, len(path)) * shares[row, column]
+            around = len(surface.points) // len(path)
+            colours = np.tile(pale, (len(surface.points), 1))
+            loops.append(_Piece(surface, colours, np.tile(along, around)))
+    return loops
+
+
+def _places(person: Person) -> tuple[Floats64, Floats64]:
+    """Where the sheet's vertices are: turns about the upright axis [rad], and heights [mm]."""
+    landmarks = person.vertices[person.landmarks]
+    widest = np.radians(66.0)
+    across = np.linspace(-1.0, 1.0, SHAPE[1])
+    ear = float(person.vertices[person.anatomy["tragion_left"], 1])
+    bridge = float(landmarks[28, 1])
+    chin = float(landmarks[8, 1])
+    corner = float(landmarks[48, 1])
+    top = bridge + (ear - 15.0 - bridge) * smooth_step(0.1, 0.95, np.abs(across))
+    bottom = chin - 6.0 + (corner - 12.0 - chin + 6.0) * np.abs(across) ** 2.6
+    down = np.linspace(0.0, 1.0, SHAPE[0])[:, None]
+    height = top + down * (bottom - top)
+    return np.broadcast_to(widest * across, SHAPE), height
+
+
+def _skin_below(person: Person, middle: Floats64, turn: Floats64, height: Floats64) -> Floats64:
+    """How far the skin reaches from the upright axis at the vertices of the sheet [mm]."""
+    skin = person.vertices
+    corners = skin[person.faces]
+    corners = corners[corners[:, :, 2].min(axis=1) > middle[2] - 40.0]
+    steps = 8
+    first, second = np.meshgrid(np.arange(steps + 1), np.arange(steps + 1))
+    is_within = first + second <= steps
+    weights = np.stack([first[is_within], second[is_within]], axis=-1) / steps
+    weights = np.column_stack([weights, 1.0 - weights.sum(axis=1)])
+    points = np.einsum("wk,fkc->fwc", weights, corners).reshape(-1, 3) - middle
+    radius = 65.0  # [mm] at which degrees are counted as lengths
+    there = np.column_stack([radius * np.arctan2(points[:, 0], points[:, 2]), points[:, 1]])
+    reach = np.hypot(points[:, 0], points[:, 2])
+    places = np.column_stack([radius * turn.ravel(), height.ravel()])
+    near = scipy.spatial.cKDTree(there).query_ball_point(places, 2.5)
+    found = np.array([reach[each].max() if each else 0.0 for each in near])
+    return found.reshape(turn.shape)
+
+
+def _membrane(skin: Floats64) -> Floats64:
+    """How far a taut sheet over the skin reaches [mm]; its upper edge and sides lie on it."""
+    clearance = 2.6  # [mm]
+    below = skin + clearance
+    sheet = below.copy()
+    for _ in range(600):
+        around = np.pad(sheet, 1, mode="edge")
+        # Bending across is stiffer than along pleats, which give way.
+        mean = 0.3 * (around[:-2, 1:-1] + around[2:, 1:-1])
+        mean += 0.2 * (around[1:-1, :-2] + around[1:-1, 2:])
+        sheet = np.maximum(below, mean)
+        sheet[0] = below[0]
+        sheet[:, 0] = below[:, 0]
+        sheet[:, -1] = below[:, -1]
+    return sheet
+
+
+def _pleats(down: Floats64, aside: Floats64) -> tuple[Floats64, Floats64]:
+    """How far three pleats stand out [mm], and how deep their creases are, 0 to 1."""
+    count = 3
+    place = (down - 0.28) / 0.5 * count
+    phase = np.where((place > 0.0) & (place < count), place % 1.0, 0.0)
+    flat = smooth_step(1.0, 0.7, aside)
+    height = 1.5 * phase * flat
+    crease = np.where((place > 0.0) & (place <= count + 0.15), (place % 1.0) < 0.14, False)
+    return height, crease * (0.35 + 0.65 * flat)
+
+
+def _sheet(outer: Floats64, inner: Floats64) -> Tube:
+    """Both sides of a sheet (r, c, 3), and its edge."""
+    count = outer[..., 0].size
+    numbers = np.arange(count).reshape(SHAPE)
+    edge = np.concatenate([numbers[0], numbers[1:, -1], numbers[-1, -2::-1], numbers[-2:0:-1, 0]])
+    rim = grid_faces(np.stack([edge + count, edge]), closed=True)
+    sides = [grid_faces(numbers), grid_faces(numbers)[:, ::-1] + count, rim]
+    points = np.vstack([outer.reshape(-1, 3), inner.reshape(-1, 3)])
+    faces = np.vstack(sides).astype(np.int32)
+    return Tube(points, vertex_normals(points, faces), faces)
+
+
+def _mandible_shares(person: Person, sheet: Floats64) -> Floats64:
+    """How far vertices of the sheet go with the mandible: as the skin, smoothly over the lips."""
+    near = scipy.spatial.cKDTree(person.vertices).query(sheet, k=4)[1]
+    shares = person.mandible_weight[near].mean(axis=-1)
+    return np.asarray(scipy.ndimage.gaussian_filter(shares, 3.0, mode="nearest"))
+
+
+def _loop(person: Person, start: Floats64, ear: Floats64, rise: float) -> Floats64:
+    """An elastic from a corner of the sheet to behind the ear, (n, 3); rise: above the tragion."""
+    side = np.sign(start[0])
+    end = np.array([ear[0] + side * 2.5, ear[1] + rise, ear[2] - 4.0])
+    straight = beside_head(person.vertices, start, end, 0.9)
+    turn = np.linspace(0.0, 1.0, 7)[1:, None]
+    behind = straight[-1] + turn * [-side * 3.0, 0.0, -14.0] + turn**2 * [0.0, -0.5 * rise, 0.0]
+    return np.vstack([straight, behind])

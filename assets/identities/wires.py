@@ -1,0 +1,63 @@
+"""Wires of what persons wear: frames and temples of glasses, loops of masks."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+
+from ...geometry.arrays import Floats64, Integers32
+from ...geometry.directions import unit_vectors
+from ..topology import grid_faces
+
+Colour = tuple[float, float, float]
+
+
+def beside_head(skin: Floats64, start: Floats64, end: Floats64, radius: float) -> Floats64:
+    """A path of a wire from a start before the ear to an end above or below it, (24, 3).
+
+    It keeps off the skin of the head. radius: of the wire [mm].
+    """
+    side = np.sign(start[0])
+    share = np.linspace(0.0, 1.0, 24)[:, None]
+    straight = start + share * (end - start)
+    head = skin[skin[:, 2] > end[2] + 10.0]  # without the ear
+    tree = scipy.spatial.cKDTree(head[:, 1:])
+    near = tree.query_ball_point(straight[:, 1:], 6.0)
+    widest = np.array([max((side * head[found, 0]).max(initial=0.0), 0.0) for found in near])
+    least = np.maximum(side * straight[:, 0], widest + radius + 1.8)
+    least[0] = side * straight[0, 0]
+    wanted = least.copy()
+    for _ in range(200):  # until it is taut
+        wanted[1:-1] = np.maximum(least[1:-1], 0.5 * (wanted[:-2] + wanted[2:]))
+    straight[:, 0] = side * wanted
+    return straight
+
+
+class Tube(NamedTuple):
+    """A wire: points (n, 3), their normals, and triangles."""
+
+    points: Floats64
+    normals: Floats64
+    faces: Integers32
+
+
+def tube(path: Floats64, thickness: float, *, closed: bool) -> Tube:
+    """A round tube along a path (n, 3)."""
+    corners = 8
+    if closed:
+        along = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0)
+    else:
+        along = np.gradient(path, axis=0)
+    along = unit_vectors(along)
+    first = np.cross(along, [0.31, 0.52, 0.79])
+    first = unit_vectors(first)
+    second = np.cross(along, first)
+    angle = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)[:, None, None]
+    normals = np.cos(angle) * first + np.sin(angle) * second  # (corners, n, 3)
+    points = path + 0.5 * thickness * normals
+    numbers = np.arange(points.shape[0] * points.shape[1]).reshape(points.shape[:2])
+    rows = np.vstack([numbers, numbers[:1]])
+    faces = grid_faces(rows, closed=closed)
+    return Tube(points.reshape(-1, 3), normals.reshape(-1, 3), faces)
