@@ -121,14 +121,15 @@ class Skin:
     """The mesh of a frame: the last upload of a stream, and what lies on it.
 
     maps: they need a stream of 8 columns or more, ValueError else.
-    fade: a x + b y + c z + d, from 0 to 1, is the share of the mesh that shows at (x, y, z).
+    fade: the larger a x + b y + c z + d of two planes, from 0 to 1, is the share of the mesh that
+        shows at (x, y, z).
     values: the number that colours each triangle, see `ColourBy`, shape (M,), uint8; needed unless
         that is NONE.
     """
 
     stream: MeshBuffers
     maps: SkinMaps = NO_MAPS
-    fade: Plane | None = None
+    fade: tuple[Plane, Plane] | None = None
     values: Unsigned8 | None = None
     mesh: UploadedMesh = field(init=False)
     """The upload that it shows."""

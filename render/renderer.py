@@ -236,7 +236,7 @@ class Renderer:
         view: PlacedView,
         maps: dict[BumpMap, float],
         shadow: Shadow | None,
-        fade: Plane | None,
+        fade: tuple[Plane, Plane] | None,
     ) -> moderngl.Program:
         """The program of a frame's skin, with all that it looks up."""
         assert frame.skin is not None
@@ -247,7 +247,7 @@ class Renderer:
         write_uniform(program, "model_view", view.world_to_view)
         write_uniform(program, "projection", view.projection)
         if fade is not None:
-            program["fade"] = fade
+            write_uniform(program, "fade", np.array(fade))
         set_numbers(program, SKIN_NUMBERS, view)
         set_mesh(program, style, view, self._line_scale)
         if shadow is not None:

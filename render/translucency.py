@@ -81,12 +81,15 @@ def in_view(plane: Plane, view: PlacedView) -> Plane:
     return a, b, c, d
 
 
-def fade_seen(skin: Skin, view: PlacedView) -> Plane | None:
-    """Where a skin fades, in view space; None where nothing of that is inside the picture."""
+def fade_seen(skin: Skin, view: PlacedView) -> tuple[Plane, Plane] | None:
+    """The planes by which a skin fades, in view space; None where no picture shows that."""
     fade = skin.fade
     if fade is None:
         return None
     places = skin.stream.places
-    faded = places[places @ np.array(fade[:3], np.float32) + fade[3] < 1.0].astype(np.float64)
+    planes = np.array(fade, np.float32)
+    share = (places @ planes[:, :3].T + planes[:, 3]).max(axis=1)
+    faded = places[share < 1.0].astype(np.float64)
     is_seen = len(faded) and min(view.covered_pixels(faded, 0.0)[2:]) > 0
-    return in_view(fade, view) if is_seen else None
+    neck, ahead = fade
+    return (in_view(neck, view), in_view(ahead, view)) if is_seen else None

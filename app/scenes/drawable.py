@@ -20,6 +20,7 @@ from .openings import Rim
 
 Points = npt.NDArray[np.float64]
 Pixels = npt.NDArray[np.uint8]
+_Plane = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -30,7 +31,8 @@ class SkinImages:
     albedo: sRGB, (H, W, 3). in_tone: albedos by their individual typology angle [deg].
     ambient_occlusion: over the albedo, (H, W); None: light gets everywhere.
     fine_shape: of the skin, which its triangles do not hold. wrinkles: where skin wrinkles.
-    fade: a x + b y + c z + d, from 0 to 1, is the share of the mesh that shows at (x, y, z).
+    fade: the larger a x + b y + c z + d of two planes, from 0 to 1, is the share of the mesh that
+        shows at (x, y, z).
     """
 
     uv: Floats32 | None = None
@@ -40,7 +42,7 @@ class SkinImages:
     ambient_occlusion: Pixels | None = None
     fine_shape: assets.FineShape | None = None
     wrinkles: assets.Wrinkles | None = None
-    fade: tuple[float, float, float, float] | None = None
+    fade: tuple[_Plane, _Plane] | None = None
 
 
 BARE = SkinImages()

@@ -62,6 +62,8 @@ from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spre
 from .topologies import recognised
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
+_Plane = tuple[float, float, float, float]  # (a, b, c, d): a x + b y + c z + d
+
 
 @dataclass(frozen=True)
 class FittedHead(simplifying.SimulatedHead):
@@ -93,10 +95,12 @@ class FittedHead(simplifying.SimulatedHead):
     files: tuple[Path, ...] = field(default=(), kw_only=True)
     lip_cut: LipCut | None = field(default=None, kw_only=True)
 
-    def fade(self) -> tuple[float, float, float, float] | None:
-        """A x + b y + c z + d is 0 along the neck's edge, 1 FADE above; None: there is no edge.
+    def fade(self) -> tuple[_Plane, _Plane] | None:
+        """Planes of which the larger value of a x + b y + c z + d is the share that shows.
 
-        Skin that ends in the middle of a picture may fade so toward its end.
+        The first is 0 along the neck's edge, and 1 up to 25 mm above. The second grows from 0 ahead
+        of all skin that fades at rest: a chin that goes down there stays whole. None: the mesh has
+        no edge at the neck.
         """
         chin_landmark = 8
         chin = self.vertices[self.landmarks[chin_landmark]]
@@ -116,7 +120,13 @@ class FittedHead(simplifying.SimulatedHead):
         full_height = 25.0  # [mm] above a neck's edge, at most half the way to the chin
         height = min(full_height, 0.5 * (float(chin @ up) - bottom))
         a, b, c = (up / max(height, 1e-9)).tolist()
-        return (a, b, c, -bottom / height) if height > 0.0 else None
+        if height <= 0.0:
+            return None
+        neck = (a, b, c, -bottom / height)
+        share = self.vertices @ np.array(neck[:3]) + neck[3]
+        front = float(self.vertices[share < 1.0, 2].max())
+        soft_depth = 8.0  # [mm]
+        return neck, (0.0, 0.0, 1.0 / soft_depth, -front / soft_depth)
 
 
 def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHead:

@@ -168,7 +168,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     lift = cut.lift * smooth_step(*flat_depths, behind)[:, None]
     way = long[:, None] * (lift * normals + np.sqrt(1.0 - lift**2) * comb)
     way += covers[:, None] * normals
-    clearance = 0.7  # [mm] over the skin
+    clearance = 0.5  # [mm] over the skin
     sinking = 0.3  # [mm] down for each from 4 before the hairline on
     off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
     points = points + off[:, None] * normals

@@ -278,7 +278,7 @@ uniform float cut_width;
 const vec3 FAT = vec3(0.78, 0.50, 0.34);  // linear light
 #endif
 #if defined(FADED)
-uniform vec4 fade;  // view space: at a place it says how much of the skin shows, from 0 to 1
+uniform vec4 fade[2];  // planes, view space: the larger value is the share of skin that shows
 #endif
 #include "surface_number.glsl"
 layout(location = 0) out vec4 pixel_colour;
@@ -327,8 +327,11 @@ void main() {
     vec3 front = front_albedo();
     float solid = 1.0;
 #if defined(FADED)
-    solid = smoothstep(0.0, 1.0, dot(fade, vec4(surface.position, 1.0)));
-    if (!gl_FrontFacing && solid < 1.0) solid = 0.0;  // to discard it costs early depth tests
+    vec4 place = vec4(surface.position, 1.0);
+    solid = smoothstep(0.0, 1.0, max(dot(fade[0], place), dot(fade[1], place)));
+    // From below one would look into the neck. To discard its inside costs early depth tests.
+    bool is_behind = dot(fade[1], place) < 0.0;
+    if (!gl_FrontFacing && (solid < 1.0 || is_behind)) solid = 0.0;
 #endif
 #if defined(GOURAUD)
     Lit lit = Lit(surface.key, surface.rest, surface.specular);

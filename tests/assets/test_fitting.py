@@ -85,8 +85,8 @@ def test_the_built_in_head_fits_itself(head, tmp_path):
 
 def test_the_edge_of_the_neck_fades(fitted):
     """Nothing shows of a head where it ends, all of it at the chin; a closed neck has no end."""
-    plane = fitted.fade()
-    shown = fitted.vertices @ plane[:3] + plane[3]
+    planes = np.array(fitted.fade())
+    shown = (fitted.vertices @ planes[:, :3].T + planes[:, 3]).max(axis=1)
     edge = max(boundary_loops(fitted.faces), key=lambda x: -fitted.vertices[x, 1].mean())
     assert shown[edge].max() < 0.05
     assert shown[fitted.landmarks].min() > 1.0
@@ -95,6 +95,16 @@ def test_the_edge_of_the_neck_fades(fitted):
     points = np.vstack([fitted.vertices, fitted.vertices[edge].mean(axis=0)])
     closed = replace(fitted, vertices=points, faces=np.vstack([fitted.faces, cap]))
     assert closed.fade() is None
+
+
+def test_an_open_chin_does_not_fade_beside_a_short_neck(fitted):
+    """Ahead of the neck skin shows whole, even below its edge; the neck fades as before."""
+    neck, ahead = np.array(fitted.fade())
+    fading = fitted.vertices[fitted.vertices @ neck[:3] + neck[3] < 1.0]
+    open_chin = np.array([0.0, fading[:, 1].min(), fading[:, 2].max() + 10.0])
+    assert open_chin @ neck[:3] + neck[3] < 0.5
+    assert open_chin @ ahead[:3] + ahead[3] > 1.0
+    assert (fading @ ahead[:3] + ahead[3]).max() < 1e-6
 
 
 def test_teeth_lie_behind_the_skin(fitted):

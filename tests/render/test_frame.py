@@ -49,7 +49,9 @@ def frames_of(renderer):
         render.Frame(aside, replace(shaded, opacity=0.4), bare, [bone, hair], (1.0, 0.0, 0.0, 5.0)),
         render.Frame(aside, shaded, render.Skin(stream, render.SkinMaps(texture, bumps))),
         render.Frame(front, tinted, render.Skin(stream, values=values), still(Ball())),
-        render.Frame(front, shaded, render.Skin(stream, fade=(0.0, 0.02, 0.0, 0.5))),
+        render.Frame(
+            front, shaded, render.Skin(stream, fade=((0.0, 0.02, 0.0, 0.5), (0.0, 0.0, 0.0, 0.0)))
+        ),
         render.Frame(render.CameraView(turned, HALF, (10, 10, 20, 60)), PLAIN, None, [hair]),
     ]
 

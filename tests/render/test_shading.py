@@ -71,7 +71,9 @@ def test_skin_fades_toward_a_plane(renderer):
     """All of it at 1, half where the way is half done, nothing at 0."""
     stream = lent(renderer, square(30.0))
     pictures = []
-    for fade in (None, (0.0, 1.0 / 60.0, 0.0, 0.5)):  # from the lower edge to the upper one
+    upward = (0.0, 1.0 / 60.0, 0.0, 0.5)  # from the lower edge to the upper one
+    nowhere = (0.0, 0.0, 0.0, -1.0)
+    for fade in (None, (upward, nowhere)):
         image = draw(renderer, render.Skin(stream, fade=fade))
         pictures.append(255.0 - image.mean(axis=2))
     whole, faded = pictures
@@ -80,3 +82,14 @@ def test_skin_fades_toward_a_plane(renderer):
     assert top > 0.98
     assert abs(middle - 0.5) < 0.05
     assert bottom < 0.02
+
+
+def test_the_inside_of_a_faded_neck_does_not_show(renderer):
+    """Back faces behind the second plane are not seen; those ahead, of lips and lids, are."""
+    shape = square(30.0)
+    turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
+    stream = lent(renderer, turned)
+    rightward = (1.0 / 40.0, 0.0, 0.0, 1.0)  # half of it is whole
+    for distance, is_seen in ((0.5, True), (-0.5, False)):
+        skin = render.Skin(stream, fade=(rightward, (0.0, 0.0, 0.0, distance)))
+        assert (draw(renderer, skin)[48, 60].mean() < 250.0) == is_seen
