@@ -74,11 +74,11 @@ def wearing(
             colours = np.clip(shade * SHIRTS[shirt], 0.0, 1.0)
             part = replace(part, colours=colours.astype(np.float32))
         parts.append(part)
-    nose = person.vertices
+    nose = None
     if cover is not None:
         sheet = mask(person, MASKS[cover])
         parts.append(sheet)
-        nose = np.vstack([nose, sheet.vertices])
+        nose = np.vstack([person.vertices, sheet.vertices])
     if frame is not None:
         parts.append(glasses(person, FRAMES[frame], nose))
     return replace(person, parts=tuple(parts))
@@ -87,6 +87,7 @@ def wearing(
 def glasses(person: Person, frame: Frame, nose: Floats64 | None = None) -> Part:
     """Glasses that fit a person; nose: points that they sit on, (n, 3), else the skin's."""
     skin = person.vertices
+    farthest = 9.0 if nose is None else 20.0  # [mm] that they may move forward, on skin or a mask
     nose = skin if nose is None else nose
     eyes = {eye.name: eye for eye in person.eyes}
     middle = 0.5 * (eyes["left"].centre + eyes["right"].centre)
@@ -107,7 +108,7 @@ def glasses(person: Person, frame: Frame, nose: Floats64 | None = None) -> Part:
     front[2][:, 2] += 2.0 * bow
     clearance = 0.5 * frame.thickness + 1.0  # [mm] between the frame and the skin
     lacking = max(_depth_at(nose, each) + clearance for each in front)
-    forward = float(np.clip(lacking, -2.0, 9.0))
+    forward = float(np.clip(lacking, -2.0, farthest))
     moved = [each + np.array([0.0, 0.0, forward]) for each in front]
     tubes = [tube(each, frame.thickness, closed=True) for each in moved[:2]]
     tubes.append(tube(moved[2], frame.thickness, closed=False))

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from risorius import render
 from risorius.app.dataset.labels import labels_of_face
@@ -66,3 +67,18 @@ def test_rows_of_the_table_choose_masks(tmp_path: Path):
     assert (shot.known.images["segmentation"] == Segment.FACE_WEAR).sum() > 300
     assert not any(shot.known.labels["landmarks"]["visible"][48:68])
     assert set(MASKS) == {"blue", "white", "black"}
+
+
+@pytest.mark.parametrize(("number", "frame"), [(3, "round"), (12, "oval"), (19, "rectangular")])
+def test_glasses_stand_before_a_mask(number, frame):
+    """Their rims do not sink into the sheet over the nose."""
+    person = make_person(sample_identity(number))
+    worn = wearing(person, shirt="blue", frame=frame, cover="blue").parts
+    parts = {part.name: part for part in worn}
+    sheet = parts["mask"]
+    rims = parts["glasses"].vertices
+    ahead_of_ears = 40.0  # [mm]
+    rims = rims[rims[:, 2] > ahead_of_ears]
+    far, nearest = cKDTree(sheet.vertices).query(rims)
+    heights = ((rims - sheet.vertices[nearest]) * sheet.normals[nearest]).sum(axis=1)
+    assert heights[far < 6.0].min() > 0.5
