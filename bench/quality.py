@@ -119,7 +119,7 @@ def measure(
             truth = _shoot(canvas, cameras, dense)
             for method, make in bound.items():
                 mesh = make(pose.coarse)
-                positions, _, triangles = mesh
+                positions, _, triangles, *_ = mesh
                 distances = closest_points(pose.dense, positions, triangles).distances
                 share = len(triangles) / len(subject.coarse_faces)
                 distance = float(np.sqrt((distances**2).mean()))

@@ -31,7 +31,6 @@ from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh, read_mesh
 from ..model import Eye, FineShape, Head, Part, Wrinkles
-from ..topology import boundary_loops
 from ..user_files import named
 from . import simplifying
 from .face_place import ORIENTING, is_face, placed
@@ -57,12 +56,11 @@ from .mesh_validation import (
     without_bag,
 )
 from .mouth_walls import FittedSkin, opened_jaws
+from .neck_fading import Plane, neck_fade
 from .organs import place_eyes, place_parts, with_eyelid_rims
 from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spread_uv
 from .topologies import recognised
 from .warp import Similarity, ThinPlateSpline, nearest_on
-
-_Plane = tuple[float, float, float, float]  # (a, b, c, d): a x + b y + c z + d
 
 
 @dataclass(frozen=True)
@@ -95,38 +93,9 @@ class FittedHead(simplifying.SimulatedHead):
     files: tuple[Path, ...] = field(default=(), kw_only=True)
     lip_cut: LipCut | None = field(default=None, kw_only=True)
 
-    def fade(self) -> tuple[_Plane, _Plane] | None:
-        """Planes of which the larger value of a x + b y + c z + d is the share that shows.
-
-        The first is 0 along the neck's edge, and 1 up to 25 mm above. The second grows from 0 ahead
-        of all skin that fades at rest: a chin that goes down there stays whole. None: the mesh has
-        no edge at the neck.
-        """
-        chin_landmark = 8
-        chin = self.vertices[self.landmarks[chin_landmark]]
-        eye_landmarks = slice(36, 48)
-        eyes = self.vertices[self.landmarks[eye_landmarks], 1].mean()
-        edges = [self.vertices[loop] for loop in boundary_loops(self.faces)]
-        edges = [edge for edge in edges if edge[:, 1].max() < eyes]  # that of a mask goes around it
-        ways = [np.roll(edge, -1, axis=0) - edge for edge in edges]
-        points, along = (np.vstack([np.empty((0, 3)), *each]) for each in (edges, ways))
-        is_level = np.abs(along[:, 1]) < 0.5 * np.linalg.norm(along, axis=1)  # not of a half head
-        points = points[is_level & (points[:, 1] < chin[1])]
-        if len(points) < 3:
-            return None
-        up = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2][2]
-        up = up * np.sign(up[1]) if abs(up[1]) > 0.5 else np.array([0.0, 1.0, 0.0])
-        bottom = float((points @ up).max())
-        full_height = 25.0  # [mm] above a neck's edge, at most half the way to the chin
-        height = min(full_height, 0.5 * (float(chin @ up) - bottom))
-        a, b, c = (up / max(height, 1e-9)).tolist()
-        if height <= 0.0:
-            return None
-        neck = (a, b, c, -bottom / height)
-        share = self.vertices @ np.array(neck[:3]) + neck[3]
-        front = float(self.vertices[share < 1.0, 2].max())
-        soft_depth = 8.0  # [mm]
-        return neck, (0.0, 0.0, 1.0 / soft_depth, -front / soft_depth)
+    def fade(self) -> tuple[Plane, Plane] | None:
+        """How it ends, see `neck_fade`; None: the mesh has no edge at the neck."""
+        return neck_fade(self.vertices, self.faces, self.landmarks)
 
 
 def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHead:

@@ -16,7 +16,7 @@ from risorius import assets, refine, sim
 from risorius.app.pictures import Image
 from risorius.bench.subjects import SETTLE, settled_positions
 from risorius.geometry.arrays import Flags
-from risorius.geometry.normals import unit_vectors
+from risorius.geometry.directions import unit_vectors
 
 Points = npt.NDArray[np.float64]
 

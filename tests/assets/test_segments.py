@@ -28,10 +28,10 @@ def at(head, vertices):
 
 
 def test_every_texel_has_a_class(head):
-    """Of those that skin has: no background, nothing to ignore, no clothing."""
+    """Of those that skin has: no background, nothing to ignore, nothing that is worn."""
     assert head.segments.shape == head.albedo.shape[:2]
     assert set(np.unique(head.segments)) == set(Segment) - {
-        Segment.BACKGROUND, Segment.CLOTHING, Segment.GLASSES, Segment.IGNORE,
+        Segment.BACKGROUND, Segment.CLOTHING, Segment.GLASSES, Segment.FACE_WEAR, Segment.IGNORE,
     }  # fmt: skip
 
 
