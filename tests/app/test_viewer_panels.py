@@ -30,7 +30,6 @@ from .driving import (
     settle,
     show_controls,
     until,
-    wait_for,
 )
 
 from risorius import render  # isort: skip - after the viewer, see app/viewer/gui.py
@@ -139,7 +138,8 @@ def test_persons_are_chosen_by_their_pictures(viewer):
     assert len(people) == 2 + len(NAMED) + 20
     portraits = viewer.context.portraits
     first = ("built-in", "coarse", "ada")
-    wait_for(lambda: all(map(portraits.of, first)), 600.0)  # of low priority: others go first
+    # The process has a low priority: others go first.
+    assert until(viewer, lambda: all(map(portraits.of, first)), 600.0)
     settle(viewer)
     shot = viewer.surface.read()
     drawn = []
@@ -152,6 +152,16 @@ def test_persons_are_chosen_by_their_pictures(viewer):
     assert until(viewer, lambda: viewer.session.scene.called == "ada")
     viewer.file_drop.show_person(None)
     settle(viewer)
+
+
+def test_pictures_of_persons_come_while_another_panel_is_open(viewer):
+    """They are taken in, and the window comes to rest."""
+    viewer.context.wanted_tab = "Scene"
+    settle(viewer)
+    viewer.context.wanted_tab = "Face"
+    portraits = viewer.context.portraits
+    assert until(viewer, lambda: portraits.of("built-in"))
+    assert until(viewer, lambda: viewer.schedule.is_idle and not portraits.has_news)
 
 
 def test_the_scene_has_light_lens_and_hair(viewer):

@@ -52,14 +52,17 @@ class Portraits:
         """Whether a picture has come."""
         return bool(self._waiting)
 
-    def of(self, who: int | str) -> imgui.ImTextureRef | None:
-        """The picture of a person, None where it is not drawn yet; in the window's thread."""
+    def take_in(self) -> None:
+        """Make textures of the pictures that have come; in the window's thread, once a frame."""
         while self._waiting:
             name, image = self._waiting.popleft()
             texture = self._gl.texture((SIDE, SIDE), 3, image.tobytes(), alignment=1)
             texture.build_mipmaps()
             texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
             self._textures[name] = texture
+
+    def of(self, who: int | str) -> imgui.ImTextureRef | None:
+        """The picture of a person, None where it is not drawn yet."""
         drawn = self._textures.get(who)
         return None if drawn is None else imgui.ImTextureRef(drawn.glo)
 

@@ -122,8 +122,8 @@ class FaceMode:
 
     @property
     def has_news(self) -> bool:
-        """Whether the state of a live face has changed, or a picture of a person has come."""
-        return self._context.live.has_changed or self._context.portraits.has_news
+        """Whether the state of a live face has changed."""
+        return self._context.live.has_changed
 
     def paint(self, elapsed: float) -> bool:
         """Let time pass for the face, and draw it; returns whether the picture has changed."""

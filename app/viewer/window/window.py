@@ -168,7 +168,11 @@ class Viewer:
         schedule.end_frame()
 
     def _take_results(self) -> None:
-        """Take in the work of threads and processes: an export, a head that is made."""
+        """Take in the work of threads and processes: an export, a head that is made, portraits."""
+        portraits = self.context.portraits
+        if portraits.has_news:
+            portraits.take_in()
+            self.schedule.wake(1)
         if self.exporter.has_news:
             self.schedule.wake(1)
         self.messages.attempt(self.exporter.poll, stays=True)
