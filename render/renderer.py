@@ -16,6 +16,7 @@ from ..geometry.arrays import Floats64
 from .backdrop import Backdrop
 from .camera import PlacedView, box_corners
 from .coverage import SKIN_NUMBERS, Drawn, part_numbers, set_numbers
+from .errors import GLError
 from .frame import Frame, Plane, Skin
 from .geometry_buffer import Geometry, GeometryBuffer
 from .lines import Lines
@@ -89,8 +90,19 @@ class Renderer:
         """Draw a picture of frames, each in its viewport; where there is none it is black.
 
         Raises ValueError for a viewport without pixels, for values that do not fit the triangles,
-        and for a frame whose stream was filled anew. A window shows it at `Surface.end`.
+        and for a frame whose stream was filled anew; GLError where memory is lacking. A window
+        shows it at `Surface.end`.
         """
+        try:
+            self._draw_all(frames)
+        except moderngl.Error as error:
+            width, height = self.surface.target.size
+            raise GLError(
+                f"a picture of {width} x {height} pixels cannot be drawn ({error}). Cure: ask for "
+                "a smaller one"
+            ) from None
+
+    def _draw_all(self, frames: Sequence[Frame]) -> None:
         self.surface.begin()
         target = self.surface.target
         views = [self._placed_view(frame) for frame in frames]

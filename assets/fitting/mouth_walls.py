@@ -94,7 +94,7 @@ def within_skin(
     for mandible in jaws:
         moved = stretched_walls(fitted.vertices, fitted.mandible_weight, mandible)
         skins.append((moved, fitted.faces))
-    wall_depth = 5.0  # [mm] behind the skin
+    wall_depth = 6.0  # [mm] behind the skin
     least_cosine = 0.35  # between the skin's normal and a ray: flatter rays count as this
     for mandible, (vertices, faces) in zip([np.eye(4), *jaws], skins, strict=True):
         away = stretched_walls(walls, shares, mandible) - middle

@@ -83,7 +83,10 @@ def test_looks_and_refiners_side_by_side(smile, tmp_path):
     pictures = [picture for picture, _ in alone]
     seen = both[:76]  # above the captions
     seen[:, [160, 320, 480]] = np.hstack(pictures)[:76, [160, 320, 480]]  # but for lines between
-    assert np.abs(seen - np.hstack(pictures)[:76]).max() <= 2  # the background is dithered
+    apart = np.abs(seen - np.hstack(pictures)[:76]).max(axis=2)
+    # The background is dithered; a sample may fall on either side of an edge.
+    assert (apart > 2).mean() < 1e-4
+    assert apart.max() <= 16
     for first, second in combinations(pictures, 2):
         assert np.abs(first - second).max() > 20
     counts = [count for _, count in alone]
