@@ -28,6 +28,12 @@ FOLDERS = {"risorius": "risorius", **SETUPTOOLS["package-dir"]}
 TOP_NAMES = {package.partition(".")[2] for package in SETUPTOOLS["package-dir"]}
 LEFT = (".#lock", "leftover.orig", "notes.rej", ".DS_Store", "Thumbs.db")
 """Files that editors and systems leave in any folder."""
+PAGES = {
+    path.relative_to(ROOT / "docs").as_posix()
+    for path in tracked("docs", "*.md")
+    if "reference" not in path.parts
+}
+"""Of the manual that is installed."""
 PASSED_OVER = shutil.ignore_patterns(
     ".git", ".venv*", ".*cache", ".hypothesis", "__pycache__", "build", "dist", "out", "*.egg-info"
 )
@@ -184,6 +190,8 @@ def test_wheel_of_the_sdist_is_that_of_the_checkout(built):
     assert contents[0] == contents[1]
     names = {name for name in contents[0] if ".dist-info/" not in name}
     expected = {f"{package.replace('.', '/')}/{file.name}" for package, file in files_of_packages()}
+    share = f"risorius-{PROJECT['project']['version']}.data/data/share/doc/risorius"
+    expected |= {f"{share}/{page}" for page in PAGES}
     assert names == expected
 
 
@@ -231,6 +239,8 @@ def test_installed_wheel_works_beside_files_of_the_same_names(built, tmp_path):
     assert (tmp_path / "joy.png").stat().st_size > 1000
     code = "from risorius import assets, refine, render, sim; print(sim.__file__)"
     site = Path(run(built.python, "-c", code, **surroundings)).parents[2]
+    code = "from risorius.app.viewer.documents import manual; print(len(manual.pages()))"
+    assert int(run(built.python, "-c", code, **surroundings)) == len(PAGES - {"gallery.md"})
     version = PROJECT["project"]["version"]
     assert {path.name for path in site.iterdir()} == {
         "needed.pth", "risorius", f"risorius-{version}.dist-info"

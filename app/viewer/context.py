@@ -9,6 +9,7 @@ from risorius import render
 
 from .documents.export import Exporter
 from .documents.file_dialogs import FileDialogs
+from .documents.manual import Manual
 from .documents.scripts import Question, ScriptCommands
 from .interface.gui import Gui, wake_up
 from .messages import Messages
@@ -34,6 +35,8 @@ class ApplicationContext:
         with contextlib.ExitStack() as stack:
             self.gui = Gui(surface.handle)
             stack.callback(self.gui.close)
+            self.manual = Manual(self.gui)
+            stack.callback(self.manual.close)
             self.stage = Stage(surface, session.scene, settings.display, self.times)
             self.portraits = Portraits(surface.gl, wake_up)
             stack.callback(self.portraits.close)

@@ -1,11 +1,15 @@
 """Clicks, keys and words as they come to a window that draws slowly: each has its effect."""
 
+import re
+
 import pytest
-from imgui_bundle import imgui
+from imgui_bundle import imgui, rich_md
 
 import risorius
+from risorius.app.viewer.documents.manual import one_document, pages
+from risorius.app.viewer.settings import Display
 
-from .driving import NEEDS_A_SCREEN, click, middle, press_keys, until, xdotool
+from .driving import NEEDS_A_SCREEN, click, middle, press_keys, until, write, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -35,6 +39,41 @@ def test_each_command_has_its_own_name_and_keys(viewer):
     doing = [each for each in viewer.face.commands if each.submenu is None]
     for each in ([command.label for command in doing], [key for c in doing for key in c.keys]):
         assert len(each) == len({*each})
+
+
+def test_the_manual_is_read_and_searched(viewer):
+    """F1 opens all pages; links and Ctrl+F find their places; keys are for it until it closes."""
+    press_keys(viewer, "F1")
+    manual = viewer.context.manual
+    assert manual.is_open
+    headings = rich_md.last_render_headings()
+    assert headings[0].text.startswith("The window")
+    assert {"Pull to pose", "Easing"} <= {each.text for each in headings}
+    links = re.findall(r"\]\(([^)\s]+)\)", one_document(pages()))
+    inside = {each[1:] for each in links if each.startswith("#")}
+    assert len(inside) > 50 and inside <= {each.slug for each in headings}
+    assert all("://" in each for each in links if not each.startswith("#"))
+    press_keys(viewer, "r", "ctrl+f")
+    write(viewer, "wr")
+    assert imgui.get_io().want_text_input
+    assert viewer.settings.display == Display()
+    press_keys(viewer, "Escape")
+    assert manual.is_open
+    press_keys(viewer, "Escape")
+    assert not manual.is_open
+    press_keys(viewer, "r")
+    assert not viewer.settings.display.is_refined
+
+
+def test_all_keys_are_listed(viewer):
+    """*Help > Keys and mouse* shows a section for each menu, made of the commands."""
+    click(viewer, "menu Help")
+    click(viewer, "menu Help: Keys and mouse")
+    assert viewer.context.manual.is_open
+    menus = {each.menu or "Expressions" for each in viewer.face.commands if each.key}
+    assert {each.text for each in rich_md.last_render_headings()} == menus
+    press_keys(viewer, "Escape")
+    assert not viewer.context.manual.is_open
 
 
 def test_the_citation_is_copied(viewer):

@@ -45,7 +45,7 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
     """Carry out the commands whose keys were pressed in this frame."""
     if gui.has_popup:  # whose keys they are
         return
-    is_writing = imgui.get_io().want_text_input
+    is_writing = imgui.get_io().want_text_input or gui.is_reading
     # Ctrl keys that a line of text takes for itself while one writes.
     text_keys = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
     # Menus of commands that wait until the mouse lets go.

@@ -97,6 +97,7 @@ class Gui:
         self._context = imgui.create_context()
         self.double_click_time = 0.3  # [s] in which the second press comes
         self.has_popup = False  # a menu, a list or a dialog, as the turn began
+        self.is_reading = False  # a text has the keyboard, as a line to type in would
         self._presses: list[tuple[int, int | None]] = []  # how many events before, and which key
         self._looked = time.perf_counter()  # when events were taken in last [s]
         self._shown = self._looked - 1.0 / 60.0  # when that was for the last frame [s]

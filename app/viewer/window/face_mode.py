@@ -69,7 +69,7 @@ class FaceMode:
             *menus.view_menu(settings, self.view, session),
             *menus.expression_keys(session),
             *menus.live_menu(context.live),
-            *menus.help_menu(),
+            *menus.help_menu(context.manual, lambda: self.commands),
         )
 
     def _join_panels(self) -> None:

@@ -23,6 +23,7 @@ from ...text import as_text
 from ..documents.export import Exporter
 from ..documents.file_dialogs import FileDialogs
 from ..documents.file_drop import FileDrop
+from ..documents.manual import Manual, table
 from ..documents.scripts import ScriptCommands
 from ..interface.commands import Command
 from ..messages import Message, Task
@@ -251,37 +252,45 @@ def live_menu(live: LiveCommands) -> Menu:
     )
 
 
-def help_menu() -> Menu:
-    """The program and how to cite it; actions of mouse and digits, to be read."""
+def help_menu(manual: Manual, commands: Callable[[], Menu]) -> Menu:
+    """The manual, the program, and how to cite it. commands: all of the window."""
     command = partial(Command, "Help")
-    gestures = tuple(
-        command(f"{gesture.capitalize()}: {action}", "", lambda: None)
-        for gesture, action in (
-            ("left on the skin", "pose; Ctrl: pull; click: muscle"),
-            ("left beside, or right", "orbit"),
-            ("middle, or Shift", "pan"),
-            ("wheel", "zoom to where the mouse is"),
-            ("1 to 9", "show an expression alone"),
-            ("double click a slider", "type a number"),
-            ("right click a bar", "key it, delete its key, clear its track, reset it"),
-            ("drag a key", "move all selected keys; Ctrl: anywhere"),
-            ("drag over nothing", "select keys in a box"),
-            ("right click a key", "a menu of changes to it"),
-            ("drop files", "open them"),
-        )
-    )
     return (
-        *gestures,
+        command("Manual", "F1", manual.read),
+        command("Keys and mouse", "", lambda: show_keys(manual, commands())),
         command("About Risorius", "", about, begins_section=True),
         command("Copy citation", "", copy_citation),
     )
+
+
+def show_keys(manual: Manual, commands: Menu) -> None:
+    """Show the keys of all commands, by their menus, and the actions of the mouse."""
+    gestures = (
+        ("left button on the skin", "pull it into a pose; with Ctrl it swings back"),
+        ("click on the skin", "show the muscle in the panel"),
+        ("left button beside the face, right button anywhere", "orbit"),
+        ("middle button, or Shift", "pan"),
+        ("wheel", "zoom to the mouse"),
+        ("double click on a bar", "type a number"),
+        ("right click on a bar", "key it, delete its key, clear its track, reset it"),
+        ("drag a key", "move all selected keys; Ctrl: anywhere"),
+        ("drag over nothing in the timeline", "select keys in a box"),
+        ("right click on a key", "the menu of keys"),
+        ("drop files", "open them"),
+    )
+    sections = [table(("mouse", "action"), gestures)]
+    with_keys = [each for each in commands if each.key]
+    for menu in dict.fromkeys(each.menu for each in with_keys):
+        rows = [(each.label, each.displayed_keys) for each in with_keys if each.menu == menu]
+        sections.append(f"## {menu or 'Expressions'}\n\n{table(('command', 'keys'), rows)}")
+    manual.show("Keys and mouse", "\n\n".join(sections))
 
 
 def about() -> Message:
     """The program in a line."""
     return (
         f"Risorius {__version__}, MIT licence. Muscles and springs move the face; its mesh is "
-        "refined after Kähler, Haber, Seidel 2003. The manual: docs/index.md of the checkout."
+        "refined after Kähler, Haber, Seidel 2003. [Manual] opens the manual."
     )
 
 

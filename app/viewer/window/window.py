@@ -217,6 +217,7 @@ class Viewer:
             mode.draw_panels()
             messages.age(imgui.get_io().delta_time)
             draw_message(gui, messages, mode.view)
+            self.context.manual.draw(mode.view.area)
             if imgui.is_any_mouse_down():
                 mode.view.pointed = {}
             if not question.is_open:  # dialogs wait for the answer
