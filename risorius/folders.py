@@ -8,3 +8,9 @@ def configuration_folder() -> Path:
     """The user's configuration of Risorius, which need not be there."""
     folder = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config")
     return folder / "risorius"
+
+
+def cache_folder() -> Path:
+    """What Risorius can make anew at any time, for this user; it need not be there."""
+    folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return folder / "risorius"

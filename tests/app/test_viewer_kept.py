@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
@@ -17,6 +18,7 @@ from risorius.app.performances import script_for
 from risorius.app.scenes import PlaneScene
 from risorius.app.script.script_file import load_script
 from risorius.app.viewer import Viewer
+from risorius.app.viewer.picture import portraits
 from risorius.app.viewer.session.physics import STEP
 from risorius.app.viewer.session.recovery import INTERVAL, Recovery
 from risorius.app.viewer.session.session import Session
@@ -315,3 +317,26 @@ def test_a_window_that_ended_is_recovered(at_work, tmp_path, how):
         viewer.drop(viewer.settings.recent[0].split("\n"))
         moved = {name: value for name, value in viewer.session.values.items() if value}
         assert moved == {"joy": 1.0}
+
+
+def test_pictures_of_persons_are_drawn_once(tmp_path, monkeypatch):
+    """They are kept for the program as it is; those of another one leave, a broken one is none."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(portraits, "give_way", lambda _: None)
+    stale = tmp_path / "risorius" / "portraits-0" / "coarse.png"
+    stale.parent.mkdir(parents=True)
+    stale.touch()
+    assert portraits.kept_portrait("coarse") is None
+    sent = []
+    portraits.draw_portraits(["coarse"], sent.append)
+    assert np.array_equal(portraits.kept_portrait("coarse"), sent[0][1])
+    assert not stale.parent.exists()
+    (kept,) = tmp_path.rglob("coarse.png")
+    shown = portraits.Portraits(None, lambda: None)
+    shown._pool = None  # no process is needed
+    shown._find(["coarse"])
+    assert shown.has_news
+    kept.write_bytes(kept.read_bytes()[:1000])
+    assert portraits.kept_portrait("coarse") is None
+    monkeypatch.setattr(portraits, "_program", lambda: "newer")
+    assert portraits.kept_portrait("coarse") is None

@@ -1,19 +1,32 @@
-"""Small pictures of persons, to choose from: a process of low priority draws them, once a window.
+"""Small pictures of persons, to choose from: a process of low priority draws them, once.
 
-The window goes on meanwhile, and shows names until a picture comes.
+The window goes on meanwhile, and shows names until a picture comes. Pictures are kept in the user's
+cache, for the program as it is now.
 """
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
+import shutil
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from pathlib import Path
 
 import moderngl
+import numpy as np
+import PIL.Image
 from imgui_bundle import imgui
 
+import risorius
+from risorius import app, assets, refine, render, sim
+from risorius.folders import cache_folder
+
 from ...capture import Capture, CaptureOptions
-from ...pictures import Image
+from ...errors import UserError
+from ...pictures import Image, save_png
 from ...scenes import BUILT_IN, build_face, called_head
 from ...workers import Send, WorkerPool, give_way, share_of_cores
 
@@ -33,14 +46,27 @@ class Portraits:
         self._textures: dict[int | str, moderngl.Texture] = {}
 
     def begin(self, people: Sequence[int | str]) -> None:
-        """Have these persons drawn, in this order, if nobody has begun that yet."""
+        """Have pictures of these persons read or drawn, in this order, unless that has begun."""
         if self._is_begun:
             return
         self._is_begun = True
         thread = ThreadPoolExecutor(1)
-        # Without pictures there still are names: how the process ends matters to nobody.
-        thread.submit(self._pool.run, draw_portraits, people, on_message=self._take, attempts=1)
+        thread.submit(self._find, people)
         thread.shutdown(wait=False)
+
+    def _find(self, people: Sequence[int | str]) -> None:
+        """In a thread: take the pictures that are kept, and have the others drawn."""
+        missing = []
+        for who in people:
+            image = kept_portrait(who)
+            if image is None:
+                missing.append(who)
+            else:
+                self._take((who, image))
+        if not missing:
+            return
+        # Without pictures there still are names: how the process ends matters to nobody.
+        self._pool.run(draw_portraits, missing, on_message=self._take, attempts=1)
 
     def _take(self, drawn: tuple[int | str, Image]) -> None:
         """Keep a picture until the window's own thread makes a texture of it."""
@@ -72,9 +98,50 @@ class Portraits:
 
 
 def draw_portraits(people: Sequence[int | str], send: Send) -> None:
-    """In a process: draw each person at rest, and send the name or number with the picture."""
+    """In a process: draw each person at rest, keep the picture, and send it with name or number."""
     give_way(10)  # for the window to go on as fast
+    _remove_stale()
     for who in people:
         scene = build_face(None if who == BUILT_IN else called_head(who))
         with Capture(scene, CaptureOptions((SIDE, SIDE))) as capture:
-            send((who, capture.draw_image()))
+            image = capture.draw_image()
+        with contextlib.suppress(UserError):  # it is drawn anew the next time
+            save_png(_file_of(who), image)
+        send((who, image))
+
+
+def kept_portrait(who: int | str) -> Image | None:
+    """The picture of a person that was kept, shape (SIDE, SIDE, 3); None where there is none."""
+    try:
+        with PIL.Image.open(_file_of(who)) as picture:
+            image = np.asarray(picture.convert("RGB"))
+    except (OSError, SyntaxError, ValueError):  # missing, or no whole picture
+        return None
+    return image if image.shape == (SIDE, SIDE, 3) else None
+
+
+def _file_of(who: int | str) -> Path:
+    return cache_folder() / f"portraits-{_program()}" / f"{who}.png"
+
+
+@cache
+def _program() -> str:
+    """A digest of the program as it is installed: where a file of it changes, so may pictures."""
+    digest = hashlib.sha256(risorius.__version__.encode())
+    for package in (risorius, app, assets, refine, render, sim):
+        for folder in map(Path, package.__path__):
+            for file in sorted(folder.rglob("[!.]*.*")):
+                if file.suffix == ".pyc":  # which Python makes
+                    continue
+                status = file.stat()
+                name = file.relative_to(folder)
+                digest.update(f"{name} {status.st_size} {status.st_mtime_ns}".encode())
+    return digest.hexdigest()[:16]
+
+
+def _remove_stale() -> None:
+    """Remove the pictures that another state of the program drew."""
+    present = _file_of(BUILT_IN).parent
+    for folder in present.parent.glob("portraits-*"):
+        if folder != present:
+            shutil.rmtree(folder, ignore_errors=True)
