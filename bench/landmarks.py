@@ -9,7 +9,8 @@ corners of the eyes at their depth. It has two parts:
     constant   the mean offset of a point on frontal pictures, both sides as one: another definition
     the rest   how well the detector works on these pictures
 
-A detector checks a definition; it is no measure of a face's form.
+A detector checks a definition; it is no measure of a face's form. Pictures of masked persons are
+left out, for there it guesses.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from typing import Any
 import numpy as np
 import PIL.Image
 
+from risorius.app.dataset.table import BARE
 from risorius.app.errors import UserError
 from risorius.app.extras import needed
 from risorius.app.pictures import Image
@@ -59,7 +61,7 @@ class Finding:
 
     errors: of each picture and point, in the frame of the face: along the line of the eyes to the
     subject's left, and down [percent of the eyes' distance], (n, 68, 2). yaw: of the heads
-    [degrees], (n,). picture_count: of all pictures, those without a found face included.
+    [degrees], (n,). picture_count: of all without a mask, those without a found face included.
     """
 
     detector: str
@@ -220,14 +222,18 @@ def measure(folder: Path, name: str, detector: Detector) -> Finding:
         raise UserError(f"{folder}: holds no data set; make one with `risorius dataset`")
     errors = []
     yaw = []
+    picture_count = 0
     for file in files:
         labels = json.loads(file.read_text("utf-8"))
+        if labels["person"].get("mask", BARE) != BARE:
+            continue
+        picture_count += 1
         picture = PIL.Image.open(file.with_suffix(".png")).convert("RGB")
         found = detector(np.asarray(picture))
         if found is not None:
             errors.append(errors_of(found, labels))
             yaw.append(labels["head"]["yaw"])
-    return Finding(name, np.array(errors).reshape(-1, 68, 2), np.array(yaw), len(files))
+    return Finding(name, np.array(errors).reshape(-1, 68, 2), np.array(yaw), picture_count)
 
 
 def errors_of(found: Floats64, labels: Mapping[str, Any]) -> Floats64:

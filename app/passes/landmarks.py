@@ -76,14 +76,16 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
 
     Of each way over the skin it has the place that lies farthest out: at first to the side at the
     eyes and down at the chin, then across the line that was found. As annotators do, points are
-    set evenly from the height of one eye's outer corner to that of the other's.
+    set evenly from the height of one eye's outer corner to that of the other's. Heights are those
+    on the head: of a face that looks down, the outline begins above the eyes in the picture.
     """
     positions = face.positions
     ways = face.annotation.ways(positions)
     corner_numbers = [36 - JAW_COUNT, 45 - JAW_COUNT]
-    corners = camera.project(face.annotation.inner_points(positions)[corner_numbers])
+    head_axes = face.bone_transforms()["cranium"][:3, :2]
+    corner_heights = face.annotation.inner_points(positions)[corner_numbers] @ head_axes[:, 1]
     seen = camera.project(ways.reshape(-1, 3)).reshape(*ways.shape[:3], 2)
-    upright = camera.rotation @ face.bone_transforms()["cranium"][:3, :2]
+    upright = camera.rotation @ head_axes
     aside = upright[:2, 0] / np.linalg.norm(upright[:2, 0])
     up = upright[:2, 1] / np.linalg.norm(upright[:2, 1])
     across = np.array([-up[1], up[0]])
@@ -97,8 +99,7 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
             farthest = distances.argmax(axis=1)
             line = _smoothed(ways[side, np.arange(len(farthest)), farthest])
             outward = _normals(camera.project(line), outward)
-        heights = camera.project(line) @ up
-        line = _below(line, heights, float(corners[side] @ up))
+        line = _below(line, line @ head_axes[:, 1], float(corner_heights[side]))
         halves.append(_spread(line, camera.project(line), JAW_COUNT // 2 + 1))
     right, left = halves
     return np.vstack([right, left[-2::-1]])

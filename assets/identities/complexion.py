@@ -226,7 +226,9 @@ def _haired_segments(segments: Image, features: Features, behind: Floats32) -> I
         covered = scipy.ndimage.gaussian_filter(hairs[near], blur)
         left = np.arange(found.shape[1]) > found.shape[1] / 2
         sides = np.where(left, np.uint8(Segment.LEFT_BROW), np.uint8(Segment.RIGHT_BROW))
-        least_cover = 0.1  # share of hairs from which skin is called brow
+        # It is called brow from a third of its darkness above and below on, so that free ends of
+        # hairs are left out of a dense one; a thin tail is kept to its end.
+        least_cover = np.maximum(0.1, covered.max(axis=0) / 3.0)
         is_brow = (covered > least_cover) & (found[near] == Segment.SKIN)
         found[near] = np.where(is_brow, sides, found[near])
     return found

@@ -127,6 +127,14 @@ def test_points_of_the_jaw_are_spread_evenly(studio):
     assert np.abs(pixels[[0, 16], 1] - eyes).max() * portrait.millimetres[36] < 9.0
 
 
+def test_an_outline_ends_at_one_height_of_the_head(studio):
+    """That of the outer corners of the eyes, also where the camera looks from above or below."""
+    for pitch in (-20.0, 0.0, 20.0):
+        points = Portrait(studio, pitch=pitch).found.points
+        above = points[[0, 16], 1] - points[[36, 45], 1]
+        assert np.abs(above).max() < 0.5, pitch
+
+
 def test_a_head_of_ones_own_keeps_its_marks(tmp_path):
     """Where its owner put them; the jaw slides over its surface."""
     scene = FaceScene(fit_head(*stranger().write(tmp_path)))

@@ -18,7 +18,7 @@ FACE[42:45] = 64.0, 50.0
 FACE[46:48] = 64.0, 50.0
 
 
-def labels_of_face(yaw=0.0):
+def labels_of_face(yaw=0.0, mask="none"):
     """Labels of a flat face 500 mm before a camera that shows a millimetre as a pixel."""
     points = np.column_stack([FACE, np.full(68, 500.0)])
     return {
@@ -29,6 +29,7 @@ def labels_of_face(yaw=0.0):
         },
         "head": {"yaw": yaw},
         "landmarks": {"pixels": FACE.tolist(), "points": points.tolist()},
+        "person": {"mask": mask},
     }
 
 
@@ -54,6 +55,15 @@ def test_a_constant_part_is_one_on_both_sides(tmp_path):
     assert "48, 54       3.0    0.0" in text
     met = [target.is_met for target in landmarks.targets(found)]
     assert met == [True, False]
+
+
+def test_masked_persons_are_left_out(tmp_path):
+    """A detector guesses what lies below."""
+    for number, mask in enumerate(["none", "white"]):
+        (tmp_path / f"{number:06d}.json").write_text(json.dumps(labels_of_face(mask=mask)))
+        PIL.Image.new("RGB", (8, 8)).save(tmp_path / f"{number:06d}.png")
+    found = landmarks.measure(tmp_path, "dlib", lambda image: FACE)
+    assert (found.picture_count, len(found.yaw)) == (1, 1)
 
 
 def test_a_tracker_s_mesh_gives_all_68_points():
