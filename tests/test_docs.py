@@ -21,6 +21,7 @@ ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
 TUTORIALS = ROOT / "docs" / "tutorials"
 PAGES = [README, ROOT / "CONTRIBUTING.md", *tracked("docs", "*.md")]
+LONG_PAGES = ("passes.md", "pyvista.md", "in_other_programs.md")  # whose code runs for seconds
 COMMAND = re.compile(r"(?:`|^(?:    )?(?:xvfb-run -a )?)(risorius [a-z][^`#\n]*)", re.MULTILINE)
 
 
@@ -110,7 +111,13 @@ def test_pages_have_short_lines():
 
 @pytest.mark.usefixtures("own_refiners")
 @pytest.mark.parametrize(
-    "page", [page for page in PAGES if "```python" in page.read_text("utf-8")], ids=lambda p: p.name
+    "page",
+    [
+        pytest.param(page, marks=pytest.mark.slow if page.name in LONG_PAGES else ())
+        for page in PAGES
+        if "```python" in page.read_text("utf-8")
+    ],
+    ids=lambda page: page.name,
 )
 def test_code_runs(page, tmp_path, monkeypatch):
     """The Python on a page is one program, and it runs in an empty folder."""

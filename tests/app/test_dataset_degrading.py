@@ -51,6 +51,7 @@ def test_jpeg_is_unpacked_again():
     assert 0.0 < errors[0] < errors[1] < errors[2]
 
 
+@pytest.mark.slow
 def test_only_pictures_and_one_label_differ(tmp_path):
     """Faces stay as they are without it; rows of a table choose, and the card has the option."""
     table = tmp_path / "my.toml"

@@ -150,6 +150,7 @@ def test_a_size_of_openexr_is_refused_by_its_header(tmp_path):
         check_light_map(path)
 
 
+@pytest.mark.slow
 def test_maps_of_a_set_are_read_once(tmp_path, monkeypatch):
     """Each of 10, however often samples draw it; its light is found once a sample."""
     for number in range(10):

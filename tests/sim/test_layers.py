@@ -271,7 +271,14 @@ def test_mouth_close_shuts_an_open_jaw(simulation, head):
         assert gaps[2] < gaps[1] < gaps[0]
 
 
-@pytest.mark.parametrize("title", ["Action units", "Visemes", "ARKit shapes"])
+@pytest.mark.parametrize(
+    "title",
+    [
+        "Visemes",
+        pytest.param("Action units", marks=pytest.mark.slow),
+        pytest.param("ARKit shapes", marks=pytest.mark.slow),
+    ],
+)
 def test_rows_keep_the_mesh_sound(simulation, head, title):
     """No row turns more than a few triangles over, nor throws skin away."""
     for name in simulation.controls.layers[title]:
