@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from ..geometry.arrays import Floats64
 from .errors import AssetError
-from .user_files import MOST_VERTICES, beside, named, read_file
+from .user_files import MOST_VERTICES, beside, named, read_file, text_with_names
 
 COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 DRACO = "KHR_draco_mesh_compression"
@@ -158,7 +158,7 @@ def content_of(uri: str, folder: Path, kind: str) -> bytes:
         head, _, data = uri.partition(",")
         plain = unquote_to_bytes(data)
         return base64.b64decode(plain) if head.endswith(";base64") else plain
-    name = unquote_to_bytes(uri).decode()
+    name = text_with_names(unquote_to_bytes(uri)).decode()
     path = beside(folder, name)
     try:
         most_megabytes = 100

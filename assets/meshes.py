@@ -11,9 +11,9 @@ import logging
 import re
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -59,6 +59,15 @@ class Mesh:
 
     def __post_init__(self) -> None:
         make_read_only(self)
+
+    def without(self, triangles: npt.NDArray[np.integer[Any]]) -> Self:
+        """The mesh without some triangles; its vertices keep their numbers."""
+        left = np.delete(np.arange(len(self.faces)), triangles)
+        texture = self.texture
+        if texture is not None:
+            texture = replace(texture, face_uv=texture.face_uv[left], picture=texture.picture[left])
+        corners = None if self.corners is None else self.corners[left]
+        return replace(self, faces=self.faces[left], corners=corners, texture=texture)
 
 
 def read_mesh(path: str | Path) -> Mesh:

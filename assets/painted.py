@@ -43,6 +43,7 @@ class PaintedMesh:
     material: place in `materials` of each triangle, -1 for none, shape (F,).
     part: place in `parts` of each triangle, -1 for none, shape (F,). parts: names of the file's
     objects or groups, or of materials in a file without these.
+    libraries: names of the files that define materials, as the file has them.
     """
 
     mesh: Mesh
@@ -54,6 +55,7 @@ class PaintedMesh:
     materials: tuple[Material, ...]
     part: Integers64
     parts: tuple[str, ...]
+    libraries: tuple[str, ...] = ()
 
 
 def read_painted(path: Path) -> PaintedMesh:
@@ -74,6 +76,7 @@ def read_painted(path: Path) -> PaintedMesh:
             tuple(_materials(surface, path.parent)),
             surface.part if surface.parts else surface.material,
             surface.parts or surface.materials,
+            tuple(libraries_of(surface.libraries, path.parent)),
         )
     none = np.full(mesh.faces.shape, -1, np.int64)
     of_triangles = none[:, 0]

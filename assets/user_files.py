@@ -7,17 +7,19 @@ encoding. Nothing of that may reach a reader that trusts its file.
 import codecs
 import os
 import stat
+import unicodedata
 from pathlib import Path, PureWindowsPath
 
 from .errors import AssetError
 
 MOST_VERTICES = 500_000  # of a mesh, and as many triangles: far beyond what can be simulated
 # Readers split lines and words at more characters than the formats do, and guess at encodings.
-# All that the formats mean is ASCII; anything else is in names and remarks, which are not read.
-_PLAIN = bytes(
-    code if 0x20 <= code < 0x7F or code in b"\t\n\r" else ord(" " if code in b"\v\f" else "?")
-    for code in range(256)
+# All that the formats mean is ASCII; anything else is in names and remarks.
+_CONTROLS = bytes(code for code in (*range(0x20), 0x7F) if code not in b"\t\n\r")
+_NO_CONTROLS = bytes.maketrans(
+    _CONTROLS, bytes(ord(" " if code in b"\v\f" else "?") for code in _CONTROLS)
 )
+_ASCII = bytes(code if code < 0x80 else ord("?") for code in range(256))
 
 
 def named(path: str | Path) -> str:
@@ -27,8 +29,15 @@ def named(path: str | Path) -> str:
 
 
 def beside(folder: Path, name: str) -> Path:
-    """The path of a file in a folder; AssetError for a name that leads out of it."""
-    path = folder / PureWindowsPath(name).as_posix()
+    """The path of a file in a folder; AssetError for a name that leads out of it.
+
+    Letters with marks may be written in two ways (NFC, NFD): that of the folder counts.
+    """
+    relative = PureWindowsPath(name).as_posix()
+    path = folder / relative
+    if not name.isascii() and not path.exists():
+        ways = [folder / unicodedata.normalize(form, relative) for form in ("NFC", "NFD")]
+        path = next((way for way in ways if way.exists()), path)
     is_inside = path.resolve().is_relative_to(folder.resolve())
     if not is_inside or PureWindowsPath(name).is_absolute():
         raise AssetError(f"names the file '{named(name)}'; it must lie in the mesh's folder")
@@ -70,9 +79,21 @@ def plain_text(content: bytes) -> bytes:
 
     Raises AssetError for binary data.
     """
+    return text_with_names(content).translate(_ASCII)
+
+
+def text_with_names(content: bytes) -> bytes:
+    r"""Text in UTF-16 (with its mark), UTF-8, or else Latin-1 as UTF-8 whose lines end in \n.
+
+    Raises AssetError for binary data.
+    """
     if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        content = content.decode("utf-16", "replace").encode("ascii", "replace")
+        content = content.decode("utf-16", "replace").encode()
     content = content.removeprefix(codecs.BOM_UTF8)
     if b"\0" in content:
         raise AssetError("holds binary data where its format has text; save it anew, as text UTF-8")
-    return content.translate(_PLAIN).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    try:
+        content.decode()
+    except UnicodeDecodeError:
+        content = content.decode("latin-1").encode()
+    return content.translate(_NO_CONTROLS).replace(b"\r\n", b"\n").replace(b"\r", b"\n")

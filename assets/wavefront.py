@@ -21,7 +21,7 @@ import numpy as np
 
 from ..geometry.arrays import Floats64, Integers64
 from .errors import AssetError
-from .user_files import plain_text
+from .user_files import named, text_with_names
 
 PLACING = ("-o", "-s", "-t")  # options of maps in a material library with up to three numbers
 
@@ -115,9 +115,9 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
 def _unusable(number: int, line: bytes) -> AssetError:
     """The error of a line with its number."""
     excerpt_length = 30  # bytes
-    shown = line[:excerpt_length].decode().strip()
+    shown = line[:excerpt_length].decode(errors="ignore").strip()
     return AssetError(
-        f"line {number}: '{shown}' cannot be used; right are 'v x y z', 'vt u v', and 'f' "
+        f"line {number}: '{named(shown)}' cannot be used; right are 'v x y z', 'vt u v', and 'f' "
         "with three or more vertex numbers, from 1 on, or from -1 back"
     )
 
@@ -212,6 +212,17 @@ def pictures_of(content: bytes) -> dict[str, MaterialPicture]:
     return pictures
 
 
+def maps_of(content: bytes) -> list[str]:
+    """The names of all files of pictures in a material library (MTL), also of bumps and gloss."""
+    kinds = ("map_", "bump", "disp", "decal", "refl", "norm")
+    names = []
+    for line in joined_lines(content).decode().split("\n"):
+        word, rest = _parted(line)
+        if word.lower().startswith(kinds) and rest:
+            names.append(_picture_of(rest).name)
+    return names
+
+
 def _picture_of(rest: str) -> MaterialPicture:
     """The picture of a map: options, and then a name, which may hold blanks and be quoted."""
     values: dict[str, list[str]] = {}
@@ -256,17 +267,20 @@ def _is_number(word: str) -> bool:
 
 
 def _parted(line: str) -> tuple[str, str]:
-    """The first word of a line and the rest of it, without blanks and tabs around."""
-    words = [*line.split(maxsplit=1), "", ""]
-    return words[0], words[1].strip()
+    """The first word of a line and the rest of it, without blanks and tabs around.
+
+    Other blanks, as of Japanese, belong to names.
+    """
+    word, *rest = re.split(r"[ \t\r\n]+", line.strip(" \t\r\n"), maxsplit=1)
+    return word, rest[0] if rest else ""
 
 
 def joined_lines(content: bytes) -> bytes:
-    """Plain text in which a backslash at the end of a line joins it with the next.
+    """Text, as `text_with_names` has it, in which a backslash at a line's end joins the next one.
 
     A remark ends with its line: a path in it may end in a backslash.
     """
     remarks = re.compile(rb"(?m)^[ \t]*#[^\n]*")
-    text = remarks.sub(b"", plain_text(content))
+    text = remarks.sub(b"", text_with_names(content))
     continued = re.compile(rb"\\[ \t]*\n")
     return continued.sub(b" ", text)

@@ -77,19 +77,38 @@ def stranger(level: int = 1) -> Stranger:
 
 def closed(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
     """The mesh with a fan of triangles across the opening between some vertices on its edges."""
+    loop = _edge_around(mesh, vertices)
     centre = mesh.vertices[vertices].mean(axis=0)
-    faces = mesh.faces
-    directed = sides_of(faces)
-    ways = {tuple(way) for way in directed.tolist()}
+    middle = len(mesh.vertices)
+    fan = [[after, before, middle] for before, after in zip(loop, np.roll(loop, -1), strict=True)]
+    return Mesh(np.vstack([mesh.vertices, centre]), np.vstack([mesh.faces, fan]).astype(np.int32))
+
+
+def filled(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
+    """The mesh with a strip across such an opening: triangles between vertices of its edge."""
+    left = _edge_around(mesh, vertices)
+    strip = []
+    while len(left) > 2:
+        strip.append([left[1], left[0], left[-1]])
+        left = left[1:]
+        if len(left) > 2:
+            strip.append([left[0], left[-1], left[-2]])
+            left = left[:-1]
+    return Mesh(mesh.vertices, np.vstack([mesh.faces, strip]).astype(np.int32))
+
+
+def _edge_around(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> list[int]:
+    """The vertices of an opening's edge, one after the other, its right corner first."""
+    centre = mesh.vertices[vertices].mean(axis=0)
+    ways = {tuple(way) for way in sides_of(mesh.faces).tolist()}
     following = {a: b for a, b in ways if (b, a) not in ways}
     border = np.array(list(following))
     off = np.linalg.norm(mesh.vertices[border] - centre, axis=1)
     loop = [int(border[off.argmin()])]
     while following[loop[-1]] != loop[0]:
         loop.append(following[loop[-1]])
-    middle = len(mesh.vertices)
-    fan = [[following[a], a, middle] for a in loop]
-    return Mesh(np.vstack([mesh.vertices, centre]), np.vstack([faces, fan]).astype(np.int32))
+    corner = int(mesh.vertices[loop, 0].argmin())
+    return [*loop[corner:], *loop[:corner]]
 
 
 def with_card(mesh: Mesh) -> Mesh:
@@ -117,3 +136,16 @@ def sealed() -> Stranger:
     used, number = np.unique(same[faces], return_inverse=True)
     found = np.searchsorted(used, same[head.landmarks]).astype(np.int32)
     return Stranger(Mesh(vertices[used], number.reshape(-1, 3).astype(np.int32)), found)
+
+
+def masked() -> Stranger:
+    """The built-in head, its mouth a little open, with triangles across its mouth and eyes."""
+    head = assets.load("head")
+    opening = np.array([0.0, -8.0, 0.0])  # [mm]
+    vertices = head.vertices + head.mandible_weight[:, None] * opening
+    behind = ("mouth_0", "mouth_1", "eye_0", "eye_1")  # rings behind the edges of lips and lids
+    inner = [head.rings[f"{ring}_{side}"] for ring in behind for side in ("left", "right")]
+    mesh = Mesh(vertices, head.faces[~np.isin(head.faces, np.concatenate(inner)).any(axis=1)])
+    for around in (slice(60, 68), slice(36, 42), slice(42, 48)):
+        mesh = filled(mesh, head.landmarks[around])
+    return Stranger(mesh, head.landmarks)

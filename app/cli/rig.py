@@ -111,10 +111,10 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
         fitted = called_head(head)
         title = f"head {head}"
     avatar = avatar_of(fitted, request, say)
-    size = write_avatar(avatar, output, title, is_folder=is_folder)
-    meshes = "1 mesh" if len(avatar.shapes) == 1 else f"{len(avatar.shapes)} meshes"
+    size, meshes = write_avatar(avatar, output, title, is_folder=is_folder)
+    in_meshes = "1 mesh" if meshes == 1 else f"{meshes} meshes"
     shapes = counted(len(avatar.names), "shape")
-    click.echo(f"{in_one_line(output)}: {shapes}, {meshes}, {size / 1e6:.1f} MB")
+    click.echo(f"{in_one_line(output)}: {shapes}, {in_meshes}, {size / 1e6:.1f} MB")
 
 
 def _take_of(rigging: Rigging, kinds: tuple[str, ...]) -> Script | None:

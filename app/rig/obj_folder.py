@@ -2,20 +2,25 @@
 
 All have the same vertices in the same order: `neutral.obj` at rest, and each other where its shape
 is at 1. An OBJ that was brought keeps its lines, but for those of vertices that a shape moves, and
-of polygons that a cut between sealed lips touches. Any other head is written as triangles, body by
-body: in the unit of its file, the built-in one in metres.
+of polygons that a cut between sealed lips touches; its material libraries and their pictures come
+along. Any other head is written as triangles, body by body: in the unit of its file, the built-in
+one in metres.
 """
 
 from __future__ import annotations
 
+import contextlib
+import os
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 
 import numpy as np
 
+from risorius.assets.errors import AssetError
 from risorius.assets.fitting.lips import LipCut
-from risorius.assets.wavefront import joined_lines
+from risorius.assets.user_files import beside, read_file, text_with_names
+from risorius.assets.wavefront import joined_lines, maps_of
 from risorius.geometry.arrays import Floats64
 
 from .avatar import Avatar, FileHead
@@ -31,7 +36,10 @@ def write_obj_folder(avatar: Avatar, folder: Path) -> None:
     file = avatar.file
     text = None
     if file is not None and file.path.suffix.lower() == ".obj":
-        text = _own_text(file)
+        content = file.path.read_bytes()
+        is_kept = _has_plain_lines(content, file)
+        text = _own_text(content if is_kept else joined_lines(content), file)
+        _copy_materials(file, folder, is_kept=is_kept)
     for name, changes in _shapes(avatar):
         path = folder / f"{name}.obj"
         if text is None or file is None:
@@ -54,15 +62,48 @@ def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats64]]]:
         )
 
 
-def _own_text(file: FileHead) -> bytes:
-    """The text of an OBJ that was brought; a cut between its lips doubles vertices in it."""
-    content = file.path.read_bytes()
-    cut = file.head.lip_cut
-    count = len(file.body.rest) - (0 if cut is None else len(cut.sources))
+def _has_plain_lines(content: bytes, file: FileHead) -> bool:
+    """Whether an OBJ's lines can stay: none goes on in the next, and none is of UTF-16."""
     is_continued = re.search(rb"\\[ \t]*\r?\n", content) is not None
-    if is_continued or len(VERTEX.findall(content)) != count:  # old ends of lines, UTF-16
-        content = joined_lines(content)
-    return content if cut is None else _with_lips_cut(content, cut, count)
+    return not is_continued and len(VERTEX.findall(content)) == _count_of(file)
+
+
+def _count_of(file: FileHead) -> int:
+    """How many vertices an OBJ has that was brought."""
+    cut = file.head.lip_cut
+    return len(file.body.rest) - (0 if cut is None else len(cut.sources))
+
+
+def _own_text(content: bytes, file: FileHead) -> bytes:
+    """The text of an OBJ that was brought; a cut between its lips doubles vertices in it."""
+    cut = file.head.lip_cut
+    return content if cut is None else _with_lips_cut(content, cut, _count_of(file))
+
+
+def _copy_materials(file: FileHead, folder: Path, *, is_kept: bool) -> None:
+    """Copy the material libraries of an OBJ, and their pictures, to the same places in a folder.
+
+    is_kept: as the bytes that they are; else as UTF-8. Pictures that are missing, or lie outside
+    the mesh's folder, stay where they are.
+    """
+    assert file.painted is not None
+    source = file.path.parent
+    for name in file.painted.libraries:
+        if not beside(source, name).exists():
+            continue
+        library = read_file(beside(source, name), kind="material", most=1)
+        _write_beside(folder, name, library if is_kept else text_with_names(library))
+        for picture in maps_of(library):
+            with contextlib.suppress(AssetError):
+                content = read_file(beside(source, picture), kind="picture", most=100)
+                _write_beside(folder, picture, content)
+
+
+def _write_beside(folder: Path, name: str, content: bytes) -> None:
+    """Write a file under the name that another one has for it."""
+    path = folder / os.path.normpath(PureWindowsPath(name).as_posix())
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
 
 
 def _with_lips_cut(text: bytes, cut: LipCut, count: int) -> bytes:

@@ -28,15 +28,20 @@ from .surface import METRES
 LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")  # of each eye, by its side
 
 
-def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -> int:
-    """Write an avatar, whole or not at all; return the size of its files [bytes]."""
+def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -> tuple[int, int]:
+    """Write an avatar, whole or not at all.
+
+    Return the size of its files [bytes], and how many meshes the file has, or files the folder.
+    """
     if is_folder:
         with folder_atomically(output, OWN, overwrite=False) as folder:
             write_obj_folder(avatar, folder)
-        return sum(path.stat().st_size for path in output.iterdir())
+        files = [path for path in output.rglob("*") if path.is_file()]
+        return sum(path.stat().st_size for path in files), 1 + len(avatar.names)
+    content = avatar_glb(avatar, title)
     with written_atomically(output) as part:
-        part.write_bytes(avatar_glb(avatar, title))
-    return output.stat().st_size
+        part.write_bytes(content)
+    return len(content), len(read_document(content, Path())[0]["meshes"])
 
 
 def make_avatar(head: FittedHead | None, output: Path, request: RigRequest, say: Say) -> None:

@@ -34,6 +34,7 @@ from ..model import Eye, FineShape, Head, Part, Wrinkles
 from ..user_files import named
 from . import simplifying
 from .face_place import ORIENTING, is_face, placed
+from .fillings import filling_of
 from .jaw_place import jaw_axis_of, opening_as_people
 from .landmark_file import (
     COUNT,
@@ -45,6 +46,7 @@ from .landmark_file import (
 )
 from .lips import LipCut, lip_cut, lips_parted
 from .mesh_validation import (
+    CoveredError,
     ShutMouthError,
     SkinPiece,
     check_manifold,
@@ -126,23 +128,30 @@ Marks = tuple[Integers32, Floats64 | None]  # landmarks as `read_landmarks` has 
 
 
 def _fit_shut_or_not(mesh: Mesh, marks: Callable[[Mesh], Marks]) -> FittedHead:
-    """Fit a mesh; where skin joins the lips, part them first.
+    """Fit a mesh. Filled openings are opened first, and lips that are joined by skin parted.
 
     marks: reads the landmarks of a mesh with those vertices.
     """
     numbers, points = marks(mesh)
+    places = mesh.vertices[numbers] if points is None else points
     try:
         return fit(mesh, numbers, points=points)
-    except ShutMouthError:
-        places = mesh.vertices[numbers] if points is None else points
-        parted = lips_parted(mesh, places)
-        if parted is not None:
-            parted_numbers, parted_points = marks(parted)
-            with contextlib.suppress(ShutMouthError):
-                return fit(parted, parted_numbers, points=parted_points)
-        cut = lip_cut(mesh, numbers, places)
-        if cut is None:
-            raise
+    except CoveredError as error:
+        reason = error
+    filling = filling_of(mesh, numbers, places)
+    if filling is not None:
+        fitted = _fit_shut_or_not(mesh.without(filling.triangles), marks)
+        return replace(fitted, notes=(*fitted.notes, filling.in_words))
+    if not isinstance(reason, ShutMouthError):
+        raise reason
+    parted = lips_parted(mesh, places)
+    if parted is not None:
+        parted_numbers, parted_points = marks(parted)
+        with contextlib.suppress(ShutMouthError):
+            return fit(parted, parted_numbers, points=parted_points)
+    cut = lip_cut(mesh, numbers, places)
+    if cut is None:
+        raise reason
     opened = cut.applied(mesh)
     try:
         fitted = fit(opened, cut.landmarks, points=cut.points)

@@ -26,7 +26,11 @@ MOST_TRIANGLES = 250_000
 FEWEST_TRIANGLES = 300  # below it eyes and mouth have no shape (chosen)
 
 
-class ShutMouthError(AssetError):
+class CoveredError(AssetError):
+    """Skin lies where the mouth or an eye must be open."""
+
+
+class ShutMouthError(CoveredError):
     """Lips that are joined by skin."""
 
 
@@ -201,7 +205,7 @@ def check_openings(skin: SkinPiece) -> None:
     for side, pairs in lids.items():
         middle = skin.vertices[skin.landmarks[list(sum(pairs, ()))]].mean(axis=0)
         if _is_covered(corners, middle):
-            raise AssetError(
+            raise CoveredError(
                 f"the {side} eye has no opening: skin lies between landmarks {pairs[0][0]} and "
                 f"{pairs[0][1]}; cut the mesh open between the lids (a head with its eyes open)"
             )

@@ -9,6 +9,8 @@ import PIL.Image
 from risorius.app.scenes import FaceScene
 
 CENTIMETRES = 0.1
+LIBRARY = "Farben für 頭.mtl"
+PICTURE = "Haut für 頭.png"
 FIRST = ("eyeball_left", "tongue")  # parts that stand in front of the skin in the file
 
 
@@ -20,7 +22,7 @@ def write_whole_head(folder: Path, scene: FaceScene) -> tuple[Path, Path, dict[s
     scene.reset()
     parts = {part.name: part for part in scene.parts if part.name != "wet_edges"}
     names = [*FIRST, "skin", *(name for name in parts if name not in FIRST)]
-    lines = ["mtllib whole.mtl"]
+    lines = [f"mtllib {LIBRARY}"]
     places: dict[str, slice] = {}
     count = 0
     for name in names:
@@ -40,11 +42,11 @@ def write_whole_head(folder: Path, scene: FaceScene) -> tuple[Path, Path, dict[s
         places[name] = slice(count, count + len(points))
         count += len(points)
     mesh = folder / "whole.obj"
-    mesh.write_text("\n".join(lines))
+    mesh.write_text("\n".join(lines), encoding="utf-8")
     picture = np.full((8, 8, 3), (200, 150, 130), np.uint8)
-    PIL.Image.fromarray(picture).save(folder / "skin.png")
-    library = "newmtl skin\nKd 1 1 1\nmap_Kd skin.png\nnewmtl parts\nKd 0.2 0.4 0.8\n"
-    (folder / "whole.mtl").write_text(library)
+    PIL.Image.fromarray(picture).save(folder / PICTURE)
+    library = f"newmtl skin\nKd 1 1 1\nmap_Kd {PICTURE}\nnewmtl parts\nKd 0.2 0.4 0.8\n"
+    (folder / LIBRARY).write_text(library, encoding="utf-8")
     landmarks = folder / "whole.json"
     numbers = np.asarray(scene.landmarks) + places["skin"].start
     landmarks.write_text(json.dumps({"landmarks": numbers.tolist()}))

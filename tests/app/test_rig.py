@@ -30,7 +30,7 @@ from ..heads import TURN, stranger
 from ..meshes import ball
 from .command_line import refusal, risorius, shape_keys_in_blender
 from .glb_player import Player
-from .rig_files import write_whole_head
+from .rig_files import LIBRARY, PICTURE, write_whole_head
 
 METRES = 0.001
 SEEN = 0.02  # [mm] that nobody sees
@@ -182,7 +182,7 @@ def test_a_file_keeps_its_vertices_in_their_order(whole):
     assert [each["name"] for each in found["materials"]].count("skin") == 1
     view = found["bufferViews"][found["images"][0]["bufferView"]]
     content = Player(whole.avatar).blob[view["byteOffset"] :][: view["byteLength"]]
-    assert content == (whole.mesh.parent / "skin.png").read_bytes()
+    assert content == (whole.mesh.parent / PICTURE).read_bytes()
 
 
 def test_each_piece_of_a_file_moves_as_what_it_is(whole, face):
@@ -396,9 +396,16 @@ def test_a_folder_of_objs_keeps_the_lines_of_the_file(whole, tmp_path):
     folder = tmp_path / "shapes"
     result = risorius("rig", whole.mesh, "--landmarks", landmarks, "--as", "obj", "-o", folder)
     assert result.exit_code == 0, result.output
-    assert {path.stem for path in folder.iterdir()} == {"neutral", *ARKIT}
+    assert {path.stem for path in folder.glob("*.obj")} == {"neutral", *ARKIT}
+    assert f"52 shapes, {len(ARKIT) + 1} meshes" in result.output
+    others = {path.name for path in folder.iterdir() if path.suffix != ".obj"}
+    assert others == {LIBRARY, PICTURE}
+    for name in others:
+        assert (folder / name).read_bytes() == (whole.mesh.parent / name).read_bytes()
     lines = whole.mesh.read_text().splitlines()
     assert (folder / "neutral.obj").read_text().splitlines() == lines
+    picture = read_mesh(folder / "neutral.obj").texture.pictures[0]()
+    assert picture[0, 0].tolist() == [200, 150, 130]
     opened = (folder / "jawOpen.obj").read_text().splitlines()
     assert len(opened) == len(lines)
     for before, after in zip(lines, opened, strict=True):

@@ -13,7 +13,7 @@ from risorius.assets.fitting.lips import lip_cut
 from risorius.assets.meshes import read_mesh
 
 from ..assets.gltf_files import GltfMaker
-from ..heads import METRES, Stranger, closed, sealed
+from ..heads import METRES, Stranger, closed, masked, sealed
 from .command_line import risorius
 from .glb_player import Player
 
@@ -25,6 +25,22 @@ LOWER = 66
 def shut() -> Stranger:
     """The built-in head, sealed [mm]."""
     return sealed()
+
+
+@pytest.mark.slow
+def test_an_avatar_keeps_what_fills_its_mouth_and_eyes(tmp_path):
+    """All vertices and triangles of the file in their order; the filling goes with the lips."""
+    mask = masked()
+    mesh, marks = mask.write(tmp_path)
+    path = tmp_path / "avatar.glb"
+    result = risorius("rig", mesh, "--landmarks", marks, "-o", path)
+    assert result.exit_code == 0, result.output
+    player = Player(path)
+    places = player.attribute("head", "POSITION")
+    assert np.abs(places - mask.mesh.vertices).max() < 1e-4
+    assert np.array_equal(read_mesh(path).faces, mask.mesh.faces)
+    opened = player.shapes("head")["jawOpen"][mask.landmarks, 1]
+    assert opened[LOWER] < opened[UPPER] - 15.0
 
 
 def write_glb(shut, folder):

@@ -444,6 +444,20 @@ def test_a_document_may_have_its_data_beside_it(maker, tmp_path, is_beside):
     assert found.texture.pictures[0]()[0, 0].tolist() == list(RED)
 
 
+@pytest.mark.parametrize("name", ["Haut für 顔.png", "Haut%20f%C3%BCr%20%E9%A1%94.png"])
+def test_a_picture_beside_it_may_have_any_letters(maker, tmp_path, name):
+    """Its name as it is, or as URIs write it."""
+    painted(maker, maker.accessor(UV))
+    image = maker.parts["images"][0]
+    del image["bufferView"]
+    image["uri"] = name
+    (tmp_path / "Haut für 顔.png").write_bytes(png())
+    (tmp_path / "data.bin").write_bytes(maker.data)
+    path = tmp_path / "頭 ü.gltf"
+    path.write_bytes(maker.document(uri="data.bin"))
+    assert assets.read_mesh(path).texture.pictures[0]()[0, 0].tolist() == list(RED)
+
+
 def test_pictures_of_a_kind_that_is_not_read_are_named(maker, tmp_path):
     """And only when they are drawn: hair may have a kind that the skin has not."""
     texture = maker.add("textures", {"extensions": {"KHR_texture_basisu": {"source": 0}}})

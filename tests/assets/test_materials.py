@@ -2,6 +2,7 @@
 
 import io
 import struct
+import unicodedata
 import zlib
 
 import numpy as np
@@ -10,7 +11,9 @@ import pytest
 
 from risorius import assets
 from risorius.assets import AssetError
+from risorius.assets.painted import read_painted
 from risorius.assets.pictures import decoded
+from risorius.assets.wavefront import maps_of
 
 OBJ = (
     "mtllib {library}\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt .25 .5\nvt .75 .5\nvt .75 1\n"
@@ -111,6 +114,54 @@ def test_materials_may_have_any_names(tmp_path, name):
     library = f"newmtl Material\nmap_Kd other.png\nnewmtl {name}\nmap_Kd skin.png\n"
     assert colour_of(read(tmp_path, name, library)) == RED
     assert colour_of(read(tmp_path, name, library, material=f"{name} # of the face")) == RED
+
+
+@pytest.mark.parametrize(
+    ("name", "encoding"),
+    [
+        ("Gesichtshaut für Jürgen", "utf-8"),
+        ("Gesichtshaut für Jürgen", "latin-1"),
+        ("Gesichtshaut für Jürgen", "utf-16"),
+        ("顔　の 肌", "utf-8"),
+        ("顔　の 肌", "utf-16"),
+        ("кожа", "utf-8"),
+    ],
+)
+def test_names_may_have_any_letters(tmp_path, name, encoding):
+    """Of library, material, group and picture; UTF-8, UTF-16, else Latin-1."""
+    obj = OBJ.format(library=f"{name}.mtl", material=name).replace("\nf", f"\ng {name}\nf")
+    (tmp_path / f"{name}.obj").write_bytes(obj.encode(encoding))
+    library = f"# {name}\nnewmtl {name}\nmap_Kd -s 1 1 1 maps\\{name}.png\n"
+    (tmp_path / f"{name}.mtl").write_bytes(library.encode(encoding))
+    (tmp_path / "maps").mkdir()
+    (tmp_path / "maps" / f"{name}.png").write_bytes(png())
+    assert colour_of(assets.read_mesh(tmp_path / f"{name}.obj")) == RED
+    painted = read_painted(tmp_path / f"{name}.obj")
+    assert painted.parts == (name,)
+    (material,) = painted.materials
+    assert (material.name, material.picture) == (name, (png(), f"{name}.png"))
+
+
+def test_letters_with_marks_may_be_written_in_two_ways(tmp_path):
+    """A folder has the letter and its mark apart, the library both in one, as after a copy."""
+    library = "newmtl skin\nmap_Kd für.png\n"
+    apart = unicodedata.normalize("NFD", "für.png")
+    assert apart != "für.png"
+    assert colour_of(read(tmp_path, "skin", library, picture=apart)) == RED
+
+
+def test_a_wrong_line_may_have_any_letters(tmp_path):
+    """It is shown in one line, also where it is cut short within a letter."""
+    path = tmp_path / "a.obj"
+    path.write_text("v 0 0 0\nf 1 2 " + "ü" * 40, encoding="utf-8")
+    with pytest.raises(AssetError, match="line 2: 'f 1 2 ü"):
+        assets.read_mesh(path)
+
+
+def test_libraries_name_pictures_of_all_kinds():
+    """Colour, bumps with options, gloss."""
+    library = b"newmtl a\nmap_Kd a.png\nbump -bm 0.4 b c.png\nmap_Ks maps\\d.png\nKs 1 1 1\n"
+    assert maps_of(library) == ["a.png", "b c.png", "maps\\d.png"]
 
 
 def test_pictures_may_lie_otherwise_each(tmp_path):

@@ -1,0 +1,125 @@
+"""Triangles that fill a mouth or an eye which must be open, as masks have them.
+
+A filling lies inside the landmarks of an opening, and all its vertices are on the opening's edge:
+it is one polygon in triangles. It is left out of the skin, and its vertices stay.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from ...geometry.arrays import Flags, Floats64, Integers, Integers32
+from ...geometry.polylines import arc_lengths
+from ...geometry.sides import sides_of
+from ..loading import load
+from ..meshes import Mesh
+from .face_place import placed
+from .mesh_validation import pieces_of
+
+# Landmarks around each opening, in two chains from corner to corner.
+OPENINGS = {
+    "mouth": ((60, 61, 62, 63, 64), (64, 65, 66, 67, 60)),
+    "right eye": ((36, 37, 38, 39), (39, 40, 41, 36)),
+    "left eye": ((42, 43, 44, 45), (45, 46, 47, 42)),
+}
+
+
+@dataclass(frozen=True)
+class Filling:
+    """Which triangles of a mesh fill openings, and which openings these are."""
+
+    triangles: Integers
+    openings: tuple[str, ...]
+
+    @property
+    def in_words(self) -> str:
+        """A line for the owner of the mesh."""
+        *most, last = self.openings
+        names = f"{', '.join(most)} and {last} are" if most else f"{last} is"
+        count = len(self.triangles)
+        return f"its {names} filled by {count} triangles, which are left out; an avatar has them"
+
+
+def filling_of(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> Filling | None:
+    """All that fills the mouth or an eye of a mesh; None where nothing does.
+
+    numbers: vertices at the landmarks, shape (68,). landmarks: where they lie [unit of the mesh],
+    shape (68, 3).
+    """
+    to_face = placed(landmarks, load("head"))
+    vertices = to_face.points(mesh.vertices)
+    points = to_face.points(landmarks)
+    piece = pieces_of(mesh.faces, len(mesh.vertices))
+    own = np.flatnonzero(piece[mesh.faces[:, 0]] == np.bincount(piece[numbers]).argmax())
+    openings = []
+    triangles = []
+    for name, chains in OPENINGS.items():
+        corners = [number for chain in chains for number in chain[:-1]]
+        upper, lower = (_smooth(points[list(chain)]) for chain in chains)
+        found = own[_filling(vertices, mesh.faces[own], points[corners], upper, lower)]
+        if len(found):
+            openings.append(name)
+            triangles.append(found)
+    return Filling(np.concatenate(triangles), tuple(openings)) if openings else None
+
+
+def _smooth(points: Floats64) -> Floats64:
+    """A curve through points (n, 3) that swings nowhere beyond them."""
+    place_count = 33
+    lengths = arc_lengths(points)
+    curve = scipy.interpolate.PchipInterpolator(lengths, points)
+    return np.asarray(curve(np.linspace(0.0, lengths[-1], place_count)))
+
+
+def _filling(
+    vertices: Floats64, faces: Integers32, around: Floats64, upper: Floats64, lower: Floats64
+) -> Integers:
+    """Which triangles fill an opening, none where they are no polygon whose corners are its edge.
+    In the face space [mm], whose z axis points to the viewer.
+
+    around: landmarks of the opening, (n, 3). upper, lower: curves through them, from corner to
+    corner and back, (m, 3) each.
+    """
+    none = np.zeros(0, np.int64)
+    edge = np.concatenate([upper[:-1], lower[:-1]])
+    centre = edge.mean(axis=0)
+    width = np.linalg.norm(upper[-1] - upper[0])
+    height = (upper - lower[::-1])[:, 1].mean()
+    if height < 0.02 * width:  # shut: nothing lies in it
+        return none
+    middles = vertices[faces].mean(axis=1)
+    near = np.flatnonzero(np.linalg.norm(middles - centre, axis=1) < 0.6 * width)
+    used = np.unique(faces[near])
+    ends = used[scipy.spatial.cKDTree(vertices[used]).query(upper[[0, -1]])[1]]
+    for share in (1.0, 0.9, 0.8):  # of the curve's size: folds of skin may hang into it
+        shrunk = centre + share * (edge - centre)
+        inside = near[_is_inside(middles[near, :2], shrunk[:, :2])]
+        # Also triangles between the curve and a side of the polygon, which lie outside the curve.
+        corners = np.append(faces[inside], ends)
+        found = np.flatnonzero(np.isin(faces, corners).all(axis=1))
+        if _is_polygon(faces[found]):
+            border = vertices[np.unique(faces[found])]
+            off = scipy.spatial.cKDTree(border).query(around)[0]
+            return found if off.max() < 0.2 * width else none
+    return none
+
+
+def _is_polygon(faces: Integers32) -> bool:
+    """Whether triangles make up one polygon, all of whose corners are on its edge."""
+    sides, uses = np.unique(np.sort(sides_of(faces), axis=1), axis=0, return_counts=True)
+    border = sides[uses == 1]
+    count = len(faces) + 2  # corners and sides of a polygon of so many triangles
+    corner_counts = (len(border), len(np.unique(border)), len(np.unique(faces)))
+    return len(faces) > 0 and corner_counts == (count, count, count)
+
+
+def _is_inside(points: Floats64, polygon: Floats64) -> Flags:
+    """Which points (n, 2) a polygon (m, 2) goes around."""
+    to_x, to_y = (polygon[:, None] - points).transpose(2, 0, 1)
+    angles = np.unwrap(np.arctan2(to_y, to_x), axis=0, period=2.0 * np.pi)
+    closing = np.arctan2(to_y[0], to_x[0]) - np.arctan2(to_y[-1], to_x[-1])
+    closing -= 2.0 * np.pi * np.rint(closing / (2.0 * np.pi))
+    return np.asarray(np.abs(angles[-1] - angles[0] + closing) > np.pi)

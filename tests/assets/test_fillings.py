@@ -1,0 +1,90 @@
+"""Masks whose mouth and eyes are filled with triangles: opened, and all else left alone."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from risorius import sim
+from risorius.assets import AssetError
+from risorius.assets.fitting import fit_head
+from risorius.assets.fitting.fillings import filling_of
+from risorius.assets.meshes import read_mesh
+
+from ..heads import SHIFT, TURN, Stranger, closed, filled, masked
+
+COUNT = 62  # triangles of `masked` across its mouth and eyes, which are the last ones
+
+
+@pytest.fixture(scope="module")
+def mask() -> Stranger:
+    """A mask that is filled [mm]."""
+    return masked()
+
+
+def test_only_the_filling_is_left_out(mask):
+    """In any unit and place; where landmarks are half a millimetre off, corners may stay."""
+    last = np.arange(len(mask.mesh.faces))[-COUNT:]
+    turned = replace(mask.mesh, vertices=0.001 * mask.mesh.vertices @ TURN.T + SHIFT)
+    points = turned.vertices[mask.landmarks]
+    off = np.random.default_rng(3).normal(0.0, 0.0003, points.shape)
+    found = filling_of(turned, mask.landmarks, points)
+    assert np.array_equal(np.sort(found.triangles), last)
+    roughly = filling_of(turned, mask.landmarks, points + off)
+    assert len(np.intersect1d(roughly.triangles, last)) > COUNT - 10
+    assert len(np.setdiff1d(roughly.triangles, last)) < 3
+    assert found.in_words == (
+        "its mouth, right eye and left eye are filled by 62 triangles, which are left out; "
+        "an avatar has them"
+    )
+
+
+def test_a_mask_is_opened_and_moves(mask, tmp_path):
+    """A line says so; lips part, lids shut, and vertices keep their numbers."""
+    head = fit_head(*mask.write(tmp_path))
+    assert any("filled by 62 triangles" in note for note in head.notes)
+    assert len(head.faces) == len(mask.mesh.faces) - COUNT
+    assert np.array_equal(head.file_vertices[head.landmarks], mask.landmarks)
+    simulation = sim.create(head)
+    simulation.controls.set("jawOpen", 1.0)
+    simulation.controls.set("eyeBlinkLeft", 1.0)
+    for _ in range(60):
+        simulation.step(1.0 / 60.0)
+    moved = simulation.positions - head.vertices
+    upper, lower = head.landmarks[[62, 66]]
+    assert moved[upper, 1] - moved[lower, 1] > 15.0
+    lids = head.landmarks[[43, 44, 46, 47]]
+    assert moved[lids[:2], 1].mean() < moved[lids[2:], 1].mean() - 3.0
+
+
+def test_a_picture_goes_on_without_the_triangles(mask, tmp_path):
+    """Triangles behind those that are left out keep their texture coordinates and picture."""
+    path, _ = mask.write(tmp_path)
+    faces = mask.mesh.faces[::-1] + 1
+    uv = np.round(mask.mesh.vertices[:, :2] / 400.0 + 0.5, 6)
+    lines = ["mtllib a.mtl", "usemtl a"]
+    lines += [f"v {x} {y} {z}" for x, y, z in mask.mesh.vertices]
+    lines += [f"vt {u} {v}" for u, v in uv]
+    lines += [f"f {a}/{a} {b}/{b} {c}/{c}" for a, b, c in faces]
+    path.write_text("\n".join(lines))
+    mesh = read_mesh(path)
+    opened = mesh.without(np.arange(COUNT))
+    assert np.array_equal(opened.faces + 1, faces[COUNT:])
+    assert opened.texture is None
+    (tmp_path / "a.mtl").write_text("newmtl a\nmap_Kd a.png\n")
+    opened = read_mesh(path).without(np.arange(COUNT))
+    assert np.allclose(opened.texture.uv[opened.texture.face_uv], uv[faces[COUNT:] - 1])
+    assert len(opened.texture.picture) == len(opened.faces)
+
+
+def test_skin_with_points_of_its_own_is_no_filling(mask, tmp_path):
+    """A fan around a middle over an eye is refused by name, as before."""
+    landmarks = mask.landmarks
+    opened = mask.mesh.without(np.arange(len(mask.mesh.faces))[-COUNT:])
+    covered = closed(filled(opened, landmarks[60:68]), landmarks[42:48])
+    assert filling_of(covered, landmarks, covered.vertices[landmarks]).openings == ("mouth",)
+    path, marks = Stranger(covered, landmarks).write(tmp_path)
+    assert json.loads(marks.read_text())
+    with pytest.raises(AssetError, match="the left eye has no opening"):
+        fit_head(path, marks)
