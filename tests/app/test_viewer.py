@@ -331,18 +331,23 @@ def test_a_corner_drawn_up_and_out_smiles_at_any_speed(viewer):
 
 @pytest.mark.slow
 def test_a_pull_is_the_same_beside_busy_processes(viewer):
-    """Short pulls, slow and at once: the muscles go as far as on a quiet machine."""
+    """Short and far, slow and at once: muscles go as far as on a quiet one; far is a smile."""
+    far = pulled_corner(viewer, 60, 6)
     quiet = pulled_corner(viewer, 12, 6)
     assert 0.2 < max(quiet.values()) < 0.95
     busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2)]
     try:
         found = [pulled_corner(viewer, 12, steps) for steps in (6, 1, 1)]
+        smiles = [pulled_corner(viewer, 60, steps) for steps in (6, 1)]
     finally:
         for process in busy:
             process.kill()
             process.wait()
     for other in found:
         assert other == pytest.approx(quiet, abs=0.05)
+    for smile in smiles:
+        assert smile.keys() == {f"{MAJOR}_left", f"{MAJOR}_right"}
+        assert smile == pytest.approx(far, abs=0.05)
 
 
 def test_the_muscle_under_the_mouse_shows_softly(viewer):

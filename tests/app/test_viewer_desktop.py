@@ -110,6 +110,7 @@ def test_a_plane_has_no_settings_of_a_face():
     """Neither in panels nor in menus; those of any scene are there."""
     with Viewer(script_for(None, "plane"), SIZE, Display()) as viewer:
         for tab, there, missing in (
+            ("Face", {"search", "Neutral"}, {"Mirror", "Link sides", "tab Live", "menu Live"}),
             ("Mechanism", {"Look", "Shading"}, {"Skin maps", "Wrinkles", "Muscles"}),
             ("Scene", {"Light", "lens"}, {"Person", "Skin tone", "Hair"}),
         ):
@@ -120,4 +121,4 @@ def test_a_plane_has_no_settings_of_a_face():
             assert there <= shown
             assert not missing & shown
         cannot_run = {each.label for each in viewer.face.commands if not each.can_run()}
-        assert {"Texture", "Muscles", "Idle life"} <= cannot_run
+        assert {"Texture", "Muscles", "Idle life", "Mirror"} <= cannot_run

@@ -161,7 +161,7 @@ def test_a_bad_folder_is_one_line(viewer, kind):
     assert viewer.settings.export.kind == kind
 
 
-@pytest.mark.parametrize("words", ["blendshape", "morph", "shape key", "ARKit", "avatar"])
+@pytest.mark.parametrize("words", ["blendshape", "morph", "shape key", "ARKit", "avatar", "gltf"])
 def test_search_finds_the_avatar(viewer, words):
     """Each word that people use shows a button that asks for the avatar's file."""
     show_controls(viewer, words)
@@ -170,6 +170,16 @@ def test_search_finds_the_avatar(viewer, words):
     press_keys(viewer, "Escape")
     clear_search(viewer)
     assert "found Avatar ..." not in viewer.gui.places
+
+
+def test_search_finds_films_and_motion(viewer):
+    """The endings of their files show a button that opens the dialog."""
+    for words in ("mp4", "usd"):
+        show_controls(viewer, words)
+        click(viewer, "found Film, pictures or motion ...")
+        assert viewer.exporter.is_asking, words
+        press_keys(viewer, "Escape")
+        clear_search(viewer)
 
 
 @pytest.mark.slow

@@ -291,13 +291,14 @@ class FacePanel:
         settings = self._settings
         if button(gui, "Neutral", meaning="relax all ([Neutral])"):
             session.neutral()
-        stay_in_line(button_width("Mirror"))
-        if button(gui, "Mirror", meaning="exchange left and right ([Mirror]), see Edit, too"):
-            session.mirror()
-        stay_in_line(imgui.get_frame_height() + imgui.calc_text_size("  Link sides").x)
-        _, settings.is_linked = imgui.checkbox("Link sides", settings.is_linked)
-        gui.remember("Link sides")
-        hint("left and right move together")
+        if session.scene.face is not None:  # a plane has no sides
+            stay_in_line(button_width("Mirror"))
+            if button(gui, "Mirror", meaning="exchange left and right ([Mirror]), see Edit, too"):
+                session.mirror()
+            stay_in_line(imgui.get_frame_height() + imgui.calc_text_size("  Link sides").x)
+            _, settings.is_linked = imgui.checkbox("Link sides", settings.is_linked)
+            gui.remember("Link sides")
+            hint("left and right move together")
         imgui.set_next_item_width(-1.0)
         _, self.search = imgui.input_text_with_hint(
             "##search", "Search: smile, AU12, lid ...", self.search

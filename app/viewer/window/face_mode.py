@@ -68,7 +68,7 @@ class FaceMode:
             *menus.keys_menu(session, self.selection),
             *menus.view_menu(settings, self.view, session),
             *menus.expression_keys(session),
-            *menus.live_menu(context.live),
+            *menus.live_menu(context.live, session),
             *menus.help_menu(context.manual, lambda: self.commands),
         )
 
@@ -90,8 +90,9 @@ class FaceMode:
             first: self.face_panel.draw,
             "Mechanism": mechanism.draw,
             "Scene": scene_panel.draw,
-            "Live": live.draw,
         }
+        if scene.face is not None:  # which a live face moves
+            tabs["Live"] = live.draw
         self.layout = Layout(context, menu_bar, tabs, self.timeline)
 
     @property

@@ -104,6 +104,7 @@ def export_menu(exporter: Exporter, files: FileDialogs) -> Menu:
             "Ctrl+E, F10",
             exporter.ask,
             can_run=lambda: exporter.job is None,
+            words="export film video mp4 gif webm pictures; motion usd glb gltf obj pc2 vtkhdf npz",
         ),
         Command(
             "File",
@@ -111,7 +112,7 @@ def export_menu(exporter: Exporter, files: FileDialogs) -> Menu:
             "",
             partial(exporter.ask_avatar, files),
             can_run=lambda: exporter.job is None and exporter.session.scene.face is not None,
-            words="export avatar: blendshapes, morph targets, shape keys of ARKit; rig",
+            words="export avatar: blendshapes, morph targets, shape keys of ARKit; rig glb gltf",
         ),
     )
 
@@ -120,13 +121,14 @@ def edit_menu(session: Session) -> Menu:
     """Undo, and whole faces."""
     command = partial(Command, "Edit")
     redo = partial(command, can_run=lambda: session.history.can_redo)
+    of_sides = partial(command, can_run=lambda: session.scene.face is not None)
     return (
         command("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
         redo("Redo", "Ctrl+Y, Ctrl+Shift+Z", session.redo),
         command("Neutral", "N", session.neutral, begins_section=True),
-        command("Mirror", "M", session.mirror),
-        command("Left to right", "Shift+M", partial(session.mirror, "left")),
-        command("Right to left", "Ctrl+M", partial(session.mirror, "right")),
+        of_sides("Mirror", "M", session.mirror),
+        of_sides("Left to right", "Shift+M", partial(session.mirror, "left")),
+        of_sides("Right to left", "Ctrl+M", partial(session.mirror, "right")),
     )
 
 
@@ -243,9 +245,11 @@ def expression_keys(session: Session) -> Menu:
     )
 
 
-def live_menu(live: LiveCommands) -> Menu:
-    """A face that is sent while it moves."""
+def live_menu(live: LiveCommands, session: Session) -> Menu:
+    """A face that is sent while it moves; no menu where there is none to be moved."""
     command = partial(Command, "Live")
+    if session.scene.face is None:
+        return ()
     return (
         command("Listen", "Ctrl+L", live.toggle, lambda: live.is_on),
         command("Calibrate", "Shift+N", live.calibrate, can_run=lambda: live.is_receiving),
