@@ -233,7 +233,7 @@ def _ring_pull(
     centre = muscle.centre.on(landmarks, side)
     pull = np.array(muscle.contraction) * (centre - x)
     if muscle.opening != (0.0, 0.0):
-        pull[:, :2] = _round_mouth(muscle, x, landmarks) - x[:, :2]
+        pull[:, 1] += _round_mouth(muscle, x, landmarks)
     pull += np.array(muscle.push) * (side.sign, 1.0, 1.0)
     roll, yaw = np.radians(muscle.turn_deg)
     turn = rotation(UP, side.sign * yaw) @ rotation(LATERAL, roll)
@@ -252,24 +252,16 @@ def _ring_pull(
 
 
 def _round_mouth(muscle: RingMuscle, x: Floats64, landmarks: Floats64) -> Floats64:
-    """Where lips lie, seen from the front, around an oval opening, shape (n, 2) [mm].
+    """How far a sphincter lifts places off the mouth line, so that a round opens in it [mm], (n,).
 
-    Skin at a share u of the way from the middle to the corner goes to (sin(u 90 deg),
-    sqrt(1 - u^2)) half axes: a little fuller than an ellipse beside the middle, as corners lag
-    behind. The lip keeps its height, and skin beside the corner its distance from it.
+    The opening is seen from the front, between two parabolas. Beside it the lips touch, so a funnel
+    is narrower than the mouth.
     """
+    half_width, height = muscle.opening
     seam = landmarks[[62, 66], 1].mean()
-    corner = abs(landmarks[54, 0])
-    place = x[:, 0]
-    across = np.clip(place / corner, -1.0, 1.0)
-    height = x[:, 1] - seam
-    side = {"upper_lip": 1.0, "lower_lip": -1.0}.get(muscle.gate, np.sign(height))
-    outward = np.maximum(height * side, 0.0)
-    wide, high = muscle.opening
-    beside = np.sign(place) * np.maximum(np.abs(place) - corner, 0.0)
-    lateral = (wide + outward) * np.sin(across * np.pi / 2.0) + beside
-    up = seam + side * (high + outward) * np.sqrt(1.0 - across**2)
-    return np.stack([lateral, up], axis=1)
+    side = {"upper_lip": 1.0, "lower_lip": -1.0}.get(muscle.gate, np.sign(x[:, 1] - seam))
+    lifted: Floats64 = side * height * np.maximum(1.0 - (x[:, 0] / half_width) ** 2, 0.0)
+    return lifted
 
 
 def _middle(muscle: RingMuscle, landmarks: Floats64, side: Side) -> Floats64:

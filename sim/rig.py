@@ -227,7 +227,7 @@ class RingMuscle(Muscle):
     flare: Annotated[float, Within(-30.0, 30.0)] = 0.0
     # about the centre: skin above it goes forward, skin before it to the side
     turn_deg: Annotated[Pair, Within(-90.0, 90.0)] = (0.0, 0.0)
-    # mm, half width and half height of the oval mouth drawn to; both 0: to the centre
+    # mm, half width and height of a round opening between the lips; both 0: none
     opening: Annotated[Pair, Within(0.0, 30.0)] = (0.0, 0.0)
     arc_deg: Annotated[Triple, Within(-360.0, 360.0)] = (0.0, 180.0, 1.0)
 

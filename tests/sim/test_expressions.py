@@ -103,6 +103,15 @@ def test_a_frown_and_a_funnel_go_as_far_as_scanned_ones(simulation, head):
     assert moved_landmarks(head, moved, 62)[1] - moved_landmarks(head, moved, 66)[1] > 6.0
 
 
+def test_a_funnel_opens_round(simulation, head):
+    """Lips part by half beside the middle, as in a scan; at the corners they touch."""
+    moved = settled_displacement(simulation, {"mouthFunnel": 1.0})
+    heights = (head.vertices + moved)[head.landmarks, 1]
+    middle = heights[62] - heights[66]
+    for upper, lower in ((61, 67), (63, 65)):
+        assert 0.4 < (heights[upper] - heights[lower]) / middle < 0.65
+
+
 def test_lids_follow_the_gaze_up_a_little(simulation, head):
     """They rise by less than 2 mm, and by more than 1."""
     moved = settled_displacement(simulation, {"eyeLookUpLeft": 1.0, "eyeLookUpRight": 1.0})
