@@ -142,6 +142,7 @@ class Studio:
         shirt = chosen(random, self._request.table.shirts)
         glasses = chosen(random, self._request.table.glasses)
         mask = chosen(random, self._request.table.masks)
+        collar = chosen(random, self._request.table.collars)
         labels = {
             "number": number,
             "tone": round(colours.angle, 2),
@@ -150,6 +151,7 @@ class Studio:
             "age": round(person.identity.age, 1),
             "hair": person.identity.cut,
             "shirt": shirt,
+            "collar": collar,
             "glasses": glasses,
             "mask": mask,
             "measures": {code: round(value, 3) for code, value in person.measures.items()},
@@ -157,7 +159,8 @@ class Studio:
         head = in_colours(person, colours, shrink=_shrink_for(self._request.size))
         frame = None if glasses == BARE else glasses
         cover = None if mask == BARE else mask
-        scene = FaceScene(wearing(head, shirt=shirt, frame=frame, cover=cover))
+        worn = wearing(head, shirt=shirt, collar=collar, frame=frame, cover=cover)
+        scene = FaceScene(worn)
         pipeline = Pipeline(scene, self._renderer)
         drawn = pipeline.bind(Refinement(refiner=self._request.refiner))
         return _Model(scene, pipeline, Passes(pipeline, drawn), labels)

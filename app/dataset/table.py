@@ -13,7 +13,15 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from risorius import assets
-from risorius.assets.identities import DARKEST, FRAMES, LIGHTEST, MASKS, SHIRTS, Population
+from risorius.assets.identities import (
+    COLLARS,
+    DARKEST,
+    FRAMES,
+    LIGHTEST,
+    MASKS,
+    SHIRTS,
+    Population,
+)
 from risorius.assets.identities.hair import CUTS
 from risorius.assets.identities.population import IRIS_SHARES
 from risorius.render import LIGHTS
@@ -184,6 +192,7 @@ class SampleTable(Record):
     cuts_of_women: Annotated[Shares, _drawn_from(CUTS)]
     cuts_of_men: Annotated[Shares, _drawn_from(CUTS)]
     shirts: Annotated[Shares, _drawn_from(SHIRTS)]
+    collars: Annotated[Shares, _drawn_from(COLLARS)]
     glasses: Annotated[Shares, _drawn_from((BARE, *FRAMES))]
     masks: Annotated[Shares, _drawn_from((BARE, *MASKS))]
     lights: Annotated[Shares, _drawn_from(LIGHTS)]

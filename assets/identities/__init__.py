@@ -22,10 +22,12 @@ from .named import (
 )
 from .person import Person, make_person
 from .population import DARKEST, EVERYBODY, LIGHTEST, Population, drawn_irises
+from .shirts import COLLARS, SHIRTS
 from .space import Identity, Sex, sample_identity
-from .wear import FRAMES, SHIRTS, wearing
+from .wear import FRAMES, wearing
 
 __all__ = [
+    "COLLARS",
     "DARKEST",
     "EVERYBODY",
     "FRAMES",

@@ -15,12 +15,10 @@ import numpy as np
 import scipy
 
 from ...geometry.arrays import Floats64
-from ...geometry.normals import vertex_normals
 from ..model import MASK, Part
 from ..smooth import smooth_step
-from ..topology import grid_faces
 from .person import Person
-from .wires import Colour, Tube, beside_head, tube
+from .wires import Colour, Tube, beside_head, sheet, tube
 
 MASKS: Mapping[str, Colour] = MappingProxyType(
     {
@@ -49,8 +47,8 @@ def mask(person: Person, colour: Colour) -> Part:
     is_seam = (down < 0.07) | (down > 0.94) | (aside > 0.94)
     shades = np.stack([(1.0 - 0.06 * is_seam) * (1.0 - 0.3 * creases), np.ones(SHAPE)])
     shares = _mandible_shares(person, outer)
-    sheet = _Piece(_sheet(outer, inner), shades.reshape(-1, 1) * colour, np.tile(shares.ravel(), 2))
-    return _joined([sheet, *_loops(person, outer, shares, colour)])
+    cover = _Piece(sheet(outer, inner), shades.reshape(-1, 1) * colour, np.tile(shares.ravel(), 2))
+    return _joined([cover, *_loops(person, outer, shares, colour)])
 
 
 class _Piece(NamedTuple):
@@ -156,18 +154,6 @@ def _pleats(down: Floats64, aside: Floats64) -> tuple[Floats64, Floats64]:
     height = 1.5 * phase * flat
     crease = np.where((place > 0.0) & (place <= count + 0.15), (place % 1.0) < 0.14, False)
     return height, crease * (0.35 + 0.65 * flat)
-
-
-def _sheet(outer: Floats64, inner: Floats64) -> Tube:
-    """Both sides of a sheet (r, c, 3), and its edge."""
-    count = outer[..., 0].size
-    numbers = np.arange(count).reshape(SHAPE)
-    edge = np.concatenate([numbers[0], numbers[1:, -1], numbers[-1, -2::-1], numbers[-2:0:-1, 0]])
-    rim = grid_faces(np.stack([edge + count, edge]), closed=True)
-    sides = [grid_faces(numbers), grid_faces(numbers)[:, ::-1] + count, rim]
-    points = np.vstack([outer.reshape(-1, 3), inner.reshape(-1, 3)])
-    faces = np.vstack(sides).astype(np.int32)
-    return Tube(points, vertex_normals(points, faces), faces)
 
 
 def _mandible_shares(person: Person, sheet: Floats64) -> Floats64:

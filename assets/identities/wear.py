@@ -1,4 +1,4 @@
-"""What persons wear: shirts of several colours, masks, and glasses on nose and ears.
+"""What persons wear: shirts, masks, and glasses on nose and ears.
 
 Lenses are clear, so only their frame is there. It moves with the head, and keeps off the skin at
 rest. All sizes are chosen by eye, after usual frames (lens 48 mm, bridge 18 mm, temple 140 mm).
@@ -17,20 +17,8 @@ from ...geometry.arrays import Floats64
 from ..model import GLASSES, Part
 from .mask import MASKS, mask
 from .person import Person
+from .shirts import in_shirt
 from .wires import Colour, Tube, beside_head, tube
-
-SHIRTS: Mapping[str, Colour] = MappingProxyType(
-    {
-        "blue": (0.22, 0.24, 0.28),  # of the built-in head
-        "white": (0.80, 0.79, 0.77),
-        "grey": (0.46, 0.46, 0.47),
-        "black": (0.09, 0.09, 0.10),
-        "red": (0.47, 0.13, 0.13),
-        "green": (0.20, 0.33, 0.24),
-        "sand": (0.66, 0.57, 0.44),
-        "sky": (0.47, 0.59, 0.72),
-    }
-)
 
 
 @dataclass(frozen=True)
@@ -60,20 +48,21 @@ FRAMES: Mapping[str, Frame] = MappingProxyType(
 
 
 def wearing(
-    person: Person, *, shirt: str, frame: str | None = None, cover: str | None = None
+    person: Person,
+    *,
+    shirt: str,
+    collar: str = "band",
+    frame: str | None = None,
+    cover: str | None = None,
 ) -> Person:
-    """A person in a shirt of SHIRTS, with a frame of FRAMES or none, and a mask of MASKS or none.
+    """A person in a shirt of SHIRTS with a collar of COLLARS.
 
-    Raises KeyError for others.
+    frame: of FRAMES, or none. cover: a mask of MASKS, or none. Raises KeyError for others.
     """
-    usual = np.array(SHIRTS["blue"])
-    parts = []
-    for part in person.parts:
-        if part.bone == "neck" and shirt != "blue":
-            shade = part.colours / usual
-            colours = np.clip(shade * SHIRTS[shirt], 0.0, 1.0)
-            part = replace(part, colours=colours.astype(np.float32))
-        parts.append(part)
+    parts = [
+        in_shirt(part, person.vertices, shirt, collar) if part.bone == "neck" else part
+        for part in person.parts
+    ]
     nose = None
     if cover is not None:
         sheet = mask(person, MASKS[cover])

@@ -1,4 +1,4 @@
-"""Wires of what persons wear: frames and temples of glasses, loops of masks."""
+"""Wires and sheets of what persons wear: frames of glasses, masks and their loops, collars."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import scipy
 
 from ...geometry.arrays import Floats64, Integers32
 from ...geometry.directions import unit_vectors
+from ...geometry.normals import vertex_normals
 from ..topology import grid_faces
 
 Colour = tuple[float, float, float]
@@ -36,7 +37,7 @@ def beside_head(skin: Floats64, start: Floats64, end: Floats64, radius: float) -
 
 
 class Tube(NamedTuple):
-    """A wire: points (n, 3), their normals, and triangles."""
+    """A wire or a sheet: points (n, 3), their normals, and triangles."""
 
     points: Floats64
     normals: Floats64
@@ -61,3 +62,15 @@ def tube(path: Floats64, thickness: float, *, closed: bool) -> Tube:
     rows = np.vstack([numbers, numbers[:1]])
     faces = grid_faces(rows, closed=closed)
     return Tube(points.reshape(-1, 3), normals.reshape(-1, 3), faces)
+
+
+def sheet(outer: Floats64, inner: Floats64) -> Tube:
+    """Both sides of a sheet, rows of points (r, c, 3) down from its upper edge, and its edge."""
+    numbers = np.arange(outer[..., 0].size).reshape(outer.shape[:2])
+    count = numbers.size
+    edge = np.concatenate([numbers[0], numbers[1:, -1], numbers[-1, -2::-1], numbers[-2:0:-1, 0]])
+    rim = grid_faces(np.stack([edge + count, edge]), closed=True)
+    sides = [grid_faces(numbers), grid_faces(numbers)[:, ::-1] + count, rim]
+    points = np.vstack([outer.reshape(-1, 3), inner.reshape(-1, 3)])
+    faces = np.vstack(sides).astype(np.int32)
+    return Tube(points, vertex_normals(points, faces), faces)

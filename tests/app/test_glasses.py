@@ -1,4 +1,4 @@
-"""Glasses of persons in pictures of a few pixels."""
+"""Glasses and collars of persons in pictures of a few pixels."""
 
 from pathlib import Path
 
@@ -8,6 +8,7 @@ import pytest
 from risorius.app.dataset.request import request_of
 from risorius.app.dataset.studio import Studio
 from risorius.assets import Segment
+from risorius.assets.identities import COLLARS
 
 
 @pytest.mark.slow
@@ -20,3 +21,17 @@ def test_rims_are_not_dashed_by_highlights():
     assert is_rim.sum() > 400
     lightness = shot.image[is_rim] @ np.array([0.2126, 0.7152, 0.0722])
     assert (lightness > 110).mean() < 0.01
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("collar", COLLARS)
+def test_rows_of_the_table_choose_collars(tmp_path: Path, collar: str):
+    """The column has one collar for everybody; its label is written, and it is clothing."""
+    table = tmp_path / "collars.toml"
+    table.write_text(f"[collars]\n{collar} = 1.0\n[masks]\nnone = 1.0\n")
+    size = (160, 160)
+    request = request_of(tmp_path, seed=3, size=size, passes=("segmentation",), sample=table)
+    shot = Studio(request).shoot(0)
+    assert shot.known.labels["person"]["collar"] == collar
+    assert (shot.known.images["segmentation"] == Segment.CLOTHING).sum() > 300
+    assert set(COLLARS) == {"band", "roll", "v", "wings"}

@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from risorius.assets.identities import FRAMES, SHIRTS, make_person, sample_identity, wearing
+from risorius.assets.identities import (
+    COLLARS,
+    FRAMES,
+    SHIRTS,
+    make_person,
+    sample_identity,
+    wearing,
+)
 from risorius.assets.identities.wear import GLASSES, glasses
 
 
@@ -56,3 +63,44 @@ def test_shirts_keep_their_shades(people):
     assert [part.name for part in wearing(plain, shirt="blue").parts].count(GLASSES) == 0
     assert {part.name for part in wearing(plain, shirt="red", frame="round").parts} >= {GLASSES}
     assert len(SHIRTS) == 8
+
+
+def shirt_of(person):
+    """The only part that stands still."""
+    (shirt,) = [part for part in person.parts if part.bone == "neck"]
+    return shirt
+
+
+@pytest.mark.parametrize("collar", [name for name in COLLARS if name != "band"])
+def test_collars_lie_on_the_shirt_and_off_the_neck(people, collar):
+    """The built-in shirt stays below them; no skin of the neck is outside, and normals go out."""
+    for person in people:
+        plain = shirt_of(wearing(person, shirt="grey"))
+        worn = shirt_of(wearing(person, shirt="grey", collar=collar))
+        count = len(plain.vertices)
+        assert np.array_equal(worn.vertices[:count], plain.vertices)
+        added = worn.vertices[count:].astype(float)
+        far, near = cKDTree(plain.vertices).query(added)
+        heights = ((added - plain.vertices[near]) * plain.normals[near]).sum(axis=1)
+        assert np.median(heights[far < 10.0]) > 1.0
+        below = person.vertices[person.vertices[:, 1] < added[:, 1].max()]
+        for point in below:
+            beside = added[np.linalg.norm(added - point, axis=1) < 8.0]
+            assert not len(beside) or np.hypot(point[0], point[2] + 8.0) < (
+                np.hypot(beside[:, 0], beside[:, 2] + 8.0).max()
+            )
+        a, b, c = (worn.vertices[worn.faces[:, k]].astype(float) for k in range(3))
+        across = np.cross(b - a, c - a)
+        assert ((across * worn.normals[worn.faces[:, 0]]).sum(axis=1) > 0.0).mean() > 0.99
+
+
+def test_a_v_shows_the_shirt_below(people):
+    """Its point lies in the middle; the shirt in it is white, or dark below a light jersey."""
+    person = people[0]
+    count = len(shirt_of(person).vertices)
+    below = shirt_of(wearing(person, shirt="red", collar="v")).colours[:count]
+    assert np.array_equal(below, shirt_of(wearing(person, shirt="white")).colours)
+    light = shirt_of(wearing(person, shirt="white", collar="v"))
+    assert light.colours[:count].mean() < 0.4 < light.colours[count:].mean()
+    edge = light.vertices[count : count + 156]
+    assert abs(edge[np.argmin(edge[:, 1]), 0]) < 0.01

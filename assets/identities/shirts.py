@@ -1,0 +1,286 @@
+"""Shirts of several colours, and what is around the neck: a band, a roll, wings, or a V.
+
+The built-in shirt ends in a band. Everything else lies on it, in places that are counted along its
+columns, from the front to the back, and down from the upper edge of the band. So it fits any neck.
+All sizes are chosen by eye, after usual shirts and jerseys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+
+from ...geometry.arrays import Floats64
+from ...geometry.normals import vertex_normals
+from ..model import Part
+from ..smooth import smooth_step
+from ..topology import grid_faces
+from .wires import Colour, Tube, sheet
+
+SHIRTS: Mapping[str, Colour] = MappingProxyType(
+    {
+        "blue": (0.22, 0.24, 0.28),  # of the built-in head
+        "white": (0.80, 0.79, 0.77),
+        "grey": (0.46, 0.46, 0.47),
+        "black": (0.09, 0.09, 0.10),
+        "red": (0.47, 0.13, 0.13),
+        "green": (0.20, 0.33, 0.24),
+        "sand": (0.66, 0.57, 0.44),
+        "sky": (0.47, 0.59, 0.72),
+    }
+)
+COLUMNS = 52  # of the built-in shirt, from the front over the left shoulder
+BAND = 4  # row of it that is the upper edge of the band, outside
+
+
+class _Cloth(NamedTuple):
+    """A piece of a shirt, and its colours (n, 3), sRGB."""
+
+    surface: Tube
+    colours: Floats64
+
+
+def in_shirt(shirt: Part, skin: Floats64, colour: str, collar: str) -> Part:
+    """The built-in shirt of a person, in a colour of SHIRTS, with a collar of COLLARS.
+
+    skin: of the person, (V, 3). Raises KeyError for other colours and collars.
+    """
+    pieces = COLLARS[collar](shirt, skin, np.array(SHIRTS[colour]))
+    surfaces = [each.surface for each in pieces]
+    firsts = np.cumsum([0, *(len(each.points) for each in surfaces[:-1])])
+    faces = [each.faces + first for each, first in zip(surfaces, firsts, strict=True)]
+    return replace(
+        shirt,
+        vertices=np.vstack([each.points for each in surfaces]).astype(np.float32),
+        normals=np.vstack([each.normals for each in surfaces]).astype(np.float32),
+        faces=np.vstack(faces).astype(np.int32),
+        colours=np.clip(np.vstack([each.colours for each in pieces]), 0.0, 1.0).astype(np.float32),
+    )
+
+
+def _in_colour(shirt: Part, colour: Floats64) -> _Cloth:
+    """The built-in shirt, as bright in its places as it is."""
+    shade = shirt.colours / np.array(SHIRTS["blue"])
+    vertices, normals = (each.astype(np.float64) for each in (shirt.vertices, shirt.normals))
+    return _Cloth(Tube(vertices, normals, shirt.faces), shade * colour)
+
+
+def _plain(shirt: Part, colour: Floats64) -> Floats64:
+    """The colour of that shirt where nothing shades it."""
+    return np.asarray(np.median(shirt.colours, axis=0) / np.array(SHIRTS["blue"]) * colour)
+
+
+def _banded(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
+    """The built-in shirt as it is."""
+    return [_in_colour(shirt, colour)]
+
+
+def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
+    """A high collar, turned over on itself around the neck."""
+    columns = np.linspace(0.0, COLUMNS, 3 * COLUMNS, endpoint=False)
+    surface = _Surface(shirt)
+    band, root = (
+        scipy.ndimage.gaussian_filter1d(surface.down(columns, depth)[0], 4.0, axis=0, mode="wrap")
+        for depth in (np.zeros((1, 1)), np.full((1, 1), 17.0))
+    )
+    to_back = 0.5 - 0.5 * np.cos(2.0 * np.pi * columns / COLUMNS)
+    rise = (15.0 + 7.0 * to_back)[:, None]  # [mm] above the band
+    upper = band + rise * [0.0, 1.0, 0.0] + (5.0 - 1.0 * to_back)[:, None] * [0.0, 0.0, 1.0]
+    axis = np.array([0.0, 0.0, -8.0])  # [mm] of the neck
+    inner = _off_neck(skin, upper, axis)
+    out = (inner - axis) * [1.0, 0.0, 1.0]
+    out /= np.linalg.norm(out, axis=1, keepdims=True)
+    # (share of the way down from the upper edge to the root, how far outside [mm])
+    profile = [(0.9, -3.0), (0.35, 0.0), (0.06, 0.2), (0.0, 1.6), (0.03, 3.6), (0.14, 5.2)]
+    profile += [(0.35, 6.2), (0.6, 6.6), (0.82, 6.4), (0.95, 5.4), (1.0, 3.4), (0.97, 0.5)]
+    wave = 0.5 * np.sin(2.0 * np.pi * 3.0 * columns / COLUMNS)[:, None]
+    rows = []
+    for share, outside in profile:
+        there = inner + share * (root - inner)
+        rows.append(there + (outside + wave * (outside > 3.0)) * out)
+    shades = np.array([0.3, 0.4, 0.6, 0.9, 1.0, 1.0, 0.99, 0.98, 0.97, 0.93, 0.75, 0.45])
+    ribs = shades[:, None] * _ribs(len(columns))
+    roll = _rowed(np.stack(rows), ribs, _plain(shirt, colour), closed=True)
+    return [_in_colour(shirt, colour), roll]
+
+
+def _ribs(count: int) -> Floats64:
+    """Shades of columns of knitting, two of which are a rib."""
+    return np.where(np.arange(count) % 2, 0.9, 1.03)
+
+
+def _winged(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
+    """The collar of a shirt, which is turned down over its band, and a buttoned front."""
+    surface = _Surface(shirt)
+    down = np.linspace(0.0, 1.0, 13)[:, None]
+    along = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.0, 1.0, 61))  # from one point to the other
+    opening = 0.35 + 3.6 * down**0.6  # columns from the middle to the front edges
+    columns = opening + along * (COLUMNS - 2.0 * opening)
+    from_front = np.minimum(columns, COLUMNS - columns)
+    length = 37.0 + 24.0 * smooth_step(9.0, 0.0, from_front)
+    fold = surface.down(columns, np.zeros_like(columns))
+    hem = surface.down(columns, length) + 2.6 * surface.outward(columns, length)
+    lift = np.array([0.0, 2.2, 0.0])  # [mm] of the fold above the band
+    out = surface.outward(columns, np.full_like(columns, 8.0))
+    bulge = 4.0 * (down * (1.0 - down))[..., None] + 1.2
+    outer = fold + lift + down[..., None] * (hem - fold - lift) + bulge * out
+    within = [np.full((1, columns.shape[1]), 1.0), np.full((1, columns.shape[1]), 5.0)]
+    roots = [surface.down(columns[:1], each) for each in within]
+    thickness = 1.3  # [mm]
+    inner = outer - thickness * _surface_of(outer).normals.reshape(outer.shape)
+    rows = np.vstack([roots[1], roots[0] + 0.6 * lift, outer[:1]])
+    seam = np.minimum(1.0 - down, 1.2 * np.minimum(along, 1.0 - along))
+    shades = 1.03 - 0.12 * (np.abs(seam - 0.1) < 0.03)
+    plain = _plain(shirt, colour)
+    leaf = _Cloth(sheet(outer, inner), np.tile(shades.ravel(), 2)[:, None] * plain)
+    tucked = _rowed(rows, np.array([[0.35], [0.6], [0.95]]), plain)
+    return [_in_colour(shirt, colour), tucked, leaf, *_buttoned(surface, plain)]
+
+
+def _buttoned(surface: _Surface, colour: Floats64) -> list[_Cloth]:
+    """The strip down the front, and two buttons on it."""
+    across = np.array([-15.0, -14.0, -11.0, 0.0, 11.0, 14.0, 15.0])  # [mm]
+    away = np.array([-1.0, 1.2, 1.5, 1.5, 1.5, 1.2, -1.0])
+    depths = np.linspace(1.0, 200.0, 60)[:, None]
+    columns = surface.columns_at(np.broadcast_to(across, (len(depths), len(across))), depths)
+    strip = surface.down(columns, depths) + away[:, None] * surface.outward(columns, depths)
+    shades = np.array([0.6, 0.8, 1.0, 1.0, 1.0, 0.8, 0.6])
+    pieces = [_rowed(strip, shades, colour)]
+    light = 0.35 * colour + 0.6
+    turn = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    for depth in (8.0, 76.0, 152.0):
+        middle = surface.down(np.zeros((1, 1)), np.full((1, 1), depth))[0, 0]
+        below = surface.down(np.zeros((1, 1)), np.full((1, 1), depth + 6.0))[0, 0]
+        slope = (middle - below) / np.linalg.norm(middle - below)
+        out = np.cross([1.0, 0.0, 0.0], slope)
+        around = np.sin(turn)[:, None] * [1.0, 0.0, 0.0] + np.cos(turn)[:, None] * slope
+        profile = ((5.3, 1.2), (5.3, 3.2), (4.6, 3.6), (3.4, 3.2), (0.05, 3.1))
+        rows = [middle + radius * around + height * out for radius, height in profile]
+        # Against the clock, seen from outside.
+        rims = np.stack(rows)[::-1, :]
+        shades = np.array([0.9, 0.9, 1.05, 0.95, 0.8])
+        pieces.append(_rowed(rims, shades[:, None], light, closed=True))
+    return pieces
+
+
+def _pointed(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
+    """A jersey with a V at the neck, over a shirt of another colour."""
+    surface = _Surface(shirt)
+    # From the point of the V to beside the neck, over the left half.
+    half = np.linspace(0.0, 1.0, 200)[:, None]
+    lowest = 84.0  # [mm] below the band
+    beside = 17.5
+    line = lowest + (beside - lowest) * half
+    found = surface.columns_at(58.0 * half, line)[:, 0]
+    columns = np.linspace(0.0, COLUMNS, 3 * COLUMNS, endpoint=False)
+    from_front = np.minimum(columns, COLUMNS - columns)
+    edge = np.interp(from_front, found, line[:, 0])
+    ribbed = 15.0  # [mm] that its border is wide
+    steps = np.array([0.0, 0.0, 1.0, 4.0, 8.0, 12.0, ribbed, ribbed + 1.5, ribbed + 4.0])
+    away = np.array([0.2, 2.2, 3.1, 3.4, 3.4, 3.2, 2.6, 2.0, 2.6])
+    shades = np.array([0.5, 0.85, 1.0, 1.0, 1.0, 0.97, 0.8, 0.7, 0.95])
+    rest = np.linspace(0.0, 1.0, 26)[1:, None]
+    first = edge + steps[-1]
+    depths = np.vstack([edge + steps[:, None], first + rest * (surface.lowest(columns) - first)])
+    away = np.append(away, np.full(len(rest), 2.6))
+    shades = np.append(shades, np.ones(len(rest)))
+    outward = surface.outward(columns, depths)
+    points = surface.down(columns, depths) + away[:, None, None] * outward
+    is_light = colour.mean() > 0.5
+    below = np.array(SHIRTS["blue" if is_light else "white"])
+    knitted = shades[:, None] * np.ones(len(columns))
+    knitted[1:6] *= _ribs(len(columns))
+    jersey = _rowed(points, knitted, _plain(shirt, colour), closed=True)
+    return [_in_colour(shirt, below), jersey]
+
+
+COLLARS: Mapping[str, Callable[[Part, Floats64, Floats64], list[_Cloth]]] = MappingProxyType(
+    {"band": _banded, "roll": _rolled, "wings": _winged, "v": _pointed}
+)
+
+
+class _Surface:
+    """The outside of the built-in shirt, from the upper edge of the band down."""
+
+    def __init__(self, shirt: Part) -> None:
+        rows = (len(shirt.vertices) - 1) // COLUMNS
+        grid = shirt.vertices[: rows * COLUMNS].astype(np.float64).reshape(rows, COLUMNS, 3)
+        self._grid = np.concatenate([grid, grid[:, :1]], axis=1)[BAND:-1]
+        lengths = np.linalg.norm(np.diff(self._grid, axis=0), axis=-1)
+        self._depths = np.vstack([np.zeros(COLUMNS + 1), np.cumsum(lengths, axis=0)])
+        normals = vertex_normals(shirt.vertices.astype(np.float64), shirt.faces)
+        outward = normals[: rows * COLUMNS].reshape(rows, COLUMNS, 3)
+        self._normals = np.concatenate([outward, outward[:, :1]], axis=1)[BAND:-1]
+
+    def lowest(self, columns: Floats64) -> Floats64:
+        """How deep its end lies in columns [mm], shape as theirs."""
+        return np.asarray(np.interp(columns, np.arange(COLUMNS + 1), self._depths[-1]))
+
+    def down(self, columns: Floats64, depths: Floats64) -> Floats64:
+        """Points in columns at depths below the edge [mm], both (r, n) or as one, (r, n, 3)."""
+        return self._read(self._grid, columns, depths)
+
+    def outward(self, columns: Floats64, depths: Floats64) -> Floats64:
+        """Unit normals there."""
+        normals = self._read(self._normals, columns, depths)
+        return np.asarray(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
+
+    def columns_at(self, across: Floats64, depths: Floats64) -> Floats64:
+        """The columns of the front that are so far aside [mm] at depths, (r, n)."""
+        places = np.linspace(-13.0, 13.0, 131)
+        found = self.down(places % COLUMNS, np.broadcast_to(depths, (len(depths), len(places))))
+        rows = [np.interp(x, line[:, 0], places) for x, line in zip(across, found, strict=True)]
+        return np.stack(rows) % COLUMNS
+
+    def _read(self, values: Floats64, columns: Floats64, depths: Floats64) -> Floats64:
+        columns, depths = np.broadcast_arrays(columns, depths)
+        before = np.minimum(columns.astype(int), COLUMNS - 1)
+        share = columns - before
+        lengths = self._depths[:, before] + share * np.diff(self._depths, axis=1)[:, before]
+        row = np.clip((lengths <= depths).sum(axis=0) - 1, 0, len(lengths) - 2)
+        upper = np.take_along_axis(lengths, row[None], axis=0)[0]
+        lower = np.take_along_axis(lengths, row[None] + 1, axis=0)[0]
+        part = np.clip((depths - upper) / (lower - upper), 0.0, 1.0)[..., None]
+        share = share[..., None]
+        above = values[row, before] + share * (values[row, before + 1] - values[row, before])
+        below = values[row + 1, before] * (1.0 - share) + share * values[row + 1, before + 1]
+        return np.asarray(above + part * (below - above))
+
+
+def _off_neck(skin: Floats64, points: Floats64, axis: Floats64) -> Floats64:
+    """Points around the neck, (n, 3), moved out off the skin there."""
+    clearance = 3.0 + 1.5 * (points[:, 2] < axis[2])  # [mm] more behind, where heads bend to
+    apart = skin - axis
+    radius = 60.0  # [mm] at which degrees are counted as lengths
+    places = np.column_stack([radius * np.arctan2(apart[:, 0], apart[:, 2]), skin[:, 1]])
+    neck = skin[:, 1] < points[:, 1].max() + 8.0
+    out = points - axis
+    turn = radius * np.arctan2(out[:, 0], out[:, 2])
+    reach = np.hypot(out[:, 0], out[:, 2])
+    tree = scipy.spatial.cKDTree(places[neck])
+    distances, near = tree.query(np.column_stack([turn, points[:, 1]]), k=4)
+    weights = 1.0 / (distances + 1.0)
+    skins = (weights * np.hypot(apart[neck, 0], apart[neck, 2])[near]).sum(1) / weights.sum(1)
+    wanted = np.maximum(reach, skins + clearance)
+    wanted = scipy.ndimage.gaussian_filter1d(wanted, 2.0, mode="wrap")
+    scale = (wanted / reach)[:, None]
+    return np.asarray(axis + out * np.hstack([scale, np.ones_like(scale), scale]))
+
+
+def _surface_of(points: Floats64, *, closed: bool = False) -> Tube:
+    """The surface of rows of points, (r, n, 3); closed: a row ends in itself."""
+    numbers = np.arange(points[..., 0].size).reshape(points.shape[:2])
+    faces = grid_faces(numbers, closed=closed)
+    places = points.reshape(-1, 3)
+    return Tube(places, vertex_normals(places, faces), faces)
+
+
+def _rowed(points: Floats64, shades: Floats64, colour: Floats64, *, closed: bool = False) -> _Cloth:
+    """A piece of rows of points; shades of its colour: of each point, (r, n), or as one."""
+    shaded = np.broadcast_to(shades, points.shape[:2]).reshape(-1, 1) * colour
+    return _Cloth(_surface_of(points, closed=closed), shaded)
