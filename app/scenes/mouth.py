@@ -144,14 +144,14 @@ def _painted_tongue(part: Any) -> Floats32:
     off_tip = np.clip(depth / 8.0, 0.0, 1.0)
     groove = above * np.exp(-((beside / groove_width) ** 2)) * off_tip
     off_edge = np.clip(1.0 - across / 0.7, 0.0, 1.0)
-    coat = above * off_edge * np.clip(depth / 20.0, 0.0, 1.0)
+    coat = above * off_edge * np.clip((depth + 4.0) / 18.0, 0.0, 1.0)
     edge = 1.0 - above * np.clip(1.6 - 1.6 * across, 0.0, 1.0)
-    grain = np.random.default_rng(0).normal(0.0, 0.025, len(vertices))
-    pale = np.array([0.80, 0.62, 0.585])
+    grain = np.random.default_rng(0).normal(0.0, 0.04, len(vertices))
+    pale = np.array([0.72, 0.55, 0.52])
     reddened = 1.0 - edge[:, None] * [0.05, 0.2, 0.2]
     darkened = 1.0 - groove[:, None] * [0.22, 0.32, 0.32]
-    colours = part.colours * reddened
-    colours += 0.6 * coat[:, None] * (pale - colours)
+    colours = part.colours * [0.87, 0.95, 0.94] * reddened
+    colours += 0.75 * coat[:, None] * (pale - colours)
     colours *= (1.0 + grain[:, None]) * darkened
     return np.asarray(np.clip(colours, 0.0, 1.0), np.float32)
 

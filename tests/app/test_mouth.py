@@ -42,3 +42,5 @@ def test_a_tongue_has_a_groove_a_pale_coat_and_red_edges(face):
     ]
     assert redness[0] > 1.15 * redness[1]
     assert tongue.shine > rest.shine
+    assert (tongue.unlit[:, 0] / tongue.unlit[:, 1]).mean() < 1.8  # flesh, and no bubble gum
+    assert tongue.unlit[:, 0].mean() < 0.68
