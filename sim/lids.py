@@ -195,14 +195,12 @@ def _one_eye(
     angle = axes.angle(x)
     upper, lower = _both_lids(eyes, surface, axes, outline, side)
     where = np.linspace(0.0, 1.0, COLUMNS)
-    slide = upper.slide + lower.slide
     height = np.maximum(upper.front - lower.front, 0.0)
     wide = _smoothed(height)
     least_opening = 0.05  # rad: at the corners lids do not overlap
     widest = height.max()
-    slide *= np.interp(column, where, wide, 0.0, 0.0) / max(widest, least_opening)
-    slide_ends = (0.1, 1.7)  # x the slide at the outer and the inner corner
-    slide *= np.interp(column, (0.0, 1.0), slide_ends)
+    full = wide / max(widest, least_opening)
+    slide = _slide(upper.slide + lower.slide, column, full)
     exact = np.interp(column, where, height)
     broad = np.interp(column, where, np.minimum(wide, widest))
     weight = upper.weight + lower.weight
@@ -227,8 +225,9 @@ def _one_eye(
     fold = before * (upper.fold + lower.fold) * at_middle
     weight = before * weight
     closing = before * closing
-    proud_height = 0.7  # mm that the closed upper lid lies in front of the lower one
-    sink = np.interp(column, where, upper.depth - lower.depth) - proud_height
+    proud_height = 0.7  # mm that the closed upper lid lies in front of the lower; 0 at corners
+    proud = proud_height * np.minimum(np.interp(column, where, full), 1.0)
+    sink = np.interp(column, where, upper.depth - lower.depth) - proud
     sink *= is_upper * weight
     least_turn = 1e-3  # lid vertices that move less are not lid
     most_moved = np.maximum.reduce([weight, fold, slide])
@@ -236,6 +235,20 @@ def _one_eye(
     overlap = weight * _pressed_turn(opening, least_opening)
     values = (weight, closing, overlap, sink, fold, opening, slide)
     return _OneEye(vertex, is_upper[vertex], *(each[vertex] for each in values))
+
+
+def _slide(near: Floats64, column: Floats64, full: Floats64) -> Floats64:
+    """Share of the slide of each vertex, shape (V,), by how far the eye opens at its column.
+
+    near: the share by the distance from the lids (V,). full: opening by column, 1 at the most.
+    Skin beyond a corner slides along, or it would fold there.
+    """
+    slide_beyond = 0.2  # widths of the opening
+    beyond = np.maximum(np.abs(column - 0.5) - 0.5, 0.0)
+    slide_ends = (0.1, 1.7)  # x the slide at the outer and the inner corner
+    ends: Floats64 = np.interp(column, (0.0, 1.0), slide_ends)
+    opened = np.interp(column, np.linspace(0.0, 1.0, COLUMNS), full)
+    return near * opened * ends * smoothstep(1.0 - beyond / slide_beyond)
 
 
 def _both_lids(

@@ -42,3 +42,18 @@ def test_a_shut_lid_is_a_smooth_sheet_over_the_ball(simulation, head):
     for row in ("eye_3_left", "eye_3_right"):
         upper = head.rings[row][:11]
         assert np.abs(np.diff(moved[upper, 1])).max() < 4.0
+
+
+def test_skin_beside_the_inner_corner_slides_along(simulation, head):
+    """Along no edge on the nose's side of it does skin fold by a fifth as the eye shuts."""
+    shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
+    aside = settled_displacement(simulation, shut)[:, 0]
+    corner = head.vertices[head.landmarks[42]]
+    edges = np.concatenate([head.faces[:, [0, 1]], head.faces[:, [1, 2]], head.faces[:, [2, 0]]])
+    away = head.vertices[edges] - corner
+    is_near = (np.linalg.norm(away, axis=2) < 8.0).all(axis=1)
+    edges = edges[is_near & (away[..., 0] < 0.0).any(axis=1)]
+    assert len(edges) > 5
+    lengths = np.linalg.norm(np.diff(head.vertices[edges], axis=1)[:, 0], axis=1)
+    folded = np.abs(np.diff(aside[edges], axis=1)[:, 0]) / lengths
+    assert folded.max() < 0.2
