@@ -180,7 +180,8 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     )
     along = (FINE if cut.knot else 1.0) * radius * away
     striation = np.column_stack([radius * angle, along, way, dense])
-    short_shine = 0.12
+    # Tips of cropped hair point out everywhere, so no highlight lies as a ring around the whorl.
+    short_shine = 0.12 * min(cut.top / 20.0, 1.0) ** 2
     hair = Part(
         name=HAIR,
         vertices=(points + MEAN * way).astype(np.float32),

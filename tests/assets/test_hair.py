@@ -83,6 +83,13 @@ def test_hair_is_as_long_and_begins_where_it_is_set():
     assert receded.vertices[dense[1], 2].max() < usual.vertices[dense[0], 2].max() - 5.0
 
 
+def test_cropped_hair_has_no_ring_of_light_around_its_whorl():
+    """It is dull, whatever light there is; longer hair shines as before."""
+    shines = {cut: hair_of(haired(cut)).shine for cut in ("cropped", "short", "brushed")}
+    assert shines["cropped"] < 0.25 * shines["short"]
+    assert shines["short"] == shines["brushed"] == 0.12
+
+
 def test_a_tail_is_tied_behind_the_ears_and_touches_no_skin_below():
     """It hangs, clear of neck and shoulders."""
     person = haired("tailed")
