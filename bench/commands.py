@@ -163,6 +163,16 @@ def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
     conclude(avatar.report(rows), avatar.targets(rows))
 
 
+@bench.command("persons")
+@click.option("--count", type=click.IntRange(2, 10000), default=200, help="By default 200 of each.")
+def bench_persons(count: int) -> None:
+    """Compare women and men of ours with published measures."""
+    from . import persons
+
+    rows = persons.measure(count)
+    conclude(persons.report(rows), persons.targets(rows))
+
+
 @bench.command("human")
 @needed_reference
 @click.option(

@@ -129,8 +129,9 @@ class PersonSpace:
         near_norms = float(random.uniform())
         rows, beside, apart = self._measured(sex)
         unit = np.eye(len(self.modes))
-        # Higher, because noses come too far forward without it, and brows draw them long.
-        firmness_of = MappingProxyType({"sn-prn": 5.0, "ft-ft": 1.5, "n-sn": 4.0})
+        # Higher, because noses come too far forward without it, brows draw them long, and the skin
+        # above the lips of women comes out as high as men's.
+        firmness_of = MappingProxyType({"sn-prn": 6.0, "ft-ft": 1.5, "n-sn": 4.0, "sn-ls": 5.0})
         firmly = np.array([firmness_of.get(code, 1.0) for code in NORMS])[:, None]
         mean_firmness = 4.0  # of published means, beside the modes
         asked = mean_firmness * (firmly * rows).T

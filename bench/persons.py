@@ -1,0 +1,79 @@
+"""Persons beside published means of women and men: do sexes lie as far apart as people's?
+
+Every number is drawn twice, as a woman and as a man, so that chance is alike in both. Widths that
+were published by calipers are compared with those of the skin, less what was pressed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from risorius.assets.identities import sample_identity
+from risorius.assets.identities.space import PRESSED, Sex, person_space
+from risorius.assets.norms import NORMS, measures_of
+
+from .report import Target, at_most, table
+
+
+@dataclass(frozen=True)
+class Row:
+    """One measure of NORMS: means of our women and men, and published ones [mm]."""
+
+    code: str
+    women: float
+    men: float
+    published_women: float
+    published_men: float
+    deviation: float
+    """Of women, published."""
+
+    @property
+    def apart(self) -> float:
+        """How much larger men's is [mm]."""
+        return self.men - self.women
+
+    @property
+    def published_apart(self) -> float:
+        """The same, published [mm]."""
+        return self.published_men - self.published_women
+
+
+def measure(count: int) -> list[Row]:
+    """Draw so many women and men."""
+    space = person_space()
+    means = {}
+    for sex in Sex:
+        drawn = [sample_identity(number, sex=sex) for number in range(1000, 1000 + count)]
+        faces = [space.mean + space.moved(np.array(identity.weights)) for identity in drawn]
+        found = [measures_of(face, space.anatomy) for face in faces]
+        means[sex] = {code: float(np.mean([each[code] for each in found])) for code in NORMS}
+    rows = []
+    for code, norm in NORMS.items():
+        pressed = PRESSED.get(code, 0.0)
+        women = means[Sex.WOMAN][code] - pressed
+        men = means[Sex.MAN][code] - pressed
+        published = norm.women.mean, norm.men.mean
+        rows.append(Row(code, women, men, *published, norm.women.deviation))
+    return rows
+
+
+def report(rows: list[Row]) -> str:
+    """The text to print."""
+    columns = (
+        "measure:<8|women:6.1f|published:9.1f|men:6.1f|published:9.1f|men's more:10.1f|"
+        "published:9.1f"
+    )
+    cells = []
+    for row in rows:
+        women = row.women, row.published_women
+        men = row.men, row.published_men
+        cells.append((row.code, *women, *men, row.apart, row.published_apart))
+    return "\n".join(["means [mm]", *table(columns, cells)])
+
+
+def targets(rows: list[Row]) -> list[Target]:
+    """Sexes lie about as far apart as published."""
+    off = np.mean([abs(row.apart - row.published_apart) / row.deviation for row in rows])
+    return [at_most("sexes off the published distance, in deviations", float(off), 0.4)]
