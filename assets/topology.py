@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..geometry.arrays import Floats64, Integers64
+from ..geometry.sides import different_pairs
 
 Faces = npt.NDArray[np.int32]
 Edge = tuple[int, int]
@@ -91,7 +92,7 @@ def quarter(faces: Faces, vertex_count: int) -> Quartered:
         a---ab--b
     """
     sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
-    edges, number = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True)
+    edges, number = different_pairs(np.sort(sides, axis=1))
     ab, bc, ca = vertex_count + number.reshape(-1, 3).T
     a, b, c = faces.T
     children = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=1)

@@ -10,6 +10,7 @@ import numpy as np
 from risorius.geometry.colour import to_linear
 
 from ..geometry.arrays import Floats32, Floats64, Integers32
+from ..geometry.sides import different_pairs
 from ..geometry.transforms import moved_points
 from .camera import PlacedView, box_corners
 from .frame import DrawnPart, PlacedPart
@@ -128,7 +129,7 @@ def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
     """
     following = np.roll(faces, -1, axis=1)
     edges = np.stack([np.minimum(faces, following), np.maximum(faces, following)], axis=-1)
-    edges = np.unique(edges.reshape(-1, 2), axis=0)
+    edges, _ = different_pairs(edges.reshape(-1, 2))
     edge_counts = np.bincount(edges.ravel(), minlength=vertex_count)
     face_counts = np.bincount(faces.ravel(), minlength=vertex_count)
     is_tip = (edge_counts == 3) & (face_counts == 3)

@@ -23,7 +23,7 @@ from scipy.sparse import linalg as sparse_linalg
 from ..geometry.arrays import Floats64, Integers32, Integers64
 from ..geometry.normals import cross_products, vertex_areas, vertex_normals
 from ..geometry.read_only import read_only
-from ..geometry.sides import sides_of
+from ..geometry.sides import different_pairs, sides_of
 
 
 @dataclass(frozen=True)
@@ -132,9 +132,9 @@ def build_surface(positions: Floats64, faces: Integers32) -> SkinSurface:
 def _edges_of(faces: bytes) -> tuple[Integers32, Integers64]:
     """Edges (E, 2), sorted, and the edge of each side of `sides_of`; persons share their faces."""
     sides = np.sort(sides_of(np.frombuffer(faces, np.int32).reshape(-1, 3)), axis=1)
-    unique, edge_of_side = np.unique(sides, axis=0, return_inverse=True)
-    edges: Integers32 = unique.astype(np.int32).reshape(-1, 2)
-    return read_only(edges), read_only(edge_of_side.ravel())
+    pairs, edge_of_side = different_pairs(sides)
+    edges: Integers32 = pairs.astype(np.int32)
+    return read_only(edges), read_only(edge_of_side)
 
 
 def _smooth(

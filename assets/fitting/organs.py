@@ -142,10 +142,13 @@ def place_parts(
     warp: ThinPlateSpline,
     eyes: tuple[Eye, ...],
     jaws: Sequence[Floats64],
+    *,
+    kept_bone: str = "",
 ) -> tuple[Part, ...]:
     """The rigid parts of the built-in head, in another one.
 
-    warp: takes the built-in head there. jaws: how its mandible moves, see `opened_jaws`.
+    warp: takes the built-in head there. jaws: how its mandible moves, see `opened_jaws`. kept_bone:
+    of parts that stay as they are.
     """
     mouth = _mouth_of(known, fitted, warp)
     balls = {f"eye_{old.name}": (old, new) for old, new in zip(known.eyes, eyes, strict=True)}
@@ -155,6 +158,8 @@ def place_parts(
             placed = _resized(part, *balls[part.bone])
         elif part.name.startswith(STIFF):
             placed = _moved(part, mouth)
+        elif part.bone == kept_bone:
+            placed = part
         else:
             placed = _bent(part, warp)
         if part.name.startswith(WALLS):

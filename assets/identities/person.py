@@ -103,7 +103,8 @@ def _made(identity: Identity) -> Person:
     landmarks = vertices[known.landmarks]
     skin = FittedSkin(vertices, normals, known.faces, landmarks, known.mandible_weight)
     jaw_axis = warp.points(known.jaw_axis)
-    parts = place_parts(known, skin, warp, eyes, opened_jaws(jaw_axis, known.rig))
+    jaws = opened_jaws(jaw_axis, known.rig)
+    parts = place_parts(known, skin, warp, eyes, jaws, kept_bone="neck")
     return Person(
         vertices=vertices,
         faces=known.faces,
@@ -111,10 +112,10 @@ def _made(identity: Identity) -> Person:
         bone_depth=larger * known.bone_depth,
         eyes=eyes,
         parts=tuple(
-            replace(old, vertices=_on_neck(old.vertices.astype(float), *neck).astype(np.float32))
-            if old.bone == "neck"
-            else new
-            for old, new in zip(known.parts, parts, strict=True)
+            replace(part, vertices=_on_neck(part.vertices.astype(float), *neck).astype(np.float32))
+            if part.bone == "neck"
+            else part
+            for part in parts
         ),
         uv=known.uv,
         face_uv=known.face_uv,

@@ -2,9 +2,21 @@
 
 import numpy as np
 
-from .arrays import Integers
+from .arrays import Integers, Integers64
 
 
 def sides_of(faces: Integers) -> Integers:
     """The directed sides of triangles (F, 3), shape (3 F, 2): first those from corner 0 to 1."""
     return np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+
+
+def different_pairs(pairs: Integers) -> tuple[Integers64, Integers64]:
+    """Each of some pairs (n, 2) of numbers from 0 on once, and which of them each pair is, (n,).
+
+    They are sorted by the first number, and by the second one, shape (k, 2). `np.unique` of rows
+    takes ten times as long.
+    """
+    first, second = pairs.T.astype(np.int64)
+    span = int(second.max(initial=0)) + 1
+    keys, numbers = np.unique(first * span + second, return_inverse=True)
+    return np.column_stack(np.divmod(keys, span)), numbers.astype(np.int64)

@@ -1,0 +1,15 @@
+"""Sides of triangles as pairs of vertices."""
+
+import numpy as np
+
+from risorius.geometry.sides import different_pairs
+
+
+def test_different_pairs_are_those_of_unique_rows():
+    """In the same order, with the same numbers; also of no pairs at all."""
+    for count in (0, 1, 500):
+        pairs = np.random.default_rng(count).integers(0, 20, (count, 2)).astype(np.int32)
+        rows, numbers = np.unique(pairs, axis=0, return_inverse=True)
+        found, found_numbers = different_pairs(pairs)
+        assert np.array_equal(found, rows)
+        assert np.array_equal(found_numbers, numbers.ravel())
