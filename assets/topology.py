@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..geometry.arrays import Floats64, Integers64
-from ..geometry.sides import different_pairs
+from ..geometry.sides import different_pairs, sides_of
 
 Faces = npt.NDArray[np.int32]
 Edge = tuple[int, int]
@@ -57,6 +57,12 @@ def strip_triangles(corners: npt.NDArray[np.integer[Any]]) -> Integers64:
     has_area = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
     triangles = triangles[has_area]
     return triangles
+
+
+def border_vertices(faces: Faces) -> Faces:
+    """Numbers of the vertices on edges that have one face, in ascending order."""
+    edges, uses = np.unique(np.sort(sides_of(faces), axis=1), axis=0, return_counts=True)
+    return np.unique(edges[uses == 1])
 
 
 def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> Faces:

@@ -60,6 +60,7 @@ from .mesh_validation import (
 from .mouth_walls import FittedSkin, opened_jaws
 from .neck_fading import Plane, neck_fade
 from .organs import place_eyes, place_parts, with_eyelid_rims
+from .own_lip import nearest_own
 from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spread_uv
 from .topologies import recognised
 from .warp import Similarity, ThinPlateSpline, nearest_on
@@ -284,7 +285,7 @@ def _carried_over(
     normals = vertex_normals(skin.vertices, skin.faces)
     warp = ThinPlateSpline(known.vertices[known.landmarks], target)
     warped = warp.points(known.vertices)
-    nearest = nearest_on(skin.vertices, normals, warped, known.faces)
+    nearest = nearest_own(known, warped, skin, normals)
     weight = nearest.interpolate(known.mandible_weight)
     fitted = FittedSkin(skin.vertices, normals, skin.faces, target, weight, pieces)
     eyes = place_eyes(known, fitted)

@@ -20,7 +20,7 @@ from scipy.sparse import csgraph
 from ...geometry.arrays import Floats64, Integers, Integers32, Integers64
 from ...geometry.sides import sides_of
 from ..errors import AssetError
-from ..topology import unique_points
+from ..topology import border_vertices, unique_points
 
 MOST_TRIANGLES = 250_000
 FEWEST_TRIANGLES = 300  # below it eyes and mouth have no shape (chosen)
@@ -81,9 +81,7 @@ def with_seams_joined(
     piece = pieces_of(faces, len(vertices))
     if (piece[landmarks] == piece[landmarks[0]]).all():
         return faces, landmarks
-    sides = sides_of(faces)
-    edges, uses = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
-    border = np.unique(edges[uses == 1])
+    border = border_vertices(faces)
     first, number = unique_points(vertices[border] + 0.0)  # no zero with a sign
     same = np.arange(len(vertices), dtype=np.int32)
     same[border] = border[first[number]]

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import scipy
 
-from risorius.geometry.arrays import Floats32, Floats64, Integers32
+from risorius.geometry.arrays import Flags, Floats32, Floats64, Integers32
 from risorius.geometry.read_only import make_read_only
 
 from ..errors import AssetError
 from ..model import Eye, Layer, Part
-from ..topology import decimated
+from ..topology import border_vertices, decimated
 from .landmark_file import nearest_vertices
 from .mesh_validation import SkinPiece, check_manifold
 
@@ -47,10 +47,16 @@ class SimulatedHead:
 
 
 def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
-    """The same form with as many triangles as can be moved in time."""
+    """The same form [mm] with as many triangles as can be moved in time, most of them of the head.
+
+    landmarks: where they lie [mm], shape (68, 3).
+    """
+    distance = scipy.spatial.cKDTree(landmarks).query(skin.vertices)[0]
+    head_reach = 100.0  # [mm] around the landmarks; beyond lies the body
+    is_head = (distance < head_reach)[skin.faces].any(axis=1)
     most_attempts = 8  # to simplify a mesh so that it stays a surface
     for attempt in range(most_attempts):
-        vertices, faces = decimated(skin.vertices, skin.faces, SIMPLIFIED, attempt)
+        vertices, faces = _fewer(skin, is_head, attempt)
         with contextlib.suppress(AssetError):
             check_manifold(faces)
             break
@@ -62,3 +68,47 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
     nearest = scipy.spatial.cKDTree(skin.vertices).query(vertices)[1]
     numbers = nearest_vertices(landmarks, vertices, faces)
     return SkinPiece(vertices, faces, numbers, skin.file_vertices[nearest], np.arange(0))
+
+
+def _fewer(skin: SkinPiece, is_head: Flags, attempt: int) -> tuple[Floats64, Integers32]:
+    """Other vertices and fewer triangles; a body takes only those that its head leaves.
+
+    is_head: of the skin's triangles, shape (F,).
+    """
+    body = skin.faces[~is_head]
+    if not len(body):
+        return decimated(skin.vertices, skin.faces, SIMPLIFIED, attempt)
+    least_body = SIMPLIFIED * min(0.2, len(body) / len(skin.faces))  # of a head with many triangles
+    head = skin.faces[is_head]
+    head_count = min(len(head), SIMPLIFIED - int(least_body))
+    vertices, faces = _part_with(skin.vertices, head, head_count, attempt)
+    more, body = _part_with(skin.vertices, body, SIMPLIFIED - head_count, attempt)
+    return _sewn(vertices, faces, more, body)
+
+
+def _part_with(
+    vertices: Floats64, faces: Integers32, count: int, attempt: int
+) -> tuple[Floats64, Integers32]:
+    """A part of a mesh with at most `count` triangles; its edges stay where they are."""
+    used, numbers = np.unique(faces, return_inverse=True)
+    part = numbers.reshape(-1, 3).astype(np.int32)
+    if len(part) <= count:
+        return vertices[used], part
+    return decimated(vertices[used], part, count, attempt)
+
+
+def _sewn(
+    vertices: Floats64, faces: Integers32, more: Floats64, more_faces: Integers32
+) -> tuple[Floats64, Integers32]:
+    """Two parts of a mesh as one, joined where their edges meet."""
+    edge = border_vertices(faces)
+    more_edge = border_vertices(more_faces)
+    joined_share = 2e-4  # of the size of both: `decimated` moves an edge by less
+    joined_distance = joined_share * float(np.ptp(np.vstack([vertices, more]), axis=0).max())
+    distance, nearest = scipy.spatial.cKDTree(vertices[edge]).query(more[more_edge])
+    is_joined = distance < joined_distance
+    number = np.full(len(more), -1, np.int32)
+    number[more_edge[is_joined]] = edge[nearest[is_joined]]
+    is_own = number < 0
+    number[is_own] = len(vertices) + np.arange(is_own.sum())
+    return np.vstack([vertices, more[is_own]]), np.vstack([faces, number[more_faces]])

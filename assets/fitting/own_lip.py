@@ -1,0 +1,59 @@
+"""Where another head's skin finds itself on the warped built-in one: each lip on its own.
+
+Full lips overlap, the lower one in front of the edge of the upper one or the other way round. The
+warped lips cross there, and the nearest point may be one of the other lip.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from risorius.geometry.closest import SurfacePoints
+
+from ...geometry.arrays import Flags, Floats64, Integers32
+from ..model import Head
+from .mesh_validation import SkinPiece, path_lengths
+from .warp import nearest_on
+
+
+def nearest_own(known: Head, warped: Floats64, skin: SkinPiece, normals: Floats64) -> SurfacePoints:
+    """Feet of a skin's vertices [mm] on the warped built-in skin, as `nearest_on` has them.
+
+    Feet of one lip are not on the other one.
+    """
+    found = nearest_on(skin.vertices, normals, warped, known.faces)
+    own = _lip_sides(skin.vertices, skin.faces, skin.landmarks)
+    sides = _lip_sides(known.vertices, known.faces, known.landmarks)
+    for side in (1, -1):
+        is_other_lip = (sides == -side)[known.faces].any(axis=1)
+        is_wrong = (own == side) & is_other_lip[found.triangles]
+        allowed = np.flatnonzero(~is_other_lip)
+        points = skin.vertices[is_wrong]
+        better = nearest_on(points, normals[is_wrong], warped, known.faces[allowed])
+        found = _replaced(found, is_wrong, replace(better, triangles=allowed[better.triangles]))
+    return found
+
+
+def _lip_sides(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers32:
+    """1 on the upper lip, -1 on the lower one, 0 elsewhere and between them; shape (V,)."""
+    edges_of_lips = (slice(61, 64), slice(65, 68))
+    ways = [path_lengths(vertices, faces, landmarks[edge]).min(axis=0) for edge in edges_of_lips]
+    upper, lower = ways
+    lip_reach = 20.0  # [mm] along the skin, from the edge of a lip
+    between = 4.0  # [mm] by which the way to the other lip is longer
+    sides = np.zeros(len(vertices), np.int32)
+    sides[(upper < lip_reach) & (upper + between < lower)] = 1
+    sides[(lower < lip_reach) & (lower + between < upper)] = -1
+    return sides
+
+
+def _replaced(points: SurfacePoints, where: Flags, others: SurfacePoints) -> SurfacePoints:
+    """The same places, but others for some of them."""
+    places = {}
+    for name in ("distances", "triangles", "corners", "weights"):
+        values = getattr(points, name).copy()
+        values[where] = getattr(others, name)
+        places[name] = values
+    return SurfacePoints(**places)

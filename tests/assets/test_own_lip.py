@@ -1,0 +1,24 @@
+"""Full lips, of which one lies over the other: each has its own colour and its own bone."""
+
+import numpy as np
+
+from risorius.assets.fitting import fit
+from risorius.assets.fitting.mesh_validation import path_lengths
+from risorius.assets.meshes import Mesh
+
+
+def test_a_lip_that_lies_over_the_other_is_itself(head):
+    """A lower lip 3 mm higher and 4 mm in front goes with the jaw, and is red, not dark."""
+    upper, lower = (
+        path_lengths(head.vertices, head.faces, head.landmarks[lip]).min(axis=0)
+        for lip in (slice(61, 64), slice(65, 68))
+    )
+    is_lower = lower < upper
+    reach = 12.0  # [mm] of the lip
+    share = np.where(is_lower, np.clip(1.0 - lower / reach, 0.0, 1.0), 0.0)
+    full = head.vertices + share[:, None] * [0.0, 3.0, 4.0]
+    fitted = fit(Mesh(full, head.faces), head.landmarks)
+    lip = np.flatnonzero((share > 0.2)[fitted.file_vertices])
+    own = fitted.file_vertices[lip]
+    assert np.abs(fitted.mandible_weight[lip] - head.mandible_weight[own]).max() < 0.2
+    assert np.abs(fitted.uv[lip] - head.uv[own]).max() < 0.01

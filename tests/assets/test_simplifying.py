@@ -1,0 +1,59 @@
+"""Bodies of many triangles: they are simplified, and the face keeps its own."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from risorius.assets.fitting import simplifying
+from risorius.assets.fitting.mesh_validation import SkinPiece
+from risorius.assets.model import Head
+from risorius.assets.topology import boundary_loops, grid_faces
+from tests.assets import checks
+
+
+@pytest.fixture
+def with_body(head: Head) -> SkinPiece:
+    """The built-in head, from whose neck a body hangs, 1.2 m long and of many triangles."""
+    loops = boundary_loops(head.faces)
+    neck = min(loops, key=lambda loop: head.vertices[loop, 1].mean())
+    row_count = 120
+    row_height = 10.0  # [mm]
+    noise = np.random.default_rng(0)
+    rows = [np.array(neck)]
+    vertices = [head.vertices]
+    for row in range(1, row_count):
+        below = head.vertices[neck] * [1.0, 0.0, 1.0] + noise.normal(0.0, 1.0, (len(neck), 3))
+        below[:, 1] += head.vertices[neck, 1].min() - row_height * row
+        rows.append(len(head.vertices) + (row - 1) * len(neck) + np.arange(len(neck)))
+        vertices.append(below)
+    points = np.vstack(vertices)
+    faces = np.vstack([head.faces, grid_faces(np.array(rows), closed=True)])
+    assert checks.is_manifold(faces)
+    return SkinPiece(
+        points, faces, head.landmarks, np.arange(len(points), dtype=np.int32), np.arange(len(faces))
+    )
+
+
+def test_a_face_keeps_its_vertices_beside_a_body_of_many(with_body, head, monkeypatch):
+    """Those around the landmarks stay where they are; the body has the rest, and hangs on."""
+    monkeypatch.setattr(simplifying, "SIMPLIFIED", 5000)
+    assert len(with_body.faces) > 7000
+    marks = head.vertices[head.landmarks]
+    found = simplifying.simplified(with_body, marks)
+    assert 4000 < len(found.faces) <= 5000
+    near = cKDTree(marks).query(head.vertices)[0] < 60.0
+    off = cKDTree(found.vertices).query(head.vertices[near])[0]
+    assert off.max() < 1e-9
+    assert checks.is_manifold(found.faces)
+    assert checks.component_count(found.faces) == 1
+    assert len(boundary_loops(found.faces)) == len(boundary_loops(with_body.faces))
+    assert np.abs(found.vertices[:, 1].min() - with_body.vertices[:, 1].min()) < 5.0
+
+
+def test_a_dense_head_leaves_its_body_a_share(with_body, head, monkeypatch):
+    """Where the head alone has too many triangles, both are simplified and still hang together."""
+    monkeypatch.setattr(simplifying, "SIMPLIFIED", 1800)
+    found = simplifying.simplified(with_body, head.vertices[head.landmarks])
+    assert len(found.faces) <= 1800
+    assert checks.component_count(found.faces) == 1
+    assert len(boundary_loops(found.faces)) == len(boundary_loops(with_body.faces))
