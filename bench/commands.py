@@ -52,16 +52,22 @@ def bench() -> None:
     help="kahler-gl: on the graphics card, beside kahler.",
 )
 @click.option(
-    "--threads", "by_threads", is_flag=True, help="Pairs of frames: by one thread, and by all."
+    "--threads", "pairs", flag_value="threads", help="Pairs of frames: by one thread, and by all."
 )
-def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str, by_threads: bool) -> None:
+@click.option(
+    "--matrix", "pairs", flag_value="matrix", help="Pairs of frames: ours, and a kept Loop matrix."
+)
+def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str, pairs: str | None) -> None:
     """Time refinement on the face and on meshes of up to a million triangles."""
-    from . import refine, threads
+    from . import matrices, refine, threads
 
-    if by_threads:
+    if pairs is not None:
         if refiner != "kahler":
-            raise UserError("--threads goes with --refiner kahler alone; leave one of them out")
-        click.echo(threads.report(threads.measure(sizes, seconds, say_progress)))
+            raise UserError(f"--{pairs} goes with --refiner kahler alone; leave one of them out")
+        if pairs == "threads":
+            click.echo(threads.report(threads.measure(sizes, seconds, say_progress)))
+        else:
+            click.echo(matrices.report(matrices.measure(sizes, seconds, say_progress)))
         return
     on_card = refiner == "kahler-gl"
     rows = refine.measure(sizes or refine.SIZES, seconds, say_progress, on_card=on_card)

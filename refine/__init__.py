@@ -65,7 +65,8 @@ from .kahler.cutting import Cutting
 from .kahler.frame import FrameBuffers
 from .kahler.given_splits import splits_of_clip
 from .kahler.refiner import Kahler
-from .kahler.smoothing import LoopScheme, Scheme, schemes
+from .kahler.scheme import Scheme, schemes
+from .kahler.smoothing import LoopScheme
 from .mesh.connectivity import Connectivity, connect
 from .mesh.seams import weld
 from .others import Loop, PassThrough

@@ -61,6 +61,7 @@ class Level:
         self._scheme.bind(connectivity, positions, normals)
         frame = buffers_for(connectivity, positions, points, normals)
         self._frame = split_everywhere(frame, connectivity.vertex_count)
+        self._scheme.keep(self._frame)
 
     def subdivide(self, rows: Floats32) -> None:
         """Write the moved vertices, then one point per edge, into the first V + E `rows`."""

@@ -26,7 +26,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar, overload
@@ -41,6 +41,7 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 
 log = logging.getLogger(__name__)
 _lock = threading.Lock()
+_in_lanes: set[Any] = set()
 _numbas: Any = numba.config  # type checkers do not know its entries
 
 
@@ -49,17 +50,25 @@ def njit(function: Function, /) -> Function: ...
 
 
 @overload
-def njit(*, fastmath: set[str]) -> Callable[[Function], Function]: ...
+def njit(
+    *, lanes: bool = False, fastmath: Collection[str] = ()
+) -> Callable[[Function], Function]: ...
 
 
-def njit(function: Any = None, /, **options: Any) -> Any:
+def njit(function: Any = None, /, *, lanes: bool = False, fastmath: Collection[str] = ()) -> Any:
     """Compile a function with numba when it is first called with new types of arguments.
 
     Code is kept for this package alone: the dependencies of other code are unknown.
-    `fastmath`: liberties that the compiler may take, as in numba; none if it is left out.
+
+    - `lanes`: whether the compiler looks for equal work on neighbouring numbers, and does it at
+      once (LLVM's SLP vectoriser, which numba leaves out). The bits are the same.
+    - `fastmath`: liberties that the compiler may take, as in numba; none if it is left out.
     """
+    options: dict[str, Any] = {"fastmath": set(fastmath)} if fastmath else {}
     if function is None:
-        return functools.partial(njit, **options)
+        return functools.partial(njit, lanes=lanes, fastmath=fastmath)
+    if lanes:
+        _in_lanes.add(function)
     is_ours = function.__module__.partition(".")[0] == __package__ and not function.__closure__
     folder = None if _numbas.DISABLE_JIT or not is_ours else cache_folder()
     if folder is None:
@@ -123,17 +132,26 @@ def _remove_old(above: Path) -> None:
                 shutil.rmtree(folder, ignore_errors=True)
 
 
-class _CompilationLog(event.Listener):
-    """Logs each kernel of this package that is compiled."""
+class _Compilation(event.Listener):
+    """Logs each kernel of this package that is compiled, and sets the compiler for it.
+
+    Numba compiles one function at a time, and those that it calls within it.
+    """
+
+    def __init__(self) -> None:
+        self._settings: list[int] = []
 
     def on_start(self, event: event.Event) -> None:
         """Numba begins to compile a function of anybody's."""
         function = event.data["dispatcher"].py_func
+        self._settings.append(_numbas.SLP_VECTORIZE)
         if (function.__module__ or "").partition(".")[0] == __package__:
+            _numbas.SLP_VECTORIZE = int(function in _in_lanes)
             log.info("compiling %s.%s", function.__module__, function.__qualname__)
 
     def on_end(self, event: event.Event) -> None:
-        """Do nothing: only the beginning is logged."""
+        """Give the settings back that were there."""
+        _numbas.SLP_VECTORIZE = self._settings.pop()
 
 
-event.register("numba:compile", _CompilationLog())
+event.register("numba:compile", _Compilation())

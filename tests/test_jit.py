@@ -140,3 +140,10 @@ def test_functions_without_a_module_compile():
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )
     assert found.stdout.strip() == "6"
+
+
+def test_lanes_are_a_setting_of_one_kernel(package):
+    """A kernel in lanes has the result of any other, and leaves numba's settings as they were."""
+    (package.refine / "kernels.py").write_text(KERNELS.replace("@njit", "@njit(lanes=True)"))
+    program = f"{PROGRAM}\nimport numba; print(numba.config.SLP_VECTORIZE)"
+    assert package.run(program) == [*COMPILED, RESULT, "0"]

@@ -47,7 +47,8 @@ from ..border.rows import GEOMETRY_COLUMNS
 from ..kahler.criterion import Criterion
 from ..kahler.cutting import Cutting
 from ..kahler.frame import CENTRES, ROWS, TRIANGLES, FrameBuffers
-from ..kahler.smoothing import Scheme, geomorph_of_split
+from ..kahler.scheme import Scheme
+from ..kahler.smoothing import geomorph_of_split
 from ..kahler.table import (
     CENTRE,
     CONFIGURATION_COUNT,

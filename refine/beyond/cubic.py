@@ -37,7 +37,7 @@ from ...geometry.arrays import Floats32, Floats64, Unsigned32
 from ...jit import njit
 from ..kahler.frame import ONCE, FrameBuffers
 from ..kahler.look_up import SIDE_BITS, SIDE_MASK
-from ..kahler.smoothing import Scheme
+from ..kahler.scheme import Scheme
 from ..mesh.borders import border_neighbours
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.creases import sectors_of

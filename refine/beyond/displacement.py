@@ -18,7 +18,7 @@ from ...geometry.arrays import Floats32, Floats64, Unsigned32
 from ...jit import njit
 from ..border.option import Option
 from ..kahler.criterion import Levels
-from ..kahler.smoothing import Scheme
+from ..kahler.scheme import Scheme
 from ..mesh.connectivity import Connectivity
 from .blending import RAMP_WIDTH
 from .measuring import Measuring, Once, Twice, mean_length

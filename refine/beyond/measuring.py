@@ -23,7 +23,7 @@ from ...jit import njit
 from ..border.option import Option
 from ..border.plugin import View
 from ..kahler.criterion import Criterion, Levels, Thresholds
-from ..kahler.smoothing import Scheme
+from ..kahler.scheme import Scheme
 from ..mesh.connectivity import Connectivity
 from ..mesh.vectors import ONE
 from .blending import RAMP_WIDTH

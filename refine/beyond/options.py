@@ -24,7 +24,7 @@ from ..kahler.criterion import (
 from ..kahler.cutting import Cutting
 from ..kahler.given_splits import GivenSplits
 from ..kahler.refiner import Kahler
-from ..kahler.smoothing import Scheme, schemes
+from ..kahler.scheme import Scheme, schemes
 from .blending import Blended
 from .measuring import Maximum
 from .surface_normals import RefinedNormals

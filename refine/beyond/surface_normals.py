@@ -28,7 +28,7 @@ import numpy as np
 from ...geometry.arrays import Floats32, Floats64, Integers32, Unsigned32
 from ...jit import njit
 from ..kahler.frame import ONCE, ROWS, FrameBuffers
-from ..kahler.smoothing import Scheme
+from ..kahler.scheme import Scheme
 from ..mesh.connectivity import Connectivity
 from ..mesh.threads import share
 from ..mesh.vectors import (

@@ -28,7 +28,7 @@ from ..border.plugin import View
 from ..border.registry import Registry
 from ..mesh.connectivity import Connectivity
 from ..mesh.vectors import ONE, WIDTH, add_to_row, cross, difference, dot, row_of
-from .smoothing import Scheme
+from .scheme import Scheme
 
 THRESHOLD_ONCE = 0.02
 """Default drop above which an edge is split once: a flat place bent by 11 degrees along an edge.

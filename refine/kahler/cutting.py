@@ -8,7 +8,7 @@ from ...geometry.arrays import Unsigned8, Unsigned16
 from ..mesh.connectivity import Connectivity
 from .criterion import Criterion
 from .frame import FrameBuffers
-from .smoothing import Scheme
+from .scheme import Scheme
 from .table import CONFIGURATIONS, Patterns
 
 

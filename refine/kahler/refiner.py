@@ -37,7 +37,8 @@ from .look_up import (
     number_points,
     place_attributes,
 )
-from .smoothing import LoopScheme, Scheme
+from .scheme import Scheme
+from .smoothing import LoopScheme
 from .table import MOST_SPLITS, POINTS_OF_EDGE
 
 
@@ -174,6 +175,7 @@ class Kahler(BaseRefiner):
             return None
         self._mark(None)
         vertex_count, triangle_count = self._number()
+        self._scheme.keep(self._frame)
         triangles = np.zeros((triangle_count, 3), dtype=np.uint32)
         source = np.zeros(triangle_count, dtype=np.int32)
         self._look_up(triangles, source)

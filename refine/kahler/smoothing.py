@@ -39,8 +39,6 @@ weight 0 or 1 returns one of its two sides to the last bit.
 
 Normals of new points are interpolated between their two neighbours on the edge and normalised
 (section 4.4, first paragraph).
-
-Section 6: "the effects of other smoothing schemes" are of interest. So a scheme is a class.
 """
 
 from typing import Any
@@ -49,7 +47,6 @@ import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64, Unsigned8, Unsigned32
 from ...jit import njit
-from ..border.registry import Registry
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.rings import NEAR_COUNT, Rings, vertex_rings
 from ..mesh.threads import share, threads_for
@@ -67,6 +64,16 @@ from ..mesh.vectors import (
     write_row,
 )
 from .frame import ONCE, TWICE, FrameBuffers
+from .kept_splits import (
+    KeptRows,
+    copy_frame,
+    keep_middles,
+    kept_rows,
+    place_crowded_vertices,
+    place_kept_middles,
+    place_kept_vertices,
+)
+from .scheme import Scheme
 
 EDGE_END_WEIGHT = np.float32(3 / 8)
 """First and second level, interior: end points of the edge or half-edge (Fig. 3, Fig. 4 left)."""
@@ -84,58 +91,6 @@ MIDDLE_RING_WEIGHT = np.float32(1 / 16)
 """Its six neighbours, 3/(8 x 6) (Fig. 4 right)."""
 
 
-class Scheme:
-    """Places points: what every scheme derives from, the paper's as well as your own.
-
-    It writes `place`; all other methods do nothing unless they are written. A refiner calls `bind`
-    once, then in every frame `prepare`, `place` and, where it blends, `place_centres`.
-    """
-
-    interpolates = False
-    """Whether the original vertices stay where they are."""
-    uses_normals = True
-    """Whether it reads the normals of frames, which are not found where nobody does."""
-    measures = False
-    """Whether it has a `measure`, which the criterion `displacement` needs."""
-    parts: tuple["Scheme", ...] = ()
-    """Schemes that this one asks. Each of them, too, serves one refiner only."""
-
-    def bind(
-        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
-    ) -> None:
-        """Learn the mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
-
-    def prepare(self, frame: FrameBuffers) -> None:
-        """Look at the deformed mesh, before the criterion decides.
-
-        Keep differences of positions only: refined normals call `place` twice, first
-        for the mesh as seen from its first vertex with every edge split once.
-        """
-
-    def place(self, frame: FrameBuffers) -> None:
-        """Write positions and normals of vertices and of points on split edges into the rows."""
-        raise NotImplementedError(f"{type(self).__name__} must have a method place")
-
-    def place_positions(self, frame: FrameBuffers) -> None:
-        """Write positions only; calls `place` unless a subclass writes it."""
-        self.place(frame)
-
-    def place_centres(self, frame: FrameBuffers) -> None:
-        """Correct the points in the middle of triangles, when blending has written them."""
-
-    def measure(self, displacements: Floats32, turns: Floats32) -> None:
-        """Write how far a split would move the middle of each edge and turn its normal, (E,) each.
-
-        The turn is an angle [rad] times the length of the edge. The criterion `displacement` reads
-        both.
-        """
-        raise NotImplementedError(f"{type(self).__name__} has no method measure")
-
-
-schemes: Registry[Scheme] = Registry("scheme", "risorius.schemes")
-"""Schemes by name; a factory is called without arguments, once for each refiner that asks."""
-
-
 class LoopScheme(Scheme):
     """The paper's scheme: Loop's rules with Warren's weights (section 4.2)."""
 
@@ -148,15 +103,30 @@ class LoopScheme(Scheme):
         self._vertex_geomorph = np.zeros(connectivity.vertex_count, dtype=np.float32)
         self._middles = np.zeros((len(connectivity.edges), 3), dtype=np.float32)
         self._frame: FrameBuffers | None = None
+        self._kept: KeptRows | None = None
+
+    def keep(self, frame: FrameBuffers) -> None:
+        """Work out a matrix, if all points have grown as far as they can."""
+        edges = frame.split_edges
+        twice = frame.twice_split_edges
+        once_grown = (frame.geomorph_once[edges] == ONE).all()
+        if once_grown and (frame.geomorph_twice[twice] == ONE).all():
+            self._kept, self._inside_count = kept_rows(frame, self._around, self._rings)
 
     def place(self, frame: FrameBuffers) -> None:
         """Write moved vertices, first level, second level."""
         if threads_for(len(frame.points) + int(frame.counts[ONCE])) > 1:
-            self._place_shared(frame)
+            if self._kept is None:
+                self._place_shared(frame)
+            else:
+                self._place_kept(frame, self._kept)
             return
         if frame is not self._frame:
             self._frame = frame
             self._tuples = frame[:], self._around[:], self._rings[:]  # plain: sooner handed over
+        if self._kept is not None:
+            place_kept(*self._tuples, self._kept[:], self._inside_count, self._middles)
+            return
         place_by_loop(*self._tuples, self._vertex_geomorph, self._middles)
 
     def _place_shared(self, frame: FrameBuffers) -> None:
@@ -169,6 +139,21 @@ class LoopScheme(Scheme):
         share(place_vertices, len(frame.points), frame, self._rings, geomorph)
         share(place_middles, len(edges), frame, around, middles)
         share(place_quarters, len(frame.twice_split_edges), frame, around, middles)
+
+    def _place_kept(self, frame: FrameBuffers, kept: KeptRows) -> None:
+        """Do the same where splits stay."""
+        rows = frame.rows
+        vertex_count = len(frame.points)
+        share(copy_frame, vertex_count, frame, kept)
+        share(place_kept_vertices, vertex_count, kept, rows)
+        place_crowded_vertices(kept, self._rings, rows)
+        inside_count = self._inside_count
+        share(place_kept_middles, inside_count, kept, EDGE_END_WEIGHT, EDGE_WING_WEIGHT, rows)
+        place_kept_middles(inside_count, len(kept.edges), kept, BORDER_END_WEIGHT, ZERO, rows)
+        twice_count = len(frame.twice_split_edges)
+        if twice_count > 0:
+            keep_middles(kept, rows, self._middles)
+            share(place_quarters, twice_count, frame, self._around, self._middles)
 
 
 @njit
@@ -350,3 +335,28 @@ def place_by_loop(
     place_vertices(0, len(of_frame.points), of_frame, Rings(*rings), vertex_geomorph)
     place_middles(0, counts[ONCE], of_frame, of_edges, middles)
     place_quarters(0, counts[TWICE], of_frame, of_edges, middles)
+
+
+@njit(lanes=True)
+def place_kept(
+    frame: tuple[Any, ...],
+    around: tuple[Any, ...],
+    rings: tuple[Any, ...],
+    kept: tuple[Any, ...],
+    inside_count: int,
+    middles: Floats32,
+) -> None:
+    """Do the same where splits stay; `kept`: the plain tuple of `KeptRows`."""
+    of_frame = FrameBuffers(*frame)
+    matrix = KeptRows(*kept)
+    rows = of_frame.rows
+    vertex_count = len(of_frame.points)
+    copy_frame(0, vertex_count, of_frame, matrix)
+    place_kept_vertices(0, vertex_count, matrix, rows)
+    place_crowded_vertices(matrix, Rings(*rings), rows)
+    place_kept_middles(0, inside_count, matrix, EDGE_END_WEIGHT, EDGE_WING_WEIGHT, rows)
+    place_kept_middles(inside_count, len(matrix.edges), matrix, BORDER_END_WEIGHT, ZERO, rows)
+    twice_count = of_frame.counts[TWICE]
+    if twice_count > 0:
+        keep_middles(matrix, rows, middles)
+        place_quarters(0, twice_count, of_frame, Surroundings(*around), middles)

@@ -82,6 +82,39 @@ def test_a_frame_has_the_bits_of_one_that_decides(look):
         assert arrays_of(fixed.refine(frame)) == arrays_of(deciding.refine(frame))
 
 
+@pytest.mark.parametrize("splits", [1, 2])
+def test_bits_among_many_neighbours_and_on_a_folded_sheet(splits):
+    """The same for a vertex with twelve others around it, and for normals that are opposite."""
+    cone = meshes.double_cone(12)
+    sheet = meshes.open_grid(6, 5)
+    flipped = sheet.vertices.copy()
+    flipped[flipped[:, 0] > 2.5, 1] *= -1.0
+    folded = sheet.vertices.copy()
+    folded[:, 0] = np.abs(folded[:, 0] - 2.5)
+    for mesh, frame in ((cone, meshes.wrinkled(cone, 1)), (sheet, flipped), (sheet, folded)):
+        edges = refine.connect(mesh.faces, len(mesh.vertices)).edges
+        wanted = np.full(len(edges), splits)
+        fixed = kahler(mesh, splits=wanted)
+        deciding = kahler(mesh, criterion=GivenMetric(wanted))
+        assert arrays_of(fixed.refine(frame)) == arrays_of(deciding.refine(frame))
+
+
+def test_a_matrix_moves_every_point_and_normal():
+    """The first level is the sum of 3/8, 3/8, 1/8, 1/8 of the frame's vertices, here by numpy."""
+    ball = meshes.ball(2)
+    around = refine.connect(ball.faces, len(ball.vertices)).around
+    fixed = kahler(ball, splits=np.ones(len(around.points), int))
+    frame = meshes.wrinkled(ball, 1)
+    refined = fixed.refine(frame)
+    a, b, c, d = (frame[around.points[:, i]] for i in range(4))
+    middles = (3.0 * (a + b) + c + d) / 8.0
+    assert np.abs(refined.positions[len(frame) :] - middles).max() < 1e-6
+    normals = refined.normals[: len(frame)]
+    means = normals[around.points[:, 0]] + normals[around.points[:, 1]]
+    means /= np.linalg.norm(means, axis=1, keepdims=True)
+    assert np.abs(refined.normals[len(frame) :] - means).max() < 1e-6
+
+
 def test_capacities_are_those_of_a_frame():
     """A stream of exactly a frame's size is enough, and is written whole in every frame."""
     mesh = meshes.irregular(7)

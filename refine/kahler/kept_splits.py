@@ -1,0 +1,158 @@
+"""Loop's rules where every frame has the same splits, whose points have grown as far as they can.
+
+Kähler, Haber, Seidel 2003, section 4.2. Moved vertices and the first level are then fixed sums of
+the vertices of a frame, a sparse matrix. Its rows have four entries for a point on an edge and nine
+for a vertex, so they need no lists of lengths. Indices and weights are worked out once; those of
+vertices that stay are 1 and 0. The bits are those of smoothing.py.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...geometry.arrays import Floats32, Unsigned32
+from ...jit import njit
+from ..mesh.connectivity import Surroundings
+from ..mesh.lanes import (
+    LANE_COUNT,
+    copy_into_lanes,
+    lanes_of,
+    scaled,
+    sum_of,
+    unit_of_held,
+    write_point,
+)
+from ..mesh.rings import NEAR_COUNT, Rings
+from ..mesh.vectors import ONE, ZERO, is_held, plus, row_of, unit, write_row
+from .frame import FrameBuffers
+
+
+class KeptRows(NamedTuple):
+    """V moved vertices and the N middles of split edges; compiled code takes it as it is."""
+
+    points: Floats32
+    """Positions of a frame in lanes (mesh/lanes.py), shape (V, 4)."""
+    normals: Floats32
+    """Normals of a frame in lanes, shape (V, 4)."""
+    near: Unsigned32
+    """The first eight vertices around each vertex, shape (V, 8)."""
+    own: Floats32
+    """Weight of the vertex itself, shape (V,)."""
+    ring: Floats32
+    """Weight of each vertex around it, shape (V,)."""
+    crowded: Unsigned32
+    """Vertices that move and have more than eight around them."""
+    corners: Unsigned32
+    """Ends of a split edge and the corners opposite, shape (N, 4); edges inside the mesh first."""
+    rows: Unsigned32
+    """Where in the output the middle is, shape (N,)."""
+    edges: Unsigned32
+    """The edges, shape (N,)."""
+
+
+def kept_rows(frame: FrameBuffers, around: Surroundings, rings: Rings) -> tuple[KeptRows, int]:
+    """Work out indices and weights for the splits of `frame`, and count edges inside the mesh."""
+    vertex_count = len(frame.points)
+    split_edges = frame.split_edges
+    inside_first = np.argsort(~around.is_interior[split_edges], kind="stable")
+    edges = split_edges[inside_first]
+    corners = around.points[edges]
+    moves = np.zeros(vertex_count, dtype=np.bool_)
+    moves[corners[:, :2]] = True
+    more_count = np.diff(rings.starts.astype(np.int64))
+    kept = KeptRows(
+        points=np.zeros((vertex_count, LANE_COUNT), dtype=np.float32),
+        normals=np.zeros((vertex_count, LANE_COUNT), dtype=np.float32),
+        near=rings.near,
+        own=np.where(moves, rings.own, ONE),
+        ring=np.where(moves, rings.ring, ZERO),
+        crowded=np.flatnonzero(moves & (more_count > 0)).astype(np.uint32),
+        corners=corners,
+        rows=frame.first_points[edges] + (frame.splits[edges] >> 1),
+        edges=edges,
+    )
+    return kept, int(around.is_interior[edges].sum())
+
+
+@njit
+def copy_frame(first: int, last: int, frame: FrameBuffers, kept: KeptRows) -> None:
+    """Copy positions and normals of a frame into lanes."""
+    copy_into_lanes(first, last, frame.points, kept.points)
+    copy_into_lanes(first, last, frame.normals, kept.normals)
+
+
+@njit(lanes=True)
+def place_kept_vertices(first: int, last: int, kept: KeptRows, rows: Floats32) -> None:
+    """Write vertices, all as if they had eight others around them at most (Fig. 3)."""
+    points = kept.points
+    normals = kept.normals
+    near = kept.near
+    assert points.shape[1] == normals.shape[1] == LANE_COUNT and near.shape[1] == NEAR_COUNT
+    for k in range(first, last):
+        v = np.uint32(k)
+        total = lanes_of(points, near[v, 0])
+        for i in range(1, NEAR_COUNT):
+            total = sum_of(total, lanes_of(points, near[v, i]))
+        point = sum_of(scaled(kept.own[v], lanes_of(points, v)), scaled(kept.ring[v], total))
+        write_point(rows, v, point, lanes_of(normals, v))
+
+
+@njit
+def place_crowded_vertices(kept: KeptRows, rings: Rings, rows: Floats32) -> None:
+    """Write the positions of vertices with more than eight others around them."""
+    points = kept.points
+    others = rings.others
+    for v in kept.crowded:
+        total = lanes_of(points, rings.near[v, 0])
+        for i in range(1, NEAR_COUNT):
+            total = sum_of(total, lanes_of(points, rings.near[v, i]))
+        for i in range(rings.starts[v], rings.starts[v + 1]):
+            total = sum_of(total, lanes_of(points, others[i]))
+        point = sum_of(scaled(kept.own[v], lanes_of(points, v)), scaled(kept.ring[v], total))
+        write_row(rows, v, (point[0], point[1], point[2]))
+
+
+@njit(lanes=True)
+def place_kept_middles(
+    first: int,
+    last: int,
+    kept: KeptRows,
+    of_ends: np.float32,
+    of_wings: np.float32,
+    rows: Floats32,
+) -> None:
+    """Write the first-level points of split edges (Fig. 3), with the unit means of normals.
+
+    `of_ends`, `of_wings`: weights of the ends of an edge, and of the corners opposite.
+    """
+    points = kept.points
+    normals = kept.normals
+    corners = kept.corners
+    places = kept.rows
+    assert points.shape[1] == normals.shape[1] == corners.shape[1] == LANE_COUNT
+    left_count = 0
+    for k in range(first, last):
+        i = np.uint32(k)
+        a = corners[i, 0]
+        b = corners[i, 1]
+        ends = sum_of(lanes_of(points, a), lanes_of(points, b))
+        wings = sum_of(lanes_of(points, corners[i, 2]), lanes_of(points, corners[i, 3]))
+        middle = sum_of(scaled(of_ends, ends), scaled(of_wings, wings))
+        total = sum_of(lanes_of(normals, a), lanes_of(normals, b))
+        squared = total[0] * total[0] + total[1] * total[1] + total[2] * total[2]
+        write_point(rows, places[i], middle, unit_of_held(total, squared))
+        left_count += not is_held(squared)
+    if left_count > 0:  # normals that look in opposite directions
+        for k in range(first, last):
+            i = np.uint32(k)
+            a = corners[i, 0]
+            b = corners[i, 1]
+            mean = unit(plus(row_of(normals, a), row_of(normals, b)))
+            write_row(rows, places[i], mean, 3)
+
+
+@njit
+def keep_middles(kept: KeptRows, rows: Floats32, middles: Floats32) -> None:
+    """Copy the first level, before the second moves it, into `middles`, shape (E, 3)."""
+    for k in range(len(kept.edges)):
+        write_row(middles, kept.edges[k], row_of(rows, kept.rows[k]))

@@ -1,0 +1,65 @@
+"""What a smoothing scheme is: the class that all of them derive from, and their names.
+
+Kähler, Haber, Seidel 2003, section 6: "the effects of other smoothing schemes" are of interest. The
+paper's own is in smoothing.py.
+"""
+
+from ...geometry.arrays import Floats32, Floats64
+from ..border.registry import Registry
+from ..mesh.connectivity import Connectivity
+from .frame import FrameBuffers
+
+
+class Scheme:
+    """Places points: what every scheme derives from, the paper's as well as your own.
+
+    It writes `place`; all other methods do nothing unless they are written. A refiner calls `bind`
+    once, then in every frame `prepare`, `place` and, where it blends, `place_centres`.
+    """
+
+    interpolates = False
+    """Whether the original vertices stay where they are."""
+    uses_normals = True
+    """Whether it reads the normals of frames, which are not found where nobody does."""
+    measures = False
+    """Whether it has a `measure`, which the criterion `displacement` needs."""
+    parts: tuple["Scheme", ...] = ()
+    """Schemes that this one asks. Each of them, too, serves one refiner only."""
+
+    def bind(
+        self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
+    ) -> None:
+        """Learn the mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
+
+    def keep(self, frame: FrameBuffers) -> None:
+        """Learn, once and when they are numbered, that all frames have the splits of this one."""
+
+    def prepare(self, frame: FrameBuffers) -> None:
+        """Look at the deformed mesh, before the criterion decides.
+
+        Keep differences of positions only: refined normals call `place` twice, first
+        for the mesh as seen from its first vertex with every edge split once.
+        """
+
+    def place(self, frame: FrameBuffers) -> None:
+        """Write positions and normals of vertices and of points on split edges into the rows."""
+        raise NotImplementedError(f"{type(self).__name__} must have a method place")
+
+    def place_positions(self, frame: FrameBuffers) -> None:
+        """Write positions only; calls `place` unless a subclass writes it."""
+        self.place(frame)
+
+    def place_centres(self, frame: FrameBuffers) -> None:
+        """Correct the points in the middle of triangles, when blending has written them."""
+
+    def measure(self, displacements: Floats32, turns: Floats32) -> None:
+        """Write how far a split would move the middle of each edge and turn its normal, (E,) each.
+
+        The turn is an angle [rad] times the length of the edge. The criterion `displacement` reads
+        both.
+        """
+        raise NotImplementedError(f"{type(self).__name__} has no method measure")
+
+
+schemes: Registry[Scheme] = Registry("scheme", "risorius.schemes")
+"""Schemes by name; a factory is called without arguments, once for each refiner that asks."""

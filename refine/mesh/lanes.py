@@ -1,0 +1,63 @@
+"""Vectors in rows of four numbers, whose last is zero.
+
+A processor reads, adds and writes four single numbers at once, but three one by one. Kernels that
+are compiled with `njit(lanes=True)` take vectors from such rows. They read all that a result needs
+before they write it. The bits are those of three numbers.
+"""
+
+import numpy as np
+
+from ...geometry.arrays import Floats32
+from ...jit import njit
+from .vectors import ONE, WIDTH, Number, is_held
+
+LANE_COUNT = 4
+"""Columns of a row. A kernel that asserts it is faster: the compiler need not multiply by it."""
+
+Lanes = tuple[np.float32, np.float32, np.float32, np.float32]
+"""Three numbers and zero."""
+
+
+@njit
+def copy_into_lanes(first: int, last: int, vectors: Floats32, rows: Floats32) -> None:
+    """Copy vectors, shape (N, 3), into rows of lanes, shape (N, 4), whose last column is zero."""
+    assert vectors.shape[1] == WIDTH and rows.shape[1] == LANE_COUNT
+    for k in range(first, last):
+        rows[k, 0] = vectors[k, 0]
+        rows[k, 1] = vectors[k, 1]
+        rows[k, 2] = vectors[k, 2]
+
+
+@njit(lanes=True)
+def lanes_of(rows: Floats32, k: Number) -> Lanes:
+    """Row k of rows of lanes, shape (N, 4)."""
+    return rows[k, 0], rows[k, 1], rows[k, 2], rows[k, 3]
+
+
+@njit(lanes=True)
+def sum_of(u: Lanes, v: Lanes) -> Lanes:
+    """Sum."""
+    return u[0] + v[0], u[1] + v[1], u[2] + v[2], u[3] + v[3]
+
+
+@njit(lanes=True)
+def scaled(share: np.float32, v: Lanes) -> Lanes:
+    """Product with a number."""
+    return share * v[0], share * v[1], share * v[2], share * v[3]
+
+
+@njit(lanes=True)
+def unit_of_held(v: Lanes, squared: np.float32) -> Lanes:
+    """Normalise a vector if single precision holds its square; others stay as they are."""
+    return scaled(ONE / np.sqrt(squared if is_held(squared) else ONE), v)
+
+
+@njit(lanes=True)
+def write_point(rows: Floats32, k: Number, position: Lanes, normal: Lanes) -> None:
+    """Write position and normal of row k of the output."""
+    rows[k, 0] = position[0]
+    rows[k, 1] = position[1]
+    rows[k, 2] = position[2]
+    rows[k, 3] = normal[0]
+    rows[k, 4] = normal[1]
+    rows[k, 5] = normal[2]
