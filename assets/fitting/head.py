@@ -200,7 +200,7 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
     points = mesh.vertices[landmarks] if points is None else points
     faces, landmarks = with_seams_joined(mesh.vertices, mesh.faces, landmarks)
     skin = skin_of(mesh.vertices, faces, landmarks)
-    check_manifold(faces[skin.file_faces], skin.file_faces)
+    check_manifold(faces[skin.file_faces])
     similarity = placed(points, known)
     skin = _sound(replace(skin, vertices=similarity.points(skin.vertices)))
     own = None

@@ -17,7 +17,7 @@ import scipy
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from ...geometry.arrays import Floats64, Integers, Integers32, Integers64
+from ...geometry.arrays import Flags, Floats64, Integers, Integers32, Integers64
 from ...geometry.sides import sides_of
 from ..errors import AssetError
 from ..topology import border_vertices, unique_points
@@ -49,11 +49,13 @@ class SkinPiece:
 def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> SkinPiece:
     """Leave away what hangs together with no landmark: eyeballs, teeth, vertices of no triangle.
 
+    Triangles that name a vertex twice, which have no area, go as well.
     Raises AssetError if landmarks lie on two pieces or on none, or there are too many triangles,
     or too few.
     """
     _check_count(faces, FEWEST_TRIANGLES, math.inf)
-    piece = pieces_of(faces, len(vertices))
+    is_triangle = ~_names_twice(faces)
+    piece = pieces_of(faces[is_triangle], len(vertices))
     others = np.flatnonzero(piece[landmarks] != np.bincount(piece[landmarks]).argmax())
     if len(others):
         raise AssetError(
@@ -63,7 +65,7 @@ def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Ski
     is_in_piece = piece == piece[landmarks[0]]
     used = np.flatnonzero(is_in_piece).astype(np.int32)
     number = np.cumsum(is_in_piece).astype(np.int32) - 1
-    file_faces = np.flatnonzero(is_in_piece[faces[:, 0]])
+    file_faces = np.flatnonzero(is_in_piece[faces[:, 0]] & is_triangle)
     skin = number[faces[file_faces]]
     _check_count(skin, FEWEST_TRIANGLES, MOST_TRIANGLES)
     return SkinPiece(vertices[used], skin, number[landmarks], used, file_faces)
@@ -88,7 +90,7 @@ def with_seams_joined(
     joined = same[faces]
     marked = same[landmarks]
     piece = pieces_of(joined, len(vertices))
-    is_skin = piece[joined[:, 0]] == piece[marked[0]]
+    is_skin = (piece[joined[:, 0]] == piece[marked[0]]) & ~_names_twice(joined)
     try:
         check_manifold(joined[is_skin])
     except AssetError:
@@ -123,20 +125,13 @@ def vertices_of_pieces(piece: Integers32, faces: Integers32) -> list[Integers]:
     return np.split(order, starts)
 
 
-def check_manifold(faces: Integers32, numbers: Integers64 | None = None) -> None:
-    """Raise AssetError unless each edge has one or two triangles, which agree on the outside.
+def _names_twice(faces: Integers32) -> Flags:
+    """Which triangles have two corners that are one vertex, shape (F,)."""
+    return np.asarray((faces == np.roll(faces, 1, axis=1)).any(axis=1))
 
-    numbers: of the triangles in their file, for messages, shape (F,); None: these are all of it.
-    """
-    names_twice = (faces == np.roll(faces, 1, axis=1)).any(axis=1)
-    if names_twice.any():
-        where = int(names_twice.argmax())
-        number = where if numbers is None else numbers[where]
-        corners = faces[where].tolist()
-        raise AssetError(
-            f"the mesh is not manifold: triangle {number} has the vertices {corners}, one of them "
-            "twice; remove triangles without area"
-        )
+
+def check_manifold(faces: Integers32) -> None:
+    """Raise AssetError unless each edge has one or two triangles, which agree on the outside."""
     directed = sides_of(faces)
     edges, uses = np.unique(np.sort(directed, axis=1), axis=0, return_counts=True)
     if (uses > 2).any():
@@ -159,6 +154,9 @@ def check_pieces(faces: Integers32, count: int) -> None:
 
     The error is that of the largest piece.
     """
+    faces = faces[~_names_twice(faces)]
+    if not len(faces):
+        return
     piece = pieces_of(faces, count)[faces[:, 0]]
     triangles = np.bincount(piece)
     enough = min(FEWEST_TRIANGLES, triangles.max())
@@ -166,9 +164,8 @@ def check_pieces(faces: Integers32, count: int) -> None:
     for each in np.argsort(-triangles, kind="stable"):
         if triangles[each] < enough:
             break
-        numbers = np.flatnonzero(piece == each)
         try:
-            check_manifold(faces[numbers], numbers)
+            check_manifold(faces[piece == each])
             return
         except AssetError as error:
             complaint = complaint or error
