@@ -184,7 +184,7 @@ def _pointed(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     steps = np.array([0.0, 0.0, 1.0, 4.0, 8.0, 12.0, ribbed, ribbed + 1.5, ribbed + 4.0])
     away = np.array([0.2, 2.2, 3.1, 3.4, 3.4, 3.2, 2.6, 2.0, 2.6])
     shades = np.array([0.5, 0.85, 1.0, 1.0, 1.0, 0.97, 0.8, 0.7, 0.95])
-    rest = np.linspace(0.0, 1.0, 26)[1:, None]
+    rest = np.linspace(0.0, 1.0, 16)[1:, None]
     first = edge + steps[-1]
     depths = np.vstack([edge + steps[:, None], first + rest * (surface.lowest(columns) - first)])
     away = np.append(away, np.full(len(rest), 2.6))
