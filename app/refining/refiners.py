@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -116,6 +117,9 @@ def with_criteria(options: Mapping[str, Any]) -> dict[str, Any]:
     for part in str(plain.get("criterion", PAPERS_CRITERION)).split("+"):
         start = f"{part}{OF}"
         own = {name.removeprefix(start): options[name] for name in options if start in name}
+        for option in refine.criteria.options(part) if own else ():
+            if option.name in own:
+                replace(option, name=f"{start}{option.name}").check(own[option.name])
         if own and part == PAPERS_CRITERION:  # whose thresholds are options of the refiner
             own |= {name: plain[name] for name in THRESHOLDS if name in plain}
         made.append(refine.criteria.make(part, **own) if own else part)

@@ -71,6 +71,7 @@ def main(version: str, platform: str, target: Path) -> Path:
         stated = f'blender_version_{key} = "{about[f"blender_version_{key}"]}"'
         manifest = manifest.replace(stated, f'blender_version_{key} = "{value}"')
     file = target / f"{about['id']}-{about['version']}-blender{version}-{platform}.zip"
+    target.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         wheels = collect_wheels(blender, platform, Path(folder))
         names = "".join(f'    "./wheels/{wheel.name}",\n' for wheel in wheels)

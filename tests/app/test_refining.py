@@ -92,8 +92,8 @@ def test_options_of_criteria_that_do_not_fit():
     for options, wanted in (
         ({"rest.levels": 1}, "unknown option rest.levels; it takes .*normal.levels"),
         ({"criterion": "rest", "rest.height": 1}, r"unknown option rest\.height; it takes"),
-        ({"criterion": "rest", "rest.levels": 3}, "levels was 3, must be a whole number from 0 to"),
-        ({"criterion": "rest", "rest.once": "x"}, "once was x, must be a number, 0 or more"),
+        ({"criterion": "rest", "rest.levels": 3}, r"option rest\.levels was 3, must be a whole"),
+        ({"criterion": "rest", "rest.once": "x"}, r"option rest\.once was x, must be a number"),
     ):
         with pytest.raises(UserError, match=wanted):
             refiner_for(plane, Refinement(options=options))

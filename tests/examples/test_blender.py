@@ -112,9 +112,10 @@ def test_renders_files_and_undo(seen):
 )
 def test_the_zip_has_all_that_it_needs(tmp_path, version, python, beyond):
     """Built for Linux: the manifest names each wheel that is in it, and Blender accepts it."""
-    build = [sys.executable, EXAMPLES / "build.py", "--blender", version, "linux-x64", tmp_path]
+    target = tmp_path / "a new folder"
+    build = [sys.executable, EXAMPLES / "build.py", "--blender", version, "linux-x64", target]
     subprocess.run(build, check=True, capture_output=True)
-    (file,) = tmp_path.iterdir()
+    (file,) = target.iterdir()
     with zipfile.ZipFile(file) as archive:
         manifest = tomllib.loads(archive.read("blender_manifest.toml").decode())
         names = set(archive.namelist())
