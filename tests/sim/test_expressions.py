@@ -332,7 +332,8 @@ def _length(line):
     return float(norm(np.diff(line, axis=0), axis=1).sum())
 
 
-def test_blown_cheeks_keep_the_lips_shut(simulation, head):
+@pytest.mark.parametrize("name", ["cheekPuff", "mouthPucker", "kiss"])
+def test_blown_cheeks_and_kisses_keep_the_lips_shut(simulation, head, name):
     """No muscle of theirs parts the lips, so the seal holds, on heads with parted lips, too."""
-    settled_displacement(simulation, {"cheekPuff": 1.0})
+    settled_displacement(simulation, {name: 1.0})
     assert simulation.grip.stiffness > 50.0
