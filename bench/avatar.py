@@ -1,7 +1,8 @@
 """Avatars of heads: do they keep the vertices of their files, and how far are sums of shapes off.
 
 Heads are the built-in one and a made person, and by options MakeHuman's base mesh and a scan. Each
-is made into an avatar as by `risorius rig`, and its file is read again.
+is made into an avatar as by `risorius rig`, and its file is read again. Its landmarks are guessed
+from five of them, too.
 """
 
 from __future__ import annotations
@@ -26,9 +27,11 @@ from risorius.app.rig.surface import METRES
 from risorius.app.rig.writing import avatar_glb
 from risorius.app.scenes import own_head
 from risorius.assets.fitting import FittedHead
+from risorius.assets.fitting.landmark_file import read_landmarks
 from risorius.assets.identities import person_called
-from risorius.assets.meshes import read_mesh
+from risorius.assets.meshes import Mesh, read_mesh
 
+from .guesses import Guess, guessed, lines_of
 from .report import Target, at_least, processor, table
 from .subjects import Scans
 
@@ -49,6 +52,7 @@ class Row(NamedTuple):
 
     vertices: of the file, of the skin where there is no file. in_place: how many of these the
     avatar has, with their numbers. shapes: how many of ARKit's names are there, in Apple's order.
+    guess: of its landmarks.
     """
 
     name: str
@@ -58,6 +62,7 @@ class Row(NamedTuple):
     megabytes: float
     seconds: float
     sums: tuple[Difference, ...]
+    guess: Guess
 
 
 def makehuman(folder: Path) -> HeadFile:
@@ -104,8 +109,11 @@ def measured(head: FittedHead | None, name: str = "built-in") -> Row:
     points, names = mesh_called("skin", content)
     # Where texture coordinates have seams, copies of a vertex follow it.
     is_copy = (np.diff(points, axis=0) == 0.0).all(axis=1)
-    own = METRES * avatar.scene.rest_positions
-    return _row(name, own, points[~np.append(False, is_copy)], names, content, seconds, avatar)
+    points = points[~np.append(False, is_copy)]
+    scene = avatar.scene
+    rest = scene.rest_positions
+    guess = guessed(name, Mesh(rest, scene.faces), rest[scene.landmarks])
+    return _row(guess, METRES * rest, points, names, content, seconds, avatar)
 
 
 def measured_file(head: HeadFile) -> Row:
@@ -115,12 +123,14 @@ def measured_file(head: HeadFile) -> Row:
     content = avatar_glb(avatar, head.name)
     seconds = time.perf_counter() - begin
     points, names = mesh_called("head", content)
-    own = read_mesh(head.mesh).vertices
-    return _row(head.name, own, points, names, content, seconds, avatar)
+    mesh = read_mesh(head.mesh)
+    numbers, places = read_landmarks(head.landmarks, mesh)
+    guess = guessed(head.name, mesh, mesh.vertices[numbers] if places is None else places)
+    return _row(guess, mesh.vertices, points, names, content, seconds, avatar)
 
 
 def _row(
-    name: str,
+    guess: Guess,
     own: Points,
     points: Points,
     names: Sequence[str],
@@ -130,7 +140,8 @@ def _row(
 ) -> Row:
     shapes = sum(found == expected for found, expected in zip(names, ARKIT, strict=False))
     count = in_place(own, points)
-    return Row(name, len(own), count, shapes, len(content) / 1e6, seconds, avatar.sums)
+    size = len(content) / 1e6
+    return Row(guess.name, len(own), count, shapes, size, seconds, avatar.sums, guess)
 
 
 def in_place(own: Points, points: Points) -> int:
@@ -160,8 +171,8 @@ def _quiet(_: str) -> None:
     """Print no line on a head."""
 
 
-def report(rows: Sequence[Row]) -> str:
-    """The text to print."""
+def report(rows: Sequence[Row], guesses: Sequence[Guess] = ()) -> str:
+    """The text to print. guesses: of other heads."""
     files = [
         (row.name, row.vertices, row.in_place, row.shapes, row.megabytes, row.seconds)
         for row in rows
@@ -181,6 +192,8 @@ def report(rows: Sequence[Row]) -> str:
             "Sums of shapes against the simulation [mm]: pairs at 1, and a take.",
             "",
             *table("head:<15| sum:<46|at most:7.1f|RMS:5.1f", sums),
+            "",
+            *lines_of([*(row.guess for row in rows), *guesses]),
         ]
     )
 

@@ -153,11 +153,11 @@ def bench_motion(reference: Path) -> None:
 @click.option("--makehuman", type=FOLDER, help="A folder with MakeHuman's base.obj and base.json.")
 @reference_option
 def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
-    """Make heads into avatars: are their vertices in place, and how far are sums of shapes off?
+    """Make heads into avatars: are vertices in place, how far are sums and guessed landmarks off?
 
     Heads are the built-in one and a person, and those of the folders that are given.
     """
-    from . import avatar
+    from . import avatar, guesses
 
     for name, folder in (("makehuman", makehuman), ("reference", reference)):
         if folder is None:
@@ -166,7 +166,7 @@ def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
     for row in avatar.measure(makehuman, reference):
         say_progress(row.name)
         rows.append(row)
-    conclude(avatar.report(rows), avatar.targets(rows))
+    conclude(avatar.report(rows, guesses.persons_turned()), avatar.targets(rows))
 
 
 @bench.command("persons")

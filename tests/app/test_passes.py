@@ -180,7 +180,7 @@ def test_landmarks_lie_on_the_depth_map(studio, expression, view):
     camera = seen_from(studio, *view)
     depth = passes_of(studio, ["depth"])["depth"]
     found = landmarks_in(scene.face, camera, depth)
-    assert found.visible.sum() >= 30
+    assert found.visible.sum() >= 28  # in profile half of the lower lip hides the other
     visible = np.flatnonzero(found.visible[JAW_COUNT:]) + JAW_COUNT
     columns, rows = np.floor(found.pixels[visible]).astype(int).T
     off = np.abs(depth[rows, columns] - camera.to_camera(found.points[visible])[:, 2])
