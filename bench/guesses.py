@@ -13,8 +13,8 @@ from risorius.assets.identities import person_called
 from risorius.assets.meshes import Mesh
 from risorius.geometry.arrays import Floats64
 
-from .landmarks import GROUPS
 from .report import table
+from .subjects import GROUPS
 
 PERSONS = (7, 63)
 

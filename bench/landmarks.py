@@ -36,18 +36,11 @@ from risorius.sim.landmarks import MIRRORED
 
 from .report import Target, at_most, table
 from .seen import face_landmarker
+from .subjects import GROUPS
 
 Detector = Callable[[Image], Floats64 | None]
 
 DETECTORS = {"dlib": "dlib", "mediapipe": "MediaPipe"}
-GROUPS = {
-    "jaw": slice(0, 17),
-    "brows": slice(17, 27),
-    "nose": slice(27, 36),
-    "lids": slice(36, 48),
-    "lips": slice(48, 68),
-    "all": slice(0, 68),
-}
 # The points of the right side, which are mirror images of those of the left.
 RIGHT = {*range(8), *range(17, 22), 31, 32, *range(36, 42), 48, 49, 50, 58, 59, 60, 61, 67}
 MOST_ERROR = {"dlib": 3.0, "mediapipe": 2.8}  # percent, on frontal pictures

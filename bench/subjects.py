@@ -34,6 +34,15 @@ DENSE = "face.npz"
 MODES = "identity_modes.npz"
 SETTLE = 90  # frames of 1/60 s until a pose is still
 COARSE_TRIANGLES = 2029  # of a decimated scan: about those of the built-in head
+# Landmarks by their places in the face.
+GROUPS = {
+    "jaw": slice(0, 17),
+    "brows": slice(17, 27),
+    "nose": slice(27, 36),
+    "lids": slice(36, 48),
+    "lips": slice(48, 68),
+    "all": slice(0, 68),
+}
 
 
 @dataclass(frozen=True)
