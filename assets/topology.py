@@ -59,10 +59,10 @@ def strip_triangles(corners: npt.NDArray[np.integer[Any]]) -> Integers64:
     return triangles
 
 
-def border_vertices(faces: Faces) -> Faces:
+def border_vertices(faces: Faces) -> Integers64:
     """Numbers of the vertices on edges that have one face, in ascending order."""
-    edges, uses = np.unique(np.sort(sides_of(faces), axis=1), axis=0, return_counts=True)
-    return np.unique(edges[uses == 1])
+    edges, numbers = different_pairs(np.sort(sides_of(faces), axis=1))
+    return np.unique(edges[np.bincount(numbers) == 1])
 
 
 def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> Faces:

@@ -114,6 +114,7 @@ def _dlib(model: Path | None) -> Detector:
     larger = 1  # times that pictures are doubled, for small faces
 
     def detect(image: Image) -> Floats64 | None:
+        """The 68 points of the largest face [pixels], shape (68, 2); None without a face."""
         array = np.ascontiguousarray(image)
         boxes = faces(array, larger)
         if not boxes:
@@ -144,6 +145,7 @@ def _mediapipe(model: Path) -> Iterator[Detector]:
     with face_landmarker(model) as look:
 
         def detect(image: Image) -> Floats64 | None:
+            """The 68 points of the face [pixels], shape (68, 2); None without a face."""
             found = look(image).face_landmarks
             if not found:
                 return None

@@ -52,6 +52,7 @@ def _manifold3d(faces: Faces, rest: Points, adaptive: bool) -> Frame:
     rims = list(range(3 * count, 3 * len(closed), 3))  # the first half edge of each lid's triangle
 
     def frame(positions: Points, limit: float) -> Surface:
+        """The refined surface of a frame."""
         middles = np.array([positions[loop].mean(axis=0) for loop in loops]).reshape(-1, 3)
         points = np.concatenate([positions, middles]).astype(np.float32)
         mesh = manifold3d.Mesh(points, closed, face_id=names)
@@ -71,6 +72,7 @@ def _meshlib(faces: Faces, rest: Points) -> Frame:
     kept = mrmeshnumpy.meshFromFacesVerts(faces, rest)
 
     def frame(positions: Points, limit: float) -> Surface:
+        """The refined surface of a frame."""
         mesh = mrmeshpy.copyMesh(kept)
         mesh.points = mrmeshnumpy.pointCloudFromPoints(positions).points
         mesh.invalidateCaches()
@@ -91,6 +93,7 @@ def _pymeshlab(faces: Faces, rest: Points, rule: str) -> Frame:
     pymeshlab = import_module("pymeshlab")
 
     def frame(positions: Points, limit: float) -> Surface:
+        """The refined surface of a frame."""
         meshes = pymeshlab.MeshSet(verbose=False)
         meshes.add_mesh(pymeshlab.Mesh(positions, faces))
         split = getattr(meshes, f"meshing_surface_subdivision_{rule}")
@@ -120,6 +123,7 @@ def _vtk(faces: Faces, rest: Points, rule: str) -> Frame:
         subdivision.SetMaximumTriangleArea(np.inf)  # only lengths count
 
     def frame(positions: Points, limit: float) -> Surface:
+        """The refined surface of a frame."""
         points.SetData(arrays.numpy_to_vtk(positions, deep=True))
         points.Modified()
         mesh.Modified()
