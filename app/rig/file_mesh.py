@@ -22,7 +22,7 @@ from risorius.geometry.colour import to_linear
 from risorius.geometry.directions import unit_vectors
 
 from .bodies import Shaped
-from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
+from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb, picture_kind
 from .surface import METRES
 
 # Units that files have [mm], and how far off one may seem where a face is large or small.
@@ -203,8 +203,8 @@ class FileMeshWriter:
         # What tints a picture in old programs is no colour of the material, but often black.
         rough["baseColorFactor"] = [1.0, 1.0, 1.0, source.look.opacity]
         content, name = source.picture
-        kind = _kind_of(content)
-        if kind is None:
+        kind = picture_kind(content)
+        if kind not in ("png", "jpeg"):
             file = io.BytesIO()
             import PIL.Image
 
@@ -247,13 +247,6 @@ def unit_of(scale: float) -> float:
     """The unit of a file [mm] of which a face of usual size makes `scale`."""
     unit = min(UNITS, key=lambda each: abs(np.log(scale / each)))
     return unit if max(scale / unit, unit / scale) < MOST_OFF else scale
-
-
-def _kind_of(content: bytes) -> str | None:
-    """The kind of a picture that glTF knows, "png" or "jpeg"; None for others."""
-    if content.startswith(b"\x89PNG"):
-        return "png"
-    return "jpeg" if content.startswith(b"\xff\xd8") else None
 
 
 def _singles(values: Floats64) -> npt.NDArray[np.float32]:

@@ -176,5 +176,13 @@ class Glb:
         return self.add("bufferViews", view if target is None else {**view, "target": target})
 
 
+def picture_kind(content: bytes) -> str | None:
+    """The kind of a picture's file by its first bytes, as in "image/png"; None for others."""
+    if content.startswith(b"RIFF") and content[8:12] == b"WEBP":
+        return "webp"
+    kinds = {b"\x89PNG": "png", b"\xff\xd8": "jpeg", b"\xabKTX 20": "ktx2"}
+    return next((kind for start, kind in kinds.items() if content.startswith(start)), None)
+
+
 def _padded(data: bytes, filler: bytes) -> bytes:
     return data + filler * (-len(data) % ALIGNMENT)

@@ -24,7 +24,7 @@ from risorius.assets.gltf_file import COMPONENTS, chunks_of, content_of
 from risorius.geometry.arrays import Floats32, Integers
 
 from .bodies import Shaped
-from .glb import Glb
+from .glb import Glb, picture_kind
 
 TAKEN = ".risorius"  # behind names that the file has already
 
@@ -64,7 +64,9 @@ def _gathered(document: dict[str, Any], binary: bytes, folder: Path) -> bytes:
         view = {"buffer": 0, "byteOffset": len(data), "byteLength": len(picture)}
         document.setdefault("bufferViews", []).append(view)
         image["bufferView"] = len(document["bufferViews"]) - 1
-        image["mimeType"] = "image/png" if picture.startswith(b"\x89PNG") else "image/jpeg"
+        kind = picture_kind(picture)
+        if kind is not None:
+            image["mimeType"] = f"image/{kind}"
         data += picture
     document["buffers"] = [{"byteLength": len(data)}]
     return bytes(data)
