@@ -52,7 +52,7 @@ def run_on_cluster(
 
 
 def _client(distributed: Any, scheduler: str) -> Any:
-    """A connection to the scheduler at an address; UserError where none answers."""
+    """A connection to the scheduler at an address; raises UserError if none answers."""
     try:  # asked first: a client takes half a minute to find that nobody is there
         host_and_port = distributed.comm.get_address_host_port(scheduler)
         socket.create_connection(host_and_port, PATIENCE).close()

@@ -189,14 +189,14 @@ def check_file(target: Path) -> None:
 
 
 def save_text(target: Path, text: str) -> None:
-    """Write a text file, UTF-8; UserError where it cannot be written."""
+    """Write a text file, UTF-8; raises UserError if it cannot be written."""
     check_file(target)
     with written_atomically(target) as part:
         part.write_text(text, encoding="utf-8")
 
 
 def check_apart(outputs: Sequence[Path | None], inputs: Sequence[Path | None]) -> None:
-    """UserError where two outputs are one file, or one would take the place of an input."""
+    """Raise UserError if two outputs are one file, or an output would replace an input."""
     written: set[str] = set()
     read: set[str] = set()
     for path in inputs:
@@ -209,5 +209,5 @@ def check_apart(outputs: Sequence[Path | None], inputs: Sequence[Path | None]) -
         if entry in read:
             raise UserError(f"{path}: is read and would be written; choose another name")
         if entry in written:
-            raise UserError(f"{path}: is to be two outputs at once; choose another name for one")
+            raise UserError(f"{path}: is the name of two outputs; choose another name for one")
         written.add(entry)

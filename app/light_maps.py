@@ -27,7 +27,7 @@ Pixels = npt.NDArray[np.float32]
 
 
 def read_light_map(path: Path) -> render.LightMap:
-    """The light in a file, (128, 256) texels; UserError for one that cannot be used."""
+    """The light in a file, (128, 256) texels; raises UserError for one that cannot be used."""
     check_light_map(path)
     with _refused(path):
         pixels = _openexr(path) if _is_openexr(path) else _radiance(_content(path))
@@ -93,7 +93,7 @@ def _radiance_size(content: bytes) -> tuple[int, int, int]:
 
 
 def _radiance(content: bytes) -> Pixels:
-    """The pixels of a Radiance file, shape (H, W, 3); ValueError where it is none."""
+    """The pixels of a Radiance file, shape (H, W, 3); raises ValueError if it is none."""
     height, width, begin = _radiance_size(content)
     data = np.frombuffer(content, np.uint8, offset=begin)
     if len(data) == 4 * height * width:
@@ -135,7 +135,7 @@ def _unpacked(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArr
 
 @contextlib.contextmanager
 def _opened_openexr(path: Path, *, header_only: bool) -> Iterator[Any]:
-    """An OpenEXR file; ValueError where it is none, or proves broken in the block."""
+    """An OpenEXR file; raises ValueError if it is none, or proves broken in the block."""
     module = needed("OpenEXR", "a light of .exr", "passes")
     try:
         with module.File(str(path), separate_channels=True, header_only=header_only) as file:
@@ -145,7 +145,7 @@ def _opened_openexr(path: Path, *, header_only: bool) -> Iterator[Any]:
 
 
 def _openexr_size(path: Path) -> tuple[int, int]:
-    """Height and width of an OpenEXR file [pixels]; ValueError for one without colours."""
+    """Height and width of an OpenEXR file [pixels]; raises ValueError for one without colours."""
     with _opened_openexr(path, header_only=True) as file:
         header = file.header()
         names = {channel.name for channel in header["channels"]}
@@ -157,7 +157,7 @@ def _openexr_size(path: Path) -> tuple[int, int]:
 
 
 def _openexr(path: Path) -> Pixels:
-    """The pixels of an OpenEXR file, shape (H, W, 3); ValueError where it is broken."""
+    """The pixels of an OpenEXR file, shape (H, W, 3); raises ValueError if it is broken."""
     with _opened_openexr(path, header_only=False) as file:
         channels = file.channels()
         pixels = np.stack([channels[name].pixels for name in "RGB"], axis=-1)

@@ -23,7 +23,7 @@ def check_png(target: Path) -> None:
 
 
 def save_png(target: Path, image: Image) -> None:
-    """Write one picture; UserError for another suffix, and where it cannot be written."""
+    """Write one picture; raises UserError for another suffix, and where it cannot be written."""
     check_png(target)
     with written_atomically(target) as part:
         PIL.Image.fromarray(image).save(part, format="PNG", compress_level=QUICK_LEVEL)

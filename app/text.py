@@ -30,5 +30,5 @@ def as_text(name: object) -> str:
 
 
 def counted(number: int, noun: str) -> str:
-    """So many of something, in words: 1 key, 2 keys."""
+    """This many of something, in words: 1 key, 2 keys."""
     return f"1 {noun}" if number == 1 else f"{number} {noun}s"

@@ -82,7 +82,7 @@ class Worker:
             self.process.stdin.flush()
 
     def messages(self) -> Iterator[Any]:
-        """Messages of the work; UserError for an error in it, DiedError where the process died."""
+        """Messages of the work; UserError for an error in it, DiedError if the process died."""
         while True:
             try:
                 kind, content = pickle.load(self._answers)
@@ -325,7 +325,7 @@ def count_frames(work: Callable[[], object], send: Send) -> None:
 
 
 def give_way(niceness: int) -> None:
-    """In a process: let the one that started it go first, by so much, 1 to 19."""
+    """In a process: let the one that started it go first, by this much, 1 to 19."""
     if hasattr(os, "nice"):
         os.nice(niceness)
     # Where Linux shares time by sessions, niceness counts inside one, and each process has its own.

@@ -279,7 +279,7 @@ class _Reader:
         return bent, (weights * names[joints.astype(int)]).sum(axis=1), turns
 
     def _faces(self, primitive: Any, count: int) -> Integers64:
-        """The triangles of a primitive with so many vertices."""
+        """The triangles of a primitive with this many vertices."""
         numbers = np.arange(count)
         if primitive.indices is not None:
             numbers = self._file.values(primitive.indices)[:, 0].astype(np.int64)

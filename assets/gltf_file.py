@@ -184,7 +184,7 @@ def packed(name: str) -> AssetError:
 
 
 def chunks_of(content: bytes) -> tuple[bytes, bytes | None]:
-    """The document of a glTF or GLB file and its binary data, None where it has none."""
+    """The document of a glTF or GLB file and its binary data, None if it has none."""
     if not content.startswith(b"glTF"):  # the first bytes of a GLB file
         return content, None
     version, length = struct.unpack_from("<II", content, 4)

@@ -68,7 +68,7 @@ class GltfPainter:
         return -1 - found[0] if found else -1 - len(self.UNREAD)
 
     def _picture(self, number: int, factor: tuple[float, ...]) -> Image:
-        """Read an image, when it is drawn; AssetError where it cannot be."""
+        """Read an image, when it is drawn; raises AssetError if it cannot be."""
         if number < 0:
             name = [*self.UNREAD, "no source"][-1 - number]
             raise AssetError(f"its picture is of a kind that is not read ({name}); save it as PNG")

@@ -125,7 +125,7 @@ class Layer:
     """A table of controls above the muscles: action units, expressions, visemes, ARKit shapes.
 
     title: heading under which a panel lists them.
-    source: the file it was read from, for error texts.
+    source: the file it was read from, for error messages.
     rows: control name -> {name of a lower control, or one of NOT_SHARES: value}, as in the file;
         sim/layers.py explains them.
     """

@@ -29,7 +29,7 @@ def named(path: str | Path) -> str:
 
 
 def beside(folder: Path, name: str) -> Path:
-    """The path of a file in a folder; AssetError for a name that leads out of it.
+    """The path of a file in a folder; raises AssetError for a name that leads out of it.
 
     Letters with marks may be written in two ways (NFC, NFD): that of the folder counts.
     """

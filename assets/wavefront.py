@@ -125,7 +125,7 @@ def _unusable(number: int, line: bytes) -> AssetError:
 def _polygon(fields: list[bytes], counts: tuple[int, int, int]) -> list[tuple[int, int, int]]:
     """Each corner's numbers of its vertex and, -1 for none, of its texture coordinates and normal.
 
-    counts: of these so far. In the file numbers count from 1, or back from the last of so many.
+    counts: of these so far. In the file numbers count from 1, or back from the last of this many.
     Raises ValueError for others.
     """
     if len(fields) < 3:

@@ -140,7 +140,7 @@ class Loop(BaseRefiner):
         spread_over_wedges(values, finest.wedge_uv, self._wedge_values)
 
     def origins(self) -> Origins:
-        """Say for every output vertex where it lies on the input mesh."""
+        """Return the place on the input mesh of every output vertex."""
         finest = self._finest
         wedges = finest.connectivity.wedge_vertices.astype(np.int32)
         vertices = np.stack([wedges] * 3, axis=1)

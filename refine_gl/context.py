@@ -57,7 +57,7 @@ def _open() -> moderngl.Context:
 
 @functools.cache
 def own_context() -> OwnContext:
-    """The one of this process; GpuError where there can be none."""
+    """The one of this process; raises GpuError if there can be none."""
     return OwnContext()
 
 

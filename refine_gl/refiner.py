@@ -157,7 +157,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         return 0 if frames is None else int(self._run(frames.fetch, "removals", 1)[0])
 
     def origins(self) -> Origins:
-        """Say for every vertex of the last frame where it lies on the input mesh; fetched."""
+        """Return the place on the input mesh of every vertex of the last frame; fetched."""
         mesh = self.connectivity
         splits = self.splits
         ends = mesh.edges[mesh.attribute_edges]

@@ -72,7 +72,7 @@ def tables_of(mesh: Connectivity, values: Floats32, rules: Rules) -> Tables:
 
 
 def groups_of(threads: int) -> int:
-    """How many groups so many threads take."""
+    """How many groups this many threads take."""
     return -(-threads // GROUP)
 
 

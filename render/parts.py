@@ -92,7 +92,7 @@ class PartBuffers:
     def _render(
         self, program: moderngl.Program, indices: moderngl.Buffer, count: int, layers: int
     ) -> None:
-        """Draw so many triangles of an index buffer, their outer side."""
+        """Draw this many triangles of an index buffer, their outer side."""
         if (program, indices) not in self._arrays:
             self._arrays[program, indices] = self._gl.vertex_array(
                 program,

@@ -61,7 +61,7 @@ class Renderer:
         self._mixer: SampleMixer | None = None
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
-        """Lend arrays for a mesh of at most so many vertices and triangles (see Stream)."""
+        """Lend arrays for a mesh of at most this many vertices and triangles (see Stream)."""
         self.surface.make_current()
         return Stream(self._gl, vertex_capacity, triangle_capacity, columns)
 
@@ -90,7 +90,7 @@ class Renderer:
         """Draw a picture of frames, each in its viewport; where there is none it is black.
 
         Raises ValueError for a viewport without pixels, for values that do not fit the triangles,
-        and for a frame whose stream was filled anew; GLError where memory is lacking. A window
+        and for a frame whose stream was filled anew; raises GLError if memory is lacking. A window
         shows it at `Surface.end`.
         """
         try:

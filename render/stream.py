@@ -81,7 +81,7 @@ class _Uploaded(NamedTuple):
 
 
 class MeshBuffers:
-    """One mesh of at most so many vertices and triangles, rewritten every frame, to be drawn.
+    """One mesh of at most this many vertices and triangles, rewritten every frame, to be drawn.
 
     columns: of its rows, 6 (position, normal), 8 (and texture u, v) or 16 (and how much of a bump
         map shows, 0..1 in either slot of it, and the gradients of u and v along the surface).

@@ -109,9 +109,8 @@ class Texture(_Mipmaps):
 class BumpMap(_Mipmaps):
     """The fine shape of a surface: furrows that come and go, or relief (2 bytes) that always shows.
 
-    texels: as they were given. steepest: slope of a full byte [scene's unit for one unit of the
-    texture coordinates].
-    define: for programs that look it up.
+    texels: those of the argument. steepest: slope of a full byte [scene's unit for one unit of the
+    texture coordinates]. define: the preprocessor's name that shader programs need to read it.
     """
 
     def __init__(self, surface: Surface, texels: Image, steepest: float, channels: int = 4) -> None:
@@ -129,7 +128,7 @@ class BumpMap(_Mipmaps):
         super().__init__(surface, texels)
 
     def set_uniforms(self, program: moderngl.Program, strength: float) -> None:
-        """Let a program that includes bumps.glsl look it up."""
+        """Bind the map to a program that includes bumps.glsl."""
         name = self.define.lower()
         self._texture.use(self._unit)
         program[f"{name}_map"] = self._unit
@@ -160,7 +159,7 @@ def _median_redness(image: Image) -> float:
 
 
 def _check(image: Image, name: str, channels: int, meaning: str) -> None:
-    """ValueError for an array that is no image of so many channels."""
+    """ValueError for an array that is no image of this many channels."""
     is_image = image.ndim == 3 and image.shape[2] == channels and image.size > 0
     if not is_image or image.dtype != np.uint8:
         raise ValueError(

@@ -5,12 +5,12 @@ from pathlib import Path
 
 
 def configuration_folder() -> Path:
-    """The user's configuration of Risorius, which need not be there."""
+    """The user's configuration of Risorius, which may be missing."""
     folder = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config")
     return folder / "risorius"
 
 
 def cache_folder() -> Path:
-    """What Risorius can make anew at any time, for this user; it need not be there."""
+    """What Risorius can make anew at any time, for this user; it may be missing."""
     folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     return folder / "risorius"

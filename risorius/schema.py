@@ -119,7 +119,7 @@ class OneOf:
         typed = {(type(each), each) for each in allowed}
 
         def one(given: Any) -> Any:
-            """One of them; ValueError for another."""
+            """One of them; raises ValueError for another."""
             if not isinstance(given, Hashable) or (type(given), given) not in typed:
                 raise ValueError
             return given
@@ -267,7 +267,7 @@ def _keys(record: type[Any]) -> tuple[str, ...]:
 
 
 def _known_keys_of(known: tuple[str, ...], table: Any, info: ValidationInfo) -> Any:
-    """A table whose unknown keys are in that of the rest; ValueError where there is none."""
+    """A table whose unknown keys are in that of the rest; raises ValueError if there is none."""
     if not isinstance(table, Mapping):
         return table
     plain = [key for key in known if not key.startswith(OWN)]

@@ -1,4 +1,4 @@
-"""The parts under the skin of a face now, to draw and to measure; they do not move the face."""
+"""The current parts under the skin of a face, to draw and to measure; they do not move the face."""
 
 from __future__ import annotations
 

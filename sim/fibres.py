@@ -72,7 +72,7 @@ class LineMotion(NamedTuple):
 
     @classmethod
     def of(cls, line_count: int) -> LineMotion:
-        """Room for so many lines."""
+        """Room for this many lines."""
         return cls(
             np.zeros((line_count, SAMPLES, 3)),
             np.zeros((line_count, FIBRE_POINTS, 3)),

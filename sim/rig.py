@@ -76,13 +76,13 @@ class _PointTable(Record):
     offset: Annotated[Triple, Within(-200.0, 200.0)] = (0.0, 0.0, 0.0)
 
     def point(self) -> LandmarkPoint:
-        """The point of it; ValueError for none, two, or a mix that is not whole."""
+        """The point of it; raises ValueError for none, two, or a mix that is not whole."""
         if (self.landmark is None) == (self.landmarks is None):
             raise ValueError("give exactly one of 'landmark' and 'landmarks'")
         mix = self.landmarks or ((self.landmark or 0, 1.0),)
         total = sum(weight for _, weight in mix)
         if abs(total - 1.0) > 1e-6:
-            raise ValueError(f"the landmark weights add up to {total:g}, must be 1")
+            raise ValueError(f"the landmark weights add up to {total:g}; they must add up to 1")
         return LandmarkPoint(mix, self.offset)
 
 

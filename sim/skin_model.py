@@ -15,7 +15,7 @@ from .tissue import EdgeSprings, TissueSprings
 
 
 class SkinModel(NamedTuple):
-    """Point masses, springs and contacts of one face; none of it changes while it is simulated."""
+    """Point masses, springs and contacts of one face; a simulation changes none of it."""
 
     rest: Floats64  # (V, 3) mm, positions of the undeformed mesh
     mass: Floats64  # (V,)

@@ -98,7 +98,7 @@ def _do(job: Job, send: Send) -> None:
 
 
 def in_words(results: Sequence[Result], seconds: float) -> str:
-    """A summary of all lines, which took so many seconds."""
+    """A summary of all lines. seconds: the time that all of them took together."""
     counts = {name: sum(each.status == name for each in results) for name in (OK, FAILED, SKIPPED)}
     frames = sum(each.frames for each in results if each.status == OK)
     outcomes = ", ".join(f"{number} {name}" for name, number in counts.items())
@@ -107,7 +107,7 @@ def in_words(results: Sequence[Result], seconds: float) -> str:
 
 
 def save_summary(target: Path, results: Sequence[Result]) -> None:
-    """Write a CSV file with a row for each line; UserError where that cannot be."""
+    """Write a CSV file with a row for each line; raises UserError if that cannot be."""
     rows = [
         {
             "line": each.job.number,

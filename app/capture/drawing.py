@@ -69,7 +69,7 @@ def check_camera(view: str | None, source: str = "") -> None:
 
 
 def _turn(view: str) -> tuple[float, float, float]:
-    """Yaw and pitch [degrees] and zoom of a camera; UserError for a text that names none."""
+    """Yaw and pitch [degrees] and zoom of a camera; raises UserError for a text that names none."""
     try:
         yaw, pitch, zoom = [*map(float, view.split(",")), 1.0][:3]
         if view.count(",") > 2 or not np.isfinite([yaw, pitch, zoom]).all() or zoom <= 0.0:

@@ -91,7 +91,7 @@ def check_name(output: Path) -> None:
 
 @dataclass(frozen=True)
 class Soundtrack:
-    """The sound of a film: a sound file from `begin` [s] on, for so many seconds at most."""
+    """The sound of a film: a sound file from `begin` [s] on, for this many seconds at most."""
 
     file: Path
     seconds: float
@@ -116,7 +116,7 @@ class Encoder:
         frames_per_second: float,
         soundtrack: Soundtrack | None = None,
     ) -> None:
-        """Start it, for frames of `size` pixels; UserError where there is none."""
+        """Start it, for frames of `size` pixels; raises UserError if there is none."""
         form = FORMATS[target.suffix.lower()]
         self._target = target
         self._part = part
@@ -142,7 +142,7 @@ class Encoder:
         self._frames = self._process.stdin
 
     def add(self, image: Unsigned8) -> None:
-        """Hand over a frame, (H, W, 3); UserError where ffmpeg has given up."""
+        """Hand over a frame, (H, W, 3); raises UserError if ffmpeg has given up."""
         left = np.ascontiguousarray(image).data.cast("B")
         try:
             while left:

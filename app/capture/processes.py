@@ -34,7 +34,7 @@ class Share:
 
 
 def worthwhile(options: CaptureOptions, frame_count: int) -> int:
-    """How many processes should draw so many frames: 1 where a GPU does, or a core is all."""
+    """How many processes should draw this many frames: 1 where a GPU does, or a core is all."""
     width, height = options.size
     samples = width * height * max(options.samples, 1) * frame_count
     least_samples = 1e8  # 27 frames of 1280 x 720: fewer are not worth a start of three seconds
@@ -89,7 +89,7 @@ def drawing(
 
 
 def _draw(share: Share, send: Send) -> None:
-    """In a process: hand over the frames that are its own, None for one like that before it."""
+    """In a process: pass the frames that are its own, None for one like that before it."""
     options = share.options
     if share.first == 0:
         announce_compiling()

@@ -26,7 +26,9 @@ OUTPUTS = ("output", "sheet")  # names of their parameters for output files
 @click.command()
 @click.argument("listing", metavar="LIST", type=PATH)
 @click.option(
-    "--jobs", type=click.IntRange(1, 1024), help="Lines at once; by default one for each core."
+    "--jobs",
+    type=click.IntRange(1, 1024),
+    help="Number of lines run at once; by default one for each core.",
 )
 @click.option(
     "--scheduler",
@@ -109,7 +111,7 @@ def jobs_in(listing: Path, logs: Path, *, resume: bool) -> list[Job]:
     if wrong:
         sys.exit(2)
     if not jobs:
-        raise UserError(f"{listing}: there is no command in it")
+        raise UserError(f"{listing}: has no command")
     return jobs
 
 

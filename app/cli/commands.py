@@ -62,7 +62,7 @@ class Live:
     )
 
     def listening(self, gains: tuple[str, ...], mirror: bool) -> Listening | None:
-        """Where to listen, None for nowhere; UserError for options that need --live.
+        """Where to listen, None for nowhere; raises UserError for options that need --live.
 
         gains: "NAME=x" each. mirror: whether left and right change places.
         """

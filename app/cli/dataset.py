@@ -37,7 +37,7 @@ from .options import PATH, SILENT, Size, printing
     type=click.IntRange(0, 2**32 - 1),
     default=0,
     show_default=True,
-    help="Another seed makes other samples.",
+    help="Seed of the random numbers; another one makes other samples.",
 )
 @click.option(
     "--passes",
@@ -70,9 +70,9 @@ from .options import PATH, SILENT, Size, printing
     "--shards",
     type=click.IntRange(1, 10**6),
     metavar="SAMPLES",
-    help="Put so many samples each into tar files of WebDataset.",
+    help="Number of samples in each tar file of WebDataset.",
 )
-@click.option("--jobs", type=click.IntRange(1, 256), help="Processes; one by default.")
+@click.option("--jobs", type=click.IntRange(1, 256), help="Number of processes; one by default.")
 @click.option(
     "--scheduler",
     metavar="ADDRESS",

@@ -58,7 +58,7 @@ class Exporting:
     )
     named_only: bool = option(
         is_flag=True,
-        help="glTF without residual targets: ARKit's shapes alone, whose sum is millimetres off.",
+        help="glTF without residual targets: ARKit's shapes alone, with errors of millimetres.",
     )
     overwrite: bool = option(is_flag=True, help="Replace frames in a folder, or files beside -o.")
     quiet: bool = option(is_flag=True, help="No progress bar.")
@@ -111,7 +111,7 @@ def export(
 
 
 def _simplified(head: FittedHead | None) -> FittedHead:
-    """The simplified mesh of a head as a head; UserError where there is none."""
+    """The simplified mesh of a head as a head; raises UserError if there is none."""
     from risorius.assets.fitting import simplified_head
 
     if head is None or head.simplified is None:

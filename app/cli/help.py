@@ -45,7 +45,7 @@ MOVED: Mapping[str, str] = {
     "--skin-maps": "pictures always have skin maps; the window can leave them out",
     "--no-skin-maps": "pictures always have skin maps; the window can leave them out",
 }
-"""What to do instead of an option that has left; {option}: as typed, {name}: without dashes."""
+"""What to do instead of an option that was removed; {option}: as typed, {name}: without dashes."""
 
 
 class GroupedCommand(click.Command):
@@ -67,7 +67,7 @@ class GroupedCommand(click.Command):
             formatter.write_dl(list(rows.values()))  # --help, at least
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse; for an option that has left the error says what to do instead."""
+        """Parse; the error for an option that was removed names its replacement."""
         try:
             return super().parse_args(ctx, args)
         except click.NoSuchOption as error:
@@ -76,4 +76,4 @@ class GroupedCommand(click.Command):
                 raise
             name = error.option_name.removeprefix("--")
             cure = instead.format(option=error.option_name, name=name)
-            raise click.UsageError(f"{error.option_name} has left: {cure}", ctx) from None
+            raise click.UsageError(f"{error.option_name} was removed: {cure}", ctx) from None

@@ -257,7 +257,7 @@ class Subject:
         return own_head(self.head, self.landmarks)
 
     def refinement(self) -> Refinement:
-        """How the mesh is refined; UserError where there is no such refiner."""
+        """How the mesh is refined; raises UserError if there is no such refiner."""
         from ..refining.refiners import help_of_options, parse_options
 
         if "help" in self.refiner_settings:
@@ -300,7 +300,7 @@ class Drawing(Subject):
         return any(source(name) is not ParameterSource.DEFAULT for name in names)
 
     def style(self) -> render.Style:
-        """The style that these options set; UserError for an unknown one."""
+        """The style that these options set; raises UserError for an unknown one."""
         from risorius import render
 
         wanted = self.style_options
@@ -315,7 +315,7 @@ class Drawing(Subject):
         )
 
     def anatomy_view(self) -> AnatomyView:
-        """The structures that show through the skin; UserError for an unknown one."""
+        """The structures that show through the skin; raises UserError for an unknown one."""
         from ..anatomy import OPACITY, SKIN_ALONE, AnatomyView
 
         if self.anatomy is None:
@@ -329,7 +329,7 @@ GAIN = click.option(
     "gains",
     multiple=True,
     metavar="NAME=x",
-    help="How strongly a channel counts; NAME may be a pattern (mouth*, *Left), or all.",
+    help="Factor on the values of a channel; NAME may be a pattern (mouth*, *Left), or all.",
 )
 MIRROR = click.option("--mirror", is_flag=True, help="Left and right change places.")
 PLAYBACK = (
@@ -337,7 +337,7 @@ PLAYBACK = (
         "--neutral",
         metavar="HOW",
         help="The face at rest, to subtract: first:1, the median of the first second; "
-        "percentile, the 5th of each channel; none. By default as suits the kind of file.",
+        "percentile, the 5th of each channel; none. The default depends on the kind of file.",
     ),
     GAIN,
     MIRROR,
@@ -381,7 +381,7 @@ def played(
 
 
 def printing(name: str, package: str, file: str, what: str) -> Command:
-    """An option that prints a file of a package, and ends the program; what: its help."""
+    """An option that prints a file of a package, and ends the program. what: the help text."""
 
     def show(context: click.Context, _: click.Parameter, asked: bool) -> None:
         """Print it, if the option is given."""

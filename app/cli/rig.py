@@ -45,7 +45,7 @@ class Rigging:
         "--piece",
         multiple=True,
         metavar="PIECE=ROLE",
-        help="What a piece of the file is, where the printed line is wrong: 3=tongue, 4-20=hair, "
+        help="Role of a piece of the file, if the printed one is wrong: 3=tongue, 4-20=hair, "
         "Beard=on_skin.",
     )
     parts: bool = option(

@@ -77,7 +77,7 @@ def make_set(
 
 
 def _check(folder: SetFolder, numbers: range) -> None:
-    """UserError where a folder has samples of other numbers already."""
+    """Raise UserError if a folder has samples of other numbers already."""
     there = folder.there()
     if there <= set(numbers):
         return
@@ -91,7 +91,7 @@ def _check(folder: SetFolder, numbers: range) -> None:
 
 
 def _shares(request: SetRequest, missing: Sequence[int], each: int) -> list[Share]:
-    """Shares of so many samples each.
+    """Shares of this many samples each.
 
     The samples of one person are together, for a head takes a while to build; so are those of one
     shard.

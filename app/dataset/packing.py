@@ -14,10 +14,10 @@ from .shards import PATTERN, Shard, files_in, read_shard, remove_shard, write_sh
 
 
 class Packing:
-    """The shards of a set that has the samples of these numbers."""
+    """The shards of a data set."""
 
     def __init__(self, folder: SetFolder, size: int, numbers: range) -> None:
-        """size: samples in a shard; shard k has those from k * size on."""
+        """size: samples in a shard; shard k begins at number k * size. numbers: of all samples."""
         self._folder = folder
         self._size = size
         self._numbers = numbers

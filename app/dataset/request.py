@@ -73,7 +73,7 @@ def request_of(
     degrade: bool = False,
     shards: int | None = None,
 ) -> SetRequest:
-    """The request of a command line; UserError for options that do not fit together."""
+    """The request of a command line; raises UserError for options that do not fit together."""
     check_wanted(passes, "face")
     parse_options(refiner, ())
     passes = tuple(name for name in IMAGES if name in passes)

@@ -56,7 +56,7 @@ def files_in(path: Path) -> Iterator[tuple[str, bytes]]:
 
 
 def write_shard(path: Path, samples: Iterable[tuple[int, Sequence[Path]]]) -> Shard:
-    """Write a shard of samples, each a number and its files; UserError where that fails."""
+    """Write a shard of samples, each a number and its files; raises UserError if that fails."""
     places: dict[int, tuple[int, int]] = {}
     with written_atomically(path) as part, part.open("wb") as file:
         with tarfile.open(fileobj=file, mode="w", format=tarfile.USTAR_FORMAT) as tar:

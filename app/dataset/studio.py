@@ -51,7 +51,7 @@ class Shot:
     known: Labelled
 
     def save(self, picture: Path) -> None:
-        """Write the picture, and the files that lie beside it; OSError where that fails."""
+        """Write the picture, and the files that lie beside it; raises OSError if that fails."""
         # A third of the time of the usual level 6, and 6 % more bytes.
         PIL.Image.fromarray(self.image).save(picture, compress_level=4)
         self.known.save(picture)

@@ -213,7 +213,7 @@ def backgrounds_of(text: str | None) -> Backgrounds:
 
 @contextlib.contextmanager
 def _readable(path: Path) -> Iterator[PIL.Image.Image]:
-    """An opened picture; UserError where it is none, or proves broken in the block."""
+    """An opened picture; raises UserError if it is none, or proves broken in the block."""
     try:
         with PIL.Image.open(path) as opened:
             yield opened

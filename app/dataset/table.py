@@ -49,7 +49,7 @@ def _units() -> list[str]:
 
 
 def _drawn(shares: dict[str, float]) -> Shares:
-    """Shares from which one name is drawn; ValueError where none can be."""
+    """Shares from which one name is drawn; raises ValueError if none can be."""
     if not any(shares.values()):
         raise ValueError("all shares are 0; one at least must be above")
     return shares

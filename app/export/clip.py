@@ -69,7 +69,7 @@ class Clip:
         """The skin of each frame, in order, as a refiner has it; read it before the next one.
 
         refiner: one of `refiner`; None: a new one. Raises UserError for a refiner that has to know
-        where somebody looks from, and PlugInError where somebody else's code fails.
+        where somebody looks from, and PlugInError if code of another package fails.
         """
         refiner = self.refiner(refinement) if refiner is None else refiner
         plug_ins = plug_ins_of(*refinement.on(self.scene.name))

@@ -34,7 +34,7 @@ ALWAYS = Usd.TimeCode.Default()
 
 
 def write_usd(clip: Clip, part: Path, request: ExportRequest) -> None:
-    """Write the package; OSError where the disk is full."""
+    """Write the package; raises OSError if the disk is full."""
     is_text = as_text(part) == str(part)  # USD takes names in UTF-8 alone
     with tempfile.TemporaryDirectory(dir=part.parent if is_text else None) as folder:
         layer = Path(folder) / (f"{part.stem}.usdc" if is_text else "motion.usdc")

@@ -56,7 +56,7 @@ class LiveFace(Receiver):
         wake: Callable[[], None] = lambda: None,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        """Listen from now on; UserError where that cannot be. wake: see `Receiver`."""
+        """Listen from now on; raises UserError if that cannot be. wake: see `Receiver`."""
         listening.protocol.check()
         gains, default = gains_of(listening.gains, CHANNELS)
         super().__init__(listening, wake, clock)

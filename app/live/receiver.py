@@ -97,7 +97,7 @@ class Receiver:
 
 
 def _bound_socket(listening: Listening) -> socket.socket:
-    """A socket that listens; UserError where the system refuses."""
+    """A socket that listens; raises UserError if the system refuses."""
     address = resolved(listening.address)
     port = listening.chosen_port
     opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)

@@ -75,7 +75,7 @@ def parse(packet: bytes) -> LiveFrame | None:
 
 
 def _messages(packet: bytes, depth: int) -> Iterator[bytes]:
-    """The messages of a packet, each as bytes; ValueError for a bundle that is torn."""
+    """The messages of a packet, each as bytes; raises ValueError for a bundle that is torn."""
     if not packet.startswith(_BUNDLE):
         yield packet
         return

@@ -51,7 +51,7 @@ def play(
 
     until: the last frame's time [s]; None: the script's end. viewer: the place [mm], shape (3,), of
     somebody at whom the face looks, while controls that the script does not name live; None:
-    nothing moves by itself. step: lets so many seconds pass; None: the scene's own.
+    nothing moves by itself. step: lets this many seconds pass; None: the scene's own.
     """
     step = scene.step if step is None else step
     idle = None if viewer is None else Idle(scene)

@@ -57,7 +57,7 @@ def solved(
 
 
 def sided(scene: Scene, layer: str) -> tuple[str, ...]:
-    """The controls of a layer, without those that have sides; UserError where there is no such."""
+    """The controls of a layer, without those that have sides; UserError if there is no such."""
     names = _muscles_of(scene, layer).layers.get(layer, ())
     if not names:
         raise UserError(f"{layer}: this head has no such controls; take the built-in head")
@@ -65,7 +65,7 @@ def sided(scene: Scene, layer: str) -> tuple[str, ...]:
 
 
 def _muscles_of(scene: Scene, layer: str) -> Controls:
-    """The controls of a scene's muscles; UserError, which names the layer, where it has none."""
+    """The controls of a scene's muscles; UserError, which names the layer, if it has none."""
     if scene.face is None:
         raise UserError(f"{layer}: the scene '{scene.name}' has no muscles; take the scene face")
     return scene.face.simulation.controls

@@ -142,7 +142,7 @@ class Labelled:
     labels: dict[str, Any]
 
     def save(self, picture: Path) -> None:
-        """Write the files that belong beside `picture`; OSError where one cannot be written."""
+        """Write the files that belong beside `picture`; raises OSError if one cannot be written."""
         exr, classes, landmarks, labels = beside(picture)
         floats = {name: image for name, image in self.images.items() if name in CHANNELS}
         if floats:
@@ -157,7 +157,7 @@ class Labelled:
 
 
 def save_labelled(picture: Path, image: Image, known: Labelled | None) -> None:
-    """Write a picture, its labels and passes, all or nothing; UserError where that fails."""
+    """Write a picture, its labels and passes, all or nothing; raises UserError if that fails."""
     with written_atomically(picture) as part:
         PIL.Image.fromarray(image).save(part, format="PNG")
         if known is not None:
@@ -194,12 +194,12 @@ def labelled(
 
 
 def openexr() -> Any:
-    """OpenEXR's module; UserError where it is missing."""
+    """OpenEXR's module; raises UserError if it is missing."""
     return needed("OpenEXR", "--passes", "passes")
 
 
 def write_exr(path: Path, passes: Mapping[str, npt.NDArray[Any]]) -> None:
-    """Write passes by their names, those of CHANNELS; OSError where that fails."""
+    """Write passes by their names, those of CHANNELS; raises OSError if that fails."""
     module = openexr()
     channels = {}
     for name, images in passes.items():

@@ -88,7 +88,7 @@ def calibration_for(
 def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
     """The neutral face of a take: channel -> value.
 
-    method: "first:SECONDS", the median of so much of its beginning; "percentile", the 5th of each
+    method: "first:SECONDS", the median of this much of its beginning; "percentile", the 5th of each
     channel, but the first second of the head's turn; "none". None: "percentile" for takes that are
     not calibrated and long enough, without channels that rest at 0. Raises UserError for another
     method.

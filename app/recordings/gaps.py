@@ -85,7 +85,7 @@ def _left_out(count: int) -> str:
 
 
 def _missing(gaps: Floats64) -> str:
-    """The sentence on holes that last so long [s]."""
+    """The sentence on holes that last this long [s]."""
     return (
         f"Rows are missing in {counted(len(gaps), 'place')}, {float(gaps.max()):.3g} s at most: "
         "the last pose is held there."

@@ -1,7 +1,7 @@
 """Any table whose columns are shapes, action units, visemes or angles by name, in any spelling.
 
-Live Link Face's is one of them; so is what scripts write that read a phone or a tracker. Angles
-are in radians there, in others perhaps in degrees, and count down and to the subject's right.
+Live Link Face writes such a table, and so do scripts that read a phone or a tracker. Its angles
+are in radians, those of others perhaps in degrees; they count down and to the subject's right.
 """
 
 from __future__ import annotations

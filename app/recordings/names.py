@@ -97,8 +97,8 @@ _ANGLES = _angle_spellings()
 class Unit:
     """An action unit that a column holds.
 
-    side: "_left", "_right", "" for both or unknown. is_short_right: whether the side is a mere R,
-    which is OpenFace's for intensity where no other column has an L. kind: "intensity",
+    side: "_left", "_right", "" for both or unknown. is_short_right: the file writes the letter
+    R alone, which means intensity in OpenFace's files that have no L. kind: "intensity",
     "detection", "" where the name does not say.
     """
 
@@ -108,7 +108,7 @@ class Unit:
     kind: str
 
     def channel(self, has_sides: bool) -> str:
-        """The channel's name; has_sides: whether any column of the file is a left one."""
+        """The channel's name. has_sides: whether the file has any column for the left side."""
         side = "" if self.is_short_right and not has_sides else self.side
         return f"AU{self.number}{side}"
 

@@ -128,7 +128,7 @@ def _made_clear(channels: dict[str, Floats64], notes: list[str]) -> dict[str, Fl
 
 
 def _height(values: Floats64) -> float:
-    """How high the peaks of a track are, in the middle; 0 where it has none."""
+    """How high the peaks of a track are, in the middle; 0 if it has none."""
     edged = np.concatenate([[-1.0], values, [-1.0]])
     least_peak = 0.1  # a lower one is a neighbour's shadow
     is_peak = (values >= edged[:-2]) & (values >= edged[2:]) & (values > least_peak)

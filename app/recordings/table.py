@@ -108,7 +108,7 @@ def without_percent(cell: str) -> str:
 class Table:
     """Rows of cells under names.
 
-    source: the file, for error texts.
+    source: the file, for error messages.
     names: of the columns, as the file spells them, without blanks around.
     lines: the text of each row; all have as many cells as there are names.
     line_numbers: of each row in the file, counted from 1.

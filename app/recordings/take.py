@@ -13,13 +13,13 @@ from ..errors import UserError
 
 @dataclass(frozen=True)
 class TakeRequest:
-    """face: the name of one, where a file has several. rate: replaces the file's [1 / s]."""
+    """face: the name of a face, if the file has several. rate: replaces the file's [1 / s]."""
 
     face: str | None = None
     rate: float | None = None
 
     def refuse_face(self, source: str) -> None:
-        """UserError where a face is asked for in a file that names none."""
+        """Raise UserError if a face is named and the file names none."""
         if self.face is not None:
             raise UserError(f"{source}: names no faces; leave out the face '{self.face}'")
 
@@ -29,14 +29,14 @@ class Take:
     """Channels over time, in the names and units of names.py; as recorded, not yet calibrated.
 
     kind: what wrote it, as a report calls it ("Live Link Face", "OpenFace 2", ...).
-    source: the file, for error texts.
+    source: the file, for error messages.
     times: of each frame [s], shape (T,), from 0 and strictly rising; T is at least 1.
     channels: name -> values, shape (T,); finite.
     is_calibrated: whether the neutral face was taken away already.
     notes: values that were guessed, skipped or left out, each one sentence.
-    unknown: columns that nobody knows, as the file spells them.
-    has_keys: whether times are of keys, between which values go straight, and not of frames.
-    sound: the file of the sound that the recording names, where it is there.
+    unknown: columns that no reader knows, as the file spells them.
+    has_keys: whether times are those of keys with straight lines between them, not of frames.
+    sound: the file of the sound that the recording names, if it exists.
     """
 
     kind: str

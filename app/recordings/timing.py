@@ -61,7 +61,7 @@ class Stamp:
     """A column name that stands for time.
 
     place: in STAMPS; of several columns the first in STAMPS counts. unit: the unit in the name
-    [s], None where it has none.
+    [s], None if it has none.
     """
 
     place: int

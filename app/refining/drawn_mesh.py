@@ -47,7 +47,7 @@ class DrawnMesh:
     ) -> None:
         """Fill the lent buffers with refined triangles, as the camera sees them.
 
-        `wrinkling`: of the scene's skin. Raises PlugInError where somebody else's code fails.
+        `wrinkling`: of the scene's skin. Raises PlugInError if code of another package fails.
         """
         view = refine.View(camera.eye)
         self.positions = positions

@@ -1,4 +1,4 @@
-"""Refinement by somebody else's code: which plug-ins are in use, and which one raised an error.
+"""Refinement by code of other packages: which plug-ins are in use, and which one raised an error.
 
 A criterion, a scheme or a refiner may come from any package, or be registered by a program. An
 error in its code is reported in one line, with the name of the plug-in.

@@ -29,7 +29,7 @@ class Preset:
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by refiner
 
     def options_for(self, refiner: str) -> Mapping[str, Any]:
-        """Options that differ from a refiner's defaults; empty for a refiner without any here."""
+        """Options of a refiner that this look sets; empty if it sets none."""
         return self.options.get(refiner, {})
 
 

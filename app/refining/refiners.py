@@ -36,7 +36,7 @@ def refiner_for(
 
     `splits`: of each edge in all frames, shape (E,), in place of a criterion. `attributes`: values
     of vertices at rest by name, left out for a refiner that takes none. Raises UserError if it
-    refuses an option, and PlugInError if somebody else's code fails.
+    refuses an option, and PlugInError if code of another package fails.
     """
     name, options = refinement.on(scene.name)
     plug_ins = plug_ins_of(name, options)

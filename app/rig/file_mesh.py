@@ -138,7 +138,7 @@ class FileMeshWriter:
         }
 
     def _painted_normals(self) -> Floats64:
-        """Unit normals at rest: those of the file, or smooth ones where it has none, (n, 3)."""
+        """Unit normals at rest: those of the file, or smooth ones if it has none, (n, 3)."""
         split = self._split
         normals = (self._shaped.normals @ self._to_file.rotation.T)[split.vertex]
         has_own = split.normal >= 0

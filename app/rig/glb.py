@@ -29,7 +29,7 @@ ALIGNMENT = 4  # [bytes] of chunks, and of the arrays in them
 class Glb:
     """The content of one file, in the order in which it is added.
 
-    parts: the document of a file that is there already, which is added to, and its binary chunk;
+    parts: the document of a file that exists, which is added to, and its binary chunk;
     None for a new one. times: of the keyframes [s], shape (N,); values change evenly between them.
     """
 
@@ -109,7 +109,7 @@ class Glb:
         return self.add("accessors", accessor)
 
     def _nothing(self, count: int) -> int:
-        """An array of so many vectors that are 0, the same for all that ask for it."""
+        """An array of this many vectors that are 0, the same for all that ask for it."""
         if count not in self._zeros:
             self._zeros[count] = self.add(
                 "accessors",

@@ -107,7 +107,7 @@ def _write_beside(folder: Path, name: str, content: bytes) -> None:
 
 
 def _with_lips_cut(text: bytes, cut: LipCut, count: int) -> bytes:
-    """An OBJ of so many vertices, those that a cut doubles behind the last of them.
+    """An OBJ of this many vertices, those that a cut doubles behind the last of them.
 
     Polygons of the lower lip take the new ones. One that the cut crosses becomes triangles.
     """

@@ -41,7 +41,7 @@ class PlayedTake:
 
 
 def played_take(scene: FaceScene, script: Script) -> PlayedTake:
-    """Play a take on a face; UserError where the face lacks a control of it."""
+    """Play a take on a face; raises UserError if the face lacks a control of it."""
     script.check(scene.limits)
     moved = scene.simulation.controls
     times = []

@@ -73,7 +73,7 @@ SCENES: dict[str, Callable[[], Scene]] = {
 
 
 def build_scene(name: str, head: FittedHead | None = None) -> Scene:
-    """The scene called `name`, with a head of the user's; UserError where it has none."""
+    """The scene called `name`, with a head of the user's; raises UserError if it has none."""
     if head is None:
         return SCENES[name]()
     if name != "face":

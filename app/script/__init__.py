@@ -327,7 +327,7 @@ def rounded(number: float) -> float:
 
 
 def suggestion(name: str, allowed: Iterable[str], scene: str) -> str:
-    """The end of an error text: the names that were probably meant, or where to find all."""
+    """The end of an error message: similar names, or the command that lists all names."""
     near = difflib.get_close_matches(name, list(allowed), n=3)
     if near:
         return f"did you mean {' or '.join(near)}?"

@@ -65,7 +65,7 @@ def hermite(fraction: Value, start: Value, end: Value) -> Value:
 
 
 def shares_of(fractions: Floats64, rows: Unsigned8) -> Floats64:
-    """The shares of many ways, shape (N,), at fractions of their times; rows: easings, (N, 3)."""
+    """Shares of the way between keys at fractions of the time, (N,); rows: easings, (N, 3)."""
     start = rows[:, 0] / 10
     end = rows[:, 1] / 10
     return np.where(rows[:, 2], fractions // 1.0, hermite(fractions, start, end))
@@ -79,7 +79,7 @@ def free_easing(start: float, end: float) -> str:
 
 @functools.lru_cache(maxsize=1024)
 def easing_named(name: str) -> Easing:
-    """The easing of a word or of two slopes; ValueError for another text."""
+    """The easing of a word or of two slopes; raises ValueError for another text."""
     if name in EASINGS:
         return EASINGS[name]
     start, end = map(float, name.split(","))

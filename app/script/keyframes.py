@@ -86,7 +86,7 @@ def moved(script: Script, places: Places, seconds: float, source: Script | None 
 
 
 def without(script: Script, places: Places) -> Script:
-    """The script without these keys; UserError where none would be left."""
+    """The script without these keys; raises UserError if none would be left."""
     columns = _columns(script, places)
     left = _with(
         script,

@@ -79,7 +79,7 @@ class Recorder:
         return replace(self._played, duration=end, tracks={**self._played.tracks, **tracks})
 
     def _track_value(self, name: str, time: float) -> float:
-        """The value of the script's own track of a control, 0 where it has none."""
+        """The value of the script's own track of a control, 0 if it has none."""
         track = self._played.tracks.get(name)
         return track.value(time) if track is not None else 0.0
 

@@ -173,7 +173,7 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def save_script(target: Path, script: Script) -> None:
-    """Write a script file, whole or not at all; UserError where it cannot be written."""
+    """Write a script file, whole or not at all; raises UserError if it cannot be written."""
     text = script_text(script, target.parent)
     if len(text) > LONGEST_FILE:
         raise UserError(

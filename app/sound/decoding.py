@@ -85,7 +85,7 @@ class Peaks:
 
 
 def ffmpeg() -> str:
-    """The ffmpeg that is used here; UserError where there is none."""
+    """The ffmpeg that is used here; raises UserError if there is none."""
     imageio_ffmpeg = needed("imageio_ffmpeg", "film or sound", "films", package="imageio-ffmpeg")
     try:
         return str(imageio_ffmpeg.get_ffmpeg_exe())
@@ -105,7 +105,7 @@ def sound_form() -> tuple[str, ...]:
 
 
 def sound_input(file: Path, seconds: float, begin: float = 0.0) -> tuple[str, ...]:
-    """Options for an input of so much sound: of a file, and of nothing that this may point to."""
+    """Options for an input of this much sound: of a file, and of nothing that this may point to."""
     skipped = ("-ss", f"{begin:.6f}") if begin else ()
     return "-protocol_whitelist", "file", *skipped, "-t", f"{seconds:.6f}", "-i", f"file:{file}"
 

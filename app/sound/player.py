@@ -48,7 +48,7 @@ class _Part:
 
 
 class Player:
-    """Plays one sound on the device that the system prefers; NoDeviceError where there is none."""
+    """Plays one sound on the device that the system prefers; NoDeviceError if there is none."""
 
     def __init__(self, sound: Sound, clock: Callable[[], float] = time.perf_counter) -> None:
         """clock: counts seconds; the device's own clock may run a little faster or slower."""
@@ -113,7 +113,7 @@ class Player:
             self._device.stop()
 
     def close(self) -> None:
-        """Let go of the device."""
+        """Release the device."""
         self._device.close()
 
     def _samples(self) -> Generator[Samples | bytes, int, None]:
@@ -143,7 +143,7 @@ class Player:
 
 
 def open_device(rate: int, channels: int) -> Any:
-    """The device that the system prefers, stopped; NoDeviceError where there is none."""
+    """The device that the system prefers, stopped; raises NoDeviceError if there is none."""
     if miniaudio is None:
         raise NoDeviceError("miniaudio is not installed (in the checkout: pip install '.[window]')")
     try:

@@ -279,7 +279,7 @@ def load_settings(path: Path) -> tuple[Settings, str]:
 
 
 def save_settings(path: Path, settings: Settings) -> None:
-    """Write the file; UserError where that cannot be."""
+    """Write the file; raises UserError if that cannot be."""
     stored = asdict(settings)
     for table in (stored, stored["display"]):  # a value that is not chosen is left out
         for name in [name for name, value in table.items() if value is None]:

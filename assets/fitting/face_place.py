@@ -57,7 +57,7 @@ def is_face(points: Floats64) -> bool:
 
 
 def _check_different(points: Floats64, template: Floats64) -> None:
-    """AssetError where landmarks [mm] that are far apart on any face are one place."""
+    """Raise AssetError if landmarks [mm] that are far apart on any face are one place."""
     ways, known = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (points, template))
     # Landmarks so far apart on the built-in head cannot be one place: no muscle spans no way.
     least_built_in_distance = 30.0  # [mm]

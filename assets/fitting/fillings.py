@@ -36,7 +36,7 @@ class Filling:
 
     @property
     def in_words(self) -> str:
-        """A line for the owner of the mesh."""
+        """The line that reports the filling to the user."""
         *most, last = self.openings
         names = f"{', '.join(most)} and {last} are" if most else f"{last} is"
         count = len(self.triangles)

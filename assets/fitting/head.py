@@ -76,7 +76,7 @@ class FittedHead(simplifying.SimulatedHead):
     to_millimetres: takes the file's coordinates to these.
     file_vertices: numbers in the file of the vertices, or of the nearest, shape (V,), int32.
     notes: changes of the mesh that its owner should know, a line each.
-    called: its name or number, "" where it has none.
+    called: its name or number, "" if it has none.
     simplified: the mesh to simulate instead, where this one has too many triangles; else None.
     files: of the mesh and its landmarks, where it was read from such.
     lip_cut: of a file whose lips are sealed; its mesh is cut there. None for others.
@@ -351,7 +351,7 @@ def _painted(
 ) -> tuple[Layout, Image, tuple[Wrinkles, Image, Image]]:
     """The picture of the skin, its layout, and maps in this layout (see `maps_in`).
 
-    own: the file's picture of the skin, None where it has none. built_in: layout of the skin in
+    own: the file's picture of the skin, None if it has none. built_in: layout of the skin in
     the built-in picture.
     """
     known = load("head")

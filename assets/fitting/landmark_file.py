@@ -117,7 +117,7 @@ def _document(path: Path) -> Any:
 
 
 def _all_in(document: Any) -> list[Any]:
-    """The 68 entries: the document itself, its list called KEY, or its first list of so many."""
+    """The 68 entries: the document itself, its list called KEY, or its first list of this many."""
     entries = [document]
     if isinstance(document, dict):
         entries = [document[KEY]] if KEY in document else list(document.values())

@@ -227,10 +227,10 @@ def _bent(part: Part, warp: ThinPlateSpline) -> Part:
 def with_eyelid_rims(
     parts: Sequence[Part], vertices: Floats64, faces: Integers32, eyes: Sequence[Eye]
 ) -> tuple[Part, ...]:
-    """The parts of a head, with flesh that begins where skin ends around an eye, and has a rim.
+    """The parts of a head, with rims of flesh from the edge of the skin around an eye to the ball.
 
     The built-in lids reach behind the front of the ball, and flesh fills their corners. The lids of
-    other meshes end anywhere, and the empty head would be seen between them and the ball.
+    other meshes may end before it; without a rim one would see into the empty head.
     vertices: of the skin [mm], shape (V, 3); faces: its triangles, shape (F, 3).
     """
     loops = [(eye, _edge_around(eye, vertices, faces)) for eye in eyes]

@@ -62,8 +62,8 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
             break
     else:
         raise AssetError(
-            f"its {len(skin.faces)} triangles cannot be simplified; reduce it to {MOST_SIMULATED} "
-            "in a modelling program"
+            f"its {len(skin.faces)} triangles cannot be simplified; reduce the mesh to "
+            f"{MOST_SIMULATED} in a modelling program"
         )
     nearest = scipy.spatial.cKDTree(skin.vertices).query(vertices)[1]
     numbers = nearest_vertices(landmarks, vertices, faces)

@@ -81,7 +81,7 @@ class KnownHead:
 
 
 def topologies_folder() -> Path:
-    """The folder of a user's own topologies, which need not be there."""
+    """The folder of a user's own topologies; it may be missing."""
     return configuration_folder() / "topologies"
 
 
@@ -139,7 +139,7 @@ def _built_in_topologies() -> tuple[Topology, ...]:
 
 
 def _own_topologies() -> Iterator[Topology]:
-    """Those of the user; AssetError for a file that cannot be used."""
+    """Those of the user; raises AssetError for a file that cannot be used."""
     for path in sorted(topologies_folder().glob("*.json")):
         try:
             document = parsed_json(read_file(path, kind="topology", most=1))

@@ -90,10 +90,10 @@ def recoloured(
 ) -> Image:
     """The skin of the built-in head in a tone, laid out as its `albedo`, (H, W, 3), uint8.
 
-    angle: ITA [deg], DARKEST to LIGHTEST, else ValueError. blood: as a share of what such skin has;
+    angle: ITA [deg], DARKEST to LIGHTEST; else ValueError. blood: as a share of what such skin has;
     0.7 is pale, 1.3 flushed. haired_as: ITA of the skin with which hair goes that stands on
     it, so that no scalp shines through; None: hair is painted alone, from the built-in hairline on.
-    shrink: so many texels of the albedo, each way, become one, a power of 2 up to 16.
+    shrink: this many texels of the albedo, each way, become one, a power of 2 up to 16.
     """
     if not DARKEST <= angle <= LIGHTEST:
         raise ValueError(f"angle is {angle}; it must be {DARKEST:g} (dark) to {LIGHTEST:g} (light)")
@@ -157,7 +157,7 @@ def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
 
 @lru_cache(maxsize=1)
 def _shrunk_stubble(size: int, shrink: int) -> Floats32:
-    """Stubble with so many texels less each way."""
+    """Stubble with this many texels less each way."""
     return shrunk(stubble(size), shrink)
 
 
@@ -181,7 +181,7 @@ def coloured(
     """A person with skin of a tone (ITA [deg]), eyes of a colour, and the hair of its cut.
 
     The hair stays in other tones (`in_tone`). irises: None leaves them as they are. shrink: as of
-    `recoloured`, for small pictures; what is painted on the skin has so many texels less.
+    `recoloured`, for small pictures; what is painted on the skin has this many texels less.
     """
     parts = person.parts
     if irises is not None:
@@ -321,7 +321,7 @@ def _tints() -> _Tints:
 
 @lru_cache(maxsize=1)
 def _shrunk_tints(shrink: int) -> _Tints:
-    """The maps with so many texels less each way."""
+    """The maps with this many texels less each way."""
     whole = _tints()
     names = [each.name for each in fields(whole)]
     maps: dict[str, Any] = {

@@ -62,9 +62,9 @@ def drawn_iris(years: float, chance: float, random: np.random.Generator) -> Iris
 def with_irises(
     parts: Sequence[Part], eyes: Sequence[Eye], name: str, iris: Iris
 ) -> tuple[Part, ...]:
-    """Parts with eyeballs in a colour of IRIS_SHARES, else ValueError."""
+    """Parts with eyeballs in a colour of IRIS_SHARES; otherwise raises ValueError."""
     if name not in IRIS_SHARES:
-        raise ValueError(f"no eyes are {name!r}; allowed are {', '.join(IRIS_SHARES)}")
+        raise ValueError(f"eye colour was {name!r}, allowed are {', '.join(IRIS_SHARES)}")
     painted = read_arrays(load("head").beside("_eyes.npz"))[name] / np.float32(255.0)
     found = {}
     for eye, colours in zip(eyes, painted, strict=True):

@@ -77,7 +77,7 @@ def make_person(identity: Identity) -> Person:
 
 
 def _made(identity: Identity) -> Person:
-    """The head of an identity; AssetError where its skin would be turned over or cut itself."""
+    """The head of an identity; raises AssetError if its skin would be turned over or cut itself."""
     known = load("head")
     space = person_space()
     beside = known.vertices[:, :1]

@@ -50,7 +50,7 @@ class Measuring(Criterion):
 
 
 class Maximum(Criterion):
-    """Several criteria: each edge is split as often as the one that asks for most."""
+    """Several criteria: each edge is split as often as the one that demands most."""
 
     def __init__(self, criteria: Sequence[Criterion]) -> None:
         if not criteria:

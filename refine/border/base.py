@@ -124,7 +124,7 @@ class BaseRefiner(Refiner):
         spread_over_wedges(self._values.values, self._mesh.wedge_uv, self._wedge_values)
 
     def origins(self) -> Origins:
-        """Say where the wedges lie on the input mesh; a subclass adds its points to them."""
+        """Return where the wedges lie on the input mesh; a subclass adds its points to them."""
         return Origins.at(self.connectivity.wedge_vertices)
 
     def __reduce__(self) -> str:

@@ -192,7 +192,7 @@ class Refiner(Protocol):
 
     @abstractmethod
     def origins(self) -> Origins:
-        """Say for every vertex of the last frame where it lies on the input mesh (allocates)."""
+        """Return the place on the input mesh of every vertex of the last frame (allocates)."""
 
 
 class GpuRefiner(Refiner):

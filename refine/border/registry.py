@@ -112,7 +112,7 @@ def create(
     None if vertex v has coordinate v (then U = V).
     `options`: those of the method; see `create_kahler` and `Loop`. The built-in ones all
     take `attributes`: by name, values of each vertex, shape (V, k), or a pair of values, shape
-    (A, k), and the row of each corner, shape (F, 3), for values that part along seams. They take
+    (A, k), and the row of each corner, shape (F, 3), for values that differ along seams. They take
     `crease_angle` [degrees], too: edges at which two triangles turn by more at rest stay sharp.
     Raises ValueError for an unknown name or option, for arrays that do not fit together, and for a
     refiner of an installed package that cannot be imported.

@@ -34,7 +34,7 @@ class OwnStream:
     def with_triangles(
         cls, columns: int, vertex_count: int, triangles: Unsigned32, source: Integers32
     ) -> "OwnStream":
-        """A stream of frames that all have these triangles, and so many vertices."""
+        """A stream of frames that all have these triangles, and this many vertices."""
         stream = cls(columns, vertex_count, len(triangles))
         stream.vertices = np.zeros((vertex_count, columns), dtype=np.float32)
         stream.triangles = triangles

@@ -229,7 +229,7 @@ class Kahler(BaseRefiner):
         return self._criterion.find_complaint(frame.positions, frame.normals, len(self.edges))
 
     def origins(self) -> Origins:
-        """Say for every vertex of the last frame where it lies on the input mesh."""
+        """Return the place on the input mesh of every vertex of the last frame."""
         mesh = self.connectivity
         return self._origins_among(mesh.wedge_vertices, mesh.edges[mesh.attribute_edges])
 

@@ -254,7 +254,7 @@ def wing(
 
 @njit
 def geomorph_of_split(splits: Unsigned8, geomorph: Floats32, e: np.uint32) -> np.float32:
-    """How far the middle of an edge has grown; 0 where it has none."""
+    """How far the middle of an edge has grown; 0 if it has none."""
     return geomorph[e] if splits[e] > 0 else ZERO
 
 

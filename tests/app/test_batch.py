@@ -131,7 +131,7 @@ def test_every_wrong_line_is_reported_and_nothing_is_done():
 
 
 @pytest.mark.parametrize(
-    ("text", "message"), [(None, "no such list"), ("# nothing\n\n", "there is no command")]
+    ("text", "message"), [(None, "no such list"), ("# nothing\n\n", "has no command")]
 )
 def test_a_list_of_nothing(text, message):
     """One line, exit code 2."""

@@ -97,7 +97,7 @@ PULLER = ("muscle", "puller")
         ),
         (
             _set(*PULLER, "fibre", 0, "origin", "landmarks", value={"45": 0.5}),
-            r"'origin': the landmark weights add up to 0.5, must be 1",
+            r"'origin': the landmark weights add up to 0.5; they must add up to 1",
         ),
         (
             _set(*PULLER, "fibre", 0, "origin", "landmarks", value={}),

@@ -167,7 +167,7 @@ class Exporter:
         return True
 
     def poll(self) -> Message:
-        """Look whether it is done, and say so; UserError where it failed."""
+        """Look whether it is done, and say so; raises UserError if it failed."""
         job = self.job
         if job is None or not job.task.is_done:
             return None

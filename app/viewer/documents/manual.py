@@ -38,7 +38,7 @@ class Manual:
         self._context: rich_md.Context | None = None
 
     def read(self) -> Message:
-        """Show the pages; UserError where they are missing."""
+        """Show the pages; raises UserError if they are missing."""
         self._pages = self._pages or one_document(pages())
         self.show("Manual", self._pages)
         return None

@@ -29,7 +29,7 @@ SOUND_SUFFIXES = (
 
 
 class Unsaved(Protocol):
-    """Work that is not the session's."""
+    """Unsaved work outside the session, such as landmarks."""
 
     @property
     def unsaved(self) -> str:
@@ -40,7 +40,7 @@ class Unsaved(Protocol):
 
 
 class Question:
-    """Asks before unsaved work is lost: save it, lose it, or go back."""
+    """The question before unsaved work is lost: save it, lose it, or go back."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -184,7 +184,7 @@ class ScriptCommands:
         self._files.ask("Open sound", self.set_sound, saving=False, suffixes=SOUND_SUFFIXES)
 
     def set_sound(self, path: Path) -> Message:
-        """Put a sound file beside the script; UserError where nothing is heard in it."""
+        """Put a sound file beside the script; raises UserError if nothing is heard in it."""
         self._session.edit(with_sound(self._session.script, path))
         self.note_recent(path)
         return f"{path.name}: opened; Space plays it with the script"

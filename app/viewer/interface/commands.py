@@ -32,7 +32,7 @@ class Command:
 
     @property
     def displayed_keys(self) -> str:
-        """All keys as people know them."""
+        """All keys, in the words of a keyboard."""
         return self.key.replace("Equal", "=").replace("Minus", "-").replace("Keypad", "Num ")
 
     @property

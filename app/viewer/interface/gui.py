@@ -164,7 +164,7 @@ class Gui:
             glfw.restore_window(self._window)
 
     def look(self, seconds: float = 0.0) -> bool:
-        """Take in the user's events, and wait so long for one [s]; whether there is any."""
+        """Wait for events of the user, `seconds` at most; return whether there is any."""
         self._blind = time.perf_counter() - self._looked
         glfw.wait_events_timeout(seconds)
         self._looked = time.perf_counter()
@@ -262,7 +262,7 @@ class Gui:
 
 
 def wait_for_event(seconds: float) -> None:
-    """Sleep until the user does something, or so long, in a window that has no GUI yet."""
+    """Sleep until the user does something, or this long, in a window that has no GUI yet."""
     glfw.wait_events_timeout(seconds)
 
 
@@ -303,12 +303,12 @@ def fixed_panel(
 
 
 def em(count: float = 1.0) -> float:
-    """The height of so many letters [window units]: the measure of all widths."""
+    """The height of this many letters [window units]: the measure of all widths."""
     return count * int(FONT_SIZE * imgui.get_style().font_scale_main + 0.5)  # as imgui in a frame
 
 
 def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:
-    """A colour as imgui wants it."""
+    """A colour in imgui's form."""
     return imgui.ImVec4(*rgb, opacity)
 
 

@@ -111,7 +111,7 @@ class Marking:
     LANDMARKS_SUFFIX = ".json"
 
     def __init__(self, path: Path, files: FileDialogs) -> None:
-        """Read a mesh; UserError where no marks can make a head of it."""
+        """Read a mesh; raises UserError if no marks can make a head of it."""
         self.path = path
         self._files = files
         with _for_users():
@@ -196,7 +196,7 @@ class Marking:
         self.undo(0)
 
     def guess(self) -> Message:
-        """Place all that were not placed by hand; UserError where the marks are no face's."""
+        """Place all that were not placed by hand; raises UserError if the marks are no face's."""
         with _for_users(cure="; drag points, or undo"):
             found = guess(self.mesh, self.marks.by_hand)
         self._stand_up(self.marks.by_hand)
@@ -209,7 +209,7 @@ class Marking:
         self.current = ORDER[(ORDER.index(self.current) + step) % len(ORDER)]
 
     def undo(self, changes: int = 1) -> None:
-        """Undo so many changes, turns of the mesh among them; -1 redoes one."""
+        """Undo this many changes, turns of the mesh among them; -1 redoes one."""
         self.marks, placing = self.history.go(self.history.place - changes)
         if placing is not self.placing:
             self._place(placing)
@@ -224,7 +224,7 @@ class Marking:
         return "" if self.marks == self._saved else f"the landmarks of {self.path.name}"
 
     def open(self, path: Path) -> Message:
-        """Go on with the marks of a file; UserError where it has none of this mesh."""
+        """Go on with the marks of a file; raises UserError if it has none of this mesh."""
         with _for_users():
             places, guessed = read_marks(path, self.mesh)
         marks = Marks({})

@@ -124,7 +124,7 @@ class ScriptFile:
         return "#" in _QUOTED.sub("", text.removeprefix(preface_of(text)))
 
     def save(self, script: Script, path: Path) -> None:
-        """Write the script, which from now on is kept there; UserError where it cannot be."""
+        """Write the script, which from now on is kept there; raises UserError if it cannot be."""
         save_script(path, script)
         self.path = path
         self._saved = script

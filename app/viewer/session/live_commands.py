@@ -54,7 +54,7 @@ class LiveCommands:
         return self.face is not None
 
     def start(self, wanted: Listening) -> Message:
-        """Listen from now on, and show the panel; UserError where the port cannot be opened."""
+        """Listen from now on, and show the panel; raises UserError if the port cannot be opened."""
         check_scene(self._session.scene.name)
         self.stop()
         face = LiveFace(wanted, wake=self._wake)

@@ -359,11 +359,11 @@ class Work:
         session.pose_is_unsaved = is_unsaved
 
     def save_script(self, path: Path) -> None:
-        """Write the script to a file; UserError where it cannot be written."""
+        """Write the script to a file; raises UserError if it cannot be written."""
         self._session.file.save(self._session.script, path)
 
     def save_pose(self, path: Path) -> None:
-        """Write the controls as they are to a file; UserError where it cannot be written."""
+        """Write the controls as they are to a file; raises UserError if it cannot be written."""
         session = self._session
         pose = pose_script(session.current, title=path.stem, scene=session.script.scene)
         save_script(path, pose)

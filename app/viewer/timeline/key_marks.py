@@ -84,7 +84,7 @@ def draw_label(
 
 
 class TrackPainter:
-    """Draws tracks along an axis, with the selected keys of a script that lasts so long."""
+    """Draws tracks along an axis, with the selected keys of a script that lasts this long."""
 
     KEY_RADIUS = 0.36  # [em] from a key's middle to its corners
 

@@ -172,7 +172,7 @@ class KeySelection:
         return f"{keys} copied to {places.first + offset:.2f} s"
 
     def nudge(self, frames: int) -> None:
-        """Move the selected keys by so many frames."""
+        """Move the selected keys by this many frames."""
         first = self.places.first
         offset = keyframes.on_frame(first + frames * keyframes.FRAME) - first
         script, places = keyframes.moved(self._session.script, self.places, offset)

@@ -1,4 +1,4 @@
-"""Everything that a key or a menu does, as data, a function for each menu.
+"""The commands of all menus and keys, as data; one function for each menu.
 
 Menus, the keyboard and buttons are all made from these tables.
 """

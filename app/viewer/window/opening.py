@@ -67,7 +67,7 @@ def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> S
 
 
 def _refine_once(scene: Scene, display: Display) -> None:
-    """Refine a scene as it is; UserError for a refiner that refuses it, or fails."""
+    """Refine a scene as it is; raises UserError for a refiner that refuses it, or fails."""
     refinement = display.refinement_on(scene)
     refiner = refiner_for(scene, refinement)
     with reported(plug_ins_of(*refinement.on(scene.name))):

@@ -38,7 +38,7 @@ class Schedule:
         self._begun = time.perf_counter()
 
     def wake(self, frames: int = FRAMES_AFTER_EVENT) -> None:
-        """Draw so many frames at least."""
+        """Draw this many frames at least."""
         self._awake = max(self._awake, frames)
 
     def begin_frame(self) -> float:

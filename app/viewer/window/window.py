@@ -293,7 +293,7 @@ class Viewer:
         return None
 
     def remember(self) -> None:
-        """Write the settings as they are now; UserError where that cannot be."""
+        """Write the settings as they are now; raises UserError if that cannot be."""
         if self._settings_path is not None:
             self.settings.size = self.gui.window_size
             save_settings(self._settings_path, self.settings)
