@@ -14,7 +14,7 @@ from .text import in_one_line
 
 
 class UserError(Exception):
-    """Something the user gave cannot be used; the text says what, where, and the allowed values.
+    """An input of the user cannot be used; the text names fault, place and allowed values.
 
     trace: the traceback of the process in which it was raised, if that was another one.
     """
@@ -25,7 +25,7 @@ class UserError(Exception):
 
 
 def traceback_of(error: BaseException) -> str:
-    """The traceback of an error and of all that led to it, if RISORIUS_DEBUG asks for it; or ""."""
+    """The traceback of an error and of its causes, if RISORIUS_DEBUG is set; else ""."""
     if os.environ.get("RISORIUS_DEBUG", "0") in ("", "0"):
         return ""
     one: BaseException | None = error

@@ -1,4 +1,4 @@
-"""Libraries that not everybody has installed: those of this distribution's extras."""
+"""Optional libraries: those of this distribution's extras."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .errors import UserError
 
 
 def needed(module: str, what: str, extra: str, *, package: str | None = None) -> Any:
-    """A library that not everybody has installed; UserError, with the cure, where it is missing.
+    """An optional library; raises UserError, with the remedy, if it is missing.
 
     what: needs it ("--passes"). extra: of this distribution, which brings it. package: what brings
     the module, if it is called otherwise.

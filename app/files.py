@@ -23,7 +23,7 @@ from .text import as_text
 
 
 class NoSuchFileError(UserError):
-    """Nothing is there that could be read."""
+    """There is no file to read."""
 
 
 def read_text(path: Path, *, what: str, longest: int) -> str:
@@ -168,7 +168,7 @@ def check_links(target: Path) -> None:
 
 
 def entry_of(path: Path) -> str:
-    """Which name in which folder a path is: of a link its own, unless that leads to a folder."""
+    """The folder and name of a path; for a link its own, unless it leads to a folder."""
     if path.is_dir():
         return os.path.realpath(path)
     return os.path.join(os.path.realpath(path.parent), path.name)

@@ -39,7 +39,8 @@ class GltfFile:
     def __init__(self, content: bytes, folder: Path) -> None:
         """content: of the file. folder: its own, in which other files of it may lie.
 
-        Raises AssetError, which names them, for extensions that it needs and nobody reads here.
+        Raises AssetError, which names them, for required extensions that this reader does not
+        support.
         """
         import pygltflib  # which to load the built-in head takes no time for
 
@@ -179,7 +180,7 @@ def shares(rows: npt.NDArray[Any]) -> Floats64:
 
 
 def packed(name: str) -> AssetError:
-    """The refusal of a mesh that an extension compresses."""
+    """The error for a mesh that an extension compresses."""
     return AssetError(f"is compressed ({name}); export it without compression")
 
 

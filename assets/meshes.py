@@ -1,4 +1,4 @@
-"""Read a triangle mesh that somebody brings: OBJ, PLY, STL, OFF, glTF or GLB, and what paints it.
+"""Read a triangle mesh of the user's: OBJ, PLY, STL, OFF, glTF or GLB, and what paints it.
 
 Every vertex and triangle stays where the file has it, because landmarks and animation caches count
 on their numbers. trimesh reads STL and OFF; it likes to merge and reorder vertices, and of the

@@ -1,4 +1,4 @@
-"""Light in the nostrils: walls of flesh throw it about, and from below no hole is black."""
+"""Light in the nostrils: walls of flesh scatter it, and from below no hole is black."""
 
 from __future__ import annotations
 

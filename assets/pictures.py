@@ -1,8 +1,8 @@
 """The pictures with which a mesh file is painted: where they lie, and how much of them is taken.
 
-A file of somebody else's may name any path, and a picture of a few bytes may unfold to gigabytes.
-So only pictures in the mesh's own folder are opened, only as large as is of use, and only those of
-triangles that are drawn.
+A file of unknown origin may name any path, and a picture of a few bytes may decompress to
+gigabytes. So only pictures in the mesh's own folder are opened, only as large as is of use, and
+only those of triangles that are drawn.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Texture:
 def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple[str, ...]]:
     """The picture that material libraries beside an OBJ file give it; None where they give none.
 
-    Beside it a line for each library that was never sent along, as with many files.
+    And a line for each library that is missing, as with many files.
     """
     by_material: dict[str, MaterialPicture] = {}
     missing = []

@@ -1,4 +1,4 @@
-"""Files that somebody brings: read whole, but only if they are files and no longer than allowed.
+"""Files of the user: read whole, but only if they are files and no longer than allowed.
 
 A path may lead to a pipe that never ends, to a device, or to gigabytes; and text may come in any
 encoding. Nothing of that may reach a reader that trusts its file.

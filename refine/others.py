@@ -1,17 +1,17 @@
 """Refiners to compare with: the mesh as it is, and Loop subdivision of all of it.
 
-*None* does nothing: the mesh itself, in the form in which refined meshes come.
+*None* splits nothing: it returns the mesh itself in the form of a refined mesh.
 
 Kähler, Haber, Seidel 2003, compare with the static mesh in every figure and in Table 1. Positions,
-normals and texture coordinates are those that `kahler` hands out where no edge is split, to the
-last bit, so that switching between the two shows nothing but refinement.
+normals and texture coordinates are those that `kahler` returns where no edge is split, to the last
+bit, so that switching between the two shows nothing but refinement.
 
 *Loop* subdivides the whole mesh, level by level: the adaptive refiner is compared with it.
 
-Loop 1987 with Warren's vertex weights (Warren 2001), the scheme that Kähler, Haber, Seidel 2003,
-section 4.2, borrow their rules from. Every edge is split, every vertex is smoothed, borders follow
-their own curve. The connectivity of each level is built at binding; a frame only moves points, with
-the very passes of `kahler`.
+Its rules are those of Loop 1987 with Warren's vertex weights (Warren 2001). Kähler, Haber, Seidel
+2003, section 4.2, take their rules from this scheme. Every edge is split, every vertex is smoothed,
+borders follow their own curve. The connectivity of each level is built at binding; a frame only
+moves points, with the very passes of `kahler`.
 
 Normals and texture coordinates of new points are interpolated along the edge and not recomputed
 from the subdivided surface, as in `kahler`, so that the two can be compared in shading and in time.

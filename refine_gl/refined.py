@@ -20,7 +20,7 @@ Columns = tuple[Floats32 | None, Mapping[str, Floats32]]
 
 
 class GpuBuffers:
-    """A stream that nobody draws: the buffers of `refine.GpuStream`, made here."""
+    """A stream for results that are not drawn: the buffers of `refine.GpuStream`, made here."""
 
     def __init__(
         self, gl: moderngl.Context, columns: int, vertex_capacity: int, triangle_capacity: int

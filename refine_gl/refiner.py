@@ -196,7 +196,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         return cast(RefinedMesh, self._refine_in(out, operator.call, view))
 
     def follow_values(self) -> None:
-        """Hand values that a frame brings to the card, with the frame."""
+        """Send new values of a frame to the card, with the frame."""
         super().follow_values()
         self._has_new_values = True
 

@@ -62,7 +62,7 @@ class Rules:
         rest_normals: Floats32,
         settings: Settings,
     ) -> None:
-        """Raise ValueError for criteria that the card has not."""
+        """Raise ValueError for criteria that the card does not have."""
         self._mesh = mesh
         self._rest = rest_positions
         self.scheme, self.criterion, self.blends, self.coherent = settings

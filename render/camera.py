@@ -1,4 +1,4 @@
-"""The camera: turns about a point of the scene, like a portrait photographer walking round.
+"""The camera, which turns about a point of the scene, as a portrait photographer walks round.
 
 A `CameraView` is one camera that looks into a viewport; a `PlacedView` has its pixels and matrices.
 

@@ -96,7 +96,7 @@ class Compositor:
         gl.viewport = 0, 0, *self.size
 
     def copy_to(self, target: moderngl.Framebuffer, around: Rectangle = (0, 0, 0, 0)) -> None:
-        """Copy everything, but for an area, to a framebuffer of the same size."""
+        """Copy everything except an area to a framebuffer of the same size."""
         width, height = self.size
         left, bottom, right, top = *around[:2], around[0] + around[2], around[1] + around[3]
         for rectangle in (

@@ -109,7 +109,7 @@ def part_numbers(placed: PlacedBuffers) -> Numbers:
 
 
 def set_numbers(program: moderngl.Program, numbers: Numbers, view: PlacedView) -> None:
-    """Let a program write which surface is seen."""
+    """Set the uniforms by which a program writes the number of the seen surface."""
     for name, value in (("numbers", numbers), ("depth_range", view.depth_range)):
         if name in program:  # not where it draws strands, or no depths
             program[name] = value

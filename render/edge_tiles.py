@@ -47,7 +47,8 @@ class EdgeTiles:
     ) -> Flags:
         """Which triangles (M, 3) of vertices in the world, (V, 3), may touch such a tile, (M,).
 
-        Of those that turn away from the eye only where a pixel beside an edge shows the inner side.
+        Triangles that face away from the eye count only if a pixel beside an edge shows the inner
+        side.
         """
         matrix = view.world_to_clip.astype(np.float32)
         left, bottom, width, height = view.viewport

@@ -1,6 +1,6 @@
 """A picture as a value: a view, a style, a mesh, parts and lines; `Renderer.draw` draws it.
 
-A frame says all that its picture depends on. So it gives the same picture whenever it is drawn, in
+A frame holds everything that its picture depends on. So it gives the same picture at any time,
 between any other frames. Its parts keep the shape that they had when the frame was made. Its mesh
 lies in the buffers of a stream, so a frame can be drawn until that stream is filled anew.
 """

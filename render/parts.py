@@ -28,7 +28,7 @@ SHADING_DENSITY = 0.6  # of shells, from which on they throw a shadow
 class PartBuffers:
     """A part on the graphics card, and the arrays that were read of it.
 
-    It keeps no part alive: `PartStore` gives it up with its part.
+    It keeps no part alive: `PartStore` releases it with its part.
     """
 
     def __init__(self, gl: moderngl.Context, part: DrawnPart) -> None:
@@ -85,7 +85,7 @@ class PartBuffers:
         self._render(program, self._indices, len(self.faces), layers)
 
     def draw_shadow(self, program: moderngl.Program) -> None:
-        """Draw what of it throws a shadow: of shells no hem, which lets light through."""
+        """Draw the faces that throw a shadow; the hem of shells throws none."""
         if self._throwing_count:
             self._render(program, self._throwing, self._throwing_count, 1)
 
@@ -152,7 +152,7 @@ class PlacedBuffers(NamedTuple):
 
     @property
     def corners(self) -> Floats64:
-        """Of a box in the world that holds it, shape (8, 3)."""
+        """Corners of its bounding box in the world, shape (8, 3)."""
         return moved_points(self.part.transform, self.buffers.corners)
 
 

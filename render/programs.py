@@ -1,7 +1,7 @@
 """GLSL files -> compiled programs: one file per program, its stages chosen by a define.
 
-`#include "name.glsl"` is replaced by that file. Compile errors come out as GLError with file, stage
-and defines. Everything is GLSL 330, so that OpenGL 3.3 core (and macOS's 4.1) can run it.
+`#include "name.glsl"` is replaced by that file. Compile errors are raised as GLError with file,
+stage and defines. Everything is GLSL 330, so that OpenGL 3.3 core (and macOS's 4.1) can run it.
 """
 
 import re

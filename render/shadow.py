@@ -44,7 +44,7 @@ class Shadow:
     radius: float
 
     def set_uniforms(self, program: moderngl.Program, unit: int) -> None:
-        """Let a program look up the shadow, through a texture unit."""
+        """Bind the shadow to a program, through a texture unit."""
         write_uniform(program, "shadow_matrix", self.view_to_light @ _TO_TEXTURE)
         program["shadow_offset"] = OFFSET * self.radius
         program["shadow_reach"] = 2.0 * TEXEL * self.radius  # of the look-up, to each side
@@ -67,7 +67,7 @@ class ShadowMap:
     def draw(
         self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers], *, with_skin: bool
     ) -> Shadow:
-        """Draw the shadow that these parts of a frame throw, and its skin if it does, too."""
+        """Draw the shadow of these parts of a frame, and of its skin if the skin throws one."""
         gl = self._gl
         view_to_light = _view_to_light(view, _basis(np.array(frame.style.light.to_key)))
         to_light = view.world_to_view @ view_to_light

@@ -176,7 +176,7 @@ class MeshBuffers:
     def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
         """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
 
-        `share`: BUMPED and SMOOTH need a mesh that has bumps, and give the program in_bumps.
+        `share`: BUMPED and SMOOTH need a mesh with bumps; the program then gets in_bumps, too.
         """
         if share is Share.ALL:
             self._draw_all(self._vertex_array(program, self.index_buffer))
@@ -270,9 +270,9 @@ def _write_anew(buffer: moderngl.Buffer, rows: npt.NDArray[np.generic]) -> None:
 class GpuStream(MeshBuffers):
     """Buffers of such a mesh, lent to a program on the graphics card that makes it there.
 
-    It is drawn by the command that this program writes, without anybody on this side learning how
-    much there is. Bumps, colours by triangle, and software that
-    leaves hidden triangles out need rows or triangles here: they fetch them, and wait.
+    It is drawn by the command that this program writes, and the processor does not know the number
+    of triangles. Bumps, colours by triangle, and software that leaves hidden triangles out need
+    rows or triangles here: they fetch them, and wait.
 
     vertex_buffer, index_buffer: rows and triangles, as in a `Stream`.
     source_buffer: the triangle that each comes from, int32.

@@ -154,12 +154,12 @@ class Style:
 
     @property
     def shows_bumps(self) -> bool:
-        """Whether anything of a bump map is to be seen: only pixel shading has them."""
+        """Whether a bump map is visible: only pixel shading shows it."""
         return self.bumps > 0.0 and self.shading is Shading.PIXEL
 
     @property
     def shows_fine_shape(self) -> bool:
-        """Whether anything of a texture's fine shape is to be seen: as with bumps."""
+        """Whether a texture's fine shape is visible: only pixel shading shows it."""
         return self.skin_maps and self.shading is Shading.PIXEL
 
     @property

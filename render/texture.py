@@ -96,7 +96,7 @@ class Texture(_Mipmaps):
         return around
 
     def set_uniforms(self, program: moderngl.Program, unit: int, occlusion: float) -> None:
-        """Let a program look it up, through a unit; occlusion: whether it counts, 0 or 1."""
+        """Bind it to a program, through a texture unit. occlusion: whether it counts, 0 or 1."""
         program["albedo_texture"] = unit
         program["around_texture"] = _AROUND_UNIT
         self._texture.use(unit)

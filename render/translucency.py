@@ -69,7 +69,7 @@ def set_translucency(program: moderngl.Program, frame: Frame, view: PlacedView) 
 
 
 def set_cut(program: moderngl.Program, view: PlacedView, cut: Plane, width: float) -> None:
-    """Where skin is cut, and how far from there that is seen [of the scene's radius]."""
+    """Set where skin is cut, and how far from the cut this is seen [of the scene's radius]."""
     program["cut"] = in_view(cut, view)
     if "cut_width" in program:
         program["cut_width"] = width * view.camera.scene_radius

@@ -28,7 +28,7 @@ from .surface import (
 
 
 class WindowSurface(Surface):
-    """A surface that people see.
+    """A surface that is visible in a window.
 
     handle: the GLFW window, for input and GUI libraries. detail: settable, for the next frames.
     area: the part in which the scene is seen, where panels hide the rest; None: all. Settable.

@@ -70,7 +70,7 @@ class Faces:
         return {kind: path.read_bytes() for kind, path in names.items() if path.exists()}
 
     def split(self, share: float = 0.2) -> tuple[list[int], list[int]]:
-        """Numbers for training and for testing; nobody's face is in both, somebody's in each."""
+        """Numbers of samples for training and for testing; no person is in both, none is empty."""
         persons = sorted({int(row["person_number"]) for row in self.rows})
         count = min(max(round(share * len(persons)), 1), len(persons) - 1)  # of one person, none
         tested = set(persons[:count])

@@ -11,6 +11,6 @@ def configuration_folder() -> Path:
 
 
 def cache_folder() -> Path:
-    """What Risorius can make anew at any time, for this user; it may be missing."""
+    """The user's folder for files that Risorius can make again at any time; it may be missing."""
     folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     return folder / "risorius"

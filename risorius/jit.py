@@ -150,7 +150,7 @@ class _Compilation(event.Listener):
             log.info("compiling %s.%s", function.__module__, function.__qualname__)
 
     def on_end(self, event: event.Event) -> None:
-        """Give the settings back that were there."""
+        """Restore the earlier settings."""
         _numbas.SLP_VECTORIZE = self._settings.pop()
 
 

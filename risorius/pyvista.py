@@ -158,7 +158,7 @@ def triangles_of(mesh: pyvista.PolyData) -> tuple[Integers64, Integers64]:
 
     Lines, lone points and polygons of less than three points have no surface and drop out. VTK
     cuts only polygons of more than three points, because its filter returns unwritten memory
-    beside lines and lone points. Raises ValueError for cells that name missing points.
+    for lines and lone points. Raises ValueError for cells that name missing points.
     """
     polygons = _cells_of(mesh.GetPolys(), mesh.n_points)
     strips = _cells_of(mesh.GetStrips(), mesh.n_points)

@@ -1,4 +1,4 @@
-"""The bones of one face in motion: they go where the controls are, and skin goes with them."""
+"""The bones of one face in motion: the controls move them, and they move the skin."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Bones:
         self.turn: Floats64 = read_only(np.eye(4))  # of the head, for column vectors [head units]
 
     def follow(self) -> None:
-        """Jaw, lips and head go where the controls are now."""
+        """Move jaw, lips and head as the controls are now."""
         reached = self._controls.reached
         *values, self.lips_closed = reached[self._mouth].tolist()
         if (jaw := tuple(values)) != self.jaw:

@@ -60,7 +60,7 @@ class LipPairs(NamedTuple):
 
 
 class Grip(NamedTuple):
-    """How firmly the lips hold each other at the moment."""
+    """How firmly the lips stick together at present."""
 
     stiffness: float  # x the stiffness of each pair; 0 = open
     overlap: float  # mm by which the lips are pressed into each other
@@ -69,7 +69,8 @@ class Grip(NamedTuple):
     def of(cls, strength: float, activity: float) -> Grip:
         """Grip of a seal of `strength` 0 (broken) .. 1 under muscles of `activity` 0 .. 1.
 
-        Whole, it outdoes every muscle; it must give way early or the mouth would pop open.
+        At full strength it is stronger than every muscle. It must yield early, or the mouth would
+        pop open.
         """
         unbroken_seal = 100.0  # x the rig's seal while nothing opens the lips: gaps below 0.1 mm
         stiffness = strength**5 / (1.0 - strength + 1.0 / unbroken_seal)

@@ -136,7 +136,7 @@ class Controls:
         return dict(zip(self.lowest, self.wanted.tolist(), strict=True))
 
     def places_in_reached(self, names: Iterable[str]) -> npt.NDArray[np.intp]:
-        """Places of lowest controls in `reached`; of those that this face has not, the last."""
+        """Places of lowest controls in `reached`; the last for controls that this face lacks."""
         none = len(self.lowest)
         return np.array([min(self._places.get(name, none), none) for name in names], np.intp)
 
@@ -199,11 +199,11 @@ class Controls:
         return np.clip(sums, self._low, self._high, out=sums)
 
     def advance(self, dt: float) -> None:
-        """Let activations follow their values for `dt` [s]: exact critically damped motion."""
+        """Move activations toward their values for `dt` [s]: exact critically damped motion."""
         follow(self._wanted, self._activation, self._speed, self._rate, dt)
 
     def arrive(self) -> None:
-        """Let activations be where their values are, at once."""
+        """Set activations to their values at once."""
         self._activation[:] = self._wanted
         self._speed[:] = 0.0
 

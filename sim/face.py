@@ -87,7 +87,7 @@ class Simulation:
         self.place_targets()
 
     def clone(self) -> Simulation:
-        """Another simulation of this face as it is now, of which no finger has hold."""
+        """Another simulation of this face as it is now, without a finger on its skin."""
         clone = Simulation(self._model)
         clone.copy_from(self)
         return clone
@@ -102,7 +102,7 @@ class Simulation:
         self._positions[:] = other._positions
 
     def jump(self, values: Mapping[str, float]) -> None:
-        """Set several controls, and let all muscles and bones obey at once; the skin follows."""
+        """Set several controls, and move all muscles and bones at once; the skin follows."""
         self.controls.set_all(values)
         self.controls.arrive()
         self._state.v[:] = 0.0
@@ -147,7 +147,7 @@ class Simulation:
         return bool((self._placed_for == self.controls.reached).all())
 
     def place_targets(self) -> None:
-        """Bones, lids and muscles for the activations reached: where each spring pulls to."""
+        """Place the targets of the springs of bones, lids and muscles, for these activations."""
         model = self._model
         bones = self.bones
         state = self._state

@@ -50,7 +50,7 @@ class Lids(NamedTuple):
     muscles: tuple[tuple[int, int, int, float], ...]  # control, eye, action (LIDS), travel
 
     def drive(self, activation: Floats64) -> Floats64:
-        """How far each eye's upper lid is closed, lower raised, upper raised, shape (eyes, 3)."""
+        """How far each eye's upper lid is closed, its lower and its upper lid raised, (eyes, 3)."""
         drive = np.zeros((len(self.vertices.centres), 3))
         for control, eye, action, travel in self.muscles:
             drive[eye, action] += travel * max(activation[control], 0.0)
@@ -64,7 +64,7 @@ def place_lids(
     eyeballs: tuple[Eyeball, ...],
     names: list[str],
 ) -> Lids:
-    """Find the lids of each eye and how far each of their vertices takes part.
+    """Find the lids of each eye, and the share of each vertex in their motion.
 
     names: of all controls in their order, to find the lid muscles' activations.
     """

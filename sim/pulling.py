@@ -61,7 +61,7 @@ class Pull:
         candidates: Sequence[Names],
         sight: npt.ArrayLike = (0.0, 0.0, 1.0),
     ) -> None:
-        """Begin at a face as it is, which stays as it is.
+        """Begin at the present state of a face, which does not change.
 
         vertices, firmness: of the finger, shapes (n,), as for `Touch.drag`. candidates:
         controls that may be used, in one tuple those that go together, as both sides of a muscle
@@ -119,7 +119,7 @@ class Pull:
 
     @property
     def changes(self) -> dict[Names, float]:
-        """The new values of controls that are not where they were, greatest change first."""
+        """The new values of the controls that changed, greatest change first."""
         moved = np.abs(self._value - self._start) * self.mends
         changed = np.flatnonzero(moved > self.ROUND_TOLERANCE)
         order = sorted(changed, key=lambda n: -round(float(moved[n]), 3))
@@ -127,7 +127,7 @@ class Pull:
 
     @property
     def short(self) -> float:
-        """How far the skin in the finger's middle stays from its target, as seen [head units]."""
+        """The distance left between the finger's middle and its target, as seen [head units]."""
         there = self._base.positions if self.mends else self._from
         return float(np.linalg.norm(self._left(self.targets, there)))
 
@@ -316,7 +316,7 @@ class _Lasso(NamedTuple):
         return total - self.changed
 
     def cost(self, usable: Flags) -> float:
-        """The least value of the sum with these controls alone, but for a constant."""
+        """The least value of the sum with these controls alone, up to a constant."""
         x = self.least(usable)
         spent = self.price @ np.abs(self.changed + x)
         return float(x @ self.gram @ x - 2.0 * self.right @ x + 2.0 * spent)

@@ -36,7 +36,7 @@ class State(NamedTuple):
 
     @classmethod
     def at_rest(cls, surface: SkinSurface, line_count: int = 0) -> State:
-        """A face that lies still, and whose muscles have this many lines."""
+        """A face at rest, whose muscles have this many lines."""
         scalar = surface.vertex_count
         vector = (surface.vertex_count, 3)
         return cls(

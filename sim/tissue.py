@@ -48,7 +48,7 @@ class TissueSprings(NamedTuple):
 
     @classmethod
     def under(cls, surface: SkinSurface, tissue: Tissue, septum: Floats64) -> TissueSprings:
-        """Uniform tissue under a whole surface, but for the nose.
+        """Uniform tissue under a whole surface, except the nose.
 
         septum: from the base of the nose to its tip, points (K, 3) [mm]; none without landmarks.
         There skin lies on cartilage that stands on the bone, and lifts little with the lip.

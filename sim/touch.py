@@ -1,4 +1,4 @@
-"""Hands on the skin: they strike it, and draw at it by springs."""
+"""Touches of the skin: blows, and pulls by springs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .state import State
 
 
 class Touch:
-    """Hands at the skin of one simulation."""
+    """Blows and pulls on the skin of one simulation."""
 
     def __init__(self, model: FaceModel, state: State, positions: Floats64, bones: Bones) -> None:
         """positions: of the skin now [head units], shape (V, 3)."""
@@ -34,7 +34,7 @@ class Touch:
     def drag(
         self, vertices: npt.ArrayLike, targets: npt.ArrayLike, firmness: npt.ArrayLike
     ) -> None:
-        """Hang vertices on springs until the next `drag` or `end_drag`: a finger draws at the skin.
+        """Hang vertices on springs until the next `drag` or `end_drag`: a finger pulls the skin.
 
         vertices: their numbers, shape (n,), none twice. targets: where each is drawn to [head
         units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
@@ -66,7 +66,7 @@ class Touch:
 
     @property
     def is_held(self) -> bool:
-        """Whether a finger has hold of the skin."""
+        """Whether a finger holds the skin."""
         return len(self._vertices) > 0
 
     def add_to(self, state: State) -> None:

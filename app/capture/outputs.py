@@ -142,7 +142,7 @@ class Encoder:
         self._frames = self._process.stdin
 
     def add(self, image: Unsigned8) -> None:
-        """Hand over a frame, (H, W, 3); raises UserError if ffmpeg has given up."""
+        """Pass a frame, (H, W, 3), to ffmpeg; raises UserError if ffmpeg has ended."""
         left = np.ascontiguousarray(image).data.cast("B")
         try:
             while left:
@@ -192,7 +192,7 @@ def film(
     frames_per_second: float,
     soundtrack: Soundtrack | None = None,
 ) -> Iterator[FrameSink]:
-    """A film through ffmpeg, as its name ends, with sound where there is some and it may be heard.
+    """A film through ffmpeg, in the format of its suffix, with the sound if the format allows one.
 
     size: of the frames; H.264 leaves out the last row or column of an odd one. Raises UserError
     where no such film can be written.
@@ -208,7 +208,7 @@ def film(
         encoder = Encoder(target, part, size, frames_per_second, soundtrack)
 
         def add(image: Image, _: Labelled | None = None) -> None:
-            """Hand a frame over; nothing lies beside a film."""
+            """Pass a frame to ffmpeg; a film has no files beside it."""
             encoder.add(image)
 
         with cleaned_up_if_stopped(encoder.stop):

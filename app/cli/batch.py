@@ -55,8 +55,8 @@ def batch(
     """Do a list of commands side by side.
 
     LIST is a text file with a command in each line, as typed after risorius. Lines may hold
-    capture, export and convert; those that begin with # hold nothing. Relative paths begin
-    where you stand. All lines are checked before the first is begun.
+    capture, export and convert; lines that begin with # are ignored. Relative paths begin in the
+    current folder. All lines are checked before the first is begun.
     """
     from tqdm import tqdm
 
@@ -92,7 +92,7 @@ def batch(
 
 
 def jobs_in(listing: Path, logs: Path, *, resume: bool) -> list[Job]:
-    """The jobs of a list; where lines are wrong, reports them and ends the program."""
+    """The jobs of a list; wrong lines are reported, and end the program."""
     jobs = []
     wrong = []
     for number, text in lines_of(listing):

@@ -101,7 +101,7 @@ class Filming:
         return begin, end
 
     def view(self) -> tuple[str | None, bool]:
-        """The camera without the word turntable, and whether that is there."""
+        """The camera without the word turntable, and whether the word is there."""
         if self.camera is None:
             return None, False
         words = self.camera.split(",")
@@ -219,8 +219,8 @@ def capture(
 def demo() -> None:
     """Film the coarse head while it speaks: as it is, by the paper's rule, and smooth.
 
-    Writes out/demo.mp4, and the expressions of the same head to out/demo.png. Wires show where
-    muscles have edges split.
+    Writes out/demo.mp4, and the expressions of the same head to out/demo.png. Wires show the edges
+    that are split because muscles bend them.
     """
     from risorius import render
 

@@ -127,8 +127,8 @@ def view(
 def send(recording: Path | None, port: int | None, address: str, loop: bool) -> None:
     """Send RECORDING as Live Link Face would.
 
-    `risorius view --live livelink` follows it. Without RECORDING a short one is sent that comes
-    along.
+    `risorius view --live livelink` follows it. Without RECORDING it sends a short one that is
+    included.
     """
     from ..live.sender import Sender
     from ..recordings.reading import read_take
@@ -216,7 +216,7 @@ def open_window(
     from ..viewer.window.splash_screen import SplashScreen
 
     def load() -> tuple[Script, FittedHead | None, str]:
-        """All that takes long."""
+        """Load everything that takes long."""
         script = performance or new_script()
         head, complaint = _fitted_head(drawing, may_be_marked=mesh is not None)
         import risorius.app.viewer.window.window  # noqa: F401
@@ -293,7 +293,7 @@ def controls(scene: str) -> None:
 @click.option("--offscreen", is_flag=True, help="Only ask for offscreen OpenGL.")
 @click.option("--quiet", is_flag=True, help="Print nothing; only set the exit code.")
 def doctor(offscreen: bool, quiet: bool) -> None:
-    """Report which commands work here, and the cure for those that do not.
+    """Report which commands work here, and the remedy for those that do not.
 
     Exit code 0: everything is there. 1: some commands work. 2: nothing can be drawn.
     """

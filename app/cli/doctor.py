@@ -1,4 +1,4 @@
-"""`risorius doctor`: the commands that work on this machine, and the cure for the others."""
+"""`risorius doctor`: the commands that work on this machine, and the remedy for the others."""
 
 from __future__ import annotations
 

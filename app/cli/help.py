@@ -1,4 +1,4 @@
-"""Help in groups under headings, and where options went that commands had before."""
+"""Help in groups under headings, and the replacements of options that were removed."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ MOVED: Mapping[str, str] = {
 
 
 class GroupedCommand(click.Command):
-    """A command whose help lists options under headings, and that knows where old ones went."""
+    """A command with options under headings; its errors name the replacements of old options."""
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options, group by group."""

@@ -73,8 +73,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     """Make an avatar of HEAD: its own vertices, with named shapes.
 
     HEAD is a file, or the number or name of a person. Without it the built-in head is taken. Lines
-    on the error stream report what each piece of the file was taken for, and how far sums of shapes
-    are from the simulation.
+    on the error stream report the role of each piece of the file, and the errors of sums of shapes.
     """
     from ..rig.avatar import RigRequest, avatar_of
     from ..rig.writing import write_avatar
@@ -98,7 +97,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     )
 
     def say(line: str) -> None:
-        """Print a line on the head, unless nobody wants it."""
+        """Print a line on the head, unless --quiet is set."""
         if not rigging.quiet:
             click.echo(in_one_line(line), err=True)
 

@@ -50,7 +50,7 @@ def twin_of(name: str) -> str:
 
 
 def mirrored(values: Mapping[str, float]) -> dict[str, float]:
-    """Left and right change places; values of the middle change their sign."""
+    """Values with left and right exchanged; those of the middle change their sign."""
     result = dict(values)
     for name, value in values.items():
         if twin_of(name) in values:
@@ -59,7 +59,7 @@ def mirrored(values: Mapping[str, float]) -> dict[str, float]:
 
 
 def copied(values: Mapping[str, float], source: str) -> dict[str, float]:
-    """One side ("left" or "right") becomes the other, too; the middle and the gaze stay."""
+    """Values in which both sides are like one ("left" or "right"); the middle and the gaze stay."""
     result = dict(values)
     sideways = ("gaze_horizontal", "eye_yaw", "eyeLookIn", "eyeLookOut")
     for name, value in values.items():
@@ -87,7 +87,7 @@ def sentence(text: str) -> str:
 
 
 def called(name: str, *twin: str) -> str:
-    """A control by its plain name and its side, or with its twin both sides of it."""
+    """The plain name of a control with its side, or with both sides for a control and its twin."""
     plain = title_of(name)[1] or readable(parted(name)[0])
     side = "both sides" if twin else parted(name)[1].strip("_")
     return f"{plain}, {side}" if side else plain

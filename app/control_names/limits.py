@@ -64,7 +64,7 @@ class ControlValues(Mapping[str, float]):
     """A value for each control of a scene, within its limits: by name, or as `numbers` (N,)."""
 
     def __init__(self, limits: Limits, numbers: Floats64) -> None:
-        """Made by `Limits`, or of other values so that they stay within; nobody writes them."""
+        """Made by `Limits`, or from other values within limits; never written."""
         numbers.flags.writeable = False
         self.limits = limits
         self.numbers = numbers

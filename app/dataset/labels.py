@@ -48,7 +48,7 @@ def labels_of_face(
 def action_units(scene: FaceScene) -> dict[str, float]:
     """All action units of FACS that the face has, 0..1: AU12_left, AU12_right, and AU12.
 
-    Units that were set count as they were set. Other controls of muscles (visemes, head and gaze)
+    Units that were set have the set value. Other controls of muscles (visemes, head and gaze)
     count as far as units can express them. A unit without side is the stronger of its sides, as
     FACS scores it without regard to sides.
     """

@@ -212,13 +212,13 @@ class SampleTable(Record):
         )
 
     def goes_with(self, unit: str, others: Container[str]) -> bool:
-        """Whether a unit may be there beside those that are."""
+        """Whether a unit may be added to others."""
         excluded = (pair - {unit} for pair in self.excluded.pairs if unit in pair)
         return not any(other in others for pair in excluded for other in pair)
 
 
 def table_text() -> str:
-    """The table that comes along, to be copied and edited."""
+    """The included table, to be copied and edited."""
     return (files(__package__) / "aus.toml").read_text("utf-8")
 
 

@@ -32,7 +32,7 @@ CHANNELS = (*ARKIT, *HEAD_ANGLES, *EYE_ANGLES, *VISEMES)  # that may come
 
 
 class State(enum.Enum):
-    """What can be said of who sends."""
+    """The state of the sender."""
 
     WAITING = "waiting"  # nothing has come yet
     RECEIVING = "receiving"
@@ -89,7 +89,7 @@ class LiveFace(Receiver):
 
     @property
     def state(self) -> State:
-        """What can be said of who sends."""
+        """The state of the sender."""
         if self._last is None:
             return State.WAITING
         if self.silence > LOST_AFTER:
@@ -144,7 +144,7 @@ class LiveFace(Receiver):
         return controls_of(self.calibration.apply(self.channels))
 
     def calibrate(self) -> None:
-        """The face of the next half second is neutral."""
+        """Take the face of the next half second as neutral."""
         self._neutral, self._neutral_until = [], self._clock() + CALIBRATING
 
     def _end_calibration(self) -> None:

@@ -68,7 +68,7 @@ class Listening:
 
     @property
     def protocol(self) -> Protocol:
-        """What comes there."""
+        """The protocol of the packets."""
         return PROTOCOLS[self.kind]
 
     @property
@@ -93,7 +93,7 @@ def resolved(address: str) -> str:
 
 
 def own_address() -> str:
-    """What others in the network call this computer; "" without a network. Nothing is sent."""
+    """The address of this computer in the network; "" without a network. Nothing is sent."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
         try:
             documentation_address = "192.0.2.1"  # nobody's: kept free for documents (RFC 5737)

@@ -62,7 +62,7 @@ class Receiver:
         return int(self._socket.getsockname()[1])
 
     def take(self) -> list[tuple[float, LiveFrame]]:
-        """What came since the last call, oldest first, each with its time [s of the clock]."""
+        """The frames since the last call, oldest first, each with its time [s of the clock]."""
         self.has_frame = False
         return [self._waiting.popleft() for _ in range(len(self._waiting))]
 

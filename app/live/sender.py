@@ -52,7 +52,7 @@ class Sender:
         clock: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        """Send what of a take is carried in its own time, once or for ever; UserError for none."""
+        """Send a take's channels that packets hold, in time, once or forever; UserError if none."""
         channels = {name: values for name, values in take.channels.items() if name in CARRIED}
         if not channels:
             raise UserError(

@@ -1,6 +1,6 @@
 """From activations of muscles to the controls of a layer: action units, ARKit's shapes.
 
-`solved(scene, ACTION_UNITS, activations)` is the way back through the tables of sim/layers.py. A
+`solved(scene, ACTION_UNITS, activations)` is the inverse of the tables of sim/layers.py. A
 layer's controls add up, so it is a bounded least squares problem in each frame:
 
     minimise |shares x - activations|^2,    0 <= x <= the controls' limits

@@ -1,4 +1,4 @@
-"""What other programs recorded of a face: files and packets of their kinds, as one `Take`.
+"""Recordings of a face by other programs: files and packets of their kinds, as one `Take`.
 
 `read_take` reads one, a `Calibration` takes the face at rest away, and `controls_of` says which
 controls of a face its channels move.

@@ -116,7 +116,7 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
 
 
 def neutral_now(channels: Mapping[str, float]) -> dict[str, float]:
-    """The neutral face of somebody who holds it in this frame."""
+    """The neutral face, from a frame in which the person holds it."""
     return {name: value for name, value in channels.items() if name not in VISEMES}
 
 
@@ -140,7 +140,7 @@ def _seconds_in(method: str) -> float:
 def gains_of(
     settings: Iterable[str], channels: Iterable[str], *, kind: str = ""
 ) -> tuple[dict[str, float], float]:
-    """What `--gain NAME=x ...` makes of channels: the gain of each named one, and of all others.
+    """The gains of `--gain NAME=x ...`: of each named channel, and of all others.
 
     NAME is a channel, a pattern (mouth*, *Left), or all; later ones win. kind: of the recording,
     which has default gains. Raises UserError for a name that fits no channel.

@@ -1,8 +1,7 @@
 """A take -> a script that plays it: calibrated, mapped, read ahead, thinned.
 
-Muscles, eyes and head follow their controls late, each in its own time. A script that is made of a
-recording therefore asks for everything earlier by just that, so that the face is on time, as is its
-sound.
+Muscles, eyes and head follow their controls late, each in its own time. So a script that is made of
+a recording sets everything earlier by this delay: face and sound are then on time.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from .take import Take
 
 
 def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, Report]:
-    """The script that plays a take on a face with these controls, and what there is to say.
+    """The script that plays a take on a face with these controls, and its report.
 
     Raises UserError for a neutral or a gain that cannot be.
     """
@@ -69,7 +68,7 @@ def _script(take: Take, curves: Mapping[str, Floats64], lead: float) -> Script:
 
 
 def lead_of(control: str, lead: float) -> float:
-    """How much earlier a control is asked for [s], if muscles are by `lead`."""
+    """How much earlier a control is set [s], if muscles are earlier by `lead`."""
     # How late eyes and head follow [s], where muscles and skin do by LEAD; all measured at 60 Hz.
     lateness = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.063}
     late = next((each for start, each in lateness.items() if control.startswith(start)), LEAD)

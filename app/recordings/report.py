@@ -61,7 +61,7 @@ class Report:
 
 
 def report_of(take: Take, calibration: Calibration) -> Report:
-    """What there is to say of a take."""
+    """The report on a take."""
     channels = take.channels
     still = _still(take)
     shapes = [name for name in ARKIT if name in channels]

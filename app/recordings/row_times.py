@@ -17,9 +17,9 @@ def frame_times(
     *,
     has_stamps: bool = False,
 ) -> Floats64:
-    """Times of frames by their numbers, or one row after the other where they have none.
+    """Times of frames by their numbers; if they have none, each row is the next frame.
 
-    has_stamps: whether there are time stamps that are of no use, as an earlier note says.
+    has_stamps: whether there are unusable time stamps, which an earlier note reports.
     """
     if rate is None:
         default_rate = 30.0  # of most cameras

@@ -340,7 +340,7 @@ def _rows_in(
 
 
 def one_face(table: Table, request: TakeRequest) -> Table:
-    """The rows of the face that is asked for, or of the one that most rows show.
+    """The rows of the named face, or of the face that most rows show.
 
     UserError for a face that is not there. Faces are called as the file calls them.
     """

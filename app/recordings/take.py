@@ -51,5 +51,5 @@ class Take:
 
     @property
     def duration(self) -> float:
-        """Of the whole take [s]."""
+        """The duration of the take [s]."""
         return float(self.times[-1])

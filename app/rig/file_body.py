@@ -172,7 +172,7 @@ class _Bag:
 
 
 def merged_vertices(mesh: Mesh, head: FittedHead) -> Integers:
-    """For each vertex of a file the one that stands for all in its place, shape (V,)."""
+    """For each vertex of a file the first vertex at the same place, shape (V,)."""
     same = np.arange(len(mesh.vertices)) if mesh.same is None else np.array(mesh.same, np.int64)
     landmarks = head.file_vertices[head.landmarks]
     joined, _ = with_seams_joined(mesh.vertices, mesh.faces, landmarks)

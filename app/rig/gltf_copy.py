@@ -1,8 +1,8 @@
 """A glTF file as it was, with named shapes appended to its meshes.
 
 Nodes, skins, materials, other meshes, animations, extras and extensions stay as they are. Data that
-lie in other files or in text are taken into the one binary chunk. Where a file weighs shapes of its
-own, ours follow with weight 0.
+lie in other files or in text are taken into the one binary chunk. If a file has weights for its own
+shapes, ours are added with weight 0.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.7.2.2 (morph targets) and 4 (GLB).
 """

@@ -1,8 +1,7 @@
 """How far sums of shapes are from the simulation, and pairs that are worth a shape of their own.
 
-Programs add shapes up. Skin does not: an open mouth puckers less, a lid that is shut already is not
-shut again. A corrective shape of two makes that good: it is added times the product of their
-weights.
+Programs add shapes up. Skin does not: an open mouth puckers less, and a shut lid is not shut again.
+A corrective shape of two corrects this: it is added times the product of their weights.
 
 Source: for correctives, Lewis, Anjyo, Rhee, Zhang, Pighin, Deng 2014, "Practice and theory of
 blendshape facial models", section 4 (combination shapes).
@@ -83,7 +82,7 @@ class Sums:
         return [pair for pair in combinations(names, 2) if not _are_opposite(*pair)]
 
     def difference(self, names: Sequence[str]) -> Difference:
-        """Of a sum of some shapes at 1."""
+        """The difference of a sum of some shapes at 1."""
         together = rest_in(self._scene, dict.fromkeys(names, 1.0)).skin
         way = together - self._scene.rest_positions
         return self._difference(tuple(names), self.sum(dict.fromkeys(names, 1.0)), way)
@@ -151,7 +150,7 @@ def corrective_poses(
 
 
 def corrected(shaped: Shaped, pairs: Sequence[tuple[str, str]], names: Sequence[str]) -> Shaped:
-    """A body whose last shapes, which are of pairs, are less the sum of the two of each."""
+    """A body whose last shapes, those of pairs, are the differences from sums of two shapes."""
     if not len(shaped.targets):
         return shaped
     targets = shaped.targets.copy()

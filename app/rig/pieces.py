@@ -43,7 +43,7 @@ NOSE_BRIDGE = 27  # landmark
 
 @dataclass(frozen=True)
 class FilePiece:
-    """Vertices of a file that hang together, and their role.
+    """Connected vertices of a file, and their role.
 
     number: by which an option names it. vertices: their numbers, shape (n,). role: of ROLES.
     middle: of its box [mm], shape (3,). name: of its object or group in the file, or empty.

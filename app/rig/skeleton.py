@@ -76,7 +76,7 @@ class Skeleton:
         return np.zeros(3) if bone is None else self._pivots.get(bone, np.zeros(3))
 
     def hang(self, node: int, bone: str) -> None:
-        """Let a node hang on a bone."""
+        """Attach a node to a bone."""
         self._nodes[bone].setdefault("children", []).append(node)
 
     def note(self, bone: str, extras: dict[str, Any]) -> None:

@@ -1,4 +1,4 @@
-"""What can be seen: a triangle mesh whose vertices move, images over it, and parts beside it.
+"""A drawable: a triangle mesh whose vertices move, images over it, and parts beside it.
 
 Drawing needs no more. What moves the mesh, and by which controls, is a scene's (scene.py).
 """

@@ -42,6 +42,6 @@ class Scene(Drawable):
     def moved_by(self, name: str) -> Mapping[str, float]:
         """The lowest controls that a control moves: itself, or what a layer's control adds to.
 
-        And how far each of them goes where the control is at its most, without a sign.
+        With each, the amount by which it changes when the control is at its most, without a sign.
         """
         return {name: 1.0}

@@ -136,7 +136,7 @@ class Channel:
         return float(self.values.min()), float(self.values.max())
 
     def raised(self, chosen: Flags, amount: float, low: float, high: float) -> Channel:
-        """The channel with the chosen keys higher, as far as the limits let them; shape (K,)."""
+        """The channel with the values of chosen keys raised, within the limits; shape (K,)."""
         higher = within(self.values, amount, low, high)
         return Channel(self.times, np.where(chosen, higher, self.values), self.easings)
 
@@ -185,7 +185,7 @@ class Pose(Record):
     name: str | None = None  # one that has a name gets a picture on a contact sheet
 
     def raised(self, names: Iterable[str], amount: float, limits: Limits) -> Pose:
-        """The pose with some values higher, as far as their limits let them."""
+        """The pose with some values raised, within their limits."""
         higher = {
             name: float(within(self.values.get(name, 0.0), amount, *limits[name])) for name in names
         }
@@ -322,7 +322,7 @@ def within(values: npt.ArrayLike, amount: float, low: float, high: float) -> Flo
 
 
 def rounded(number: float) -> float:
-    """A time or a value as programs write it into scripts: no digits that nobody meant."""
+    """A time or a value rounded for a script: without meaningless digits."""
     return round(float(number), DECIMALS)
 
 

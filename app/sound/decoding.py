@@ -40,7 +40,7 @@ class Sound:
 
     @property
     def duration(self) -> float:
-        """Of all of it [s]."""
+        """The duration of the sound [s]."""
         return len(self.samples) / self.rate
 
 
@@ -111,7 +111,7 @@ def sound_input(file: Path, seconds: float, begin: float = 0.0) -> tuple[str, ..
 
 
 def load_sound(file: Path) -> Sound:
-    """Read a sound file, or the sound of a film; UserError says why there is none in it."""
+    """Read a sound file, or the sound of a film; raises UserError, with the reason, for none."""
     read_bytes(file, what="sound file", longest=2**40, first=0)
     name = ffmpeg()
     longest = 3600.0  # [s]; all of it is held in memory, 690 MB for so long in stereo

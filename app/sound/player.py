@@ -77,7 +77,7 @@ class Player:
 
     @property
     def is_stuck(self) -> bool:
-        """Whether the device asks for nothing any more, as one that was unplugged."""
+        """Whether the device requests no more samples, as an unplugged one."""
         part = self._part
         when = self._asked[0]
         # A device that asks for nothing for so long [s] is taken for lost.

@@ -1,4 +1,4 @@
-"""Where the 68 landmarks of a head may lie, from the few that somebody has placed.
+"""Where the 68 landmarks of a head may lie, from the few that a user has placed.
 
     first points  ->  similarity to the built-in head  ->  the likeliest person
                   ->  its face laid on the mesh, stiff at first  ->  its landmarks on the mesh
@@ -107,7 +107,7 @@ def _laid(known: Known) -> tuple[Similarity, Floats64]:
 def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integers32:
     """The triangles of the skin around some points of a face, facing outward; all in face space.
 
-    The skin is what most of the points lie on: eyeballs, teeth and hair are left away.
+    The skin is the piece that most of the points lie on: eyeballs, teeth and hair are left out.
     """
     middles = vertices[faces].mean(axis=1)
     under = scipy.spatial.cKDTree(middles).query(given)[1]
@@ -141,7 +141,7 @@ def _feet(
 
 
 def centred(vertices: Floats64, radius: float) -> Similarity:
-    """What brings a mesh (V, 3) into the middle, `radius` large, as its file has it."""
+    """The similarity that moves a mesh (V, 3) to the origin and scales it to `radius`, unturned."""
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     scale = radius / max(float(np.linalg.norm(vertices - middle, axis=1).max()), 1e-12)
     return Similarity(scale, np.eye(3), -scale * middle)

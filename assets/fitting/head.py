@@ -68,10 +68,10 @@ from .warp import Similarity, ThinPlateSpline, nearest_on
 
 @dataclass(frozen=True)
 class FittedHead(simplifying.SimulatedHead):
-    """A head that somebody brought, with all that `sim.create` and a renderer read.
+    """A head of the user's, with all that `sim.create` and a renderer read.
 
-    The attributes are those of `Head`, in its millimetres and axes. What hangs together with no
-    landmark (eyeballs, teeth of the mesh's own) was left away.
+    The attributes are those of `Head`, in its millimetres and axes. Pieces without a landmark (the
+    mesh's own eyeballs and teeth) were left out.
 
     to_millimetres: takes the file's coordinates to these.
     file_vertices: numbers in the file of the vertices, or of the nearest, shape (V,), int32.
@@ -97,7 +97,7 @@ class FittedHead(simplifying.SimulatedHead):
     lip_cut: LipCut | None = field(default=None, kw_only=True)
 
     def fade(self) -> tuple[Plane, Plane] | None:
-        """How it ends, see `neck_fade`; None: the mesh has no edge at the neck."""
+        """How the head ends, see `neck_fade`; None: the mesh has no edge at the neck."""
         return neck_fade(self.vertices, self.faces, self.landmarks)
 
 

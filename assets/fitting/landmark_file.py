@@ -105,7 +105,7 @@ class UnfinishedError(AssetError):
 
 
 class MisfitError(UnfinishedError):
-    """Landmarks that are known by the topology, but do not fit the head: marks may."""
+    """Landmarks that are known by the topology, but do not fit the head; marked ones may."""
 
 
 def _document(path: Path) -> Any:
@@ -266,7 +266,7 @@ def _is_disordered(group: Group, points: Floats64, template: Floats64) -> bool:
 
 
 def check_lips(skin: SkinPiece) -> None:
-    """Raise AssetError where the inner lips' landmarks lie on the other lip's skin each."""
+    """Raise AssetError if the landmarks of each inner lip lie on the skin of the other lip."""
     inner = skin.landmarks[np.ravel(INNER_LIPS)]
     ways = path_lengths(skin.vertices, skin.faces, inner)
     to_upper, to_lower = (ways[:, skin.landmarks[list(lip)]].min(axis=1) for lip in OUTER_LIPS)

@@ -69,7 +69,7 @@ class LipCut:
 
     @property
     def in_words(self) -> str:
-        """A line for the owner of the mesh."""
+        """The line that reports the cut to the user."""
         return f"its lips were sealed: they are cut apart, {len(self.sources)} vertices are doubled"
 
     def applied(self, mesh: Mesh) -> Mesh:
@@ -99,7 +99,7 @@ class LipCut:
         )
 
     def is_below(self, triangles: Integers) -> npt.NDArray[np.bool_]:
-        """Which of some triangles (F, 3), with the numbers of the file, take new vertices."""
+        """Whether each of some triangles (F, 3), with the file's numbers, takes new vertices."""
         known = set(map(tuple, self.below.tolist()))
         touched = np.flatnonzero(np.isin(triangles, self.sources).any(axis=1))
         found = np.zeros(len(triangles), np.bool_)

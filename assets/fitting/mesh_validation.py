@@ -1,4 +1,4 @@
-"""Can this mesh be a face? The questions whose answer may be no, each with its one line.
+"""Checks whether a mesh can be a face, each with an error of one line.
 
 A mesh must be one manifold surface, oriented outward, with a mouth and two eyes that are open or at
 least slit: where the lips are welded no muscle can part them.
@@ -47,7 +47,7 @@ class SkinPiece:
 
 
 def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> SkinPiece:
-    """Leave away what hangs together with no landmark: eyeballs, teeth, vertices of no triangle.
+    """Leave out the pieces without a landmark: eyeballs, teeth, vertices of no triangle.
 
     Triangles that name a vertex twice, which have no area, go as well.
     Raises AssetError if landmarks lie on two pieces or on none, or there are too many triangles,

@@ -119,7 +119,7 @@ def is_behind_others(feet: Floats64, vertices: Floats64, links: Integers64) -> F
 def plain_skin(known: Head) -> tuple[Image, Image]:
     """The built-in picture with skin over its ears and nostrils, and light without their shade.
 
-    Another head has them elsewhere, as form, which the light shows. The pictures ship as data,
+    Another head has them elsewhere, as form, and light shows them. The pictures ship as data,
     as `plain_picture` and `own_light` of revision c11b6d62 drew it.
     """
     drawn = read_arrays(known.beside("_plain.npz"))
@@ -232,7 +232,7 @@ def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Imag
     """The picture of some triangles and where they lie in it; None where they have none.
 
     Several pictures become one, side by side; triangles without one take the others' mean colour.
-    turned: whether the corners of these triangles are to be in the other order.
+    turned: whether the corners of these triangles are wanted in the other order.
     """
     import PIL.Image  # which to load a head takes no time for
 

@@ -168,7 +168,7 @@ def number_centres(
 
 @njit
 def beyond(own: np.float32, other: np.float32, third: np.float32) -> tuple[np.float32, np.float32]:
-    """How far an edge has grown beyond both others; and beyond the least, as one of a pair."""
+    """How far the weight of an edge is above both others; and, as one of two, above the least."""
     rival = max(other, third)
     return max(own - rival, ZERO), min(own, rival) - min(own, other, third)
 
@@ -207,7 +207,7 @@ def displaced(
     middle: np.uint32,
     column: int,
 ) -> Vector:
-    """A point that goes with a share of how far the row `middle` stands out between two rows."""
+    """A point moved by a share of the distance from the mean of two rows to the row `middle`."""
     straight = plus(row_of(rows, ends[0], column), row_of(rows, ends[1], column))
     out = less(row_of(rows, middle, column), HALF, straight)
     return plus(centre, times(share_of_edge, out))

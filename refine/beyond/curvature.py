@@ -49,7 +49,7 @@ class RestCurvature(Measuring):
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
-        """Decide on all edges."""
+        """Decide how often each edge is split."""
         super().bind(connectivity, rest_positions, rest_normals)
         edges = connectivity.edges
         sectors = sectors_of(connectivity)  # each side of a crease is curved by itself

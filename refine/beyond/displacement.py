@@ -106,7 +106,7 @@ def weigh_borders(sizes: Floats32, borders: Unsigned32) -> None:
 
 @njit
 def advance_metric(metric: Floats32, soon: np.float32, ramp: np.float32) -> None:
-    """Stretch the metrics, shape (E,), so that `soon` becomes `ramp`, where points have grown."""
+    """Scale the metrics, shape (E,), so that `soon` becomes `ramp`, at which points have grown."""
     if soon >= ramp:
         return
     for e in range(metric.shape[0]):

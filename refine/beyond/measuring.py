@@ -1,12 +1,12 @@
-r"""What criteria beside the paper's share: they measure, and compare with two thresholds.
+r"""The base of all criteria beside the paper's: they measure, and compare with two thresholds.
 
 Kähler, Haber, Seidel 2003, section 4.1 ("More complex criteria can be used as well, such as
 measuring discrete curvature on the mesh [19]") and section 6 ("refining the mesh along silhouette
 edges. To achieve this, appropriate splitting criteria have to be developed").
 
-Each has two thresholds, above which an edge is split once and twice, and says how much an edge
-needs a split, so that all of them can be blended (blending.py) and any of them combined.
-`silhouette` is here, how far the surface turns along an edge that is seen edge-on:
+Each has two thresholds, above which an edge is split once and twice. Its measure is continuous, so
+all criteria can be blended (blending.py) and combined. The criterion `silhouette` is defined here.
+It measures how far the surface turns along an edge near the outline:
 
     (1 - n_a . n_b) x facing      facing is 1 where the line of sight grazes the edge, 0 at
                                   SILHOUETTE_BAND; the turn counts up to where points have grown
@@ -62,19 +62,19 @@ class Maximum(Criterion):
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
-        """Bind them all."""
+        """Bind all criteria."""
         for part in self.parts:
             part.bind(connectivity, rest_positions, rest_normals)
         self._splits = np.zeros(len(connectivity.edges), dtype=np.uint8)
         self._metric = np.zeros(len(connectivity.edges), dtype=np.float32)
 
     def set_scheme(self, scheme: Scheme) -> None:
-        """Show the scheme to them all."""
+        """Pass the scheme to all criteria."""
         for part in self.parts:
             part.set_scheme(scheme)
 
     def set_view(self, view: View | None) -> None:
-        """Show the view to them all."""
+        """Pass the view to all criteria."""
         for part in self.parts:
             part.set_view(view)
 
@@ -96,8 +96,8 @@ class Maximum(Criterion):
 class Silhouette(Measuring):
     """Edges along which the surface turns away from the eye.
 
-    An edge that turns by more than it takes to be grown twice on the outline itself counts no more:
-    on coarse meshes its points would pop out while the eye has hardly moved.
+    The turn of an edge is limited to the one that splits it twice on the outline itself: else, on
+    coarse meshes, points would pop out after a small motion of the eye.
     """
 
     def __init__(self, once: Once = 0.005, twice: Twice = 0.03, levels: Levels = 2) -> None:

@@ -108,7 +108,7 @@ def scheme_of(chosen: str | Scheme) -> Scheme:
 
 
 def with_normals(chosen: Scheme, normals: str | None) -> Scheme:
-    """Return the scheme, showing the normals of its own surface if they are asked for."""
+    """Return the scheme; if `normals` wants it, with the normals of its own surface."""
     if normals not in (None, "linear", "refined"):
         raise ValueError(f'normals must be "linear" or "refined", got {normals!r}')
     is_refined = chosen.interpolates if normals is None else normals == "refined"

@@ -1,7 +1,8 @@
 """The base of all built-in refiners: the mesh, lent arrays and positions, checked at one place.
 
 A refiner derives from `BaseRefiner`, says how large its output can get, and writes one method,
-`fill`. One of somebody else may do so, too, or follow the protocol (plugin.py) by itself.
+`fill`. A refiner of another package may derive from it, too, or follow the protocol (plugin.py)
+alone.
 
 Source: the plug-in of Kähler, Haber, Seidel 2003, Fig. 1.
 """
@@ -94,7 +95,7 @@ class BaseRefiner(Refiner):
         """
 
     def reserve(self, stream: Stream, vertex_count: int, triangle_count: int) -> StreamArrays:
-        """Let our own stream grow to this size; return the arrays of a stream, checked."""
+        """Enlarge the refiner's own stream to this size; return the checked arrays of a stream."""
         own = self._own_stream
         if stream is own:
             own.reserve(vertex_count, triangle_count)

@@ -183,7 +183,7 @@ class Refiner(Protocol):
         """Turn deformed `positions`, shape (V, 3), any float type, into triangles; never writes it.
 
         The result views the arrays of `out`, or of the refiner's own stream without it. `view`:
-        for criteria that ask where the eye is. `values`: attributes of this frame by name, in place
+        for criteria that depend on the eye. `values`: attributes of this frame by name, in place
         of those that were bound, of the same shape each, (V, k) for values of vertices. One frame
         at a time: threads take a refiner each. A process must not be forked while one of its
         threads compiles: numba's lock stays shut in the child. (After a first frame before the fork

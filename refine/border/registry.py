@@ -22,7 +22,7 @@ Product = TypeVar("Product")
 
 
 class Registry(Generic[Product]):
-    """Factories of things of one kind, by name."""
+    """Factories of one kind of object, by name."""
 
     def __init__(self, kind: str, group: str) -> None:
         """`kind`: the product of the factories, for errors; `group`: of entry points."""
@@ -50,7 +50,7 @@ class Registry(Generic[Product]):
         return tuple(dict.fromkeys([*self._factories, *self.installed()]))
 
     def installed(self) -> "Mapping[str, EntryPoint]":
-        """What installed packages announce for this kind, by name; nothing is imported."""
+        """Entry points of this kind in installed packages, by name; nothing is imported."""
         return entry_points_of(self._group)
 
     def find(self, name: str) -> Callable[..., Product]:
@@ -78,11 +78,11 @@ class Registry(Generic[Product]):
         return factory
 
     def options(self, name: str) -> tuple[Option, ...]:
-        """The options of what a name stands for, as its factory declares them."""
+        """The options of the factory with this name, as it declares them."""
         return tuple(options_of(signature_of(self.find(name))))
 
     def make(self, name: str, **options: Any) -> Product:
-        """Make what a name stands for; raises ValueError for options that it does not have."""
+        """Call the factory with this name; raises ValueError for options that it does not have."""
         factory = self.find(name)
         _check_options(self.kind, name, factory, options)
         return factory(**options)

@@ -80,15 +80,15 @@ class Criterion:
     """What `mark` follows from, shape (E,)."""
 
     def set_scheme(self, scheme: Scheme) -> None:
-        """Learn where points will go."""
+        """Take the scheme, which places the new points."""
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
-        """Learn the undeformed mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
+        """Take the undeformed mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
 
     def set_view(self, view: View | None) -> None:
-        """Learn where the eye is in this frame; None if nobody said."""
+        """Take the view of this frame; None if the caller gave none."""
 
     def mark(self, positions: Floats64, normals: Floats32, splits: Unsigned8) -> None:
         """Write 0, 1 or 2 for every edge into `splits`, shape (E,)."""
@@ -158,13 +158,13 @@ class Thresholds:
 
     @property
     def limits(self) -> tuple[np.float32, np.float32]:
-        """Both, infinite where `levels` has no such split."""
+        """Both thresholds; infinite where `levels` has no such split."""
         once = self.once if self.levels > 0 else INFINITE
         return once, self.twice if self.levels > 1 else INFINITE
 
     @property
     def width(self) -> np.float32:
-        """What lies between the two: the unit of the metric."""
+        """The distance between both thresholds: the unit of the metric."""
         if np.isinf(self.twice):
             return self.once if 0.0 < self.once < np.inf else ONE
         return np.float32(max(float(self.twice - self.once), LEAST_WIDTH))

@@ -29,10 +29,10 @@ class Scheme:
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
-        """Learn the mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
+        """Take the mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
 
     def keep(self, frame: FrameBuffers) -> None:
-        """Learn, once and when they are numbered, that all frames have the splits of this one."""
+        """Prepare for frames with the splits of this one; called once, when points are numbered."""
 
     def prepare(self, frame: FrameBuffers) -> None:
         """Look at the deformed mesh, before the criterion decides.

@@ -167,7 +167,7 @@ def write_mean_normal(rows: Floats32, p: np.uint32, q: np.uint32, row: np.uint32
 def geomorph_vertices(
     ends: Unsigned32, edges: Unsigned32, geomorph: Floats32, vertex_geomorph: Floats32
 ) -> None:
-    """A vertex moves as much as the most grown edge at it: 0 where none is split, shape (V,).
+    """Write the geomorph weight of each vertex, (V,): the largest of its edges, 0 without a split.
 
     `ends`: of edges, in the first two columns of (E, 4); `edges`: those that are split, shape (N,);
     `geomorph`: of edges, shape (E,).

@@ -39,7 +39,7 @@ MOST_VERTICES = 2**31  # whose numbers are 32 bit, as in the tables that the ker
 
 
 class Surroundings(NamedTuple):
-    """What lies around each edge: all that placing points on edges asks of a mesh."""
+    """The surroundings of each edge: all data of a mesh that place points on edges."""
 
     points: Unsigned32
     """a, b and the opposite corners c, d, shape (E, 4); c = d = a on a border."""
@@ -120,7 +120,7 @@ def connect_writable(
 ) -> Connectivity:
     """Do as `connect`, for a refiner that keeps it to itself.
 
-    Compiled code is handed an array sooner that it could write.
+    A writable array is passed to compiled code in less time.
     """
     if not isinstance(vertex_count, int | np.integer) or not 0 <= vertex_count < MOST_VERTICES:
         most = MOST_VERTICES - 1

@@ -1,4 +1,4 @@
-"""Checks of positions and triangles that are handed in, with errors that say how to mend them.
+"""Checks of given positions and triangles, with errors that name the remedy.
 
 All raise ValueError and name the argument, its value and the values allowed. Arrays that pass are
 copied, so that later changes to the caller's arrays cannot reach a frame.
@@ -142,7 +142,7 @@ def take_positions(
 def take_positions_like_rest(
     positions: npt.ArrayLike, is_used: Flags, own: Floats64, points: Floats32
 ) -> None:
-    """The same, after the shape and kind of what a user gave were compared with `own`, (V, 3)."""
+    """The same, after the user's array was compared with `own`, (V, 3), in shape and kind."""
     given = np.asarray(positions)
     if given.shape != own.shape or given.dtype.kind != "f":
         raise ValueError(

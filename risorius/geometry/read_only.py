@@ -1,4 +1,4 @@
-"""Arrays that are handed out, and that nobody outside may write."""
+"""Arrays that are passed to callers, who must not write them."""
 
 import dataclasses
 from typing import TypeVar

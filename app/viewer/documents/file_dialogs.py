@@ -78,7 +78,7 @@ class FileRequest:
 
 
 class FileDialogs:
-    """Asks for one file at a time: a line to type in, above it the files of a folder."""
+    """A dialog for one file at a time: a line to type in, above it the files of a folder."""
 
     def __init__(self) -> None:
         self.request: FileRequest | None = None
@@ -98,7 +98,7 @@ class FileDialogs:
         proposed: str = "",
         suffixes: tuple[str, ...] = (SCRIPT_SUFFIX,),
     ) -> None:
-        """Ask for a file; `then` is called with it in a later frame, or never."""
+        """Open the dialog; `then` is called with the file in a later frame, or never."""
         target = (self._folder or Path.cwd()) / proposed
         folder = target.parent if proposed else target
         self.request = FileRequest(title, saving, suffixes, then, folder)

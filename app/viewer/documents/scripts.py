@@ -69,7 +69,7 @@ class Question:
 
 
 class ScriptCommands:
-    """Opens and saves the session's script and pose, and asks where that needs an answer.
+    """Opens and saves the session's script and pose; opens a dialog if that needs an answer.
 
     A command's `then` is a task to run after saving; it does not run where nothing was saved.
     """
@@ -199,7 +199,7 @@ class ScriptCommands:
         self._session.edit(replace(self._session.script, sound=None))
 
     def toggle_recording(self) -> Message:
-        """Record the sliders into the script, or end that."""
+        """Begin to record the sliders into the script, or end the recording."""
         line = self._session.toggle_recording()
         return line if self._session.is_recording else f"{line}; [Save script] saves it"
 

@@ -87,7 +87,7 @@ THEMES = {
 
 
 class Gui:
-    """The Dear ImGui context of one window; `places` says where each item is, for who drives it."""
+    """The Dear ImGui context of one window; `places` has the area of each item, for tests."""
 
     MOUSE_BUTTON_KEY = -1  # in place of a key: one of the mouse was pressed
 
@@ -313,7 +313,7 @@ def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:
 
 
 def ink_of(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
-    """A colour as imgui's lines want it."""
+    """A colour in the form of imgui's lines."""
     return int(imgui.get_color_u32(colour(rgb, opacity)))
 
 

@@ -133,7 +133,7 @@ def state_in_words(face: LiveFace | None) -> str:
 
 
 def advice_in_words(face: LiveFace, own_address: str) -> str:
-    """The next step while nobody sends, else how many packets came and could not be used."""
+    """The user's next step while nothing is received; else the number of unusable packets."""
     if face.state is not State.WAITING or face.received:
         unusable = f", of no use: {face.unusable}" if face.unusable else ""
         return f"packets: {face.received}{unusable}"

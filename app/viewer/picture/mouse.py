@@ -33,13 +33,13 @@ class CameraMouse:
         self.forget()
 
     def forget(self) -> None:
-        """Hold on to nothing any more: the picture under the mouse is another one."""
+        """End every drag: the picture under the mouse is another one."""
         self._doing = ""  # orbit, pan, or the left button's action
         self._pressed_at = (0.0, 0.0)
 
     @property
     def is_dragging(self) -> bool:
-        """Whether the mouse holds on to something in the picture."""
+        """Whether the mouse drags something in the picture."""
         return bool(self._doing)
 
     def follow(self) -> None:

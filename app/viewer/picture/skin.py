@@ -141,7 +141,7 @@ class SkinDrag:
         return self._line
 
     def drop(self) -> None:
-        """Hold on to the skin no longer."""
+        """Release the skin."""
         self._simulation.touch.end_drag()
 
     def _solve(self) -> Message:

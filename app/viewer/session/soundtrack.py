@@ -99,7 +99,7 @@ class Soundtrack:
             self._player.rest()
 
     def close(self) -> None:
-        """Let go of sound and device."""
+        """Release sound and device."""
         if self._player is not None:
             self._player.close()
         self.sound = self._player = self._file = None

@@ -73,7 +73,7 @@ class TimeAxis:
         self.start += seconds
 
     def follow(self, time: float) -> None:
-        """Turn the page if a time is not to be seen."""
+        """Scroll by a page if a time is not visible."""
         if not self.start <= time <= self.end:
             self.start = time - 0.1 * self.span
 

@@ -169,7 +169,7 @@ class FaceMode:
         self.soundtrack.rest()
 
     def resume(self) -> None:
-        """Be drawn anew: the window showed something else."""
+        """Mark the picture as out of date: the window showed something else."""
         self.mouse.forget()
         self.painter.forget()
 

@@ -60,7 +60,7 @@ def file_menu(
     settings: Settings,
     close: Task,
 ) -> Menu:
-    """Files that come and go, and the end. exports: the commands under Export."""
+    """Commands for files, and to end the program. exports: the commands under Export."""
     command = partial(Command, "File")
 
     def recent() -> Iterator[Command]:

@@ -299,7 +299,7 @@ class Viewer:
             save_settings(self._settings_path, self.settings)
 
     def close(self) -> None:
-        """Remember the settings, and let go of everything."""
+        """Save the settings, and release everything."""
         try:
             self.remember()
         except UserError as error:  # a disk that is full must not keep the window open
