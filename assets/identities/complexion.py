@@ -35,6 +35,7 @@ from .brows import painted, stubble
 from .eyes import beside_skin, with_irises
 from .features import PLAIN, Features
 from .hair import CUTS, HAIR, OWN_CUT, Fall, hair_of, scalp_of
+from .lids import shaded, with_folds
 from .long_hair import falling_hair, tied_hair
 from .person import Person
 from .population import DARKEST, LIGHTEST
@@ -188,11 +189,14 @@ def coloured(
         parts = with_irises(parts, person.eyes, irises, features.iris)
     parts = beside_skin(parts, person.eyes, _beside_light_skin(angle))
     behind = _behind(_tints(), features)
+    known = load("head").fine_shape
     in_tone = partial(recoloured, blood=blood, features=features, haired_as=angle, shrink=shrink)
     return replace(
         person,
         albedo=in_tone(angle),
-        ambient_occlusion=_occlusion(shrink),
+        ambient_occlusion=shaded(_occlusion(shrink), person),
+        # In small pictures nobody sees slopes of folds, and all persons share one map.
+        fine_shape=with_folds(known, person) if shrink == 1 else known,
         parts=_with_hair(person, parts, angle, features, behind),
         segments=_haired_segments(person.segments, features, behind),
         in_tone=in_tone,

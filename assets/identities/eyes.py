@@ -21,7 +21,7 @@ from ..data_files import read_arrays
 from ..loading import load
 from ..model import Eye, Part
 from ..smooth import smooth_step
-from .population import IRIS_SHARES
+from .population import DARKEST, IRIS_SHARES, LIGHTEST, ONLY_BROWN
 
 
 class Iris(NamedTuple):
@@ -43,14 +43,17 @@ class Iris(NamedTuple):
 USUAL_IRIS = Iris()
 
 
-def drawn_iris(years: float, chance: float, random: np.random.Generator) -> Iris:
-    """The irises of somebody of an age; chance: of edge and fibres, 0 to 1."""
+def drawn_iris(
+    years: float, chance: float, random: np.random.Generator, *, angle: float = LIGHTEST
+) -> Iris:
+    """The irises of somebody of an age and a tone [ITA]; chance: of edge and fibres, 0 to 1."""
     lightness, greyness, ring = random.uniform(0.0, 1.0, 3)
     seed = int(chance * 2**31)
     darker, rougher = np.random.default_rng(seed).uniform(0.0, 1.0, 2).tolist()
     late = float(np.clip((years - 20.0) / 55.0, 0.0, 1.0))
+    darker_skin = float(np.clip((ONLY_BROWN - angle) / (ONLY_BROWN - DARKEST), 0.0, 1.0))
     return Iris(
-        0.9 * lightness - 0.45,
+        1.5 * lightness - 0.7 - 0.5 * darker_skin,
         0.15 + 0.4 * greyness,
         ring * ring,
         limbus=1.2 * darker - 0.2 - 0.5 * late,

@@ -57,7 +57,7 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
     shaved_density = 0.12  # of hair in the shipped picture
     brows = drawn_brows(is_man, years, random)
     hairline = drawn_hairline(is_man, years, random)
-    iris = drawn_iris(years, fibres, random)
+    iris = drawn_iris(years, fibres, random, angle=angle)
     blood_chance, pale_chance = np.clip(random.normal(size=2), -2.0, 2.0).tolist()
     fading = 1.0 - 0.006 * (years - 20.0)
     blood = -0.05 + 0.13 * blood_chance if is_man else fading * (0.48 + 0.2 * blood_chance)

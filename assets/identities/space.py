@@ -72,6 +72,8 @@ class Identity:
     corners: how far above the middle of the lips' line those of the mouth lie at rest [mm].
     brows: how far up the brows lie [mm].
     furrows: how deep those of age are, beside the usual ones.
+    seen_lid: how much of the upper lid's skin is seen below its crease [mm]; below 0: none.
+    hooding: how much less of it is seen at the outer corner [mm].
     """
 
     sex: Sex
@@ -84,6 +86,8 @@ class Identity:
     corners: float = 0.0
     brows: float = 0.0
     furrows: float = 1.0
+    seen_lid: float = 1.4
+    hooding: float = 0.0
 
     def scaled(self, share: float) -> Identity:
         """An identity with a share of all that is its own: 0 is the mean of people."""
@@ -228,6 +232,8 @@ def sample_identity(
     furrows = float(np.clip(1.0 + 0.35 * random.normal(), 0.3, 1.7))
     late = max(age - YOUNG, 0.0) / 10.0
     is_woman = sex is Sex.WOMAN
+    seen, hooded = np.clip(random.normal(size=2), -2.0, 2.0)
+    spread = 1.0 + 0.06 * late
     return Identity(
         sex,
         age,
@@ -239,6 +245,8 @@ def sample_identity(
         corners=float(0.7 + 0.3 * is_woman + 0.65 * corners - 0.08 * late),
         brows=float((1.0 if is_woman else 0.0) + 1.2 * brows - 0.2 * late),
         furrows=furrows,
+        seen_lid=float(1.2 + 0.5 * is_woman + spread * seen),
+        hooding=float(max(0.3 + 0.5 * hooded + 0.25 * late, 0.0)),
     )
 
 
