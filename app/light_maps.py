@@ -108,7 +108,7 @@ def _unpacked(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArr
     """Lines whose four channels are packed by the lengths of runs, shape (H, W, 4)."""
     most_alike = 127  # in a run, of two bytes
     if len(data) < height * (4 + 8 * math.ceil(width / most_alike)):
-        raise ValueError("it is shorter than its size asks for")
+        raise ValueError("it is shorter than its size requires")
     values = data.tobytes()
     lines = np.zeros((height, 4, width), np.uint8)
     at = 0

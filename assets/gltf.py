@@ -316,7 +316,7 @@ def _places(nodes: list[Any]) -> list[Floats64]:
             above = parents.get(above)
             steps += 1
             if steps > len(nodes):
-                raise ValueError(f"node {number} hangs on itself")
+                raise ValueError(f"node {number} is its own ancestor")
         found.append(matrix)
     return found
 

@@ -197,7 +197,7 @@ def chunks_of(content: bytes) -> tuple[bytes, bytes | None]:
         size, kind = struct.unpack_from("<I4s", content, place)
         place += 8
         if place + size > len(content):
-            raise ValueError("it ends too early")
+            raise ValueError("the file ends too early")
         found.setdefault(kind, content[place : place + size])  # a second one of a kind is ignored
         place += size
     return found[b"JSON"], found.get(b"BIN\0")

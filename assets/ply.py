@@ -118,7 +118,7 @@ class _Numbers:
         """This many numbers of a kind."""
         found = self._numbers[self.place : self.place + count]
         if not 0 <= count == len(found):
-            raise ValueError("it ends too early")
+            raise ValueError("the file ends too early")
         self.place += count
         return found.astype(kind)
 
@@ -148,7 +148,7 @@ class _Bytes:
 
     def _rows(self, kind: np.dtype[Any], count: int) -> npt.NDArray[Any]:
         if count < 0 or self.place + count * kind.itemsize > len(self._data):
-            raise ValueError("it ends too early")
+            raise ValueError("the file ends too early")
         found = np.frombuffer(self._data, kind, count, self.place)
         self.place += found.nbytes
         return found

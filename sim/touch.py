@@ -50,7 +50,7 @@ class Touch:
                 f"firmness: runs from {share.min():g} to {share.max():g}, must be from 0 to 1"
             )
         if len(np.unique(numbers)) < len(numbers):
-            raise ValueError(f"vertices: some are there twice, must be {wanted}")
+            raise ValueError(f"vertices: some occur twice, must be {wanted}")
         away = self._in_standard_space(points - self._positions[numbers])
         self._vertices = numbers
         self._to = self._state.x[numbers] + away

@@ -82,7 +82,7 @@ class Filming:
         "--alive/--not-alive",
         default=None,
         help="Idle life: eyes blink and look at the camera, and the head nods with speech, unless "
-        "the script moves them. By default: for recordings without a head.",
+        "the script moves them. By default: for recordings without motion of the head.",
     )
     overwrite: bool = option(is_flag=True, help="Replace the frames in a folder.")
     quiet: bool = option(is_flag=True, help="No progress bar.")

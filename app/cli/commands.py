@@ -167,7 +167,7 @@ def replay(
 @click.command()
 @click.argument("recording", type=PATH)
 @click.option("-o", "--output", type=PATH, required=True, help="script.toml")
-@click.option("--overwrite", is_flag=True, help="Replace a script that is there.")
+@click.option("--overwrite", is_flag=True, help="Replace an existing script.")
 @QUIET
 @with_playback
 def convert(
@@ -185,7 +185,7 @@ def convert(
     if output.suffix.lower() != ".toml":
         raise UserError(f"{output}: scripts are written as .toml; choose a name that ends so")
     if output.exists() and not overwrite:  # somebody may have worked on it
-        raise UserError(f"{output}: is there already; choose another name, or add --overwrite")
+        raise UserError(f"{output}: exists already; choose another name, or add --overwrite")
     script = played(recording, None, playback, quiet=quiet)
     if not script.is_converted:
         raise UserError(f"{recording}: is a script already")

@@ -202,8 +202,8 @@ class Subject:
 
     head: Path | int | str | None = option(
         type=HeadName(),
-        help="A head of your own, any triangle mesh; or a person: each number is one, and ada, "
-        "kofi and maria; or coarse, the built-in head with a quarter of its triangles.",
+        help="A head of your own, any triangle mesh; or a person: any number, ada, kofi or maria; "
+        "or coarse, the built-in head with a quarter of its triangles.",
     )
     landmarks: Path | None = option(
         type=PATH,
@@ -276,14 +276,14 @@ class Drawing(Subject):
         flag_value=",".join(STRUCTURES),
         metavar="[NAME,...]",
         help="Draw muscles, skull or both under translucent skin; opacity=0..1 of the skin, 0.25 "
-        "by default; dissect=left or right: the subject's side with such skin.",
+        "by default; dissect=left or right: the only side with translucent skin.",
     )
     style_settings: tuple[str, ...] = option(
         "--style",
         multiple=True,
         metavar="NAME[=VALUE],...",
-        help="wireframe, splits (colours by number of splits), wires (outlines of what is split "
-        "beyond rest), skin=textured, plain or clay, "
+        help="wireframe, splits (colours by number of splits), wires (outlines of triangles "
+        "that are split more than at rest), skin=textured, plain or clay, "
         f"light={', '.join(LIGHT_NAMES[:-1])} or {LIGHT_NAMES[-1]}, wrinkles=0..1.",
     )
 
@@ -346,9 +346,9 @@ PLAYBACK = (
         type=FiniteRange(0, 0.5),
         default=LEAD,
         show_default=True,
-        help="How far muscles are ahead of the recording [s], since skin follows late.",
+        help="How much earlier than the recording muscles move [s], because skin follows late.",
     ),
-    click.option("--face", metavar="ID", help="The face to play, where a file has several."),
+    click.option("--face", metavar="ID", help="The face to play, if a file has several."),
     click.option(
         "--rate", type=FiniteRange(1, 1000), help="Frames a second, in place of the file's times."
     ),

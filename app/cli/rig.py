@@ -55,12 +55,12 @@ class Rigging:
         type=click.IntRange(0, 200),
         default=0,
         show_default=True,
-        help="Shapes of pairs whose sums are farthest off, at most so many.",
+        help="Shapes of pairs whose sums are farthest off, this many at most.",
     )
     take: Path | None = option(
         type=PATH,
         help="Compare sums of shapes with this recording or script, with a few words by default; "
-        "--correctives are those that pay most on it.",
+        "--correctives are chosen for it.",
     )
     quiet: bool = option(is_flag=True, help="Print nothing but errors.")
 

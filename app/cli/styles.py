@@ -41,7 +41,7 @@ class Words:
             elif name in self.shares:
                 values[name] = self._share(name, text)
             else:
-                raise UserError(f"{self.option}: '{word}' is not there; it takes {self.allowed}")
+                raise UserError(f"{self.option}: '{word}' is unknown; allowed are {self.allowed}")
         return values
 
     @property

@@ -52,7 +52,7 @@ def write_usd(clip: Clip, part: Path, request: ExportRequest) -> None:
         except Tf.ErrorException:
             is_made = False
     if not is_made:
-        raise OSError("USD did not get to its end; the disk may be full")
+        raise OSError("the USD file is not complete; the disk may be full")
 
 
 def _fill(stage: Any, clip: Clip, request: ExportRequest) -> None:

@@ -106,8 +106,8 @@ def _bound_socket(listening: Listening) -> socket.socket:
     except OSError as error:
         opened.close()
         raise UserError(
-            f"cannot listen on {address}, port {port}: {error.strerror}; close what listens there, "
-            f"choose another --port, or another --address ({LOOPBACK} for this computer alone, "
-            f"{ANYWHERE} for its whole network)"
+            f"cannot listen on {address}, port {port}: {error.strerror}; close the program that "
+            f"listens there, choose another --port, or another --address ({LOOPBACK} for this "
+            f"computer alone, {ANYWHERE} for its whole network)"
         ) from None
     return opened

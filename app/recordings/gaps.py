@@ -41,9 +41,7 @@ def whole_take(
     channels = {name: measured(name, values) for name, values in channels.items()}
     channels = {name: values for name, values in channels.items() if np.isfinite(values).any()}
     if not channels:
-        raise UserError(
-            f"{source}: {kind}: no frame shows a face; nothing is there that could be played"
-        )
+        raise UserError(f"{source}: {kind}: no frame shows a face; nothing can be played")
     if not np.isfinite(times).any():
         raise UserError(f"{source}: {kind}: no row has a time that can be read")
     longest_take = 86_400.0  # [s]

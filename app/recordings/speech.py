@@ -149,7 +149,7 @@ def read_cues(document: Any, source: str, request: TakeRequest) -> Take:
     written = read_table(_Cues, document, source, error=UserError)
     given = written.mouth_cues
     if not given:
-        raise UserError(f"{source}: has no mouth cues; nothing is said")
+        raise UserError(f"{source}: has no mouth cues")
     end = max(cue.end for cue in given)
     cues = sorted((cue.start, cue.value) for cue in given)
     starts = np.array([start for start, _ in cues])

@@ -208,8 +208,8 @@ def parse_comparison(names: str | None, refinement: Refinement) -> tuple[Refinem
         other = named(name, refinement.preset)
         if other in (refinement, *beside):
             raise UserError(
-                f"--compare: '{name}' would stand beside itself; choose a --look or a --refiner "
-                f"other than {name}, or compare with another"
+                f"--compare: '{name}' would be compared with itself; choose a --look or a "
+                f"--refiner other than {name}, or compare with another"
             )
         beside.append(other)
     return tuple(beside)

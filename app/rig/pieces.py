@@ -193,7 +193,7 @@ def _numbers_in(text: str, count: int) -> range:
     if not 1 <= first <= last <= count:
         there = f"pieces 1 to {count}, none of this name" if count else "no piece beside the skin"
         raise UserError(
-            f"--piece: '{text}': the file has {there}; leave the option out, or mend it"
+            f"--piece: '{text}': the file has {there}; leave the option out, or correct it"
         )
     return range(first, last + 1)
 

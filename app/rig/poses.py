@@ -94,7 +94,7 @@ def shape_names(scene: FaceScene, kinds: Sequence[str]) -> tuple[str, ...]:
             units = sided(scene, ACTION_UNITS)
             found += [name for name in units if not set(scene.moved_by(name)) <= HEAD_CONTROLS]
         else:
-            raise UserError(f"--shapes: '{kind}' is not there; it takes {', '.join(KINDS)}")
+            raise UserError(f"--shapes: '{kind}' is unknown; allowed are {', '.join(KINDS)}")
     return tuple(dict.fromkeys(found))
 
 

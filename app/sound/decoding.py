@@ -132,7 +132,7 @@ def load_sound(file: Path) -> Sound:
     if not samples.size:
         raise UserError(
             f"{file}: there is no sound in it that ffmpeg can read; give a WAV, MP3, FLAC, M4A, "
-            "or a film that is heard"
+            "or a film with sound"
         )
     sound = Sound(file, samples)
     if sound.duration > longest:

@@ -92,7 +92,9 @@ def _made(identity: Identity) -> Person:
     vertices = _on_neck(vertices, *neck)
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
     if (turned.sum(axis=1) <= 0.0).any() or len(self_intersections(vertices, known.faces)):
-        raise AssetError("nobody is so: a triangle of the skin is turned over, or cuts another")
+        raise AssetError(
+            "no person has these weights: a triangle of the skin is turned over, or cuts another"
+        )
     vertices.flags.writeable = False
     named = _named(known)
     spread, usual = (np.var(x[named], 0).sum() for x in (vertices, known.vertices))

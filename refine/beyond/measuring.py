@@ -111,7 +111,7 @@ class Silhouette(Measuring):
         """Take the view of this frame; raises ValueError if there is none, or no place for it."""
         if view is None:
             raise ValueError(
-                f"{type(self).__name__} needs to know where the eye is; pass "
+                f"{type(self).__name__} needs the place of the eye; pass "
                 "view=refine.View(eye) to refine()"
             )
         eye = np.asarray(view.eye, dtype=np.float64)

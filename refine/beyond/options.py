@@ -82,7 +82,7 @@ def create_kahler(
     if blend and coherent:
         raise ValueError(
             "coherent=True continues the triangulations of the frame before; with blend=True "
-            "none ever turns a diagonal; ask for one of the two"
+            "none ever turns a diagonal; set one of the two"
         )
     if blend is None:
         blend = chosen.interpolates and not coherent
@@ -127,7 +127,7 @@ def criterion_of(
     if splits is not None:
         if not (isinstance(chosen, str) and chosen == "normal"):
             raise ValueError(
-                "splits= says how often each edge is split, and so does criterion=; pass one of "
+                "splits= and criterion= both set how often each edge is split; pass one of "
                 f"the two, got criterion={chosen!r} as well"
             )
         return GivenSplits(splits)

@@ -217,7 +217,7 @@ class BaseRefiner(Refiner):
         for thing in things:
             if _owners.get(id(thing), self) is not self:
                 raise ValueError(
-                    f"this {type(thing).__name__} serves another refiner, whose mesh it knows; "
+                    f"this {type(thing).__name__} serves another refiner already; "
                     "make one for each refiner"
                 )
             _owners[id(thing)] = self

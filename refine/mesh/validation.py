@@ -132,7 +132,7 @@ def take_positions(
     if len(bad) > 0:
         raise ValueError(
             f"positions must be finite and below {LARGEST_COORDINATE:g}, but vertex {bad[0]} is "
-            f"{given[bad[0]]} ({len(bad)} such vertices in all); what moves the mesh has blown up"
+            f"{given[bad[0]]} ({len(bad)} such vertices in all); the mesh's motion is unstable"
         )
     first = is_used.argmax()
     positions[is_bad] = positions[first] if is_used[first] else 0.0
@@ -156,7 +156,7 @@ def take_positions_like_rest(
 def copy_finite(given: Floats64, positions: Floats64, points: Floats32) -> int:
     """Copy positions, shape (V, 3), in double and single precision; count numbers too large.
 
-    That is NaN, or not below LARGEST_COORDINATE: 0 unless what moves the mesh has blown up.
+    That is NaN, or not below LARGEST_COORDINATE: 0 unless the mesh's motion is unstable.
     """
     numbers = given.reshape(-1)
     copied = positions.reshape(-1)

@@ -43,7 +43,7 @@ REFUSED = {
     f"{IMAGE} --fps 0": "is not in the range",
     f"{IMAGE} --style wrinkles={'9' * 5000}": "write a number from 0 to 1",
     f"{IMAGE} --style skin=red": "'red' is none of textured, plain, clay",
-    f"{IMAGE} --style shiny": "'shiny' is not there; it takes wireframe, splits, wires, skin=",
+    f"{IMAGE} --style shiny": "'shiny' is unknown; allowed are wireframe, splits, wires, skin=",
     f"{IMAGE} --time 1:2": "a picture has one time",
     # Options that commands had before.
     f"{IMAGE} --gain all=1": "--gain was removed: convert the recording first: risorius convert",
@@ -66,7 +66,7 @@ REFUSED = {
     f"{IMAGE} --camera 0,0,0": "zoom above 0",
     # Options of refiners.
     f"{IMAGE} --look Paper": "'Paper' is not one of 'smooth', 'paper'",
-    f"{IMAGE} --compare none,none": "would stand beside itself",
+    f"{IMAGE} --compare none,none": "would be compared with itself",
     f"{IMAGE} --refiner magic": "refiner 'magic' is unknown; there are",
     f"{IMAGE} --option ''": "write NAME=VALUE",
     f"{IMAGE} --option scheme=1": "option scheme was 1, must be a word",

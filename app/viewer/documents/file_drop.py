@@ -77,7 +77,8 @@ class FileDrop:
         landmarks = found.pop("landmarks", None)
         if mesh is None and landmarks is not None:
             raise UserError(
-                f"{landmarks.name}: is half of a head; drop it together with its mesh, an .obj say"
+                f"{landmarks.name}: has landmarks alone; drop it together with its mesh, "
+                "such as an .obj"
             )
         if mesh is None:
             return self._play(found)

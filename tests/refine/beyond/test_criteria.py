@@ -54,7 +54,7 @@ def test_view_is_needed():
     """A criterion that depends on the eye says so."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh, criterion="silhouette")
-    with pytest.raises(ValueError, match=r"needs to know where the eye is; pass view=refine.View"):
+    with pytest.raises(ValueError, match=r"needs the place of the eye; pass view=refine.View"):
         refiner.refine(mesh.vertices)
     for view in (refine.View([0, 0, np.nan]), refine.View([0, 0]), refine.View(5)):
         with pytest.raises(ValueError, match="a finite eye of shape"):

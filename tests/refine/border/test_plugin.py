@@ -236,7 +236,7 @@ def test_frames_can_be_kept():
         ({"scheme": "lop"}, "scheme 'lop' is unknown; there are"),
         ({"scheme": 3}, "scheme was 3, must be a word"),
         ({"scheme": "detail"}, r"detail needs a finer mesh: pass scheme=.* got NoneType"),
-        ({"blend": True, "coherent": True}, "ask for one of the two"),
+        ({"blend": True, "coherent": True}, "set one of the two"),
     ],
 )
 def test_bad_options(options, text):
@@ -252,7 +252,7 @@ def test_an_object_knows_one_mesh(name):
     create = partial(refine.create, "kahler", FINE.faces, FINE.vertices, normals="refined")
     first = create(**{name: thing})
     for shared in (thing, [thing, "normal"])[: 2 if name == "criterion" else 1]:
-        with pytest.raises(ValueError, match=r"serves another refiner.*make one for each"):
+        with pytest.raises(ValueError, match=r"serves another refiner already; make one for each"):
             create(**{name: shared})
     first.refine(FINE.vertices)  # and has not learnt the other's scheme
     del first

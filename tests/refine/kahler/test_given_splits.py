@@ -198,5 +198,5 @@ def test_mistakes_are_reported(splits, error):
 
 def test_splits_and_a_criterion_exclude_each_other():
     """Both say how often an edge is split, so one of them would be passed over."""
-    with pytest.raises(ValueError, match=r"splits= .* criterion=; pass one of the two"):
+    with pytest.raises(ValueError, match=r"splits= and criterion= .*; pass one of the two"):
         kahler(meshes.octahedron(), splits=np.zeros(12, int), criterion="rest")
