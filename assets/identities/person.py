@@ -29,6 +29,7 @@ from ..loading import load
 from ..model import Eye, Head
 from ..norms import measures_of
 from ..smooth import smooth_step
+from .smiles import smiling
 from .space import Identity, Sex, person_space, scores_of
 
 
@@ -125,7 +126,7 @@ def _made(identity: Identity) -> Person:
         segments=known.segments,
         wrinkles=replace(known.wrinkles, resting=_resting(known, identity)),
         rig=known.rig,
-        layers=known.layers,
+        layers=smiling(known.layers, identity.smile),
         to_millimetres=Similarity(1.0, np.eye(3), np.zeros(3)),
         file_vertices=np.arange(len(vertices), dtype=np.int32),
         mandible_weight=known.mandible_weight,

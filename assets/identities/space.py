@@ -34,6 +34,7 @@ from ..data_files import read_arrays
 from ..loading import load
 from ..norms import NORMS, Sample, measures_of
 from .population import EVERYBODY, Population
+from .smiles import USUAL_SMILE, Smile, drawn_smile
 
 MOST = 2.5  # deviations
 PRESSED = {"go-go": 10.0, "zy-zy": 4.0, "ft-ft": 2.0}  # [mm] by calipers, both sides together
@@ -74,6 +75,7 @@ class Identity:
     furrows: how deep those of age are, beside the usual ones.
     seen_lid: how much of the upper lid's skin is seen below its crease [mm]; below 0: none.
     hooding: how much less of it is seen at the outer corner [mm].
+    smile: which muscles join in it.
     """
 
     sex: Sex
@@ -88,6 +90,7 @@ class Identity:
     furrows: float = 1.0
     seen_lid: float = 1.4
     hooding: float = 0.0
+    smile: Smile = USUAL_SMILE
 
     def scaled(self, share: float) -> Identity:
         """An identity with a share of all that is its own: 0 is the mean of people."""
@@ -247,6 +250,7 @@ def sample_identity(
         furrows=furrows,
         seen_lid=float(1.2 + 0.5 * is_woman + spread * seen),
         hooding=float(max(0.3 + 0.5 * hooded + 0.25 * late, 0.0)),
+        smile=drawn_smile(is_woman, random),
     )
 
 
