@@ -94,7 +94,7 @@ def _of_built_in() -> tuple[SurfacePoints, SurfacePoints]:
     share = np.linspace(0.0, 1.0, STEPS)[:, None]
     left = ends[0][:, None] + share * (ends[1] - ends[0])[:, None]
     lanes = np.stack([_mirror_image(left), left])
-    return _on_texture(uv), _on_texture(lanes.reshape(-1, 2))
+    return places_on_texture(uv), places_on_texture(lanes.reshape(-1, 2))
 
 
 def _mirror_image(uv: Floats64) -> Floats64:
@@ -106,7 +106,7 @@ def _evenly(corners: Floats64, count: int) -> Floats64:
     return evenly_spaced(corners, np.arange(float(len(corners))), count)
 
 
-def _on_texture(uv: Floats64) -> SurfacePoints:
+def places_on_texture(uv: Floats64) -> SurfacePoints:
     """The places of the built-in head's skin that texture coordinates (n, 2) show."""
     known = load("head")
     level = np.zeros((len(known.uv), 1))
@@ -133,7 +133,7 @@ def _with_brows(head: Head | Person, points: SurfacePoints) -> SurfacePoints:
             continue
         size = np.array(head.segments.shape)[::-1]
         pixels = 2.0 * np.column_stack([columns, rows]) + 0.5
-        found = _on_texture(pixels / size * [1.0, -1.0] + [0.0, 1.0])
+        found = places_on_texture(pixels / size * [1.0, -1.0] + [0.0, 1.0])
         chosen = _along_brow(found.interpolate(head.vertices) * [side, 1.0, 1.0])
         at = np.array(numbers) - FIRST_INNER
         corners[at] = found.corners[chosen]

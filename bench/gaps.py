@@ -70,7 +70,7 @@ def measure(mixtures: int) -> list[Pose]:
     for name, values in _values(simulation, mixtures, np.random.default_rng(seed)):
         now = settled_positions(simulation, values, settling_frames)
         gaps = _gaps(head, simulation, refiner, name)
-        inverted = _inverted(simulation.rest_positions, now, head.faces)
+        inverted = inverted_count(simulation.rest_positions, now, head.faces)
         deep = simulation.anatomy.penetrations()
         poses.append(Pose(name, *gaps, inverted, deep["lips"], deep["lids"], deep["teeth"]))
     return poses
@@ -240,7 +240,7 @@ def _front(triangles: Floats64, x: float, heights: Floats64) -> Floats64:
     return reach
 
 
-def _inverted(rest: Floats64, now: Floats64, faces: Triangles) -> int:
+def inverted_count(rest: Floats64, now: Floats64, faces: Triangles) -> int:
     """How many triangles turned by more than a right angle against the skin around them."""
     before = cross_products(rest, faces)
     after = cross_products(now, faces)

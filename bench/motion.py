@@ -106,11 +106,11 @@ def _row(name: str, moved: Points, scanned: Points, simulation: sim.Simulation) 
         cosine(moved),
         float(np.sqrt(product(moved, moved) / true)),
         product(off, off) / true,
-        max(cosine(blob) for blob in _blobs(simulation.rest_positions, scanned)),
+        max(cosine(blob) for blob in blobs_of(simulation.rest_positions, scanned)),
     )
 
 
-def _blobs(skin: Points, scanned: Points) -> Iterator[Points]:
+def blobs_of(skin: Points, scanned: Points) -> Iterator[Points]:
     """A smooth bump of each width where a scan moves skin (V, 3) farthest, shape (V, 3)."""
     size = np.linalg.norm(scanned, axis=1)
     peak = int(size.argmax())

@@ -98,7 +98,7 @@ def place_lids(
         * np.array([[-ball.side.sign] for ball in eyeballs]),
         slide=eyes.blink_slide,
         raise_slide=eyes.raise_slide,
-        gaze_share=np.array([_gaze_share(ball.radius) for ball in eyeballs]),
+        gaze_share=np.array([gaze_share_of(ball.radius) for ball in eyeballs]),
         upper_follows=eyes.upper_lid_follows,
         lower_follows=eyes.lower_lid_follows,
         sideways_follow=eyes.lids_follow_sideways,
@@ -107,7 +107,7 @@ def place_lids(
     return Lids(vertices, hold, _lid_muscles(rig, eyeballs, names))
 
 
-def _gaze_share(radius: float) -> float:
+def gaze_share_of(radius: float) -> float:
     """How much of a gaze lids follow: on a ball [mm] beyond a human's they move as far as on that.
 
     Artists put such balls behind openings that are no wider than a human's.
@@ -211,7 +211,7 @@ def _one_eye(
     inward = slide * np.where(is_upper, *eyes.blink_slide)
     arrives = column + inward / np.linalg.norm(axes.axis)
     plain_seam = lower.front + eyes.blink_meeting * height
-    seam = _raised_at_corners(plain_seam, upper.front)  # where closed lids meet
+    seam = raised_at_corners(plain_seam, upper.front)  # where closed lids meet
     meeting = np.interp(arrives, where, seam)
     rises = np.interp(column, where, plain_seam)
     closing += weight * (meeting - rises)
@@ -296,7 +296,7 @@ def _pressed_turn(opening: Floats64, least_opening: float) -> Floats64:
     return most_turn * smoothstep(width)
 
 
-def _raised_at_corners(seam: Floats64, upper: Floats64) -> Floats64:
+def raised_at_corners(seam: Floats64, upper: Floats64) -> Floats64:
     """The seam [rad] by column without a step at a corner that lies above the lower lid's edge.
 
     Lids that met below such a corner left a notch beside it. upper: front edge of the upper lid.

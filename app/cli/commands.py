@@ -218,7 +218,7 @@ def open_window(
     def load() -> tuple[Script, FittedHead | None, str]:
         """Load everything that takes long."""
         script = performance or new_script()
-        head, complaint = _fitted_head(drawing, may_be_marked=mesh is not None)
+        head, complaint = fitted_head_of(drawing, may_be_marked=mesh is not None)
         import risorius.app.viewer.window.window  # noqa: F401
 
         return script, head, complaint
@@ -256,7 +256,7 @@ def open_window(
             viewer.run(playing=playing, once=once)
 
 
-def _fitted_head(drawing: Drawing, *, may_be_marked: bool) -> tuple[FittedHead | None, str]:
+def fitted_head_of(drawing: Drawing, *, may_be_marked: bool) -> tuple[FittedHead | None, str]:
     """The head of the options, and a line that says why known landmarks do not fit it.
 
     The head is None, too, where its landmarks are missing and may be marked.

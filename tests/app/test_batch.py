@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from .command_line import refusal, risorius, started
+from .command_line import refusal, risorius, started, succeeded
 from .test_workers import is_running, wait_until
 
 SCRIPT = "duration = {0}\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = {0}\n{1} = 1.0\n"
@@ -74,7 +74,7 @@ def test_a_list_is_done_and_not_done_again():
     assert "joy: " in log
 
     alone = f"capture sadness.toml -o alone.mp4 {SMALL} --quiet".split()
-    assert risorius(*alone).exit_code == 0
+    succeeded(*alone)
     assert Path("alone.mp4").read_bytes() == made[FILM]
 
     assert batch("--resume").exit_code == 0
@@ -177,7 +177,7 @@ def test_a_cluster_does_what_is_done_here(cluster):
     assert ended.exit_code == 1
     assert statuses() == ["ok", "failed", "ok"]
     assert "sadness.toml" in rows()[4]["error"]
-    assert risorius(*"export fear.toml -o alone.npz --fps 20 --quiet".split()).exit_code == 0
+    succeeded(*"export fear.toml -o alone.npz --fps 20 --quiet".split())
     assert Path("alone.npz").read_bytes() == Path("fear.npz").read_bytes()
 
 

@@ -40,7 +40,7 @@ def held(scene, **pose):
 def gap(scene, positions, upper, lower):
     """How far two landmarks are apart [mm]."""
     first, second = positions[scene.landmarks[[upper, lower]]]
-    return float(np.linalg.norm(first - second))
+    return float(norm(first - second))
 
 
 def test_coarse_head_has_all_controls_of_the_built_in_one(scene):
@@ -148,7 +148,7 @@ def test_splits_beyond_rest_are_where_muscles_pull(scene):
         middles = scene.rest_positions[scene.faces[sources]].mean(axis=1)
         mouth = scene.rest_positions[scene.landmarks[48:68]].mean(axis=0)
         assert len(middles) > 3
-        assert np.median(np.linalg.norm(middles - mouth, axis=1)) < 40.0
+        assert np.median(norm(middles - mouth, axis=1)) < 40.0
 
 
 def test_border_of_an_opened_mouth_is_refined(scene):

@@ -8,7 +8,7 @@ import pytest
 
 from risorius.app.dataset.degrading import Degradation, degraded
 
-from .command_line import risorius
+from .command_line import succeeded
 
 CLEAN = Degradation(0.0, 0.0, None, 5)
 GREY = np.full((120, 120, 3), 128, np.uint8)
@@ -58,8 +58,7 @@ def test_only_pictures_and_one_label_differ(tmp_path):
     table.write_text("[degradations]\nblurred = 1\nnoisy = 1\nnoise = [4, 4]\ncompressed = 0\n")
     options = ("--count", 1, "--size", "80x64", "--sample", table, "--quiet")
     for name, more in (("clean", ()), ("degraded", ("--degrade",))):
-        result = risorius("dataset", *options, "-o", tmp_path / name, *more)
-        assert result.exit_code == 0, result.output
+        succeeded("dataset", *options, "-o", tmp_path / name, *more)
     clean, other = (tmp_path / name for name in ("clean", "degraded"))
     pictures = [np.asarray(PIL.Image.open(each / "000000.png")) for each in (clean, other)]
     assert not np.array_equal(*pictures)

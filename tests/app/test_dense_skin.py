@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from numpy.linalg import norm
+from numpy.testing import assert_allclose
 from scipy.spatial import cKDTree
 
 from risorius import sim
@@ -13,6 +15,7 @@ from risorius.assets.fitting.painting import sampled
 from risorius.assets.meshes import Mesh
 from risorius.assets.sheets import make_grid
 from risorius.geometry.normals import vertex_normals
+from risorius.refine import Embedding
 from tests.heads import stranger
 
 
@@ -33,7 +36,7 @@ def test_its_own_triangles_are_drawn(dense):
     other = stranger()
     assert np.array_equal(dense.faces, other.mesh.faces)
     rest = dense.head.to_millimetres.points(other.mesh.vertices)
-    np.testing.assert_allclose(dense.rest_positions, rest, atol=1e-9)
+    assert_allclose(dense.rest_positions, rest, atol=1e-9)
     assert len(dense.simulation.faces) <= 2500 < 4000 < len(dense.faces)
     assert dense.skin.uv is not None
     assert dense.skin.face_uv.shape == dense.faces.shape
@@ -48,21 +51,20 @@ def test_it_follows_and_comes_back(dense):
     dense.pose({"joy": 1.0, "jaw_open": 0.5})
     for _ in range(20):
         dense.step(1.0 / 60.0)
-    moved = np.linalg.norm(dense.positions - dense.rest_positions, axis=1)
+    moved = norm(dense.positions - dense.rest_positions, axis=1)
     simulated = dense.simulation.positions - dense.simulation.rest_positions
-    farthest = np.linalg.norm(simulated, axis=1).max()
+    farthest = norm(simulated, axis=1).max()
     assert farthest > 5.0
     assert 0.8 * farthest < moved.max() < 1.2 * farthest
-    np.testing.assert_allclose(twin.positions, twin.rest_positions, atol=1e-3)
+    assert_allclose(twin.positions, twin.rest_positions, atol=1e-3)
     dense.reset()
-    np.testing.assert_allclose(dense.positions, dense.rest_positions, atol=1e-3)
+    assert_allclose(dense.positions, dense.rest_positions, atol=1e-3)
 
 
 def test_it_follows_when_somebody_looks(dense, monkeypatch):
     """A frame of several steps moves the file's own vertices once, and a second look takes none."""
     moves = []
-    embedding = type(dense.face.dense_skin._embedding)
-    evaluate = embedding.evaluate
+    evaluate = Embedding.evaluate
 
     def counted(self, positions, **options):
         moves.append(len(positions))
@@ -71,7 +73,7 @@ def test_it_follows_when_somebody_looks(dense, monkeypatch):
     dense.reset()
     dense.pose({"joy": 1.0})
     seen = dense.positions
-    monkeypatch.setattr(embedding, "evaluate", counted)
+    monkeypatch.setattr(Embedding, "evaluate", counted)
     for _ in range(6):
         dense.step(1.0 / 60.0)
     assert not moves
@@ -90,7 +92,7 @@ def test_its_simplified_mesh_is_a_head(dense):
         scene.pose({"joy": 1.0})
         for _ in range(20):
             scene.step(1.0 / 60.0)
-    np.testing.assert_allclose(alone.positions, dense.simulation.positions, atol=1e-9)
+    assert_allclose(alone.positions, dense.simulation.positions, atol=1e-9)
     skins = [scene.skin for scene in (alone, dense)]
     assert skins[0].albedo.shape[:2] == skins[0].ambient_occlusion.shape
     places = [skin.uv[skin.face_uv].reshape(-1, 2) for skin in skins]
@@ -129,20 +131,20 @@ def test_a_fold_of_the_scan_stays_on_its_own_side():
     simulation = sim.create(coarse)
     flat, faces = make_grid(16, 16, 2.0)
     fine = flat + gap
-    folded = int(np.linalg.norm(fine - fine.mean(axis=0), axis=1).argmin())
+    folded = int(norm(fine - fine.mean(axis=0), axis=1).argmin())
     ring = np.setdiff1d(faces[(faces == folded).any(axis=1)], [folded])
     fine[ring, 0] = 2.0 * fine[folded, 0] - fine[ring, 0]
     assert vertex_normals(fine, faces)[folded, 2] < 0.0
     skin = DenseSkin(fine, faces, simulation)
     apart = np.repeat([[0.0, 0.0, -5.0], [0.0, 0.0, 5.0]], len(sheet), axis=0)
     skin.follow(simulation.rest_positions + apart)
-    np.testing.assert_allclose(skin.positions, fine + np.array([0.0, 0.0, 5.0]), atol=1e-6)
+    assert_allclose(skin.positions, fine + np.array([0.0, 0.0, 5.0]), atol=1e-6)
 
 
 def growth(faces, positions, rest):
     """How much longer than at rest the edge is that grew most [mm]."""
     lengths = [
-        np.linalg.norm(points[faces] - points[np.roll(faces, 1, axis=1)], axis=2)
+        norm(points[faces] - points[np.roll(faces, 1, axis=1)], axis=2)
         for points in (positions, rest)
     ]
     return (lengths[0] - lengths[1]).max()

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.linalg import norm
+from numpy.testing import assert_array_equal
 from pxr import Usd, UsdGeom
 
 from risorius import refine
@@ -44,6 +46,11 @@ def refined(clip: Clip) -> RefinedClip:
     return with_refined_skin(clip, Refinement("paper"))
 
 
+def written(refined, path):
+    """Write the clip; the remark on it."""
+    return write(refined.clip, path, format_for(path, None), ExportRequest(progress=False))
+
+
 def test_one_topology_that_no_frame_is_finer_than(clip, refined):
     """The skin has the triangles that any frame needs, and is near the frames that change."""
     counts = [len(mesh.triangles) for mesh in clip.refined(Refinement("paper"))]
@@ -74,32 +81,32 @@ def test_frames_are_those_of_a_refiner_with_the_same_splits(clip, refined):
     skin = refined.clip.skin
     for number, frame in enumerate(frames):
         mesh = fixed.refine(frame)
-        np.testing.assert_array_equal(skin.faces, mesh.triangles)
-        np.testing.assert_array_equal(skin.source, mesh.source)
-        np.testing.assert_array_equal(skin.at(number), mesh.positions)
-        np.testing.assert_array_equal(skin.normals_of(skin.at(number), number), mesh.normals)
+        assert_array_equal(skin.faces, mesh.triangles)
+        assert_array_equal(skin.source, mesh.source)
+        assert_array_equal(skin.at(number), mesh.positions)
+        assert_array_equal(skin.normals_of(skin.at(number), number), mesh.normals)
     assert refined.clip.surfaces[1:] == clip.surfaces[1:]
 
 
 def test_gltf_plays_the_refined_skin(refined, tmp_path):
     """Morph targets and the bone of the head put the refined vertices within a tenth of a mm."""
     path = tmp_path / "face.glb"
-    remark = write(refined.clip, path, format_for(path, None), ExportRequest(progress=False))
+    remark = written(refined, path)
     assert remark is not None and "at most 0." in remark
     player = Player(path)
     skin = refined.clip.skin
     assert tuple(player.target_names("skin")[:52]) == ARKIT
-    assert 1000.0 * np.linalg.norm(player.shapes("skin")["jawOpen"], axis=1).max() > 20.0
+    assert 1000.0 * norm(player.shapes("skin")["jawOpen"], axis=1).max() > 20.0
     indices = player.values(player.primitive("skin").indices).reshape(-1, 3)
     for frame in range(refined.clip.frame_count):
         corners = player.positions("skin", frame)[indices]
-        off = np.linalg.norm(corners - skin.at(frame)[skin.faces] / 1000.0, axis=2)
+        off = norm(corners - skin.at(frame)[skin.faces] / 1000.0, axis=2)
         assert off.max() < 1.2e-4
     last = refined.clip.frame_count - 1
     assert isinstance(skin, RefinedSurface)
     head = np.asarray(refined.clip.bones["cranium"][last])[:3, :3]
     normals = player.shape("skin", last, "NORMAL")
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals /= norm(normals, axis=1, keepdims=True)
     turned = normals[indices] @ head.T  # of vertices that go with the head in full
     share = skin.carried(refined.clip.scene.simulation.bones.head_weight)
     goes_along = share[skin.faces] > 0.999
@@ -110,24 +117,24 @@ def test_gltf_plays_the_refined_skin(refined, tmp_path):
 def test_usd_stores_the_triangles_once(refined, tmp_path):
     """Triangles are the same at all times, points move."""
     path = tmp_path / "face.usdz"
-    write(refined.clip, path, format_for(path, None), ExportRequest(progress=False))
+    written(refined, path)
     stage = Usd.Stage.Open(str(path))
     mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/face/skin"))
     assert mesh.GetFaceVertexIndicesAttr().GetNumTimeSamples() == 0
     assert mesh.GetPointsAttr().GetNumTimeSamples() == refined.clip.frame_count
     points = np.array(mesh.GetPointsAttr().Get(refined.clip.frame_count - 1))
-    np.testing.assert_array_equal(points, refined.clip.skin.at(refined.clip.frame_count - 1))
+    assert_array_equal(points, refined.clip.skin.at(refined.clip.frame_count - 1))
 
 
 def test_arrays_and_point_caches_have_the_refined_vertices(refined, tmp_path):
     """`positions` of npz has all refined vertices; a point cache has them first."""
     path = tmp_path / "face.npz"
-    write(refined.clip, path, format_for(path, None), ExportRequest(progress=False))
+    written(refined, path)
     with np.load(path) as arrays:
-        np.testing.assert_array_equal(arrays["positions"], refined.clip.skin.shapes)
-        np.testing.assert_array_equal(arrays["source"], refined.clip.skin.source)
+        assert_array_equal(arrays["positions"], refined.clip.skin.shapes)
+        assert_array_equal(arrays["source"], refined.clip.skin.source)
     cache = tmp_path / "face.pc2"
-    write(refined.clip, cache, format_for(cache, None), ExportRequest(progress=False))
+    written(refined, cache)
     count = sum(len(each.rest) for each in refined.clip.surfaces)
     assert cache.stat().st_size == 32 + 12 * count * refined.clip.frame_count
 

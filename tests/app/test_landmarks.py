@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from numpy.linalg import norm
 from scipy.ndimage import distance_transform_edt
 
 from risorius import render
@@ -77,7 +78,7 @@ def test_mesh_picture_and_label_agree(studio):
         ((36, 39), Segment.RIGHT_EYE),
         ((42, 45), Segment.LEFT_EYE),
     ):
-        off = np.linalg.norm(pixels[list(numbers)] - portrait.ends(segment), axis=1)
+        off = norm(pixels[list(numbers)] - portrait.ends(segment), axis=1)
         assert (off * portrait.millimetres[list(numbers)] < MOST).all(), (segment.name, off)
     for numbers, segment in (
         (np.arange(17, 22), Segment.RIGHT_BROW),
@@ -105,7 +106,7 @@ def test_the_jaw_lies_on_the_outline_that_is_seen(studio):
         on_bone = turned.labels["landmarks"]["jaw_on_bone"]
         marked = studio.scene.face.marked[:17]
         assert np.allclose(on_bone["points"], marked)
-        assert np.linalg.norm(turned.found.points[far] - marked[far], axis=1).min() > 4.0
+        assert norm(turned.found.points[far] - marked[far], axis=1).min() > 4.0
 
 
 def test_an_outline_without_hair_over_it_is_visible(scene):
@@ -121,7 +122,7 @@ def test_points_of_the_jaw_are_spread_evenly(studio):
     portrait = Portrait(studio)
     pixels = portrait.found.pixels
     for side in (RIGHT_JAW, LEFT_JAW):
-        steps = np.linalg.norm(np.diff(pixels[side], axis=0), axis=1)
+        steps = norm(np.diff(pixels[side], axis=0), axis=1)
         assert steps.max() < 1.2 * steps.min()
     eyes = pixels[[36, 45], 1].mean()
     assert np.abs(pixels[[0, 16], 1] - eyes).max() * portrait.millimetres[36] < 9.0
@@ -142,4 +143,4 @@ def test_a_head_of_ones_own_keeps_its_marks(tmp_path):
         portrait = Portrait(opened)
     marked = scene.face.marked
     assert np.allclose(portrait.found.points[17:68], marked[17:])
-    assert np.linalg.norm(portrait.found.points[:17] - marked[:17], axis=1).max() < 25.0
+    assert norm(portrait.found.points[:17] - marked[:17], axis=1).max() < 25.0

@@ -17,7 +17,7 @@ from risorius.app.errors import UserError
 from risorius.app.light_maps import check_light_map, read_light_map
 from risorius.geometry.colour import to_screen
 
-from .command_line import risorius
+from .command_line import risorius, succeeded
 
 HEAD = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n"
 
@@ -187,8 +187,7 @@ def test_a_set_is_lit_by_files(tmp_path):
     (maps / "sky.hdr").write_bytes(HEAD + rgbe(pixels()).tobytes())
     shutil.copy(maps / "sky.hdr", maps / "sun.hdr")
     options = ("--count", 1, "--size", "64x64", "--light", maps, "--quiet")
-    result = risorius("dataset", *options, "-o", tmp_path / "set")
-    assert result.exit_code == 0, result.output
+    succeeded("dataset", *options, "-o", tmp_path / "set")
     labels = json.loads((tmp_path / "set" / "000000.json").read_text())
     assert labels["light"]["name"] in ("sky.hdr", "sun.hdr")
     assert labels["background"] == labels["light"]["name"]

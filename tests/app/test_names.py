@@ -56,15 +56,13 @@ def test_a_recording_with_such_a_name_becomes_a_script(tmp_path):
     """Its title and preface are text; it is written under such a name as well, and read again."""
     recording = take(tmp_path / f"{RAW}.csv")
     script = tmp_path / f"{RAW}.toml"
-    result = risorius("convert", recording, "-o", script)
-    assert result.exit_code == 0
-    assert f"{SHOWN}.toml: " in result.output
+    output = succeeded("convert", recording, "-o", script)
+    assert f"{SHOWN}.toml: " in output
     text = script.read_text("utf-8")
     assert tomllib.loads(text)["title"] == SHOWN
     assert text.startswith(f"# Made of {SHOWN}.csv")
     assert load_script(script).title == SHOWN
-    again = risorius("convert", recording, "-o", tmp_path / "plain.toml")
-    assert again.exit_code == 0
+    succeeded("convert", recording, "-o", tmp_path / "plain.toml")
     assert (tmp_path / "plain.toml").read_text("utf-8") == text
 
 
@@ -234,14 +232,14 @@ def test_frames_and_samples_follow_no_link(secret, tmp_path):
     frames.mkdir()
     (frames / "frame_00001.png").symlink_to(secret)
     words = ("capture", script, "-o", frames, "--fps", "5", "--overwrite", *SMALL)
-    assert risorius(*words).exit_code == 0
+    succeeded(*words)
     made = shared / "set"
     words = ("dataset", "--count", "1", "-o", made, *SMALL, "--refiner", "none", "--quiet")
-    assert risorius(*words).exit_code == 0
+    succeeded(*words)
     for name in ("000000.png", "000000.json", "index.csv", "README.md"):
         (made / name).unlink()
         (made / name).symlink_to(secret)
-    assert risorius(*words, "--resume").exit_code == 0
+    succeeded(*words, "--resume")
     assert not any(path.is_symlink() for path in (*frames.iterdir(), *made.iterdir()))
     (made / ".unfinished").symlink_to(secret.parent)
     assert ".unfinished: is a link; remove it" in refusal(risorius(*words, "--resume"))

@@ -211,8 +211,8 @@ def test_what_is_of_no_use_is_reported_in_one_line(tmp_path, options, text):
 
 def test_they_are_offered():
     """The window lists them beside the built-in ones, and so does the doctor."""
-    assert "straight" in mechanism._choices("scheme")
-    assert "everywhere" in mechanism._choices("criterion")
+    assert "straight" in mechanism.choices_of("scheme")
+    assert "everywhere" in mechanism.choices_of("criterion")
     lines = risorius("doctor").output.splitlines()
     named = {line.partition(": ")[0]: line.split(", ") for line in lines}
     assert {"half", "gone"} <= set(named["refiners"])

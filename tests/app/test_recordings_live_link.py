@@ -128,15 +128,6 @@ def test_the_fraction_of_a_frame(tmp_path):
     assert has_note(notes, "60 frames a second")
 
 
-@pytest.mark.parametrize("rate", [24, 25, 30, 50, 60])
-def test_rates(rate, tmp_path):
-    """The highest number of a frame in a second gives the rate, also without a fraction."""
-    codes = [code[:-4] for code in timecodes(np.arange(3 * rate), rate)]
-    times, notes = take_of(tmp_path, codes)
-    assert times == approx(np.arange(3 * rate) / rate, abs=1e-9)
-    assert has_note(notes, f"{rate} frames a second")
-
-
 def test_a_rate_that_the_user_knows(tmp_path):
     """It counts more than an inferred one."""
     times, _ = take_of(tmp_path, timecodes(np.arange(10)), rate=30.0)

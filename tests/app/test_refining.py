@@ -10,10 +10,10 @@ from risorius.app.errors import UserError
 from risorius.app.refining.presets import Refinement
 from risorius.app.refining.refiners import options_of, refiner_for
 from risorius.app.scenes import PlaneScene
-from risorius.refine.border import registry
 
 
-def test_only_switches_numbers_and_words_are_options(monkeypatch):
+@pytest.mark.usefixtures("own_refiners")
+def test_only_switches_numbers_and_words_are_options():
     """An array that may also be a bool, as numpy 2.2 declares them, is no switch."""
 
     def declared(
@@ -27,9 +27,7 @@ def test_only_switches_numbers_and_words_are_options(monkeypatch):
         """A refiner of somebody else, whose annotations are text."""
         return refine.PassThrough(faces, rest_positions)
 
-    monkeypatch.setattr(
-        registry.refiners, "_factories", {"declared": declared, "loop": refine.Loop}
-    )
+    refine.refiners.register("declared", declared)
     declared_ones = options_of("declared", "normal")
     assert {name: each.default for name, each in declared_ones.items()} == {
         "grown": None,

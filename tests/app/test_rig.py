@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 import trimesh
+from numpy.linalg import norm
+from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.recordings.names import ARKIT
@@ -28,7 +30,7 @@ from risorius.geometry.normals import vertex_normals
 
 from ..heads import TURN, stranger
 from ..meshes import ball
-from .command_line import refusal, risorius, shape_keys_in_blender
+from .command_line import refusal, risorius, shape_keys_in_blender, succeeded
 from .glb_player import Player
 from .rig_files import LIBRARY, PICTURE, write_whole_head
 
@@ -48,11 +50,10 @@ def document(path):
 def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The built-in head's avatar."""
     path = tmp_path_factory.mktemp("rig") / "head.glb"
-    result = risorius("rig", "-o", path)
-    assert result.exit_code == 0, result.output
-    assert "52 shapes" in result.output
-    assert "jawOpen + mouthPucker: at most" in result.output
-    assert re.search(r"Speech: at most \d+\.\d mm, RMS 0\.\d", result.output)
+    output = succeeded("rig", "-o", path)
+    assert "52 shapes" in output
+    assert "jawOpen + mouthPucker: at most" in output
+    assert re.search(r"Speech: at most \d+\.\d mm, RMS 0\.\d", output)
     return path
 
 
@@ -160,9 +161,8 @@ def whole(scene: FaceScene, tmp_path_factory: pytest.TempPathFactory) -> Whole:
     """The avatar of an OBJ."""
     folder = tmp_path_factory.mktemp("whole")
     mesh, landmarks, places = write_whole_head(folder, scene)
-    result = risorius("rig", mesh, "--landmarks", landmarks, "-o", folder / "whole.glb")
-    assert result.exit_code == 0, result.output
-    return Whole(mesh, places, folder / "whole.glb", result.output)
+    output = succeeded("rig", mesh, "--landmarks", landmarks, "-o", folder / "whole.glb")
+    return Whole(mesh, places, folder / "whole.glb", output)
 
 
 def test_a_file_keeps_its_vertices_in_their_order(whole):
@@ -213,9 +213,9 @@ def test_eyeballs_of_a_file_become_nodes(whole, face):
     nodes = {node["name"]: node for node in document(whole.avatar)["nodes"]}
     for eye in face.head.eyes:
         centre = 10.0 * np.array(nodes[f"eye_{eye.name}"]["translation"])
-        assert np.linalg.norm(centre - eye.centre) < 1.0
+        assert norm(centre - eye.centre) < 1.0
     scale = np.array(nodes["whole"]["matrix"]).reshape(4, 4)[0, 0]
-    assert scale == pytest.approx(0.01)
+    assert scale == approx(0.01)
 
 
 def test_the_file_is_read_by_trimesh(whole):
@@ -230,8 +230,7 @@ def test_an_option_corrects_what_a_piece_is(whole, tmp_path):
     landmarks = whole.mesh.with_suffix(".json")
     path = tmp_path / "other.glb"
     given = ("--piece", "tongue=hair", "--eyes", "targets", "--shapes", "expressions,arkit")
-    result = risorius("rig", whole.mesh, "--landmarks", landmarks, "-o", path, *given)
-    assert result.exit_code == 0, result.output
+    succeeded("rig", whole.mesh, "--landmarks", landmarks, "-o", path, *given)
     shapes = Player(path).shapes("head")
     assert "joy" in shapes and len(shapes) > 52
     assert np.abs(shapes["tongueOut"][whole.places["tongue"]]).max() == 0.0
@@ -241,8 +240,7 @@ def test_an_option_corrects_what_a_piece_is(whole, tmp_path):
 def test_correctives_make_sums_come_true(tmp_path, face):
     """A shape of a pair, times the product of both weights; the file says so."""
     path = tmp_path / "head.glb"
-    result = risorius("rig", "-o", path, "--correctives", 2, "--quiet")
-    assert result.exit_code == 0, result.output
+    succeeded("rig", "-o", path, "--correctives", 2, "--quiet")
     found = document(path)
     rules = found["meshes"][0]["extras"]["correctives"]
     assert len(rules) == 2
@@ -284,8 +282,8 @@ def test_a_take_shows_how_far_sums_are_off(tmp_path, face):
     assert alone < 0.2
     shapes = [rest_in(face, {name: 1.0}).skin for name in ("jawOpen", "mouthPucker")]
     together = rest_in(face, {"jawOpen": 1.0, "mouthPucker": 1.0}).skin
-    expected = np.linalg.norm(sum(shapes) - face.rest_positions - together, axis=1).max()
-    assert both == pytest.approx(expected, abs=0.2)
+    expected = norm(sum(shapes) - face.rest_positions - together, axis=1).max()
+    assert both == approx(expected, abs=0.2)
     path = tmp_path / "corrected.glb"
     result = risorius("rig", "-o", path, "--take", take, "--correctives", 2)
     assert "correctives: jawOpen_mouthPucker" in result.output
@@ -307,9 +305,8 @@ def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
     assert len(fine.mesh.faces) > 5000
     mesh, landmarks = fine.write(tmp_path)
     path = tmp_path / "fine.glb"
-    result = risorius("rig", mesh, "--landmarks", landmarks, "-o", path)
-    assert result.exit_code == 0, result.output
-    assert "following a simplified mesh" in result.output
+    output = succeeded("rig", mesh, "--landmarks", landmarks, "-o", path)
+    assert "following a simplified mesh" in output
     player = Player(path)
     points = player.attribute("head", "POSITION")
     assert np.abs(points[: len(fine.mesh.vertices)] - fine.mesh.vertices).max() < 1e-6
@@ -318,7 +315,7 @@ def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
     upper, lower = fine.landmarks[[62, 66]]
     down = shapes["jawOpen"] @ TURN.T
     assert (down[lower, 1] < -0.02) and (abs(down[upper, 1]) < 0.006)
-    assert np.linalg.norm(shapes["eyeBlinkLeft"], axis=1).max() > 0.005
+    assert norm(shapes["eyeBlinkLeft"], axis=1).max() > 0.005
 
 
 @pytest.fixture(scope="module")
@@ -327,7 +324,7 @@ def copied(scene, tmp_path_factory):
     folder = tmp_path_factory.mktemp("glb")
     own = folder / "own.glb"
     words = ("--set", "joy=0.5", "--fps", 5, "--quiet")
-    assert risorius("export", *words, "-o", own).exit_code == 0
+    succeeded("export", *words, "-o", own)
     data = own.read_bytes()
     (length,) = struct.unpack_from("<I", data, 12)
     parts = json.loads(data[20 : 20 + length])
@@ -342,8 +339,7 @@ def copied(scene, tmp_path_factory):
     landmarks = folder / "own.json"
     landmarks.write_text(json.dumps({"landmarks": points.tolist()}))
     path = folder / "rigged.glb"
-    result = risorius("rig", own, "--landmarks", landmarks, "-o", path)
-    assert result.exit_code == 0, result.output
+    succeeded("rig", own, "--landmarks", landmarks, "-o", path)
     return own, path
 
 
@@ -394,10 +390,9 @@ def test_a_folder_of_objs_keeps_the_lines_of_the_file(whole, tmp_path):
     """One a shape, the same vertices in the same order; only lines of moved vertices change."""
     landmarks = whole.mesh.with_suffix(".json")
     folder = tmp_path / "shapes"
-    result = risorius("rig", whole.mesh, "--landmarks", landmarks, "--as", "obj", "-o", folder)
-    assert result.exit_code == 0, result.output
+    output = succeeded("rig", whole.mesh, "--landmarks", landmarks, "--as", "obj", "-o", folder)
     assert {path.stem for path in folder.glob("*.obj")} == {"neutral", *ARKIT}
-    assert f"52 shapes, {len(ARKIT) + 1} meshes" in result.output
+    assert f"52 shapes, {len(ARKIT) + 1} meshes" in output
     others = {path.name for path in folder.iterdir() if path.suffix != ".obj"}
     assert others == {LIBRARY, PICTURE}
     for name in others:
@@ -438,7 +433,7 @@ def test_a_ball_is_found_where_it_is():
     front = points[points[:, 2] > 68.0]
     centre, radius = sphere_of(front, np.array([31.0, 0.0, 72.0]), 11.0)
     assert np.allclose(centre, (30.0, 1.0, 70.0), atol=0.01)
-    assert radius == pytest.approx(12.0, abs=0.01)
+    assert radius == approx(12.0, abs=0.01)
     guess = np.array([31.0, 0.0, 72.0])
     assert sphere_of(front * (1.0, 1.0, 0.0), guess, 11.0)[1] == 11.0
 

@@ -14,7 +14,7 @@ from risorius.assets.meshes import read_mesh
 
 from ..assets.gltf_files import GltfMaker
 from ..heads import METRES, Stranger, closed, masked, sealed
-from .command_line import risorius
+from .command_line import succeeded
 from .glb_player import Player
 
 UPPER = 62  # landmarks in the middle of the lips
@@ -33,8 +33,7 @@ def test_an_avatar_keeps_what_fills_its_mouth_and_eyes(tmp_path):
     mask = masked()
     mesh, marks = mask.write(tmp_path)
     path = tmp_path / "avatar.glb"
-    result = risorius("rig", mesh, "--landmarks", marks, "-o", path)
-    assert result.exit_code == 0, result.output
+    succeeded("rig", mesh, "--landmarks", marks, "-o", path)
     player = Player(path)
     places = player.attribute("head", "POSITION")
     assert np.abs(places - mask.mesh.vertices).max() < 1e-4
@@ -142,8 +141,7 @@ def test_an_avatar_has_the_files_vertices_and_few_more(shut, tmp_path, kind):
         own = shut.mesh.vertices
         unit = 1.0
     path = tmp_path / "avatar.glb"
-    result = risorius("rig", mesh, "--landmarks", marks, "-o", path)
-    assert result.exit_code == 0, result.output
+    succeeded("rig", mesh, "--landmarks", marks, "-o", path)
     player = Player(path)
     points = player.attribute("head", "POSITION") / unit
     assert np.abs(points[: len(own)] - own).max() < 1e-4
@@ -221,7 +219,7 @@ def test_a_folder_of_objs_has_the_cut(shut, tmp_path):
     quads = write_polygons(shut, mesh)
     folder = tmp_path / "shapes"
     words = ("--as", "obj", "--shapes", "visemes", "--quiet", "-o", folder)
-    assert risorius("rig", mesh, "--landmarks", marks, *words).exit_code == 0
+    succeeded("rig", mesh, "--landmarks", marks, *words)
     neutral = read_mesh(folder / "neutral.obj")
     count = len(shut.mesh.vertices)
     assert np.abs(neutral.vertices[:count] - shut.mesh.vertices).max() < 1e-5

@@ -118,7 +118,7 @@ def test_easings_are_hermite_curves(fraction, name):
     easing = easing_named(name)
     assert easing_named(easing.name) == easing
     curve = scipy.interpolate.CubicHermiteSpline([0.0, 1.0], [0.0, 1.0], easing.slopes)
-    assert easing.of(fraction) == pytest.approx(float(curve(fraction)), abs=1e-12)
+    assert easing.of(fraction) == approx(float(curve(fraction)), abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -135,10 +135,10 @@ def test_words_for_easings_keep_their_formulas(name, formula):
     """A script moves as the page on scripts describes, at one time and at many."""
     fractions = np.linspace(0.0, 1.0, 41)
     found = [EASINGS[name].of(each) for each in fractions.tolist()]
-    assert found == pytest.approx(formula(fractions), abs=1e-12)
+    assert found == approx(formula(fractions), abs=1e-12)
     channel = Channel([0.0, 1.0], [0.0, 1.0], name)
-    assert channel.values_at(fractions) == pytest.approx(formula(fractions), abs=1e-12)
-    assert [channel.value(each) for each in fractions.tolist()] == pytest.approx(found, abs=1e-12)
+    assert channel.values_at(fractions) == approx(formula(fractions), abs=1e-12)
+    assert [channel.value(each) for each in fractions.tolist()] == approx(found, abs=1e-12)
 
 
 @given(fraction=st.floats(0.0, 1.0), name=st.sampled_from([*easing_names()]))

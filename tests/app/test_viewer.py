@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from risorius.app.viewer.picture.stage import pointed_lines
 from risorius.app.viewer.settings import Display, load_settings
@@ -57,7 +58,7 @@ def test_a_number_can_be_typed(viewer):
     press_keys(viewer, "ctrl+a")
     write(viewer, "0.37")
     press_keys(viewer, "Return")
-    assert viewer.session.values["jaw_open"] == pytest.approx(0.37)
+    assert viewer.session.values["jaw_open"] == approx(0.37)
     xdotool(viewer, "mousemove", *middle(viewer, "jaw_open"))
     xdotool(viewer, "click", 3)
     click(viewer, "control menu: Reset to 0")
@@ -326,7 +327,7 @@ def test_a_corner_drawn_up_and_out_smiles_at_any_speed(viewer):
     assert found[0].keys() == {f"{MAJOR}_left", f"{MAJOR}_right"}
     assert min(found[0].values()) > 0.9
     for other in found[1:]:
-        assert other == pytest.approx(found[0], abs=0.05)
+        assert other == approx(found[0], abs=0.05)
 
 
 @pytest.mark.slow
@@ -344,10 +345,10 @@ def test_a_pull_is_the_same_beside_busy_processes(viewer):
             process.kill()
             process.wait()
     for other in found:
-        assert other == pytest.approx(quiet, abs=0.05)
+        assert other == approx(quiet, abs=0.05)
     for smile in smiles:
         assert smile.keys() == {f"{MAJOR}_left", f"{MAJOR}_right"}
-        assert smile == pytest.approx(far, abs=0.05)
+        assert smile == approx(far, abs=0.05)
 
 
 def test_the_muscle_under_the_mouse_shows_softly(viewer):

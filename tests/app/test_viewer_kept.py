@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -332,10 +333,12 @@ def test_pictures_of_persons_are_drawn_once(tmp_path, monkeypatch):
     assert np.array_equal(portraits.kept_portrait("coarse"), sent[0][1])
     assert not stale.parent.exists()
     (kept,) = tmp_path.rglob("coarse.png")
-    shown = portraits.Portraits(None, lambda: None)
-    shown._pool = None  # no process is needed
-    shown._find(["coarse"])
+    found = threading.Event()
+    shown = portraits.Portraits(None, found.set)
+    shown.begin(["coarse"])
+    assert found.wait(10.0)
     assert shown.has_news
+    shown.close()
     kept.write_bytes(kept.read_bytes()[:1000])
     assert portraits.kept_portrait("coarse") is None
     monkeypatch.setattr(portraits, "_program", lambda: "newer")

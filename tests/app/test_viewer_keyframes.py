@@ -71,7 +71,7 @@ def test_one_control_is_keyed_over_poses(hello, scene):
     wanted = scene.limits.pose({"jaw_open": 0.4})
     script = keyframes.keyed_alone(hello, 2.0, wanted, ["jaw_open"])
     assert script.poses == hello.poses
-    assert script.at(2.0)["jaw_open"] == pytest.approx(0.4)
+    assert script.at(2.0)["jaw_open"] == approx(0.4)
     assert script.tracks["blink"] == hello.tracks["blink"]
     start = max(pose.time for pose in hello.poses if pose.time < 2.0)
     end = min(pose.time for pose in hello.poses if pose.time > 2.0)
@@ -79,7 +79,7 @@ def test_one_control_is_keyed_over_poses(hello, scene):
         now = script.at(time)
         for name, value in hello.at(time).items():
             if name != "jaw_open" or not start < time < end:
-                assert now[name] == pytest.approx(value, abs=1e-9), (name, time)
+                assert now[name] == approx(value, abs=1e-9), (name, time)
     script.check(scene.limits)
 
 
@@ -89,7 +89,7 @@ def test_a_key_at_a_pose_changes_that_pose(hello, scene):
     script = keyframes.keyed_alone(hello, 1.0, wanted, ["joy", "blink"])
     assert [pose.time for pose in script.poses] == [pose.time for pose in hello.poses]
     assert script.poses[1].name == "joy" and script.at(1.0)["joy"] == 0.5
-    assert script.at(1.0)["blink"] == pytest.approx(0.75)
+    assert script.at(1.0)["blink"] == approx(0.75)
     assert "joy" not in script.tracks
     others = set(hello.poses[1].values) - {"joy", "blink"}
     assert all(script.poses[1].values[name] == hello.poses[1].values[name] for name in others)
@@ -106,11 +106,11 @@ def test_a_blink_is_keyed_over_poses(session):
     script = session.script
     assert script.poses == before.poses
     assert set(script.tracks) == {*before.tracks, "AU43"}
-    assert script.at(2.2)["AU43"] == pytest.approx(1.0)
-    assert all(script.at(time)["AU43"] == pytest.approx(0.0) for time in (1.0, 2.0, 2.4, 3.0))
+    assert script.at(2.2)["AU43"] == approx(1.0)
+    assert all(script.at(time)["AU43"] == approx(0.0) for time in (1.0, 2.0, 2.4, 3.0))
     session.seek(2.2)
     selection.delete_keys_of(["AU43"])
-    assert session.values["AU43"] == pytest.approx(0.0)
+    assert session.values["AU43"] == approx(0.0)
     selection.clear_tracks_of(["AU43"])
     assert session.script.tracks == before.tracks
     session.undo()
@@ -127,7 +127,7 @@ def test_a_key_of_one_control_keeps_the_others_in_hand(session):
     assert session.values["AU4_left"] == 0.3 and session.differing == {"AU4_left"}
     assert session.touched == {"AU4_left"}
     selection.set_key()
-    assert not session.differing and session.script.at(2.0)["AU4_left"] == pytest.approx(0.3)
+    assert not session.differing and session.script.at(2.0)["AU4_left"] == approx(0.3)
     with pytest.raises(UserError, match="no control was moved"):
         selection.set_key()
 

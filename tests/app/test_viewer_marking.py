@@ -15,7 +15,7 @@ from pytest import approx
 
 from risorius.__main__ import command
 from risorius.app.cli import commands
-from risorius.app.cli.commands import _fitted_head
+from risorius.app.cli.commands import fitted_head_of
 from risorius.app.errors import UserError
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
@@ -81,15 +81,15 @@ def test_a_known_head_opens_without_marking(mesh, tmp_path, monkeypatch):
     monkeypatch.setattr(commands, "open_window", lambda *given, **_: opened.append(given))
     assert CliRunner().invoke(commands.view, ["--head", str(mesh)]).exit_code == 0
     drawing = opened[0][2]
-    assert _fitted_head(drawing, may_be_marked=True) == (None, "")
+    assert fitted_head_of(drawing, may_be_marked=True) == (None, "")
     write_topology(tmp_path, stranger())
-    head, complaint = _fitted_head(drawing, may_be_marked=True)
+    head, complaint = fitted_head_of(drawing, may_be_marked=True)
     assert head.files == (mesh,) and not complaint
     write_topology(tmp_path, stranger(), landmarks=list(range(68)))
-    head, complaint = _fitted_head(drawing, may_be_marked=True)
+    head, complaint = fitted_head_of(drawing, may_be_marked=True)
     assert head is None and "those of mine" in complaint
     with pytest.raises(AssetError, match="those of mine"):
-        _fitted_head(drawing, may_be_marked=False)
+        fitted_head_of(drawing, may_be_marked=False)
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from numpy.linalg import norm
+from pytest import approx
 
 from risorius import assets
 from risorius.assets.fitting import FittedHead, fit
@@ -125,8 +126,8 @@ def test_eyeballs_of_the_file_say_where_eyes_are():
     for eye, old, centre in zip(found.eyes, head.eyes, moved, strict=True):
         wanted = found.to_millimetres.points(centre[None])[0]
         assert norm(eye.centre - wanted) < 0.3
-        assert eye.radius == pytest.approx(14.1 * found.to_millimetres.scale, abs=0.3)
-        assert eye.iris_radius == pytest.approx(old.iris_radius, rel=0.1)
+        assert eye.radius == approx(14.1 * found.to_millimetres.scale, abs=0.3)
+        assert eye.iris_radius == approx(old.iris_radius, rel=0.1)
         part = next(part for part in found.parts if part.bone == f"eye_{eye.name}")
         check_part(part)
 
@@ -143,8 +144,8 @@ def test_an_iris_is_smaller_than_its_ball():
     warp = ThinPlateSpline(points, points)
     eyes = place_eyes(known, skin)
     for eye, old in zip(eyes, head.eyes, strict=True):
-        assert eye.radius == pytest.approx(0.65 * old.radius, rel=0.02)
-        assert eye.iris_radius == pytest.approx(0.8 * eye.radius)
+        assert eye.radius == approx(0.65 * old.radius, rel=0.02)
+        assert eye.iris_radius == approx(0.8 * eye.radius)
     for part in place_parts(known, skin, warp, eyes, opened_jaws(head.jaw_axis, head.rig)):
         assert np.isfinite(part.vertices).all()
 
@@ -168,7 +169,7 @@ def test_a_closed_socket_is_the_shell_of_its_ball():
         assert 14.8 < new.radius < 15.5
         assert norm((new.centre - eye.centre)[:2]) < 0.3
         assert norm(points[36:48] - new.centre, axis=1).min() > new.radius
-        assert new.iris_radius == pytest.approx(eye.iris_radius, rel=0.05)
+        assert new.iris_radius == approx(eye.iris_radius, rel=0.05)
 
 
 def test_a_closed_socket_has_no_other_flesh(fitted):

@@ -53,11 +53,16 @@ def uv_of(mesh):
     return mesh.texture.uv[mesh.texture.face_uv]
 
 
+def show_square(maker, attributes=None, **more):
+    """Show the square; more: what else its primitive has."""
+    square = maker.primitive(SQUARE, FACES, attributes=attributes or {}, **more)
+    maker.shown({"mesh": maker.mesh(square)})
+
+
 def painted(maker, uv, texture=None, **more):
     """A square with a picture."""
     number = material(maker, {"index": maker.picture(png()), **(texture or {})})
-    square = maker.primitive(SQUARE, FACES, attributes={"TEXCOORD_0": uv, **more}, material=number)
-    maker.shown({"mesh": maker.mesh(square)})
+    show_square(maker, {"TEXCOORD_0": uv, **more}, material=number)
 
 
 @pytest.mark.parametrize(("kind", "greatest"), [("f4", 1), ("u1", 255), ("u2", 65535)])
@@ -103,8 +108,7 @@ def test_pictures_go_on_beyond_their_edge_as_the_file_says(maker, tmp_path):
     texture = maker.picture(png(), sampler=sampler)
     uv = maker.accessor(np.array([[-0.5, 1.25], [1.75, 1.25], [1.75, -0.25], [0.5, -0.25]]))
     number = material(maker, {"index": texture})
-    square = maker.primitive(SQUARE, FACES, attributes={"TEXCOORD_0": uv}, material=number)
-    maker.shown({"mesh": maker.mesh(square)})
+    show_square(maker, {"TEXCOORD_0": uv}, material=number)
     wanted = np.array([[0.0, 0.25], [1.0, 0.25], [1.0, 0.75], [0.5, 0.75]])
     assert np.allclose(uv_of(read(maker, tmp_path)), wanted[FACES])
 
@@ -130,8 +134,7 @@ def test_colours_of_vertices_are_linear_light(maker, tmp_path, kind, greatest, w
     rows = np.tile(np.array([0.2, 0.5, 0.9, 0.3])[:width] * greatest, (4, 1))
     rows = rows if greatest == 1 else np.rint(rows)
     colours = maker.accessor(rows, kind, normalized=greatest > 1, gap=-width * int(kind[1]) % 4)
-    square = maker.primitive(SQUARE, FACES, attributes={"COLOR_0": colours})
-    maker.shown({"mesh": maker.mesh(square)})
+    show_square(maker, {"COLOR_0": colours})
     found = read(maker, tmp_path).colours
     assert np.abs(found.astype(int) - (124, 188, 243)).max() <= 1
 
@@ -160,9 +163,7 @@ def test_older_materials_have_a_picture(maker, tmp_path):
     """KHR_materials_pbrSpecularGlossiness calls it diffuse."""
     info = {"diffuseTexture": {"index": maker.picture(png(GREEN)), "texCoord": 1}}
     number = maker.add("materials", {"extensions": {"KHR_materials_pbrSpecularGlossiness": info}})
-    attributes = {"TEXCOORD_1": maker.accessor(UV)}
-    square = maker.primitive(SQUARE, FACES, attributes=attributes, material=number)
-    maker.shown({"mesh": maker.mesh(square)})
+    show_square(maker, {"TEXCOORD_1": maker.accessor(UV)}, material=number)
     found = read(maker, tmp_path)
     assert np.allclose(uv_of(found), UP[FACES])
     assert found.texture.pictures[0]()[0, 0].tolist() == list(GREEN)
@@ -173,9 +174,7 @@ def test_webp_and_transparent_pictures_are_read(maker, tmp_path):
     image = maker.add("images", {"bufferView": maker.view(png((*RED, 9), "WEBP"))})
     texture = maker.add("textures", {"extensions": {"EXT_texture_webp": {"source": image}}})
     number = material(maker, {"index": texture})
-    attributes = {"TEXCOORD_0": maker.accessor(UV)}
-    square = maker.primitive(SQUARE, FACES, attributes=attributes, material=number)
-    maker.shown({"mesh": maker.mesh(square)})
+    show_square(maker, {"TEXCOORD_0": maker.accessor(UV)}, material=number)
     found = read(maker, tmp_path)
     assert found.texture.pictures[0]().shape == (4, 4, 3)
 
@@ -339,7 +338,7 @@ def _draco_beside(maker):
 @pytest.mark.parametrize("change", [_extras, _unknown, _draco_beside])
 def test_what_is_not_needed_is_left_alone(maker, tmp_path, change):
     """Extras of any kind, extensions that are not required, cameras."""
-    maker.shown({"mesh": maker.mesh(maker.primitive(SQUARE, FACES))})
+    show_square(maker)
     change(maker)
     assert np.allclose(shape_of(read(maker, tmp_path)), SQUARE[FACES])
 
@@ -417,7 +416,7 @@ def _circle(maker):
 )
 def test_what_cannot_be_read_is_named(maker, tmp_path, change, message):
     """One clear line each."""
-    maker.shown({"mesh": maker.mesh(maker.primitive(SQUARE, FACES))})
+    show_square(maker)
     change(maker)
     with pytest.raises(AssetError, match=message) as refusal:
         read(maker, tmp_path)
@@ -462,9 +461,7 @@ def test_pictures_of_a_kind_that_is_not_read_are_named(maker, tmp_path):
     """And only when they are drawn: hair may have a kind that the skin has not."""
     texture = maker.add("textures", {"extensions": {"KHR_texture_basisu": {"source": 0}}})
     number = material(maker, {"index": texture})
-    attributes = {"TEXCOORD_0": maker.accessor(UV)}
-    square = maker.primitive(SQUARE, FACES, attributes=attributes, material=number)
-    maker.shown({"mesh": maker.mesh(square)})
+    show_square(maker, {"TEXCOORD_0": maker.accessor(UV)}, material=number)
     maker.parts["extensionsRequired"] = ["KHR_texture_basisu"]
     found = read(maker, tmp_path)
     with pytest.raises(AssetError, match="not read \\(KHR_texture_basisu\\); save it as PNG"):

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.linalg import norm
 
 from risorius import assets
 from risorius.assets.coarse import coarse_head
@@ -84,9 +85,9 @@ def test_edges_tell_meshes_of_the_same_counts_apart(tmp_path):
     other = stranger()
     mesh = other.mesh
     right, left = mesh.vertices[other.landmarks[[36, 45]]]
-    width = np.linalg.norm(right - left)
+    width = norm(right - left)
     first, second = mesh.faces[0, :2].tolist()
-    share = float(np.linalg.norm(mesh.vertices[first] - mesh.vertices[second]) / width)
+    share = float(norm(mesh.vertices[first] - mesh.vertices[second]) / width)
     file = write_topology(tmp_path / "config", other, edges=[[first, second, share]])
     mine = json.loads(file.read_text())
     known = recognised(mesh)

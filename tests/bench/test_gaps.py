@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from risorius.bench.gaps import LARGEST_FAULTS, Pose, _inverted, measure
+from risorius.bench.gaps import LARGEST_FAULTS, Pose, inverted_count, measure
 
 
 @pytest.fixture(scope="module")
@@ -34,10 +34,10 @@ def test_a_folded_triangle_is_counted(head):
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     over = turn @ np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
     now = head.vertices @ over.T
-    assert _inverted(head.vertices, now, head.faces) == 0
+    assert inverted_count(head.vertices, now, head.faces) == 0
     tip = head.anatomy["cheilion_left"]
     ring = np.unique(head.faces[(head.faces == tip).any(axis=1)])
     away = head.vertices[ring[ring != tip]]
     farthest = away[np.linalg.norm(away - head.vertices[tip], axis=1).argmax()]
     now[tip] = (2.0 * farthest - head.vertices[tip]) @ over.T
-    assert _inverted(head.vertices, now, head.faces) >= 1
+    assert inverted_count(head.vertices, now, head.faces) >= 1

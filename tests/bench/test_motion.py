@@ -8,7 +8,7 @@ from numpy.linalg import norm
 
 from risorius import assets, sim
 from risorius.app.errors import UserError
-from risorius.bench.motion import Row, _blobs, measure, report, targets
+from risorius.bench.motion import Row, blobs_of, measure, report, targets
 from tests.heads import METRES, SHIFT, TURN, shape, stranger
 from tests.sim.poses import settled_displacement
 
@@ -107,7 +107,7 @@ def test_a_bump_is_known_as_a_blob(head):
         size = norm(scanned)
         cosines = [
             float((blob * scanned).sum() / (norm(blob) * size))
-            for blob in _blobs(head.vertices, scanned)
+            for blob in blobs_of(head.vertices, scanned)
         ]
         assert max(cosines) > 0.99 > min(cosines)
 

@@ -83,7 +83,7 @@ def watch(copy, source):
         mesh = copy.data
         seen["triangles"].append(len(mesh.polygons))
         evaluated = source.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-        bound = addon._bound[copy.session_uid]
+        bound = addon.bounds[copy.session_uid]
         direct = bound.refiner.refine(addon.points_of(evaluated))
         off = np.abs(addon.points_of(mesh) - direct.positions).max()
         seen["off"] = max(seen["off"], float(off))
@@ -166,7 +166,7 @@ def main():
         seen["kept_triangles"].append(len(copy.data.polygons))
         seen["kept_corners"].append(int(corners @ np.arange(len(corners))))
     evaluated = source.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-    direct = addon._bound[copy.session_uid].refiner.refine(addon.points_of(evaluated))
+    direct = addon.bounds[copy.session_uid].refiner.refine(addon.points_of(evaluated))
     seen["kept_off"] = float(np.abs(addon.points_of(copy.data) - direct.positions).max())
     seen["let_go"] = list(bpy.ops.object.risorius_change())
 

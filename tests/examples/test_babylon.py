@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from risorius.app.recordings.names import ARKIT
-from tests.app.command_line import risorius
+from tests.app.command_line import succeeded
 from tests.app.glb_player import Player
 
 
@@ -24,7 +24,7 @@ def test_babylon_has_the_shapes_by_name(tmp_path):
     if not (modules / "@babylonjs" / "loaders").is_dir() or shutil.which("node") is None:
         pytest.skip("no RISORIUS_NODE_MODULES with @babylonjs/core and loaders, or no node")
     avatar = tmp_path / "avatar.glb"
-    assert risorius("rig", "-o", avatar, "--quiet").exit_code == 0
+    succeeded("rig", "-o", avatar, "--quiet")
     shapes = ("jawOpen", "eyeBlinkLeft", "mouthSmileRight", "tongueOut")
     program = Path(__file__).with_name("in_babylon.mjs")
     command = ["node", str(program), str(modules), str(avatar), "skin", *shapes]

@@ -10,7 +10,7 @@ import numpy as np
 import PIL.Image
 import pytest
 
-from tests.app.command_line import risorius
+from tests.app.command_line import succeeded
 
 PAGE = Path(__file__).parents[2] / "examples" / "browser" / "avatar.html"
 
@@ -36,7 +36,7 @@ def test_a_browser_shows_the_shapes(tmp_path):
         pytest.skip("no RISORIUS_NODE_MODULES with three and a browser, or no node")
     shutil.copy(PAGE, tmp_path)
     (tmp_path / "node_modules").symlink_to(Path(modules).resolve())
-    assert risorius("rig", "-o", tmp_path / "avatar.glb", "--quiet").exit_code == 0
+    succeeded("rig", "-o", tmp_path / "avatar.glb", "--quiet")
     shapes = ("rest", "jawOpen", "eyeBlink", "mouthSmile")
     program = Path(__file__).with_name("in_browser.mjs")
     command = ["node", str(program), str(tmp_path), *shapes]

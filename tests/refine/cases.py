@@ -25,6 +25,11 @@ def kahler(mesh: meshes.Mesh, **options: Any) -> refine.Kahler:
     return bound
 
 
+def edge_count_of(mesh: meshes.Mesh) -> int:
+    """How many edges a mesh has."""
+    return len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+
+
 def scheme_of(
     name: str, finer_positions: npt.ArrayLike, finer_faces: npt.ArrayLike
 ) -> str | refine.Scheme:

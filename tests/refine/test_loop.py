@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Forced, as_lists, kahler, soups
+from tests.refine.cases import Forced, as_lists, edge_count_of, kahler, soups
 from tests.refine.plain_twin import (
     Surroundings,
     edge_name,
@@ -89,7 +89,7 @@ def test_equals_kahler_at_one_level():
     mesh = meshes.irregular(9)
     deformed = meshes.wrinkled(mesh, 10)
     loop = refine.create("loop", mesh.faces, mesh.vertices).refine(deformed)
-    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    edge_count = edge_count_of(mesh)
     adaptive = kahler(mesh, criterion=Forced(np.ones(edge_count))).refine(deformed)
     assert loop.positions.tobytes() == adaptive.positions.tobytes()
     assert loop.normals.tobytes() == adaptive.normals.tobytes()

@@ -54,10 +54,11 @@ def test_arrays_go_with_their_refiner(look):
     )
     for stream in (None, lent, None):
         refiner.refine(meshes.wrinkled(mesh, 6), out=stream, view=EYE)
-    held = [refiner.positions, refiner.points, refiner.normals, *refiner._frame, *lent]
-    held += [array for array in refiner.connectivity if isinstance(array, np.ndarray)]
+    held = [refiner.positions, refiner.points, refiner.normals, *lent]
+    groups = [each for each in vars(refiner).values() if isinstance(each, tuple)]
+    held += [array for group in groups for array in group if isinstance(array, np.ndarray)]
     alive = [weakref.ref(array) for array in held]
-    del refiner, lent, held, stream
+    del refiner, lent, held, groups, stream
     gc.collect()
     assert [reference() for reference in alive if reference() is not None] == []
 

@@ -12,6 +12,7 @@ from risorius import refine, sim
 from risorius.assets.model import Head
 from risorius.refine_gl import KahlerGl
 from tests import meshes
+from tests.refine.cases import edge_count_of
 
 from .agreement import LOOK, RULES, Points, assert_same, bound_twice
 
@@ -71,7 +72,7 @@ def test_head(pose, is_seamed, rules, head, poses):
 def test_splits_that_stay(scheme):
     """With given splits all frames have the same triangles, on the card as on the processor."""
     mesh = meshes.irregular(7)
-    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    edge_count = edge_count_of(mesh)
     splits = np.random.default_rng(3).integers(0, 3, edge_count)
     processor, card = bound_twice(mesh.faces, mesh.vertices, scheme=scheme, splits=splits)
     seen = set()

@@ -167,9 +167,11 @@ def test_a_window_that_is_resized(scene, look):
 
 def resize(window, size):
     """Ask for a size, and wait until the screen has given it."""
-    window._glfw.set_window_size(window.handle, *size)
+    import glfw
+
+    glfw.set_window_size(window.handle, *size)
     for _ in range(10_000):
-        window._glfw.poll_events()
+        glfw.poll_events()
         if window.frame_size == size:
             return
     raise AssertionError(f"the window has {window.frame_size}")

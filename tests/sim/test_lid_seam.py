@@ -1,8 +1,10 @@
 """Where closed lids meet, beside the corners of an eye."""
 
 import numpy as np
+from numpy.linalg import norm
+from numpy.testing import assert_allclose, assert_array_equal
 
-from risorius.sim.lids import COLUMNS, _gaze_share, _raised_at_corners
+from risorius.sim.lids import COLUMNS, gaze_share_of, raised_at_corners
 from tests.sim.poses import both_sides, settled_displacement
 
 WHERE = np.linspace(0.0, 1.0, COLUMNS)
@@ -12,24 +14,24 @@ def test_no_step_below_a_corner_above_the_lower_lid():
     """The seam rises to a corner of 6 degrees from a lid of -8, so that there is no notch."""
     seam = np.radians(np.where((WHERE == 0.0) | (WHERE == 1.0), 6.0, -8.0))
     upper = np.radians(6.0 + 68.0 * WHERE * (1.0 - WHERE))
-    raised = _raised_at_corners(seam, upper)
+    raised = raised_at_corners(seam, upper)
     assert np.abs(np.diff(raised)).max() < np.radians(1.0)
     assert (raised >= seam).all()
     assert (raised <= upper).all()
-    np.testing.assert_array_equal(raised[20], seam[20])
+    assert_array_equal(raised[20], seam[20])
 
 
 def test_a_level_lid_keeps_its_seam():
     """Nothing is raised where the lower lid runs straight into the corners."""
     seam = np.radians(-21.0 - 3.0 * np.sin(np.pi * WHERE))
     upper = seam + np.radians(45.0) * np.sin(np.pi * WHERE)
-    np.testing.assert_allclose(_raised_at_corners(seam, upper), seam, atol=np.radians(0.3))
+    assert_allclose(raised_at_corners(seam, upper), seam, atol=np.radians(0.3))
 
 
 def test_lids_follow_a_gaze_on_a_large_ball_no_farther():
     """The way of a lid does not grow with a ball beyond a human's size."""
-    assert _gaze_share(12.8) == 1.0
-    np.testing.assert_allclose(_gaze_share(16.2) * 16.2, _gaze_share(12.8) * 12.8)
+    assert gaze_share_of(12.8) == 1.0
+    assert_allclose(gaze_share_of(16.2) * 16.2, gaze_share_of(12.8) * 12.8)
 
 
 def test_a_shut_lid_is_a_smooth_sheet_over_the_ball(simulation, head):
@@ -51,9 +53,9 @@ def test_skin_beside_the_inner_corner_slides_along(simulation, head):
     corner = head.vertices[head.landmarks[42]]
     edges = np.concatenate([head.faces[:, [0, 1]], head.faces[:, [1, 2]], head.faces[:, [2, 0]]])
     away = head.vertices[edges] - corner
-    is_near = (np.linalg.norm(away, axis=2) < 8.0).all(axis=1)
+    is_near = (norm(away, axis=2) < 8.0).all(axis=1)
     edges = edges[is_near & (away[..., 0] < 0.0).any(axis=1)]
     assert len(edges) > 5
-    lengths = np.linalg.norm(np.diff(head.vertices[edges], axis=1)[:, 0], axis=1)
+    lengths = norm(np.diff(head.vertices[edges], axis=1)[:, 0], axis=1)
     folded = np.abs(np.diff(aside[edges], axis=1)[:, 0]) / lengths
     assert folded.max() < 0.2

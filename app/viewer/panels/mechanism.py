@@ -169,7 +169,7 @@ class MechanismPanel:
                 _keep_in_order(stored, name, slid, {**self._defaults(), **of_look})
         elif option.kind == "word":
             has_finer = can_detail(scene)
-            allowed = [word for word in _choices(name) if word != DETAIL or has_finer]
+            allowed = [word for word in choices_of(name) if word != DETAIL or has_finer]
             if allowed:
                 self._rows.put(label, str(value), allowed, put)
         else:
@@ -229,7 +229,7 @@ class MechanismPanel:
                 muted(self._gui, f"({1e3 / milliseconds:.0f} a second)")
 
 
-def _choices(option: str) -> tuple[str, ...]:
+def choices_of(option: str) -> tuple[str, ...]:
     """The words that an option of a refiner may be, those of looks and from outside among them."""
     registered = {"scheme": refine.schemes.available, "criterion": refine.criteria.available}
     if option not in registered:

@@ -21,7 +21,7 @@ LOOKS = {
 WIDTHS = {"FLOAT": 1, "FLOAT2": 2, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4}
 FIELDS = {"INT": "value", "FLOAT": "value", "FLOAT_COLOR": "color"}  # others have a "vector"
 SPLITS = "risorius_splits"  # of the mesh at rest: how often each edge is split in all frames
-_bound: dict[int, "Bound"] = {}  # of each refined copy, by its number in this session
+bounds: dict[int, "Bound"] = {}  # of each refined copy, by its number in this session
 
 
 def numbers(collection: Any, name: str, width: int, kind: type) -> np.ndarray:
@@ -140,9 +140,9 @@ def update(copy: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     if copy.mode == "EDIT" or settings.rest is None:
         return
     try:
-        if copy.session_uid not in _bound:
-            _bound[copy.session_uid] = Bound(settings)
-        _bound[copy.session_uid].refine(settings.source.evaluated_get(depsgraph).data, copy.data)
+        if copy.session_uid not in bounds:
+            bounds[copy.session_uid] = Bound(settings)
+        bounds[copy.session_uid].refine(settings.source.evaluated_get(depsgraph).data, copy.data)
         settings.problem = ""
     except (ImportError, ValueError) as error:
         settings.problem = str(error)
@@ -159,12 +159,12 @@ def refine_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None
 @persistent
 def forget(*_: Any) -> None:
     """After undo, redo, or another file: meshes have changed."""
-    _bound.clear()
+    bounds.clear()
 
 
 def changed(settings: "RisoriusSettings", context: bpy.types.Context) -> None:
     """Bind anew with other settings, and show it."""
-    _bound.pop(settings.id_data.session_uid, None)
+    bounds.pop(settings.id_data.session_uid, None)
     if settings.source is not None:
         update(settings.id_data, context.evaluated_depsgraph_get())
 
@@ -283,10 +283,10 @@ class OBJECT_OT_risorius_keep(OfRefinedCopy, bpy.types.Operator):  # noqa: N801
                 self.report({"ERROR"}, f"Frame {frame}: {copy.risorius.problem}")
                 scene.frame_set(shown)
                 return {"CANCELLED"}
-            splits = _bound[copy.session_uid].refiner.splits
+            splits = bounds[copy.session_uid].refiner.splits
             most = splits.copy() if most is None else np.maximum(most, splits)
         copy.risorius.rest[SPLITS] = most.astype(int).tolist()
-        _bound.pop(copy.session_uid, None)
+        bounds.pop(copy.session_uid, None)
         scene.frame_set(shown)
         return {"FINISHED"}
 

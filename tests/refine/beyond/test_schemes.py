@@ -4,11 +4,20 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.linalg import norm
 
 from risorius import refine
 from tests import meshes
 from tests.refine import plain_schemes
-from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, kahler, scheme_of, soups
+from tests.refine.cases import (
+    GivenMetric,
+    as_lists,
+    assert_equals_twin,
+    edge_count_of,
+    kahler,
+    scheme_of,
+    soups,
+)
 from tests.refine.plain_normals import RefinedNormals
 from tests.refine.plain_twin import PaperRules, edge_name
 from tests.refine.plain_twin import refine as refine_plainly
@@ -46,7 +55,7 @@ def twin_of(mesh, deformed, scheme, normals, blend, needed, edges):
 
 def random_metrics(mesh, seed):
     """Needs of no, one and two splits, and all shades between, for every edge."""
-    count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    count = edge_count_of(mesh)
     return np.random.default_rng(seed).uniform(-0.7, 2.0, count)
 
 
@@ -96,7 +105,7 @@ def test_soups_equal_twin(soup, data, scheme, normals, blend):
 
 def _has_normals(refined):
     """Whether no normal is a rest of rounding, which cubic edges would follow."""
-    lengths = np.linalg.norm(refined.normals, axis=1)
+    lengths = norm(refined.normals, axis=1)
     return bool((lengths > 0.5).all())
 
 
@@ -140,5 +149,5 @@ def test_borders_beside_corners_are_parabolas():
     at_corner = 2.0 * chord - 0.5 * (after - corner)
     for share in (0.25, 0.5, 0.75):
         expected = corner + share * at_corner + share**2 * (chord - at_corner)
-        distances = np.linalg.norm(refined.positions - expected, axis=1)
+        distances = norm(refined.positions - expected, axis=1)
         assert distances.min() < 1e-5

@@ -13,7 +13,7 @@ from risorius import refine
 from risorius.refine.beyond import whole_surface
 from risorius.refine.mesh.threads import share
 from tests import meshes
-from tests.refine.cases import GivenMetric, kahler, scheme_of, surface_at
+from tests.refine.cases import GivenMetric, edge_count_of, kahler, scheme_of, surface_at
 
 SCHEMES = ("loop", "cubic", "detail")
 STEPS = 800
@@ -29,7 +29,7 @@ def bound(mesh, scheme, criterion, normals="refined", blend=True):
 
 def metrics(mesh, seed=None, metric=0.0):
     """Metrics of all edges: the same, or random ones of no, one and two splits."""
-    count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    count = edge_count_of(mesh)
     if seed is None:
         return np.full(count, metric)
     return np.random.default_rng(seed).uniform(-0.7, 2.0, count)

@@ -7,7 +7,7 @@ import pytest
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import GivenMetric, kahler, places_in_source, scheme_of
+from tests.refine.cases import GivenMetric, edge_count_of, kahler, places_in_source, scheme_of
 
 REFINERS = [
     ("none", {}),
@@ -82,7 +82,7 @@ def room(mesh):
 def test_own_stream_grows(blend):
     """A refiner's own stream has room for its frames, not for the worst case, and only grows."""
     mesh = meshes.irregular(8, 30, 30)
-    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    edge_count = edge_count_of(mesh)
     needed = GivenMetric(np.full(edge_count, -1.0))
     refiner = kahler(mesh, criterion=needed, blend=blend)
     unsplit = room(refiner.refine(mesh.vertices))

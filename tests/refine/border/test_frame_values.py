@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
 
 from risorius import refine
 from tests import meshes
@@ -85,14 +86,14 @@ def test_linear_within_triangles(case, seed, look):
     refined = refiner.refine(moved, values={"heat": heat})
     found = refined.attributes["heat"]
     used = np.unique(faces)
-    np.testing.assert_array_equal(found[used], heat[used])
+    assert_array_equal(found[used], heat[used])
     is_proper = np.array([len(set(face)) == 3 for face in faces.tolist()], dtype=bool)
     shown = is_proper[refined.source]
     triangles = refined.triangles[shown]
     source = refined.source[shown]
     places = places_in_source(refiner.origins(), triangles, faces[source])
     expected = np.einsum("tci,tiu->tcu", places, heat[faces[source]])
-    np.testing.assert_allclose(found[triangles], expected, rtol=0, atol=1e-5)
+    assert_allclose(found[triangles], expected, rtol=0, atol=1e-5)
 
 
 def test_one_topology():
@@ -106,7 +107,7 @@ def test_one_topology():
     for k, frame in enumerate(mesh.frames):
         refined = refiner.refine(frame, values={"heat": heat + k})
         assert len(refined.triangles) == refiner.triangle_capacity
-        np.testing.assert_array_equal(refined.attributes["heat"], float(k))
+        assert_array_equal(refined.attributes["heat"], float(k))
         heights.append(refined.triangles.tobytes())
     assert heights[0] == heights[1] == heights[2]
 

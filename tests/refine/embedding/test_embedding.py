@@ -7,6 +7,8 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.linalg import norm
+from numpy.testing import assert_allclose, assert_array_equal
 
 from risorius import refine
 from tests import meshes
@@ -98,14 +100,14 @@ def test_rest_is_rest_and_rigid_motion_is_exact(mesh):
     embedding = refine.Embedding(mesh.faces, mesh.vertices, fine, normals=fine)
     rest = embedding.evaluate(mesh.vertices)
     assert rest.normals is not None
-    np.testing.assert_allclose(rest.positions, fine, atol=1e-12)
-    unit = fine / np.linalg.norm(fine, axis=1, keepdims=True)
-    np.testing.assert_allclose(rest.normals, unit, atol=1e-6)
+    assert_allclose(rest.positions, fine, atol=1e-12)
+    unit = fine / norm(fine, axis=1, keepdims=True)
+    assert_allclose(rest.normals, unit, atol=1e-6)
     moved = embedding.evaluate(turned(mesh.vertices))
     assert moved.normals is not None
-    np.testing.assert_allclose(moved.positions, turned(fine), atol=1e-10)
+    assert_allclose(moved.positions, turned(fine), atol=1e-10)
     origin = turned(np.zeros((1, 3)))
-    np.testing.assert_allclose(moved.normals, turned(unit) - origin, atol=1e-6)
+    assert_allclose(moved.normals, turned(unit) - origin, atol=1e-6)
 
 
 @given(st.integers(0, 2**32 - 1))
@@ -117,10 +119,8 @@ def test_any_soup_is_carried(seed):
     faces[0] = 0, 1, 2
     fine = rng.normal(size=(40, 3))
     embedding = refine.Embedding(faces, vertices, fine)
-    np.testing.assert_allclose(embedding.evaluate(vertices).positions, fine, atol=1e-9)
-    np.testing.assert_allclose(
-        embedding.evaluate(turned(vertices)).positions, turned(fine), atol=1e-7
-    )
+    assert_allclose(embedding.evaluate(vertices).positions, fine, atol=1e-9)
+    assert_allclose(embedding.evaluate(turned(vertices)).positions, turned(fine), atol=1e-7)
     assert np.isfinite(embedding.evaluate(rng.normal(size=(8, 3))).positions).all()
     assert np.isfinite(embedding.evaluate(np.zeros((8, 3))).positions).all()
 
@@ -137,9 +137,9 @@ def test_equal_to_its_twin_in_plain_numpy(seed, name):
     bent = turned(rest * rng.uniform(0.6, 1.5, 3) + 0.1 * rng.normal(size=rest.shape))
     places = embedding.triangles, embedding.weights, embedding.offsets
     twin = Twin(mesh.faces, rest)
-    np.testing.assert_allclose(twin.evaluate(rest, *places), fine, atol=1e-9)
+    assert_allclose(twin.evaluate(rest, *places), fine, atol=1e-9)
     expected = twin.evaluate(bent, *places)
-    np.testing.assert_allclose(embedding.evaluate(bent).positions, expected, atol=1e-8)
+    assert_allclose(embedding.evaluate(bent).positions, expected, atol=1e-8)
 
 
 def test_continuous_over_coarse_edges():
@@ -147,13 +147,13 @@ def test_continuous_over_coarse_edges():
     mesh = meshes.ball(2)
     angle = np.linspace(0.0, 2.0 * np.pi, 20_001)
     ring = np.stack([np.cos(angle), np.sin(angle), 0.3 * np.cos(3 * angle)], axis=1)
-    ring *= 1.03 / np.linalg.norm(ring, axis=1, keepdims=True)
+    ring *= 1.03 / norm(ring, axis=1, keepdims=True)
     embedding = refine.Embedding(mesh.faces, mesh.vertices, ring)
     assert len(np.unique(embedding.triangles)) > 20
     rng = np.random.default_rng(1)
     moved = mesh.vertices * [1.5, 0.7, 1.0] + 0.05 * rng.normal(size=mesh.vertices.shape)
-    steps = np.linalg.norm(np.diff(embedding.evaluate(moved).positions, axis=0), axis=1)
-    assert steps.max() < 4.0 * np.linalg.norm(np.diff(ring, axis=0), axis=1).max()
+    steps = norm(np.diff(embedding.evaluate(moved).positions, axis=0), axis=1)
+    assert steps.max() < 4.0 * norm(np.diff(ring, axis=0), axis=1).max()
 
 
 def two_lips():
@@ -192,7 +192,7 @@ def test_unused_points_and_triangles_without_area_do_no_harm():
     embedding = refine.Embedding(faces, vertices, fine)
     assert (embedding.triangles < len(mesh.faces)).all()
     vertices[7] = np.inf
-    np.testing.assert_allclose(embedding.evaluate(vertices).positions, fine, atol=1e-12)
+    assert_allclose(embedding.evaluate(vertices).positions, fine, atol=1e-12)
 
 
 def test_offsets_keep_their_length_or_are_stretched():
@@ -201,10 +201,10 @@ def test_offsets_keep_their_length_or_are_stretched():
     fine = 1.3 * mesh.vertices
     larger = 2.0 * mesh.vertices
     as_they_are = refine.Embedding(mesh.faces, mesh.vertices, fine)
-    found = np.linalg.norm(as_they_are.evaluate(larger).positions, axis=1)
-    np.testing.assert_allclose(found, 2.3, atol=2e-3)
+    found = norm(as_they_are.evaluate(larger).positions, axis=1)
+    assert_allclose(found, 2.3, atol=2e-3)
     stretched = refine.Embedding(mesh.faces, mesh.vertices, fine, stretch_offsets=True)
-    np.testing.assert_allclose(stretched.evaluate(larger).positions, 2.0 * fine, atol=1e-9)
+    assert_allclose(stretched.evaluate(larger).positions, 2.0 * fine, atol=1e-9)
 
 
 def hairs():
@@ -222,14 +222,14 @@ def test_groups_keep_their_shape_and_go_with_their_root():
     """A hair is as long and as bent as at rest; its root is where it would be by itself."""
     mesh, bent, points, hair = hairs()
     embedding = refine.Embedding(mesh.faces, mesh.vertices, points, groups=10 * hair)
-    np.testing.assert_allclose(embedding.evaluate(mesh.vertices).positions, points, atol=1e-12)
+    assert_allclose(embedding.evaluate(mesh.vertices).positions, points, atol=1e-12)
     moved = embedding.evaluate(bent).positions.reshape(-1, 5, 3)
     at_rest = points.reshape(-1, 5, 3)
     for k in range(5):
-        apart = np.linalg.norm(moved - moved[:, [k]], axis=2)
-        np.testing.assert_allclose(apart, np.linalg.norm(at_rest - at_rest[:, [k]], axis=2))
+        apart = norm(moved - moved[:, [k]], axis=2)
+        assert_allclose(apart, norm(at_rest - at_rest[:, [k]], axis=2))
     alone = refine.Embedding(mesh.faces, mesh.vertices, at_rest[:, 0]).evaluate(bent)
-    np.testing.assert_allclose(moved[:, 0], alone.positions, atol=1e-12)
+    assert_allclose(moved[:, 0], alone.positions, atol=1e-12)
 
 
 def test_given_places_are_taken_as_they_are():
@@ -239,11 +239,11 @@ def test_given_places_are_taken_as_they_are():
     places = searched.triangles, searched.weights
     given_to_all = refine.Embedding(mesh.faces, mesh.vertices, points, places=places)
     expected = searched.evaluate(bent).positions
-    np.testing.assert_array_equal(given_to_all.evaluate(bent).positions, expected)
+    assert_array_equal(given_to_all.evaluate(bent).positions, expected)
     of_roots = searched.triangles[::5], searched.weights[::5]
     rooted = refine.Embedding(mesh.faces, mesh.vertices, points, places=of_roots, groups=hair)
     assert rooted.triangles.tolist() == of_roots[0][hair].tolist()
-    np.testing.assert_allclose(rooted.evaluate(bent).positions[::5], expected[::5], atol=1e-12)
+    assert_allclose(rooted.evaluate(bent).positions[::5], expected[::5], atol=1e-12)
 
 
 def test_inputs_stay_and_values_are_carried():
@@ -254,7 +254,7 @@ def test_inputs_stay_and_values_are_carried():
     embedding = refine.Embedding(mesh.faces, mesh.vertices, fine, normals=fine)
     embedding.evaluate(mesh.vertices)
     assert [each.tobytes() for each in (mesh.vertices, mesh.faces, fine)] == before
-    np.testing.assert_allclose(embedding.carry(np.ones(len(mesh.vertices))), 1.0)
+    assert_allclose(embedding.carry(np.ones(len(mesh.vertices))), 1.0)
     assert embedding.carry(mesh.vertices).shape == fine.shape
     for table in (embedding.triangles, embedding.weights, embedding.offsets):
         assert not table.flags.writeable
@@ -321,6 +321,6 @@ def test_borders_beside_corners_are_those_of_cubic():
     splits = np.full(len(refine.connect(faces, 6).edges), 2)
     cubic = refine.create("kahler", faces, rest, scheme="cubic", splits=splits)
     points = cubic.refine(rest).positions.astype(np.float64)
-    on_rim = points[np.linalg.norm(points, axis=1) > 0.95]
+    on_rim = points[norm(points, axis=1) > 0.95]
     assert len(on_rim) == 5 + 4 * 3
     assert np.abs(refine.Embedding(faces, rest, on_rim).offsets).max() < 1e-6

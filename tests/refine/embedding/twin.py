@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from numpy.linalg import norm
 from scipy.spatial.transform import Rotation
 
 Points = npt.NDArray[np.float64]
@@ -16,7 +17,7 @@ MOST_CARRIED = 0.5  # lengths of a tangent that a carried one may be off
 
 def unit(vector: Points) -> Points:
     """A vector of length one."""
-    return np.asarray(vector / np.linalg.norm(vector))
+    return np.asarray(vector / norm(vector))
 
 
 @dataclass
@@ -57,7 +58,7 @@ class Twin:
     def _fan(numbers: npt.NDArray[np.int64], rest: Points) -> Fan:
         edges = edges_of(rest, numbers)
         crosses = np.cross(edges[:, :, 0], edges[:, :, 1])
-        doubled = np.linalg.norm(crosses, axis=1)
+        doubled = norm(crosses, axis=1)
         angles = np.arctan2(doubled, (edges[:, :, 0] * edges[:, :, 1]).sum(axis=1))
         weights = np.sqrt(angles / doubled)
         normal = unit(weights @ crosses)
@@ -133,6 +134,6 @@ class Twin:
         edge = points[b] - points[a]
         now = edge - (edge @ normal) * normal
         change = directions @ self.slopes[a, b] - now
-        most = MOST_CARRIED * np.linalg.norm(now)
-        length = np.linalg.norm(change)
+        most = MOST_CARRIED * norm(now)
+        length = norm(change)
         return np.asarray(now + (change if length <= most else change * most / length))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Forced, kahler
+from tests.refine.cases import Forced, edge_count_of, kahler
 
 Positions = npt.NDArray[np.float64]
 Point = tuple[int, int, int]
@@ -80,7 +80,7 @@ def growing(mesh, seed, count=25):
 def splitting(mesh, seed, count=12):
     """A criterion that splits ever more edges at random, and frames that call it."""
     generator = np.random.default_rng(seed)
-    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    edge_count = edge_count_of(mesh)
     criterion = Forced(np.zeros(edge_count))
     return criterion, [generator.random(edge_count) for _ in range(count)]
 
@@ -112,7 +112,7 @@ def test_geomorph_turns_no_line(seed):
 def test_any_history_is_crack_free(seed, history):
     """After any splits, taken back in any order, the mesh passes the checker."""
     mesh = meshes.irregular(seed % 20, 4, 4, 1)
-    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    edge_count = edge_count_of(mesh)
     criterion = Forced(np.zeros(edge_count))
     refiner = kahler(mesh, criterion=criterion, coherent=True)
     for number in history:

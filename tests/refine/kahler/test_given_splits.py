@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Forced, GivenMetric, kahler, soups
+from tests.refine.cases import Forced, GivenMetric, edge_count_of, kahler, soups
 
 LOOKS: dict[str, dict[str, Any]] = {
     "paper": {},
@@ -71,7 +71,7 @@ def test_a_frame_has_the_bits_of_one_that_decides(look):
     """A frame is that of a refiner that comes to the same splits, attributes and all."""
     mesh = meshes.irregular(7)
     generator = np.random.default_rng(8)
-    splits = generator.integers(0, 3, len(refine.connect(mesh.faces, len(mesh.vertices)).edges))
+    splits = generator.integers(0, 3, edge_count_of(mesh))
     heat = {"heat": generator.random((len(mesh.vertices), 1))}
     options = {**LOOKS[look], "attributes": heat}
     fixed = kahler(mesh, splits=splits, **options)
@@ -148,7 +148,7 @@ def test_triangles_are_found_once():
             super().mark(positions, normals, splits)
 
     mesh = meshes.irregular(7)
-    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    edge_count = edge_count_of(mesh)
     criterion = Counting(np.arange(edge_count) % 3)
     refiner = kahler(mesh, criterion=criterion)
     for seed in range(3):
