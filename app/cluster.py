@@ -33,7 +33,7 @@ def run_on_cluster(
     """Each item as it ends, with the result of its work, or with None and the reason.
 
     An item whose workers are lost goes to others. Results leave the cluster as they are taken.
-    Raises UserError where no scheduler answers.
+    Raises UserError if no scheduler answers.
     """
     distributed = needed("distributed", "--scheduler", "cluster")
     client = _client(distributed, scheduler)

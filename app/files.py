@@ -30,7 +30,7 @@ def read_text(path: Path, *, what: str, longest: int) -> str:
     """The text in a file, UTF-8 with or without a byte order mark, of `longest` bytes at most.
 
     what: the kind of file, for error texts ("script"). Raises UserError for a file that cannot be
-    used, and its subclass NoSuchFileError where there is none.
+    used, and its subclass NoSuchFileError if there is none.
     """
     try:
         return read_bytes(path, what=what, longest=longest).decode("utf-8-sig")
@@ -66,7 +66,7 @@ def written_atomically(target: Path) -> Iterator[Path]:
 
     Files that the block puts beside that one go along, and lie beside the target then. Where the
     target is a symbolic link, the file takes the place of the link, as with `mv`: somebody else
-    may have put it into a folder that others may write. UserError where that cannot be, in the
+    may have put it into a folder that others may write. UserError if that cannot be, in the
     block or after it.
     """
     check_links(target)
@@ -128,7 +128,7 @@ def folder_atomically(target: Path, own: re.Pattern[str], *, overwrite: bool) ->
 
 
 def check_folder(target: Path, *, overwrite: bool) -> None:
-    """Raise UserError where a folder of many files cannot be written, or holds something.
+    """Raise UserError if a folder of many files cannot be written, or holds something.
 
     A link to a folder stands for that folder.
     """
@@ -161,7 +161,7 @@ def cannot_be_written(target: Path) -> Iterator[None]:
 
 
 def check_links(target: Path) -> None:
-    """Raise UserError where the links of a path go round in a circle."""
+    """Raise UserError if the links of a path go round in a circle."""
     with cannot_be_written(target):
         if os.path.islink(os.path.realpath(target)):
             raise UserError(f"{target}: is a link that leads back to itself; choose another name")

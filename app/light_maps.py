@@ -82,7 +82,7 @@ def _refused(path: Path) -> Iterator[None]:
 def _radiance_size(content: bytes) -> tuple[int, int, int]:
     """Height and width in a Radiance file's header [pixels], and where its pixels begin [bytes].
 
-    ValueError where it is none.
+    ValueError if it is none.
     """
     head, _, _ = content.partition(b"\n\n")
     found = re.match(rb"-Y (\d{1,5}) \+X (\d{1,5})\n", content[len(head) + 2 :])

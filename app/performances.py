@@ -56,7 +56,7 @@ def script_for(
 
 
 def built_in_words() -> Script:
-    """The script of a few spoken words that comes along."""
+    """The script of a few spoken words that is included."""
     return load_script(Path(str(files("risorius.assets") / "scripts" / "speech.toml")))
 
 
@@ -71,7 +71,7 @@ def new_script(
 
 
 def examples(scene: str) -> list[Path]:
-    """The scripts of a scene that come along."""
+    """The scripts of a scene that are included."""
     folder = Path(str(files("risorius.assets") / "scripts"))
     return [path for path in sorted(folder.glob("*.toml")) if load_script(path).scene == scene]
 

@@ -39,7 +39,7 @@ class Viewport(NamedTuple):
 
 
 class Pipeline:
-    """What can be seen, and the renderer that draws it."""
+    """The visible meshes of a scene, and the renderer that draws them."""
 
     def __init__(self, scene: Drawable, renderer: render.Renderer) -> None:
         self.scene = scene

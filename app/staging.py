@@ -25,7 +25,7 @@ _swept: set[Path] = set()  # where this process has looked for what others left
 class StagingFolder:
     """A folder in `parent` to make files in; a context manager that gives and removes it.
 
-    Raises OSError where it cannot be made.
+    Raises OSError if it cannot be made.
     """
 
     def __init__(self, parent: Path) -> None:
@@ -69,7 +69,7 @@ def sweep(parent: Path) -> None:
 def locked(path: Path) -> IO[Any] | None:
     """The file, made if need be, which nobody else can lock until it is closed.
 
-    None where somebody has locked it. Raises OSError where it cannot be opened.
+    None where somebody has locked it. Raises OSError if it cannot be opened.
     """
     file = open(path, "ab", opener=_without_waiting)
     try:

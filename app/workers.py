@@ -161,7 +161,7 @@ def _done(
 
 
 class WorkerPool:
-    """Processes of one run, which end with it; threads of this process wait for them."""
+    """The processes of one run; they end with it, and threads of this process wait for them."""
 
     def __init__(self, jobs: int = 1) -> None:
         """jobs: how many there will be at once; they share the cores."""
@@ -177,7 +177,7 @@ class WorkerPool:
         log: Path | None = None,
         attempts: int = ATTEMPTS,
     ) -> None:
-        """Do work in a process, again where that dies; on_message: is called with each message.
+        """Do work in a process, again if the process dies; on_message: is called with each message.
 
         Raises UserError for an error in the work, for its last death, and where all is stopped.
         """
@@ -294,7 +294,7 @@ class Task:
         return self._stopping is not None
 
     def check(self) -> None:
-        """Raise UserError where it failed; call this once it has ended."""
+        """Raise UserError if it failed; call this once it has ended."""
         self._end.result()
 
     def stop(self, *, waits: bool) -> None:

@@ -45,7 +45,7 @@ class CoarseHead(FittedHead):
 def coarse_head() -> CoarseHead:
     """The coarse head: some 500 triangles, with the landmarks and the rig of the built-in head.
 
-    Raises AssetError where a file is missing or broken.
+    Raises AssetError if a file is missing or broken.
     """
     known = load("head")
     kept, faces = _layout(known)

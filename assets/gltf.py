@@ -32,8 +32,8 @@ class GltfSurface:
     vertices: in the coordinates of the scene, shape (V, 3). faces: shape (F, 3).
     same: of vertices that the file doubles, the one that `faces` name, shape (V,).
     corners: the same triangles with the numbers of the file, shape (F, 3).
-    texture: how pictures paint it; None where none does.
-    colours: of vertices, sRGB, shape (V, 3), uint8; None where there are none.
+    texture: how pictures paint it; None if none does.
+    colours: of vertices, sRGB, shape (V, 3), uint8; None if there are none.
     has_colour: which vertices have one, shape (V,).
     """
 

@@ -31,7 +31,7 @@ MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
 
 
 class GltfFile:
-    """One file. Of a broken one, each question may raise any error beside AssetError.
+    """One file. If it is broken, each method may raise any error, not only AssetError.
 
     document: that of pygltflib, without animations and extras.
     """

@@ -1,4 +1,4 @@
-"""What paints the primitives of a glTF file: pictures, where they lie, tints, colours of vertices.
+"""The paint of the primitives of a glTF file: pictures, their places, tints, colours of vertices.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.8 and 3.9; KHR_texture_transform,
 KHR_materials_pbrSpecularGlossiness, EXT_texture_webp.

@@ -2,7 +2,7 @@
 
 Every vertex and triangle stays where the file has it, because landmarks and animation caches count
 on their numbers. trimesh reads STL and OFF; it likes to merge and reorder vertices, and of the
-others it leaves away or misreads what heads have. What paints OBJ: pictures.py.
+others it leaves out or misreads what heads have. What paints OBJ: pictures.py.
 """
 
 import contextlib

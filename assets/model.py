@@ -220,7 +220,7 @@ class Head:
     face_uv: numbers of the texture coordinates of each face's corners, shape (F, 3), int32; the
         same numbers as `faces`.
     file: the file that it was read from. Maps and meshes for drawing lie beside it and are read at
-        their first use; they raise AssetError where they cannot be read.
+        their first use; they raise AssetError if they cannot be read.
     rig: the parsed rig file.
     layers: action units, expressions, visemes, ARKit shapes, from the lowest up.
     """
@@ -268,7 +268,7 @@ class Head:
 
     @cached_property
     def segments(self) -> Image:
-        """What each texel belongs to, numbers of `Segment`, shape (H, W), uint8; row 0 is v = 1."""
+        """The segment of each texel, numbers of `Segment`, shape (H, W), uint8; row 0 is v = 1."""
         return read_image(self.beside("_segments.png"), mode="L")
 
     @cached_property

@@ -1,4 +1,4 @@
-"""What adult faces measure: published means and deviations; norms.toml names their sources."""
+"""Measures of adult faces: published means and deviations; norms.toml names their sources."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,6 +1,6 @@
-"""A mesh file with all that shows: what a writer needs to give it back as another kind of file.
+"""A mesh file with everything visible: what a writer needs to give it back as another kind of file.
 
-`read_mesh` leaves away what a simulation needs not: normals as the file has them, texture
+`read_mesh` leaves out what a simulation needs not: normals as the file has them, texture
 coordinates without a picture, materials, the bytes of pictures.
 """
 
@@ -23,7 +23,7 @@ from .wavefront import MaterialLook, ObjSurface, Placing, looks_of, pictures_of,
 class Material:
     """How a part of a surface looks.
 
-    picture: the content of its file, and its name; None where none is there.
+    picture: the content of its file, and its name; None if none is there.
     placing: how the picture lies in the texture coordinates.
     """
 
@@ -35,7 +35,7 @@ class Material:
 
 @dataclass(frozen=True)
 class PaintedMesh:
-    """A mesh file with all that shows.
+    """A mesh file with everything visible.
 
     mesh: as `read_mesh` has it; V vertices in the file's order, F triangles.
     uv: texture coordinates, v up, shape (U, 2). face_uv: their numbers, -1 for none, shape (F, 3).

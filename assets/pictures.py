@@ -45,7 +45,7 @@ class Texture:
 
 
 def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple[str, ...]]:
-    """The picture that material libraries beside an OBJ file give it; None where they give none.
+    """The picture that material libraries beside an OBJ file give it; None if they give none.
 
     And a line for each library that is missing, as with many files.
     """

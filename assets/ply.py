@@ -26,7 +26,7 @@ class PlySurface:
     """The surface of a PLY file.
 
     vertices: shape (V, 3), in the order of the file. faces: shape (F, 3); polygons become fans.
-    colours: of vertices, shape (V, 3), uint8; None where there are none.
+    colours: of vertices, shape (V, 3), uint8; None if there are none.
     """
 
     vertices: Floats64

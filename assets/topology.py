@@ -16,7 +16,7 @@ def boundary_loops(faces: Faces) -> list[list[int]]:
     """Closed rows of boundary vertices, in the direction of their faces, longest first.
 
     At a vertex where holes meet, a row goes on around the faces beside it; it may come back there.
-    Raises ValueError where two faces run along an edge the same way: that is no surface.
+    Raises ValueError if two faces run along an edge the same way: that is no surface.
     """
     third: dict[Edge, int] = {}  # vertex of the face to the left of each directed edge
     for a, b, c in faces.tolist():

@@ -5,7 +5,7 @@ the texture has a seam or the material changes, and opens the files that the mat
 vertex keeps its number and its neighbours, and nothing is opened.
 
 Source: Wavefront Technologies, "Object Files (.obj)", Advanced Visualizer manual, appendix B1.
-Differs from it: free-form surfaces are left away, as is the weight w of a vertex.
+Differs from it: free-form surfaces are left out, as is the weight w of a vertex.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ PLACING = ("-o", "-s", "-t")  # options of maps in a material library with up to
 
 @dataclass(frozen=True)
 class ObjSurface:
-    """What an OBJ file says of a surface.
+    """The surface that an OBJ file describes.
 
     vertices: shape (V, 3), in the order of the file. faces: shape (F, 3); polygons become fans.
     uv: texture coordinates, shape (U, 2). face_uv: their numbers, -1 for none, shape (F, 3).

@@ -42,7 +42,7 @@ class Shortening:
         """Learn the mesh at rest: `faces`, (F, 3), `rest_positions`, (V, 3), `directions`.
 
         `directions`: k for each vertex, of any length, shape (V, k, 3); what of one stands on the
-        skin is left away, and one that is zero measures nothing. Triangles without area and
+        skin is left out, and one that is zero measures nothing. Triangles without area and
         vertices without triangles are fine and have no strain. Raises ValueError for arrays of
         other shapes, indices out of range, and numbers that are not finite.
         """

@@ -27,7 +27,7 @@ class OwnContext:
     """The context, and the thread in which it is current."""
 
     def __init__(self) -> None:
-        """Open it; raises GpuError where OpenGL is missing or too old."""
+        """Open it; raises GpuError if OpenGL is missing or too old."""
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="kahler-gl")
         try:
             self.gl: moderngl.Context = self.run(_open)

@@ -33,7 +33,7 @@ NUMBER_BYTES = 4  # bytes
 
 
 class Frames:
-    """Buffers and programs of one mesh in one context, which has to be current in all calls."""
+    """Buffers and programs of one mesh in one context, which must be current in all calls."""
 
     def __init__(
         self, gl: moderngl.Context, tables: Tables, rules: Rules, rest_positions: Floats64
@@ -132,7 +132,7 @@ def programs_of(
 ) -> dict[str, moderngl.ComputeShader]:
     """The programs of all passes.
 
-    Raises GpuError where OpenGL is too old, a shader is refused, or buffers are too small.
+    Raises GpuError if OpenGL is too old, a shader is refused, or buffers are too small.
     """
     if gl.version_code < LEAST_VERSION:
         raise GpuError(f"OpenGL 4.3 is needed, and this context has {gl.version_code / 100:.1f}")

@@ -113,7 +113,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
     ) -> None:
         """Bind to a mesh; see `create_kahler_gl`. `own`: OpenGL for frames that bring none.
 
-        Raises GpuError where the driver refuses a shader, or a mesh of this size.
+        Raises GpuError if the driver refuses a shader, or a mesh of this size.
         """
         super().__init__(faces, rest_positions, **values)
         self._own(settings.criterion, *settings.criterion.parts)

@@ -1,4 +1,4 @@
-"""Which surface each sample of the pixels sees: meshes and parts, drawn without light.
+"""Coverage: the surface that each sample of a pixel sees; meshes and parts without light.
 
 That takes a fifth of the time of shading them, and less where only some triangles are drawn.
 """
@@ -24,7 +24,7 @@ SKIN_NUMBERS = 190.0, 63.0, float(INNER_NUMBER)
 class Drawn(NamedTuple):
     """The surfaces that were drawn in a view: as a frame has them.
 
-    skin: None where it was not drawn yet. cut: of an opened skin, else None. has_triangles: whether
+    skin: None if it was not drawn yet. cut: of an opened skin, else None. has_triangles: whether
     each triangle of the skin is a surface of its own.
     """
 

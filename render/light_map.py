@@ -35,7 +35,7 @@ class LightMap:
         return self.exposed(turn)[0]
 
     def exposed(self, turn: float) -> tuple[Light, float]:
-        """That light, and by how much radiance was multiplied for it."""
+        """The light of `light`, and the factor by which its radiance was multiplied."""
         rows, columns = self.radiance.shape[:2]
         every = max(rows // 32, 1)  # 6 degrees are fine enough for light
         radiance = self.radiance[: rows // every * every, : columns // every * every]

@@ -111,7 +111,7 @@ def value_texture(
 ) -> moderngl.Texture:
     """One small number per triangle, shape (M,), to be looked up by gl_PrimitiveID.
 
-    Raises ValueError where there are none, or not as many.
+    Raises ValueError if there are none, or not as many.
     """
     if values is None:
         raise ValueError("the style colours by values, so the skin needs values, one per triangle")

@@ -19,7 +19,7 @@ class Finding:
     """One way to draw, and whether it works here.
 
     name: "offscreen" or "window".
-    message: the GLError's text where it failed, "" where it works.
+    message: the GLError's text where it failed, "" if it works.
     lends_gpu_streams: whether meshes can be refined where they are drawn.
     """
 

@@ -193,7 +193,7 @@ class Renderer:
     def _shadow(
         self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers], *, with_skin: bool
     ) -> Shadow | None:
-        """The shadow of some parts and of the skin; None where a frame has no shadows."""
+        """The shadow of some parts and of the skin; None if a frame has no shadows."""
         if not frame.style.shadows or frame.skin is None:
             return None
         if self._shadow_map is None:

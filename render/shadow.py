@@ -1,7 +1,7 @@
 """The shadow that a mesh and parts throw in the key light, on themselves and on parts.
 
 A depth map, taken from the key light, which hangs on the camera. Of both sides of a mesh: it is
-thin, and the mouth behind its lit side has to be dark. It spans the whole
+thin, and the mouth behind its lit side must be dark. It spans the whole
 scene and depends on nothing that moves, so shadows do not crawl with the face. Its texels are
 coarse on purpose: the look-up blends 4 x 4 of them, and that is how soft the shadow is.
 Source: Williams 1978, "Casting curved shadows on curved surfaces"; filtering of depth tests as in

@@ -85,7 +85,7 @@ class MeshBuffers:
 
     columns: of its rows, 6 (position, normal), 8 (and texture u, v) or 16 (and how much of a bump
         map shows, 0..1 in either slot of it, and the gradients of u and v along the surface).
-    mesh: the last one that was written into it, another object after each upload.
+    mesh: the last one that was written into the buffers; a new object after each upload.
     has_bumps: whether the amounts of that mesh count.
     corners: of a box that holds its vertices, shape (8, 3), float64.
     places: where its vertices are, or some near them, shape (n, 3).
@@ -141,7 +141,7 @@ class MeshBuffers:
         _write_anew(self._more[name], np.ascontiguousarray(triangles))
 
     def _check_bumps(self, has_bumps: bool) -> None:
-        """Raise ValueError where amounts shall count that rows do not have."""
+        """Raise ValueError if amounts shall count that rows do not have."""
         if has_bumps and self.columns < BUMPS.stop:
             raise ValueError(
                 f"bumps on a stream of {self.columns} columns; their amounts are columns 9 and 10: "
@@ -160,7 +160,7 @@ class MeshBuffers:
         self._rewrite("parted", np.concatenate([parts[is_bumped], parts[~is_bumped]]))
 
     def check_uv(self) -> None:
-        """Raise ValueError where rows have no texture coordinates, but a texture comes."""
+        """Raise ValueError if rows have no texture coordinates, but a texture comes."""
         if self.columns == 6:
             raise ValueError(
                 "a texture meets a stream of 6 columns; it needs texture coordinates: lend a "

@@ -164,7 +164,7 @@ class OffscreenSurface(Surface):
 def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurface:
     """Open a frame of `size` pixels that needs no screen; up to `samples` a pixel smooth its edges.
 
-    Raises ValueError for a size that no picture has, GLError where OpenGL 3.3 cannot be had.
+    Raises ValueError for a size that no picture has, GLError if OpenGL 3.3 cannot be had.
     The environment variables of glcontext choose device and libraries: GLCONTEXT_DEVICE_INDEX,
     GLCONTEXT_GLVERSION, GLCONTEXT_LINUX_LIBEGL, GLCONTEXT_LINUX_LIBGL.
     """

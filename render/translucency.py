@@ -82,7 +82,7 @@ def in_view(plane: Plane, view: PlacedView) -> Plane:
 
 
 def fade_seen(skin: Skin, view: PlacedView) -> tuple[Plane, Plane] | None:
-    """The planes by which a skin fades, in view space; None where no picture shows that."""
+    """The planes by which a skin fades, in view space; None if no picture shows that."""
     fade = skin.fade
     if fade is None:
         return None

@@ -179,7 +179,7 @@ def open_window(
 
     Its frame may have more pixels than that. is_scaled: `size` is that on a screen of ordinary
     density, and a dense one gets more where a unit is a pixel.
-    Raises ValueError for a size that no window has, GLError where there is no screen or no OpenGL
+    Raises ValueError for a size that no window has, GLError if there is no screen or no OpenGL
     3.3 core. Wants glfw from the GUI library: import imgui_bundle first where it is used.
     """
     check_size(size)

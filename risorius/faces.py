@@ -28,7 +28,7 @@ class Faces:
     """A set as `risorius dataset` makes it, of single files or in shards; each item is a sample."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
-        """folder: that of the set. Raises OSError where there is no index."""
+        """folder: that of the set. Raises OSError if there is no index."""
         self.folder = Path(folder)
         with (self.folder / "index.csv").open(encoding="utf-8", newline="") as file:
             self.rows = list(csv.DictReader(file))

@@ -70,7 +70,7 @@ class Record:
 
 @dataclass(frozen=True)
 class Within:
-    """Of a number, or of each in a tuple: finite, from `low` to `high`; True and False are none."""
+    """A rule for a number, or each one of a tuple: finite, from `low` to `high`, and no bool."""
 
     low: float
     high: float
@@ -133,7 +133,7 @@ class OneOf:
 
 @dataclass(frozen=True)
 class MadeFrom:
-    """Of any type: made from the value in a file by a function, which may raise ValueError."""
+    """A rule for any type: a function makes it from the file's value, or raises ValueError."""
 
     table: Any
     make: Callable[[Any], Any]
@@ -172,7 +172,7 @@ class Kinds:
 
 
 def called(key: str) -> Any:
-    """Of a field: the key that files have for it."""
+    """The rule that a field has another key in files."""
     return Field(alias=key)
 
 

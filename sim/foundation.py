@@ -39,7 +39,7 @@ Faces = npt.NDArray[np.int32]
 
 
 class Given(NamedTuple):
-    """The optional attributes of a head; None where the head has no such attribute."""
+    """The optional attributes of a head; None if the head has no such attribute."""
 
     landmarks: Any  # give size, lips and lids; without them the face is a plain spring mesh
     rig: Any  # gives muscles, where there are landmarks

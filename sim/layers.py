@@ -75,7 +75,7 @@ class Layers:
     """All controls above the lowest ones, with the effect of each on those.
 
     groups: title of the layer -> its names, from the lowest layer up.
-    actions: name -> its effect, in words; "" where the table has none.
+    actions: name -> its effect, in words; "" if the table has none.
     shares: name -> the amount that it adds to each of the C lowest controls at value 1, shape (C,).
     floors: name -> the least value of each lowest control at value 1, 0 for none, shape (C,).
     share_of: name -> the control whose value its own is a share of, where there is one.

@@ -1,8 +1,8 @@
 """Which side of the mouth and of an eye each vertex lies on.
 
-Closed lips and lids are a millimetre apart, so distance in space does not part upper from lower;
-the way along the skin does: from a vertex of the upper lip the upper lip's landmarks are near and
-the lower lip's are only reached around the mouth corner.
+Closed lips and lids are a millimetre apart, so distance in space does not separate upper from
+lower; the way along the skin does: from a vertex of the upper lip the upper lip's landmarks are
+near and the lower lip's are only reached around the mouth corner.
 
 Source: our own; the gates of Kähler et al. 2001 are painted by hand.
 """

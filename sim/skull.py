@@ -185,7 +185,7 @@ def move_mandible(
     angles: tuple[float, float],
     values: Triple,
 ) -> tuple[Floats64, Floats64]:
-    """Rotation and shift of the mandible; `ways`: glides [mm] of its `values`; see mandible_motion.
+    """Rotation and shift of the mandible (see mandible_motion); `ways`: glide [mm] for each value.
 
     angles: of full opening and of full sideways motion [rad].
     """

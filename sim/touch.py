@@ -38,7 +38,7 @@ class Touch:
 
         vertices: their numbers, shape (n,), none twice. targets: where each is drawn to [head
         units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
-        shape (n,). Raises ValueError where they do not fit together.
+        shape (n,). Raises ValueError if they do not fit together.
         """
         wanted = "different vertex numbers, shape (n,)"
         count = len(self._positions)

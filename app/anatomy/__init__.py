@@ -42,7 +42,7 @@ SKIN_ALONE = AnatomyView()
 
 
 class Dissection(NamedTuple):
-    """What is seen of a scene beside its skin, and through it."""
+    """The visible parts of a scene besides its skin, and through the skin."""
 
     parts: tuple[render.PlacedPart, ...]
     opacity: float = 1.0

@@ -241,7 +241,7 @@ class Capture:
 
 
 def straight(premultiplied: Image) -> Image:
-    """From premultiplied colours to those that files hold, (H, W, 4); black where nothing is."""
+    """Convert premultiplied colours to those of files, (H, W, 4); black where nothing is."""
     image = premultiplied.copy()
     partly = (image[..., 3] > 0) & (image[..., 3] < 255)
     colours = image[partly].astype(np.float32)

@@ -75,7 +75,7 @@ HEARD = tuple(suffix for suffix, each in FORMATS.items() if each.sound)
 
 
 def format_of(target: Path) -> FilmFormat | None:
-    """The format for a file of this name; None where it is no film."""
+    """The format for a file of this name; None if it is no film."""
     return FORMATS.get(target.suffix.lower())
 
 

@@ -51,7 +51,7 @@ def drawing(
 ) -> Generator[tuple[float, Callable[[], Frame]]]:
     """Let `count` processes play a script; yield the time [s] of each frame, and a getter.
 
-    The caller has to call the getter for each frame of the span. It raises errors of a process.
+    The caller must call the getter for each frame of the span. It raises errors of a process.
     """
     drawers: list[Worker] = []
     shown: list[Frame] = []

@@ -1,4 +1,4 @@
-"""`risorius batch`: many commands, side by side."""
+"""`risorius batch`: many commands, in parallel."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def batch(
     logs: Path | None,
     quiet: bool,
 ) -> None:
-    """Do a list of commands side by side.
+    """Run a list of commands in parallel.
 
     LIST is a text file with a command in each line, as typed after risorius. Lines may hold
     capture, export and convert; lines that begin with # are ignored. Relative paths begin in the

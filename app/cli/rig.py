@@ -117,7 +117,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
 
 
 def _take_of(rigging: Rigging, kinds: tuple[str, ...]) -> Script | None:
-    """The take to compare sums with; None where nobody reads that, or no shape is ARKit's."""
+    """The take to compare sums with; None if nobody reads that, or no shape is ARKit's."""
     from ..performances import built_in_words, read_performance
 
     if "arkit" not in kinds:

@@ -54,7 +54,7 @@ class Limits(dict[str, tuple[float, float]]):
     def posed(
         self, places: Places, sums: Floats64, over: ControlValues | None = None
     ) -> ControlValues:
-        """The same of controls by their places; both of shape (n,)."""
+        """Values as of `pose`, for controls by their places; both of shape (n,)."""
         numbers = np.zeros(len(self)) if over is None else over.numbers.copy()
         numbers[places] = self.cut_off(sums, places)
         return ControlValues(self, numbers)

@@ -1,4 +1,4 @@
-"""What a camera adds to a picture: blur, noise, and the blocks of a JPEG file, in this order."""
+"""Effects of a camera on a picture: blur, noise, and the blocks of a JPEG file, in this order."""
 
 from __future__ import annotations
 

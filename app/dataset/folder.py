@@ -50,7 +50,7 @@ class SetFolder:
     def held(self, options: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
         """Begin a set in an empty folder, or resume one, and keep others out meanwhile.
 
-        options: all that decides the samples, for JSON. Raises UserError where the
+        options: all that decides the samples, for JSON. Raises UserError if the
         folder holds something else, or a set that was begun with other options.
         """
         check_links(self.path)
@@ -184,7 +184,7 @@ def _add_lengths(file: Path) -> None:
 
 
 def _length(file: Path) -> int | None:
-    """How many bytes a plain file has; None where there is none."""
+    """How many bytes a plain file has; None if there is none."""
     try:
         return file.stat().st_size if file.is_file() else None
     except (OSError, ValueError):  # a name that no file can have is a ValueError

@@ -39,10 +39,10 @@ def make_set(
     resume: bool = False,
     progress: bool = True,
 ) -> Made:
-    """Make `count` samples of a set from number `first` on, as far as they are not whole.
+    """Make those of `count` samples from number `first` on that are missing or incomplete.
 
     jobs: processes here. scheduler: address of a Dask cluster that makes them instead. Raises
-    UserError where the set cannot be made, or was begun otherwise; samples that were made until
+    UserError if the set cannot be made, or was begun otherwise; samples that were made until
     then stay.
     """
     folder = SetFolder(request.output)

@@ -61,7 +61,7 @@ def opening(near: Array, edge: Array) -> float:
 
 
 def around(triangles: Array, middle: Array, reach: float) -> Array:
-    """Those of the triangles (n, 3, 3) that lie within `reach` mm of a point."""
+    """The triangles, of (n, 3, 3), that lie within `reach` mm of a point."""
     near: Array = triangles[np.linalg.norm(triangles.mean(axis=1) - middle, axis=1) < reach]
     return near
 

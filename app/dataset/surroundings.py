@@ -91,7 +91,7 @@ class SampleLight:
 
     @property
     def labels(self) -> dict[str, Any]:
-        """As JSON has it."""
+        """The values for JSON."""
         turned = {} if self.map is None else {"turn": self.turn}
         return {"name": self.name, **turned, **asdict(self.light)}
 

@@ -87,7 +87,7 @@ class Expression(Record):
 
     @property
     def row(self) -> Shares:
-        """As the table has it."""
+        """The row as in the table."""
         found = {"share": self.share, "one_sided": self.one_sided, **self.units}
         return {name: value for name, value in found.items() if value}
 
@@ -223,7 +223,7 @@ def table_text() -> str:
 
 
 def load_table(path: Path | None) -> SampleTable:
-    """The table in a file over the one that comes along; None: that alone.
+    """The table in a file over the one that is included; None: that alone.
 
     Raises UserError with file, section and row.
     """

@@ -56,7 +56,7 @@ class Clip:
 
     @cached_property
     def times(self) -> Floats64:
-        """Of the frames [s], shape (N,)."""
+        """The times of the frames [s], shape (N,)."""
         return np.arange(self.frame_count) / self.frames_per_second
 
     def refiner(self, refinement: Refinement, splits: Splits | None = None) -> refine.Refiner:
@@ -68,7 +68,7 @@ class Clip:
     ) -> Iterator[refine.RefinedMesh]:
         """The skin of each frame, in order, as a refiner has it; read it before the next one.
 
-        refiner: one of `refiner`; None: a new one. Raises UserError for a refiner that has to know
+        refiner: one of `refiner`; None: a new one. Raises UserError for a refiner that must know
         where somebody looks from, and PlugInError if code of another package fails.
         """
         refiner = self.refiner(refinement) if refiner is None else refiner
@@ -92,7 +92,7 @@ def record(
 ) -> Clip:
     """Play a script on its scene (built unless given) and keep all frames, or those of `span` [s].
 
-    Raises UserError where the scene lacks a control of the script.
+    Raises UserError if the scene lacks a control of the script.
     """
     scene = scene_of(script) if scene is None else scene
     begin, end = span or (0.0, script.duration)

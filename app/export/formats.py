@@ -122,7 +122,7 @@ def format_for(output: Path, name: str | None) -> Format:
 
 
 def _check_suffix(output: Path, chosen: Format, known: Container[str]) -> None:
-    """UserError where a file of this format cannot be called so, or a folder would seem a file."""
+    """UserError if a file of this format cannot be called so, or a folder would seem a file."""
     if not chosen.suffixes and output.suffix.lower() in known:
         raise UserError(
             f"{output}: {chosen.title} is a folder, and this is the name of a file; "

@@ -19,7 +19,7 @@ class LiveFrame:
     """The content of a packet; a channel that it does not name stays as it was.
 
     channels: by the names and in the units of recordings/names.py.
-    subject: the person's name, as the sender gives it; "" where it gives none.
+    subject: the person's name, as the sender gives it; "" if it gives none.
     has_face: False where the sender says that it sees nobody.
     is_complete: False where more packets of the same frame must come before it counts.
     """

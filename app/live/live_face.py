@@ -45,7 +45,7 @@ class LiveFace(Receiver):
 
     calibration: of the channels; may be replaced at any time.
     channels: the newest value of each channel, before calibration.
-    subject: the name of the person, "" where the sender has none.
+    subject: the name of the person, "" if the sender has none.
     presence: how far it overrides our face, 0 to 1.
     """
 

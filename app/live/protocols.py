@@ -35,7 +35,7 @@ class Protocol:
     library: str = ""
 
     def check(self) -> None:
-        """Raise UserError where the library is missing."""
+        """Raise UserError if the library is missing."""
         if self.library:
             needed(self.library, self.title, "live", package="python-osc")
 

@@ -35,7 +35,7 @@ class Receiver:
     ) -> None:
         """Listen at once. wake: called from the thread when a frame waits and none did before.
 
-        Raises UserError where that cannot be.
+        Raises UserError if that cannot be.
         """
         self.listening = listening
         self._wake = wake

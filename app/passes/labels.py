@@ -165,7 +165,7 @@ def save_labelled(picture: Path, image: Image, known: Labelled | None) -> None:
 
 
 def check_wanted(wanted: Sequence[str], scene: str) -> None:
-    """UserError for passes that are none, that this scene has not, or that cannot be written."""
+    """Raise UserError for names of no pass, and passes that this scene or the files lack."""
     for name in wanted:
         if name not in NAMES:
             raise UserError(f"--passes: '{name}' is no pass; allowed are {', '.join(NAMES)}")

@@ -35,7 +35,7 @@ def whole_take(
     """The Take of rows that may be out of order, and of channels that may be NaN.
 
     times: [s], shape (T,). channels: name -> shape (T,). has_keys: whether rows are keys, which may
-    be far apart. UserError where no face is in it.
+    be far apart. UserError if no face is in it.
     """
     all_notes = list(notes)
     channels = {name: measured(name, values) for name, values in channels.items()}

@@ -83,7 +83,7 @@ def _named_angles(
 
 
 def _turned(values: Sequence[Any], key: str, notes: list[str]) -> list[Floats64 | None]:
-    """The matrices of quaternions, None where there is none."""
+    """The matrices of quaternions, None if there is none."""
     quaternions = [_quaternion(value) for value in values]
     known = np.array([each for each in quaternions if each is not None])
     if not len(known):

@@ -312,7 +312,7 @@ def _plain_name(key: str) -> str:
 
 
 def _first(keys: Mapping[str, Any], names: Sequence[str]) -> Any:
-    """The value under the first of the names that is there; None where none is."""
+    """The value under the first of the names that is there; None if none is."""
     return next((keys[name] for name in names if name in keys), None)
 
 

@@ -99,7 +99,7 @@ class Unit:
 
     side: "_left", "_right", "" for both or unknown. is_short_right: the file writes the letter
     R alone, which means intensity in OpenFace's files that have no L. kind: "intensity",
-    "detection", "" where the name does not say.
+    "detection", "" if the name does not say.
     """
 
     number: int

@@ -108,7 +108,7 @@ def _strange(names: tuple[str, ...]) -> str:
 def read_recording(path: Path) -> tuple[str, str]:
     """The whole text of a file, and its encoding.
 
-    UserError where nothing is there, for a file that is too long, and for one without text.
+    UserError if nothing is there, for a file that is too long, and for one without text.
     """
     content = read_bytes(path, what="recording", longest=LONGEST_FILE)
     if not content.strip():
@@ -133,7 +133,7 @@ def read_beginning(path: Path) -> str:
 def _decoded(content: bytes) -> tuple[str | None, str]:
     """The text in these bytes, with line ends of one kind, and its encoding.
 
-    None where they are no text. The end of the bytes may be torn.
+    None if they are no text. The end of the bytes may be torn.
     """
     codec, encoding = _encoding_of(content)
     text = content.decode(codec, errors="replace")

@@ -325,7 +325,7 @@ def _cleaned(
 def _rows_in(
     numbered: Sequence[tuple[int, str]], layout: Layout
 ) -> list[tuple[int, int, str]] | None:
-    """The rows as `_cleaned` has them; None where a quote is not closed, or only by another row."""
+    """The rows as `_cleaned` has them; None if a quote is not closed, or only by another row."""
     rows: list[tuple[int, int, str]] = []
     is_closed = True
     try:

@@ -69,7 +69,7 @@ class Stamp:
 
 
 def stamp_of(name: str) -> Stamp | None:
-    """The meaning of a column or key by its name; None where it is no time."""
+    """The meaning of a column or key by its name; None if it is no time."""
     letters = _letters(name)
     stamp_names = (  # without the unit behind them; the first that a file has and that rises counts
         "timestamp",
@@ -232,7 +232,7 @@ def _seconds_in(cell: str) -> float:
 def stamp_times(
     stamps: Floats64, notes: list[str], unit_of_name: float | None = None
 ) -> Floats64 | None:
-    """Time stamps of any unit in seconds; None where no unit fits.
+    """Time stamps of any unit in seconds; None if no unit fits.
 
     unit_of_name: the unit in the column's name [s]. It counts if frames are then 0.5 ms to 10 s
     apart.
@@ -271,7 +271,7 @@ def _in_seconds(stamps: Floats64, unit: float, name: str, notes: list[str]) -> F
 def clock_times(cells: Sequence[str], name: str, notes: list[str]) -> Floats64 | None:
     """Times [s] of `2024-05-01T12:00:00.033Z`, `0 days 00:00:00.033`, `00:00:00,033`, `0:00.03`.
 
-    NaN where a cell has none; None where none has one, or where they stand still. The zone and
+    NaN where a cell has none; None if none has one, or where they stand still. The zone and
     dates but those by year, month and day do not count: midnight is found by the hours.
     """
     seconds = np.full(len(cells), np.nan)

@@ -57,7 +57,7 @@ def rows_without_face(
 ) -> Rows:
     """The rows in which a flag says that no face is seen, shape (count,).
 
-    names: of columns or keys. texts: the cells of one of them, "" where there is none. A confidence
+    names: of columns or keys. texts: the cells of one of them, "" if there is none. A confidence
     counts where nothing says yes or no.
     """
     lost = np.zeros(count, dtype=bool)

@@ -116,7 +116,7 @@ def error_in(plug_in: PlugIn, error: BaseException) -> PlugInError:
 
 
 def _factory(kind: str, name: str, registry: refine.Registry[Any]) -> Any:
-    """The factory of a plug-in; None where none has this name."""
+    """The factory of a plug-in; None if none has this name."""
     try:
         return registry.find(name)
     except ValueError:

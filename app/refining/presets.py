@@ -110,7 +110,7 @@ class Refinement:
 
     @property
     def label(self) -> str:
-        """Its name under a picture."""
+        """The name of the refinement under a picture."""
         name = "static" if self.refiner == STATIC else self.refiner or self.preset
         return f"{name}{CHANGED}" if self.options else name
 

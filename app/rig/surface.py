@@ -24,7 +24,7 @@ class MovingSurface:
     shapes: vertices in each frame, before `matrices`, shape (N, V, 3), float32; None: as at rest.
     matrices: move the whole of it in each frame, shape (N, 4, 4), float64; None: not moved.
     uv, face_uv: texture coordinates, shape (U, 2), and which of them each corner has, shape (F, 3).
-    colours: sRGB 0..1 of the vertices, shape (V, 3), float32; None where a texture has them.
+    colours: sRGB 0..1 of the vertices, shape (V, 3), float32; None if a texture has them.
     shine: 0 dull, 1 wet.
     """
 

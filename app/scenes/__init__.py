@@ -1,4 +1,4 @@
-"""What can be animated: the built-in head with its muscles, or the paper's plane (Fig. 9).
+"""Scenes to animate: the built-in head with its muscles, or the paper's plane (Fig. 9).
 
 A scene owns a triangle mesh whose topology never changes, moves its vertices as time passes, and
 knows nothing of refinement or drawing. `build_scene` makes one by its name. From below: drawable.py

@@ -57,7 +57,7 @@ class DenseSkin:
         return self._embedding.carry(values)
 
     def clone(self) -> DenseSkin:
-        """The same skin, which moves by itself."""
+        """A copy of the skin, which moves independently."""
         twin = copy.copy(self)
         twin._embedding = copy.deepcopy(self._embedding)
         twin._positions = self._positions.copy()

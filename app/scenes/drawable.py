@@ -98,7 +98,7 @@ class Drawable:
 
     @property
     def parts(self) -> tuple[Any, ...]:
-        """What moves with bones or the skin, as it is now: eyes, teeth, lashes, ..."""
+        """The parts that move with bones or the skin, as they are now: eyes, teeth, lashes, ..."""
         return ()
 
     def rims(self, point_count: int) -> Mapping[str, Rim]:

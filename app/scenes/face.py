@@ -72,7 +72,7 @@ class FaceScene(Scene):
         return Framing(extent, read_only(extent[extent[:, 1] > lowest]), focus)
 
     def clone(self) -> FaceScene:
-        """The same head once more, at rest, which moves by itself; that takes no time."""
+        """A copy of the face at rest, which moves independently; it is made at once."""
         return FaceScene(self.head, self.face.clone())
 
     def take(self, values: ControlValues) -> None:

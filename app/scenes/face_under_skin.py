@@ -38,7 +38,7 @@ class Face:
         return cls(head, simulation, DenseSkin(head.vertices, head.faces, simulation))
 
     def clone(self) -> Face:
-        """The same head once more, at rest, which moves by itself."""
+        """A copy of the face at rest, which moves independently."""
         simulation = self.simulation.clone()
         simulation.reset()
         twin = replace(

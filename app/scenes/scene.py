@@ -1,4 +1,4 @@
-"""What can be animated: a mesh that can be seen, and controls that move it."""
+"""A scene to animate: a visible mesh, and controls that move it."""
 
 from __future__ import annotations
 

@@ -65,7 +65,7 @@ class Places(Set[KeyPlace]):
         return found
 
     def near(self, time: float, reach: float) -> Places:
-        """Those at the time nearest to this one, none if that is further than `reach` [s]."""
+        """The keys at the time nearest to this one; none if it is further than `reach` [s]."""
         around = self.between(time - reach, time + reach).times
         nearest = min(
             (float(each[np.abs(each - time).argmin()]) for each in around.values()),
@@ -75,7 +75,7 @@ class Places(Set[KeyPlace]):
         return self.between(nearest, nearest)
 
     def between(self, first: float, last: float) -> Places:
-        """Those from one time to another [s]."""
+        """The keys from one time to another [s]."""
         return Places(
             {
                 name: each[np.searchsorted(each, first) : np.searchsorted(each, last, "right")]
@@ -114,7 +114,7 @@ NOWHERE = Places({})
 
 
 def among(times: Times, others: Times, reach: float = 0.0) -> Flags:
-    """Which of the times are one of the others, or no further from one than `reach` [s]."""
+    """Whether each of the times is within `reach` [s] of one of the others."""
     if not len(others):
         return np.zeros(len(times), np.bool_)
     after = np.minimum(np.searchsorted(others, times - reach), len(others) - 1)

@@ -68,7 +68,7 @@ class Recorder:
         return {name: each for name, each in self.held.items() if self._kept.get(name) != each}
 
     def script(self) -> Script | None:
-        """The script with the recording so far, or None where nothing was recorded."""
+        """The script with the recording so far, or None if nothing was recorded."""
         if not self.samples:
             return None
         tracks = {

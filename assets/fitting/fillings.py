@@ -44,7 +44,7 @@ class Filling:
 
 
 def filling_of(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> Filling | None:
-    """All that fills the mouth or an eye of a mesh; None where nothing does.
+    """All that fills the mouth or an eye of a mesh; None if nothing does.
 
     numbers: vertices at the landmarks, shape (68,). landmarks: where they lie [unit of the mesh],
     shape (68, 3).

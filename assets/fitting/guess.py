@@ -39,7 +39,7 @@ Known = Mapping[int, npt.ArrayLike]  # points (3,) [unit of the mesh] by the lan
 def guess(mesh: Mesh, known: Known) -> Floats64:
     """Where all 68 landmarks lie on a mesh [its unit], shape (68, 3).
 
-    known: those of `FIRST` at least; they stay where they are. Raises AssetError where they are
+    known: those of `FIRST` at least; they stay where they are. Raises AssetError if they are
     no face's.
     """
     head = load("head")
@@ -72,7 +72,7 @@ def guess(mesh: Mesh, known: Known) -> Floats64:
 def placing(known: Known) -> Similarity:
     """The similarity to the face space [mm] by landmarks that are known, four of them at least.
 
-    Raises AssetError where they are no face's, or that of a mirror image.
+    Raises AssetError if they are no face's, or that of a mirror image.
     """
     similarity, off = _laid(known)
     right = "right is the subject's own, on your left where the face looks at you"

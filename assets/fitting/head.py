@@ -106,7 +106,7 @@ def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHea
 
     landmarks: None for a mesh whose vertices are known by their numbers, see topologies.py.
     Raises AssetError, one line that names the file, where a file is missing, broken or unusable;
-    its subclass UnfinishedError where landmarks are missing, or a known head's do not fit.
+    its subclass UnfinishedError if landmarks are missing, or a known head's do not fit.
     """
     path = Path(mesh)
     found = read_mesh(path)

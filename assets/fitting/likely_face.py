@@ -1,8 +1,8 @@
-"""The person of the program's own space that is most like a face of which few points are known.
+"""The person of the program's own space that is most similar to a face with few known points.
 
-Its shape, and where the mesh lies, are fitted together: the known points bind strongly, places of
-the skin around the landmarks to the planes of the mesh's surface, and weights of modes to 0, which
-is the built-in head.
+The person's shape and the place of the mesh are fitted together, to three kinds of data:
+the known points, with a large weight; distances of the skin around the landmarks from the planes of
+the mesh's surface; and the weights of modes, which are 0 for the built-in head.
 
 Source: Amberg, Knothe, Vetter 2008, "Expression invariant 3D face recognition with a morphable
 model", section 3 (modes fitted by nearest points, with a prior).
@@ -50,7 +50,7 @@ class LikelyFace:
 
     @property
     def vertices(self) -> Floats64:
-        """Of the person [mm]."""
+        """The vertices of the person [mm]."""
         return self.head.vertices + np.tensordot(self._weights, self._modes, 1)
 
     def fit(self) -> None:

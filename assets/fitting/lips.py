@@ -34,7 +34,7 @@ def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
     """The mesh with those vertices apart that its file doubles where the lips touch.
 
     A file doubles vertices along seams of its texture, and the reader makes them one; between lips
-    they are not. landmarks: where they lie [unit of the mesh], shape (68, 3). None where no vertex
+    they are not. landmarks: where they lie [unit of the mesh], shape (68, 3). None if no vertex
     is doubled there.
     """
     if mesh.corners is None or mesh.same is None:
@@ -108,7 +108,7 @@ class LipCut:
 
 
 def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | None:
-    """The cut between lips that are sealed; None where no line of edges parts two lips, or they
+    """The cut between lips that are sealed; None if no line of edges parts two lips, or they
     are apart.
 
     numbers: vertices at the landmarks, shape (68,). landmarks: where they lie [unit of the mesh],

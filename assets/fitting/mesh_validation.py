@@ -150,7 +150,7 @@ def check_manifold(faces: Integers32) -> None:
 
 
 def check_pieces(faces: Integers32, count: int) -> None:
-    """Raise AssetError where no piece of a mesh with `count` vertices could be a skin.
+    """Raise AssetError if no piece of a mesh with `count` vertices could be a skin.
 
     The error is that of the largest piece.
     """
@@ -174,7 +174,7 @@ def check_pieces(faces: Integers32, count: int) -> None:
 
 
 def check_openings(skin: SkinPiece) -> None:
-    """Raise AssetError where lips are welded or skin covers an eye; in the face space [mm]."""
+    """Raise AssetError if lips are welded or skin covers an eye; in the face space [mm]."""
     middle_of_lips = (62, 66)  # inner landmarks, above and below
     over, under = skin.landmarks[list(middle_of_lips)]
     from_above, from_below = path_lengths(

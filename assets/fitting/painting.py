@@ -146,7 +146,7 @@ class Layout:
 def texels_within(layout: Layout, size: tuple[int, int]) -> Texels:
     """The texels of a picture of (height, width) that triangles lie over, and one beside them.
 
-    Raises AssetError where triangles cover the picture many times over.
+    Raises AssetError if triangles cover the picture many times over.
     """
     try:
         return Texels.within(layout.corners, size, margin=1.0)  # colours blend across edges
@@ -229,7 +229,7 @@ def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
 
 
 def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Image, Layout] | None:
-    """The picture of some triangles and where they lie in it; None where they have none.
+    """The picture of some triangles and where they lie in it; None if they have none.
 
     Several pictures become one, side by side; triangles without one take the others' mean colour.
     turned: whether the corners of these triangles are wanted in the other order.

@@ -1,4 +1,4 @@
-"""The simplified mesh of a dense head as a head of its own, for files that have to be small."""
+"""The simplified mesh of a dense head as a head of its own, for files that must be small."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ class SimulatedHead:
     """A mesh with all that `sim.create` reads; its attributes are those of `Head`.
 
     uv: of vertices in the built-in picture, shape (V, 2).
-    jaw_axis: None where no ear shows it; then `sim.create` guesses it from the landmarks.
+    jaw_axis: None if no ear shows it; then `sim.create` guesses it from the landmarks.
     """
 
     vertices: Floats64

@@ -1,4 +1,4 @@
-"""What lies under the skin of a head that is opened: skull, cartilage of the nose, throat.
+"""The parts under the skin of a head that is opened: skull, cartilage of the nose, throat.
 
 They ship as data (`data/skull.npz`). Programs of revision f4bd608f (`assets/skull.py`,
 `assets/throat.py`) carved them from the skin that the built-in head then had, moved inward by the
@@ -36,7 +36,7 @@ def build_skull(
     """Parts under the skin at rest, which move with their bones; all unless names says which.
 
     head: with vertices, faces and landmarks. pivots: what "mandible" turns about, (3,).
-    Raises AssetError where the file is missing or broken.
+    Raises AssetError if the file is missing or broken.
     """
     file = Path(__file__).parents[1] / "data" / "skull.npz"
     arrays = read_arrays(file)

@@ -2,7 +2,7 @@
 
 A topology is recognised by its counts of vertices and triangles, by edges between vertices, and by
 lengths of these. The counts are those of a whole file or of one piece of it, so eyes, teeth and
-helpers may be there or not. topologies.toml has those that come along; everybody adds others in
+helpers may be there or not. topologies.toml has those that are included; everybody adds others in
 JSON files, one topology each:
 
     {"name": "FLAME", "counts": [[5023, 9976]], "landmarks": [68 vertex numbers]}
@@ -53,7 +53,7 @@ class Topology(Record):
     edges: list[tuple[Number, Number, float]] = field(default_factory=list)
 
     def check(self, where: str) -> None:
-        """Raise AssetError where a file does not name 68 vertices that it has."""
+        """Raise AssetError if a file does not name 68 vertices that it has."""
         fewest = min((vertices for vertices, _ in self.counts), default=0)
         if len(self.landmarks) != COUNT:
             raise AssetError(
@@ -129,7 +129,7 @@ def _has_edges(mesh: Mesh, numbers: Integers, topology: Topology) -> bool:
 
 @cache
 def _built_in_topologies() -> tuple[Topology, ...]:
-    """Those that come along."""
+    """Those that are included."""
     path = Path(__file__).parents[1] / "topologies.toml"
     rows = read_toml(path)["topology"]
     found = [read(Topology, row, path.name, error=AssetError) for row in rows]

@@ -24,7 +24,7 @@ PARTS = 5  # of each hair, and [mm]
 
 @dataclass(frozen=True)
 class Brows:
-    """Both brows of somebody.
+    """Both brows of a person.
 
     thickness: of the thickest place [mm].
     inner: from the middle of the face to the inner end [mm].
@@ -45,7 +45,7 @@ class Brows:
 
 
 def drawn_brows(is_man: bool, years: float, random: np.random.Generator) -> Brows:
-    """Brows of somebody of a sex and age."""
+    """Brows of a person of a sex and age."""
     # Thickness, inner end, rise, fall, peak, density of women and men: means, and deviations.
     drawn = (
         np.array([(5.8, 12.0, 4.6, 6.4, 41.0, 0.95), (0.9, 1.2, 1.2, 1.4, 2.0, 0.15)]),

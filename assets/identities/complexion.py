@@ -262,7 +262,7 @@ def built_in_hair(head: Head) -> tuple[Part, ...]:
 
 
 def _behind(tints: _Tints, features: Features) -> Floats32:
-    """How far texels lie behind somebody's hairline [mm]; half as far if the top is bald."""
+    """How far texels lie behind a person's hairline [mm]; half as far if the top is bald."""
     scalp = tints.scalp
     lies = np.float32(BEHIND) * scalp - np.float32(IN_FRONT)
     line = features.hairline

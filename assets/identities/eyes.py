@@ -25,7 +25,7 @@ from .population import DARKEST, IRIS_SHARES, LIGHTEST, ONLY_BROWN
 
 
 class Iris(NamedTuple):
-    """How somebody's irises differ from most of their colour.
+    """How a person's irises differ from most of their colour.
 
     lightness: in powers of 2. greyness: share of their colour that is lost. ring: how much browner
     they are around the pupil, 0 to 1. limbus: how much darker their edge is than the painted one,
@@ -46,7 +46,7 @@ USUAL_IRIS = Iris()
 def drawn_iris(
     years: float, chance: float, random: np.random.Generator, *, angle: float = LIGHTEST
 ) -> Iris:
-    """The irises of somebody of an age and a tone [ITA]; chance: of edge and fibres, 0 to 1."""
+    """The irises of a person of an age and a tone [ITA]; chance: of edge and fibres, 0 to 1."""
     lightness, greyness, ring = random.uniform(0.0, 1.0, 3)
     seed = int(chance * 2**31)
     darker, rougher = np.random.default_rng(seed).uniform(0.0, 1.0, 2).tolist()

@@ -1,4 +1,4 @@
-"""What sex, age and chance make of the picture of a face: brows, lids, lips, hair, irises."""
+"""Effects of sex, age and chance on the picture of a face: brows, lids, lips, hair, irises."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .space import Identity, Sex
 
 @dataclass(frozen=True)
 class Features:
-    """What sex and age make of the picture of a face; the default is the built-in head's.
+    """Effects of sex and age on the picture of a face; the default is the built-in head's.
 
     brows: of a person, else the built-in head's. lid_line: how dark lashes make the edges of the
     lids, 0 to 1. stubble: how much of the skin short hairs of a beard cover. beard, lips: density
@@ -42,7 +42,7 @@ PLAIN = Features()
 
 
 def features_of(identity: Identity, angle: float, random: np.random.Generator) -> Features:
-    """Brows, beard, lips, hair and relief of somebody of that sex and age, chosen by eye.
+    """Brows, beard, lips, hair and relief of a person of that sex and age, chosen by eye.
 
     Women's eyes and lips are darker beside their skin (Russell 2009, "A sex difference in facial
     contrast and its exaggeration by cosmetics", Perception 38:1211-1219), less so with age

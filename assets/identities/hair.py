@@ -109,7 +109,7 @@ class Hairline:
 
 
 def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> Hairline:
-    """The hairline of somebody of a sex and age.
+    """The hairline of a person of a sex and age.
 
     It is straight, round, or like an M as often as among 456 persons (women 43, 39, 18 %, men 46,
     11, 43 %); men's lies 4.5 mm higher (Kashiyama and others 2021, "Hairline morphology", Plast.

@@ -37,7 +37,7 @@ NAMED: Mapping[str, _Known] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Colours:
-    """Somebody's tone of skin (ITA [deg]), blood in it, colour of eyes, and features."""
+    """A person's tone of skin (ITA [deg]), blood in it, colour of eyes, and features."""
 
     angle: float
     blood: float

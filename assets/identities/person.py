@@ -55,7 +55,7 @@ class Person(FittedHead):
 
     @property
     def measures(self) -> dict[str, float]:
-        """Its measures, code -> [mm]."""
+        """The measures of the person, code -> [mm]."""
         return measures_of(self.vertices, self.anatomy)
 
     @property

@@ -70,7 +70,7 @@ EVERYBODY = Population()
 def drawn_irises(
     random: np.random.Generator, angle: float, shares: Mapping[str, float] = IRIS_SHARES
 ) -> str:
-    """The colour of somebody's eyes; shares: with very light skin. Dark skin has brown ones.
+    """The colour of a person's eyes; shares: with very light skin. Dark skin has brown ones.
 
     Hazel ones are met on darker skin than those without brown.
     """

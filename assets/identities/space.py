@@ -4,18 +4,19 @@ A person is the mean with a weight for each mode; a weight of 1 is one deviation
 modes were fitted to those of ICT-FaceKit as the head's form was (docs/head.md), and turned so that
 the first ones move the face most (principal components). They know neither sex nor age.
 
-Weights are drawn freely, by the law of the modes, 1.1 to 1.2 times as wide as people's but for the
-size of the head. Sex and age move the middle of the draw to where sexes lie as far apart
-as the published measures of women and men (`assets.norms`), and as some points do (brow ridge, jaw,
-chin of men; skin that sags); how far those is chosen by eye, after anatomists. The norms are of
-Europeans. How near the middle of a draw comes to their means, rather than to that of all people
-whose modes these are, is drawn anew for each person, from not at all to wholly. Neither this nor
-the form knows the tone of the skin: that they are independent is an assumption.
+Weights are drawn from the distribution of people, widened 1.1 to 1.2 times except for the size of
+the head. Sex and age move its mean: the sexes lie as far apart as the published measures of women
+and men (`assets.norms`). Some points move, too (brow ridge, jaw and chin of men; skin that sags);
+these amounts are chosen by eye, after anatomists. The norms are of
+Europeans. For each person a random share, 0 to 1, of the way from the mean of all people with these
+modes to the means of the norms is taken. Neither this share nor the form depends on the tone of the
+skin: this independence is an assumption.
 Source: Blanz, Vetter 1999, "A morphable model for the synthesis of 3D faces".
 
 Three widths were taken with calipers, which press on the skin over the bone (`norms`). A surface is
 wider there: on three scanned persons the jaw is 1.3 times as wide as the outer eye corners are
-apart, where the norms have 1.15. So as much as is pressed is added; how much is chosen by them.
+apart, where the norms have 1.15. So the depth of the pressure is added; its amount is chosen by
+these three.
 """
 
 from __future__ import annotations
@@ -131,7 +132,7 @@ class PersonSpace:
         return np.asarray(np.tensordot(weights, self.modes, 1), dtype=np.float64)
 
     def draw(self, sex: Sex, age: float, random: np.random.Generator) -> Floats64:
-        """The weights of somebody of that sex and age [years], shape (k,)."""
+        """The weights of a person of that sex and age [years], shape (k,)."""
         chance = np.clip(random.normal(size=len(self.modes)), -MOST, MOST)
         near_norms = float(random.uniform())
         rows, beside, apart = self._measured(sex)

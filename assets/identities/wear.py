@@ -1,4 +1,4 @@
-"""What persons wear: shirts, masks, and glasses on nose and ears.
+"""Clothes of persons: shirts, masks, and glasses on nose and ears.
 
 Lenses are clear, so only their frame is there. It moves with the head, and keeps off the skin at
 rest. All sizes are chosen by eye, after usual frames (lens 48 mm, bridge 18 mm, temple 140 mm).

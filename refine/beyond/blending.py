@@ -2,7 +2,7 @@ r"""No popping: the refined surface as a continuous function of the positions.
 
 Kähler, Haber, Seidel 2003, put a new point where it belongs in the very frame in which its edge
 passes a threshold. Here it begins on the straight edge and moves out while the metric of its edge
-goes on to rise. Two things have to be continuous for that:
+goes on to rise. Two things must be continuous for that:
 
 *Points.* A criterion measures the refinement metric of an edge: above 0 it is split once, above 1
 twice.

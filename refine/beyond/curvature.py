@@ -41,7 +41,7 @@ class RestCurvature(Measuring):
         """`once`, `twice`: measures in sizes of the mesh, so a fine mesh is left as it is.
 
         Chosen by eye on a head of 2030 triangles, 720 pixels high: of its outline, lower limits
-        show no more. Splits have to reach everything that is round: beside one that was drawn
+        show no more. Splits must reach everything that is round: beside one that was drawn
         inward a vertex without splits sticks out. `levels`: the most splits of an edge.
         """
         super().__init__(once, twice, "heights in sizes of the mesh", levels)

@@ -19,7 +19,7 @@ AttributeLike = npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]
 
 
 class Values(TypedDict, total=False):
-    """What all built-in refiners take beside the mesh (see `registry.create`).
+    """The arguments of all built-in refiners besides the mesh (see `registry.create`).
 
     In a signature, `**values: Unpack[Values]` says that a refiner takes them, too.
     """

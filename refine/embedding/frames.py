@@ -30,7 +30,7 @@ LEAST_SIDE = 0.1
 
 
 class Fans(NamedTuple):
-    """What lies around S sectors, K corners in all; compiled code takes it as it is."""
+    """The surroundings of S sectors, K corners in all, for compiled code."""
 
     starts: Unsigned32
     """Corners of sector s are from `starts[s]` to `starts[s + 1]` in what follows, (S + 1,)."""

@@ -54,7 +54,7 @@ NO_VERTEX = np.uint32(2**32 - 1)
 
 
 class Patches(NamedTuple):
-    """What patches go by; compiled code takes it as it is.
+    """The index arrays and data of patches, for compiled code.
 
     T patches, D directed edges and S sectors of vertices (frames.py).
     """

@@ -107,7 +107,7 @@ def slide(
     triangles: Integers64,
     weights: Floats64,
 ) -> None:
-    """Do that for some of the points."""
+    """Slide the places of some points (see `settle`)."""
     place = np.zeros(3)
     best = np.zeros(3)
     columns = np.zeros((3, 3))

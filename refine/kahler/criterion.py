@@ -101,7 +101,7 @@ class Criterion:
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the refinement metric of every edge, shape (E,): above 0 one split, above 1 two.
 
-        It has to be a continuous function of the positions for blending to be one.
+        It must be a continuous function of the positions for blending to be one.
         """
         raise NotImplementedError(f"{type(self).__name__} must have a method measure")
 

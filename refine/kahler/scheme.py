@@ -1,4 +1,4 @@
-"""What a smoothing scheme is: the class that all of them derive from, and their names.
+"""Smoothing schemes: the class that all of them derive from, and their names.
 
 Kähler, Haber, Seidel 2003, section 6: "the effects of other smoothing schemes" are of interest. The
 paper's own is in smoothing.py.

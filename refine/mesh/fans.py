@@ -1,4 +1,4 @@
-"""What lies around each vertex, sorted once, for loops that threads share (threads.py).
+"""Triangles and edges around each vertex, sorted once, for loops shared by threads (threads.py).
 
 A loop over triangles that adds to their corners cannot be shared: two of them meet at a vertex. One
 over vertices can. Each vertex adds its triangles in the order in which the loop over triangles
@@ -15,7 +15,7 @@ from .connectivity import Connectivity
 
 
 class Fans(NamedTuple):
-    """What lies around each vertex of a mesh with V vertices, F triangles and E edges."""
+    """Triangles and edges around each vertex of a mesh with V vertices, F triangles, E edges."""
 
     corner_starts: Unsigned32
     """Those of vertex v are `corners[corner_starts[v]:corner_starts[v + 1]]`, shape (V + 1,)."""

@@ -26,11 +26,11 @@ class Texels:
 
     @classmethod
     def within(cls, corners: Floats64, size: tuple[int, int], margin: float = 0.0) -> Texels:
-        """Those in triangles with `corners` (F, 3, 2), or within a margin [texels] beside them.
+        """The texels in triangles with `corners` (F, 3, 2), or within a margin [texels] of them.
 
         corners: texture coordinates, from the left and from below, 0..1. size: height and width.
         Texels deepest in their triangles come last, so that they are drawn over margins. Raises
-        ValueError where triangles cover the picture many times over.
+        ValueError if triangles cover the picture many times over.
         """
         height, width = size
         places = corners * [width, -height] + [-0.5, height - 0.5]

@@ -99,7 +99,7 @@ class Exporter:
     def start_avatar(self, target: Path) -> Message:
         """Begin to write the head with named shapes, with the parts that its file has not.
 
-        UserError where the file cannot be written.
+        UserError if the file cannot be written.
         """
         head = self.head
         if target.suffix.lower() != ".glb":
@@ -137,7 +137,7 @@ class Exporter:
     def start(self, target: Path) -> Message:
         """Check the target, and begin to write a file, or a folder of frames.
 
-        UserError where it cannot be written.
+        UserError if it cannot be written.
         """
         choices = self.choices
         script = self.session.script

@@ -1,4 +1,4 @@
-"""Which file: a small chooser in the window, the same on every desktop."""
+"""A small file dialog in the window, the same on every desktop."""
 
 from __future__ import annotations
 

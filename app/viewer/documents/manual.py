@@ -97,7 +97,7 @@ def _options() -> rich_md.MarkdownOptions:
 def pages() -> dict[str, str]:
     """The pages, by their names in docs/, in the order in which one may read them.
 
-    UserError where they are neither in a checkout nor installed.
+    UserError if they are neither in a checkout nor installed.
     """
     folder = _folder()
     names = [path.relative_to(folder).as_posix() for path in sorted(folder.glob("**/*.md"))]
@@ -143,7 +143,7 @@ def _linked(text: str, page: str, places: Mapping[tuple[str, str], str]) -> str:
     """A page without pictures, whose links lead to headings of the document."""
 
     def link(found: re.Match[str]) -> str:
-        """The same link in the document; words alone where it leads out of that."""
+        """The link within the document; words alone if it leads out of the document."""
         words = found[1]
         target = found[2]
         if "://" in target:

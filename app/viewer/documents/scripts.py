@@ -91,7 +91,7 @@ class ScriptCommands:
         """Begin with an empty script; ask first where the script or a recording would be lost."""
 
         def begin() -> Message:
-            """Do so."""
+            """Begin an empty script."""
             self._session.work.begin_script()
             return "A new script of this face; [Set key] keys the controls that you move"
 
@@ -118,7 +118,7 @@ class ScriptCommands:
         self._check(script)
 
         def show() -> Message:
-            """Do so."""
+            """Show the content of the file."""
             session.work.open(script)
             self.note_recent(path)
             return f"{report.in_brief if report else f'{path.name}: opened'}{remark}"
@@ -172,7 +172,7 @@ class ScriptCommands:
         """Ask for a name, and write the pose."""
 
         def write(path: Path) -> Message:
-            """Do so."""
+            """Write the pose to a file."""
             self._session.work.save_pose(path)
             self.note_recent(path)
             return then() or f"{path}: pose written"

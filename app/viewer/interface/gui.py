@@ -178,7 +178,7 @@ class Gui:
             self._presses.append((count, None if is_modifier else key))
 
     def _note_button(self, _: Any, button: int, action: int, modifiers: int) -> None:
-        """Cut before a press: the mouse has to be there before. It may be as old as the last."""
+        """Cut before a press: the mouse must be there before. It may be as old as the last."""
         if action == glfw.PRESS:
             self._presses.append((self._context.input_events_queue.size(), self.MOUSE_BUTTON_KEY))
             io = imgui.get_io()

@@ -101,7 +101,7 @@ class Marks:
 
     @property
     def asked(self) -> int | None:
-        """The first point that must be marked next; None where the rest can be guessed."""
+        """The first point that must be marked next; None if the rest can be guessed."""
         return next((number for number in FIRST if number not in self.places), None)
 
 
@@ -224,7 +224,7 @@ class Marking:
         return "" if self.marks == self._saved else f"the landmarks of {self.path.name}"
 
     def open(self, path: Path) -> Message:
-        """Go on with the marks of a file; raises UserError if it has none of this mesh."""
+        """Continue with the marks of a file; raises UserError if it has none of this mesh."""
         with _for_users():
             places, guessed = read_marks(path, self.mesh)
         marks = Marks({})

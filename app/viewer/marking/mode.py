@@ -99,7 +99,7 @@ class MarkingMode:
         """Go back to the face, and run `then`; if marks would be lost, ask first."""
 
         def go() -> Message:
-            """Do so."""
+            """Show the face, then run `then`."""
             self._leave()
             return then()
 

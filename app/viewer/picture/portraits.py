@@ -88,7 +88,7 @@ class Portraits:
             self._textures[name] = texture
 
     def of(self, who: int | str) -> imgui.ImTextureRef | None:
-        """The picture of a person, None where it is not drawn yet."""
+        """The picture of a person, None if it is not drawn yet."""
         drawn = self._textures.get(who)
         return None if drawn is None else imgui.ImTextureRef(drawn.glo)
 
@@ -111,7 +111,7 @@ def draw_portraits(people: Sequence[int | str], send: Send) -> None:
 
 
 def kept_portrait(who: int | str) -> Image | None:
-    """The picture of a person that was kept, shape (SIDE, SIDE, 3); None where there is none."""
+    """The picture of a person that was kept, shape (SIDE, SIDE, 3); None if there is none."""
     try:
         with PIL.Image.open(_file_of(who)) as picture:
             image = np.asarray(picture.convert("RGB"))

@@ -229,10 +229,10 @@ class Stage:
 def pointed_lines(
     scene: Drawable, shares: Mapping[str, float], clarity: float = 0.9
 ) -> list[render.Lines]:
-    """The fibres of the muscles of a control under the mouse: the clearer the more each does.
+    """The muscle fibres of a control under the mouse: the larger a muscle's share, the clearer.
 
-    shares: name -> how far it goes. One without sides stands for both. clarity: the opacity of the
-    one that does most.
+    shares: name of a muscle -> its share; a name without side means both. clarity: the opacity of
+    the muscle with the largest share.
     """
     face = scene.face if shares else None
     fibres = {} if face is None else face.simulation.anatomy.fibres()

@@ -132,7 +132,7 @@ class ScriptFile:
 
 
 def _bytes_of(path: Path | None) -> bytes | None:
-    """The bytes of a file; None where it cannot be read."""
+    """The bytes of a file; None if it cannot be read."""
     try:
         return path.read_bytes() if path is not None else None
     except OSError:

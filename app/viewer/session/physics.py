@@ -144,7 +144,7 @@ class Physics:
         """Take the steps that are due; none for a face at rest that neither a user nor life moves.
 
         is_skin_dragged: whether the mouse drags the skin. is_urgent: whether a live face has just
-        moved. UserError where the simulation gave up.
+        moved. UserError if the simulation gave up.
         """
         # The same for a packet of a live face, which must not wait a frame.
         urgent_early_share = 0.95

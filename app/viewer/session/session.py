@@ -45,7 +45,7 @@ class Session:
         self.work = Work(self)
 
     def move_to(self, scene: Scene) -> None:
-        """Go on with another scene, all else as it is; UserError if it has other controls."""
+        """Continue with another scene, all else as it is; UserError if it has other controls."""
         if scene.name != self.scene.name or not scene.limits.keys() >= self.controls.limits.keys():
             raise UserError(f"this window shows a {self.scene.name}, which has other controls")
         self.script.check(scene.limits)

@@ -1,4 +1,4 @@
-"""The script's sound in the window: heard while the script plays; the picture keeps to it.
+"""The script's sound in the window: it is heard while the script plays, and sets the pace.
 
 The picture follows the sound: a device keeps the time of its own clock, and the sound must not
 jump. So a little more or less time passes for the picture, until both agree, and a window that was

@@ -36,7 +36,7 @@ class Track:
 
     @property
     def height(self) -> float:
-        """Of the row, in ordinary ones: above the keys of poses is room for names."""
+        """The height of the row, in ordinary rows: that of the poses has room for names."""
         return 1.75 if self.is_whole else 1.0
 
 

@@ -71,7 +71,7 @@ def file_menu(
             yield command(label, "", partial(file_drop.open, paths))
 
     def example() -> Iterator[Command]:
-        """The scripts that come along."""
+        """The scripts that are included."""
         for path in examples(exporter.session.script.scene):
             yield command(readable(path.stem), "", partial(file_drop.open, [str(path)]))
 
@@ -118,7 +118,7 @@ def export_menu(exporter: Exporter, files: FileDialogs) -> Menu:
 
 
 def edit_menu(session: Session) -> Menu:
-    """Undo, and whole faces."""
+    """Commands for undo, and for whole faces."""
     command = partial(Command, "Edit")
     redo = partial(command, can_run=lambda: session.history.can_redo)
     of_sides = partial(command, can_run=lambda: session.scene.face is not None)

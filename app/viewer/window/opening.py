@@ -26,7 +26,7 @@ def open_window(
 
     display: None takes the one remembered.
     Returns the parts, a stack that closes them with the window, and a complaint about remembered
-    settings, "" for none. UserError where script or display do not fit the scene; the window is
+    settings, "" for none. UserError if script or display do not fit the scene; the window is
     closed then.
     """
     settings = splash.settings

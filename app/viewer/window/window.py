@@ -254,7 +254,7 @@ class Viewer:
         """Read a mesh, in any thread; returns a task that has its landmarks marked.
 
         The marking begins with those of a file, if there is one. The face waits meanwhile.
-        UserError where the mesh or the file cannot be used.
+        UserError if the mesh or the file cannot be used.
         """
         marking = Marking(mesh, self.files)
         line = None if landmarks is None else marking.open(landmarks)
