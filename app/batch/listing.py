@@ -59,7 +59,7 @@ def words_of(text: str) -> list[str]:
 
 
 def clashes(jobs: Sequence[Job]) -> Iterator[tuple[int, str]]:
-    """Lines that cannot be done beside others: their numbers, and why."""
+    """Lines that cannot run together with others: their numbers, and the reasons."""
     writer_of: dict[str, Job] = {}
     for job in jobs:
         for output in job.outputs:

@@ -34,7 +34,7 @@ class Share:
 
 
 def worthwhile(options: CaptureOptions, frame_count: int) -> int:
-    """How many processes should draw this many frames: 1 where a GPU does, or a core is all."""
+    """How many processes should draw this many frames: 1 if a GPU draws, or there is one core."""
     width, height = options.size
     samples = width * height * max(options.samples, 1) * frame_count
     least_samples = 1e8  # 27 frames of 1280 x 720: fewer are not worth a start of three seconds

@@ -100,7 +100,7 @@ def dataset(
     """Make pictures of faces with exact labels.
 
     Labels are action units, landmarks, head pose, gaze, camera, and the passes that you choose.
-    Every sample depends on --seed and its number alone, not on who makes it.
+    Every sample depends on --seed and its number alone, not on the process that makes it.
     """
     from ..dataset.making import make_set
     from ..dataset.request import request_of

@@ -20,7 +20,7 @@ from .table import SampleTable, load_table
 
 @dataclass(frozen=True)
 class SetRequest:
-    """A data set that is asked for; fit to be pickled.
+    """A requested data set; it can be pickled.
 
     output: the folder of the set. size: of the pictures [pixels]. passes: some of the images of
     app/passes/passes.py. refiner: None for the look's. degrade: whether pictures have blur, noise

@@ -1,7 +1,7 @@
 """Mapping: from the channels of a recording to the controls of the face.
 
-Shapes, action units and visemes move the control of their own name, angles head and eyes. Where a
-recording measures the same motion twice, only one of the two moves the face, see `chosen`.
+Shapes, action units and visemes move the control of their own name; angles move head and eyes.
+Where a recording measures the same motion twice, only one of the two moves the face, see `chosen`.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 It goes from counts to references to geometry, uses nothing of the way a mesh was made except the
 refiner's own account of where its vertices come from (`origins`), and names the first relation that
-is broken. Any number of levels will do, and points anywhere on edges or inside triangles. For
+is broken. It accepts any number of levels, and points anywhere on edges or inside triangles. For
 tests, and for authors of refiners; far too slow for every frame.
 
 The relations (Kähler, Haber, Seidel 2003, sections 3 and 4.3, Fig. 7 for the cracks):
@@ -13,9 +13,10 @@ The relations (Kähler, Haber, Seidel 2003, sections 3 and 4.3, Fig. 7 for the c
   - a sub-edge on an input edge has the sides that this edge has in the input: so no T-junction, and
     no border where there was none;
   - an edge that was split s times has 2^s sub-edges;
-  - criteria measure numbers, where a refiner can say so (`Kahler.complaint`);
+  - no criterion measures NaN, if the refiner reports it (`Kahler.complaint`);
   - a vertex at which no edge was split is where the input has it, to the last bit of a float32.
-A triangle of the input that names a vertex twice takes part in none of this; it comes out once.
+A triangle of the input that names a vertex twice is exempt from these relations; the output has it
+once.
 """
 
 from typing import NamedTuple

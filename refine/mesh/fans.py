@@ -1,8 +1,8 @@
 """Triangles and edges around each vertex, sorted once, for loops shared by threads (threads.py).
 
-A loop over triangles that adds to their corners cannot be shared: two of them meet at a vertex. One
-over vertices can. Each vertex adds its triangles in the order in which the loop over triangles
-would have come to them, and its edges likewise, so its sums have the same bits.
+A loop over triangles that adds to their corners cannot be shared: two of them meet at a vertex. A
+loop over vertices can be shared. Each vertex adds its triangles in the order in which the loop over
+triangles would have come to them, and its edges likewise, so its sums have the same bits.
 """
 
 from typing import NamedTuple

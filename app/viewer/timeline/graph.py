@@ -81,7 +81,7 @@ class Graph:
     # Places of keys and curves
 
     def at(self, x: float, y: float) -> Hit | None:
-        """The key there, or else the curve; of keys too dense to be seen singly, selected ones."""
+        """The key at a place, or else the curve; where keys are too dense, only selected keys."""
         axis = self._axis
         reach = em(self.MOUSE_REACH)
         hits = list[tuple[float, Hit]]()

@@ -1,4 +1,4 @@
-"""The window: its two modes joined, one turn of its loop, and its end.
+"""The window: it joins the two modes, runs one pass of its loop at a time, and closes.
 
 Physics goes in steps of its own, apart from frames (physics.py). The scene is drawn only when
 something in it has changed, with less detail while it moves if the machine is slow (stage.py);
