@@ -183,6 +183,12 @@ def secret(tmp_path: Path) -> Path:
     return kept
 
 
+def check_untouched(secret):
+    """It is as it was, and alone in its folder."""
+    assert secret.read_text() == "mine"
+    assert [*secret.parent.iterdir()] == [secret]
+
+
 def test_an_output_takes_the_place_of_a_link(secret, tmp_path):
     """And the target of the link stays as it is, whether it is there or not."""
     shared = tmp_path / "shared"
@@ -197,8 +203,7 @@ def test_an_output_takes_the_place_of_a_link(secret, tmp_path):
     assert (shared / "face.toml").read_text() == "text"
     with pytest.raises(UserError, match=r"loop.png: is a link that leads back to itself"):
         save_png(shared / "loop.png", grey)
-    assert secret.read_text() == "mine"
-    assert [*secret.parent.iterdir()] == [secret]
+    check_untouched(secret)
     assert not [item for item in shared.iterdir() if item.name.startswith(".risorius")]
 
 
@@ -219,8 +224,7 @@ def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(secret, tmp
         succeeded(*words)
     left = [item.name for item in shared.iterdir() if item.is_symlink()]
     assert sorted(left) == ["loop.png", "nowhere.png"]
-    assert secret.read_text() == "mine"
-    assert [*secret.parent.iterdir()] == [secret]
+    check_untouched(secret)
 
 
 @pytest.mark.slow
@@ -243,8 +247,7 @@ def test_frames_and_samples_follow_no_link(secret, tmp_path):
     assert not any(path.is_symlink() for path in (*frames.iterdir(), *made.iterdir()))
     (made / ".unfinished").symlink_to(secret.parent)
     assert ".unfinished: is a link; remove it" in refusal(risorius(*words, "--resume"))
-    assert secret.read_text() == "mine"
-    assert [*secret.parent.iterdir()] == [secret]
+    check_untouched(secret)
 
 
 def test_a_link_is_no_way_around_what_is_read(tmp_path):
@@ -256,6 +259,6 @@ def test_a_link_is_no_way_around_what_is_read(tmp_path):
     for output, read in ((real, link), (link, link), (tmp_path / "here" / "real.toml", real)):
         with pytest.raises(UserError, match="is read and would be written"):
             check_apart((output,), (read,))
-    with pytest.raises(UserError, match="two outputs at once"):
+    with pytest.raises(UserError, match="is the name of two outputs"):
         check_apart((other, tmp_path / "here" / "other.toml"), ())
     check_apart((link, other), (real,))  # the link gives way, and its target is left

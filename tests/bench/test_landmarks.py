@@ -39,15 +39,21 @@ def test_an_error_is_a_share_of_the_distance_of_the_eyes():
     assert np.allclose(errors, [5.0, -2.5])
 
 
+def measured(folder, labels, points):
+    """The measure of pictures with these labels, of which a detector finds the same points."""
+    for number, each in enumerate(labels):
+        (folder / f"{number:06d}.json").write_text(json.dumps(each))
+        PIL.Image.new("RGB", (8, 8)).save(folder / f"{number:06d}.png")
+    return landmarks.measure(folder, "dlib", lambda image: points)
+
+
 def test_a_constant_part_is_one_on_both_sides(tmp_path):
     """A detector that sets every corner of the mouth outward by 3 %, the rest as labelled."""
     outward = np.zeros((68, 2))
     outward[48, 0] = -1.2
     outward[54, 0] = 1.2
-    for number in range(3):
-        (tmp_path / f"{number:06d}.json").write_text(json.dumps(labels_of_face(20.0 * number)))
-        PIL.Image.new("RGB", (8, 8)).save(tmp_path / f"{number:06d}.png")
-    found = landmarks.measure(tmp_path, "dlib", lambda image: FACE + outward)
+    labels = [labels_of_face(20.0 * number) for number in range(3)]
+    found = measured(tmp_path, labels, FACE + outward)
     assert found.is_frontal.tolist() == [True, False, False]
     assert found.constant[54] == approx([3.0, 0.0])
     assert np.count_nonzero(np.abs(found.constant) > 1e-9) == 2
@@ -59,10 +65,7 @@ def test_a_constant_part_is_one_on_both_sides(tmp_path):
 
 def test_masked_persons_are_left_out(tmp_path):
     """A detector guesses what lies below."""
-    for number, mask in enumerate(["none", "white"]):
-        (tmp_path / f"{number:06d}.json").write_text(json.dumps(labels_of_face(mask=mask)))
-        PIL.Image.new("RGB", (8, 8)).save(tmp_path / f"{number:06d}.png")
-    found = landmarks.measure(tmp_path, "dlib", lambda image: FACE)
+    found = measured(tmp_path, [labels_of_face(mask=mask) for mask in ("none", "white")], FACE)
     assert (found.picture_count, len(found.yaw)) == (1, 1)
 
 

@@ -93,7 +93,7 @@ REFUSED = {
     "capture good.toml -o full": "is there and not empty",
     "capture good.toml -o folder.png": "is a folder",
     "capture good.toml --sheet x": "pictures are written as .png",
-    "capture good.toml -o x.png --sheet x.png": "two outputs at once",
+    "capture good.toml -o x.png --sheet x.png": "is the name of two outputs",
     "capture good.toml -o x.png --sound hum.wav": "only a film is heard",
     "capture good.toml -o x.mp4 --sound notes.txt": "there is no sound in it",
     "capture good.toml -o pipe.png": "is a device",

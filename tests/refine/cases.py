@@ -12,6 +12,9 @@ from risorius.refine.beyond.blending import RAMP_WIDTH
 from tests import meshes
 from tests.refine import plain_twin
 
+SOME_PLACES = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
+"""Barycentric coordinates of places in a triangle, shape (12, 3)."""
+
 
 def configuration_of(splits: tuple[int, int, int]) -> int:
     """The number of the table entry for 0, 1 or 2 splits on each of the three edges."""

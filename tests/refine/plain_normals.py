@@ -6,7 +6,7 @@ of the cross products of the small triangles around its point, of length one.
 
 from collections import Counter, defaultdict
 
-from tests.refine.plain_schemes import Face, cross, dot
+from tests.refine.plain_schemes import Face, dot
 from tests.refine.plain_twin import (
     EdgeName,
     GeomorphWeights,
@@ -14,9 +14,11 @@ from tests.refine.plain_twin import (
     Rules,
     Surroundings,
     Vector,
-    edge_name,
+    cross,
+    edge_names,
     is_proper,
     mix,
+    normals_along,
     unit,
 )
 
@@ -29,7 +31,7 @@ def area(*corners: Vector) -> Vector:
     return cross(mix((1, b), (-1, a)), mix((1, c), (-1, a)))
 
 
-class RefinedNormals:
+class RefinedNormals(Rules):
     """The points of a scheme, with the normals of its surface as far as they have grown."""
 
     def __init__(self, rules: Rules, faces: list[Face]) -> None:
@@ -51,8 +53,7 @@ class RefinedNormals:
             mean = unit(mix((1, at_vertices[a]), (1, at_vertices[b])))
             soon = min(1.0, 3.0 * once)
             middle = unit(mix((1 - soon, mean), (soon, at_middles[a, b])))
-            ends = {1: at_vertices[a], 2: middle, 3: at_vertices[b]}
-            place.point_normals[a, b] = {q: unit(mix((1, n), (1, middle))) for q, n in ends.items()}
+            place.point_normals[a, b] = normals_along(at_vertices[a], middle, at_vertices[b])
         return Placed(place.vertices, place.points, at_vertices, place.point_normals)
 
     def _surface(self, whole: Placed) -> tuple[list[Vector], dict[EdgeName, Vector]]:
@@ -64,7 +65,7 @@ class RefinedNormals:
             if not is_proper(face):
                 continue
             corners = [whole.vertices[v] for v in face]
-            names = [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
+            names = edge_names(face)
             middles = [whole.points[name][2] for name in names]
             # 0.511 x (middle - half of both ends): every corner is an end of two edges.
             centre = mix(*((1 / 3 - 0.511, p) for p in corners), *((0.511, m) for m in middles))

@@ -13,9 +13,12 @@ from tests.refine.plain_twin import (
     EdgeName,
     GeomorphWeights,
     Placed,
+    Rules,
     Surroundings,
     Vector,
+    cross,
     mix,
+    normals_along,
     unit,
 )
 
@@ -28,18 +31,13 @@ def dot(u: Vector, v: Vector) -> float:
     return sum(x * y for x, y in zip(u, v, strict=True))
 
 
-def cross(u: Vector, v: Vector) -> Vector:
-    """Outer product."""
-    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
-
-
 def length(v: Vector) -> float:
     """Length of a vector."""
     return math.sqrt(dot(v, v))
 
 
 @dataclass
-class CurveRules:
+class CurveRules(Rules):
     """A scheme whose vertices stay and whose split edges go to curves as far as they have grown."""
 
     positions: list[Vector]
@@ -60,15 +58,8 @@ class CurveRules:
                 full = self.curve((a, b), quarters)
                 points[a, b][quarters] = mix((1 - twice, chord), (twice, full))
             middle = unit(mix((1, self.normals[a]), (1, self.normals[b])))
-            ends = {1: self.normals[a], 2: middle, 3: self.normals[b]}
-            normals[a, b] = {q: unit(mix((1, n), (1, middle))) for q, n in ends.items()}
+            normals[a, b] = normals_along(self.normals[a], middle, self.normals[b])
         return Placed(self.positions, points, self.normals, normals)
-
-    def centre(
-        self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
-    ) -> tuple[Vector, Vector]:
-        """Where blending has it."""
-        return point, normal
 
 
 def cubic_normals(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> list[Vector]:

@@ -9,7 +9,6 @@ instead of numbers, so nothing depends on an order:
 import math
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field
-from typing import Protocol
 
 Vector = tuple[float, float, float]
 Name = tuple[str | int, ...]
@@ -57,9 +56,25 @@ def unit(vector: Vector) -> Vector:
     return mix((1.0 / length, vector)) if length > 1e-15 else (0.0, 0.0, 0.0)
 
 
+def cross(u: Vector, v: Vector) -> Vector:
+    """Outer product."""
+    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+
+
+def normals_along(first: Vector, middle: Vector, last: Vector) -> dict[int, Vector]:
+    """Unit normals of the points of an edge, by quarters: halfway to that of its middle."""
+    ends = {1: first, 2: middle, 3: last}
+    return {quarters: unit(mix((1, n), (1, middle))) for quarters, n in ends.items()}
+
+
 def edge_name(a: int, b: int) -> EdgeName:
     """The same name from both sides."""
     return (a, b) if a < b else (b, a)
+
+
+def edge_names(face: tuple[int, int, int]) -> list[EdgeName]:
+    """Those of a triangle, from its first corner on."""
+    return [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
 
 
 def is_proper(face: tuple[int, int, int]) -> bool:
@@ -74,16 +89,15 @@ def vertex_normals(positions: list[Vector], faces: list[tuple[int, int, int]]) -
         a, b, c = (positions[v] for v in face)
         u = mix((1, b), (-1, a))
         v = mix((1, c), (-1, a))
-        cross = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
         for vertex in face:
-            sums[vertex] = mix((1, sums[vertex]), (1, cross))
+            sums[vertex] = mix((1, sums[vertex]), (1, cross(u, v)))
     return [unit(total) for total in sums]
 
 
 def edge_dots(positions: list[Vector], faces: list[tuple[int, int, int]]) -> dict[EdgeName, float]:
     """Dot product of the vertex normals at the ends of each edge (section 4.1)."""
     normals = vertex_normals(positions, faces)
-    names = {edge_name(f[i], f[(i + 1) % 3]) for f in faces if is_proper(f) for i in range(3)}
+    names = {name for face in faces if is_proper(face) for name in edge_names(face)}
     return {
         (a, b): sum(x * y for x, y in zip(normals[a], normals[b], strict=True)) for a, b in names
     }
@@ -147,19 +161,24 @@ class Placed:
     point_normals: AtPoints
 
 
-class Rules(Protocol):
+class Rules:
     """A smoothing scheme, in plain words."""
 
     def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
         """All points and normals, for these splits."""
+        raise NotImplementedError
 
     def centre(
         self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
     ) -> tuple[Vector, Vector]:
-        """The middle of a triangle whose edges have grown at least so far, on both levels."""
+        """The middle of a triangle whose edges have grown at least so far, on both levels.
+
+        By default where it is.
+        """
+        return point, normal
 
 
-class PaperRules:
+class PaperRules(Rules):
     """The paper's scheme; normals of new points are interpolated along the edge."""
 
     def __init__(self, positions: list[Vector], faces: list[tuple[int, int, int]]) -> None:
@@ -172,16 +191,9 @@ class PaperRules:
         at_points = {}
         for a, b in grown:
             middle = unit(mix((1, normals[a]), (1, normals[b])))
-            beside = {1: normals[a], 2: middle, 3: normals[b]}
-            at_points[a, b] = {q: unit(mix((1, n), (1, middle))) for q, n in beside.items()}
+            at_points[a, b] = normals_along(normals[a], middle, normals[b])
         moved, points = _smoothed(self.positions, self.faces, count, grown)
         return Placed(moved, points, normals, at_points)
-
-    def centre(
-        self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
-    ) -> tuple[Vector, Vector]:
-        """As it comes."""
-        return point, normal
 
 
 def refine(
@@ -210,7 +222,7 @@ def refine(
             twin.positions["edge", a, b, quarters] = points[quarters]
             twin.normals["edge", a, b, quarters] = place.point_normals[a, b][quarters]
     for source, face in enumerate(faces):
-        edges = [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
+        edges = edge_names(face)
         if geomorph is not None and is_proper(face) and sum(count[e] for e in edges) > 1:
             fan, centre = _fan(twin, face, count, grown)
             least = (
@@ -283,7 +295,7 @@ def _fan(
     """Subtriangles around the middle of a triangle, and that point, which is added to the twin."""
     outline: list[Name] = []
     centre: Name = ("centre", *sorted(face))
-    edges = [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
+    edges = edge_names(face)
     sums = {}
     grown_by = []
     for edge in edges:

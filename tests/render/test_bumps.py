@@ -13,14 +13,18 @@ LEVEL = (128, 128, 0, 0)  # a slope of 1 over a square of 100 mm
 STEEP = 100.0
 
 
-def furrowed(surface, texel, amounts, style=PLAIN):
-    """A square whose right half has `texel` in its map and bumps by `amounts`."""
-    texels = np.full((32, 32, 4), LEVEL, np.uint8)
+def furrowed(surface, texel, amounts, style=PLAIN, *, left=LEVEL, corner=(1.0, 0.0)):
+    """A square whose right half has `texel` in its map and bumps by `amounts`.
+
+    left: of the other half. corner: the texture coordinates of the lower right vertex.
+    """
+    texels = np.full((32, 32, 4), left, np.uint8)
     texels[:, 16:] = texel
     shape = square()
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape, columns=16)
     stream.vertices[:, 6:8] = shape.positions[:, :2] / 100.0 + 0.5
+    stream.vertices[1, 6:8] = corner
     has_bumps = amounts is not None
     stream.vertices[:, 8:10] = amounts if has_bumps else 1.0
     stream.vertices[:, 10:] = (0.01, 0.0, 0.0, 0.0, 0.01, 0.0)  # of u and v over 100 mm
@@ -102,18 +106,10 @@ def test_what_does_not_fit_is_refused(renderer):
         render.Skin(stream, render.SkinMaps(bumps=level))
 
 
-def test_a_furrow_runs_whole_over_unequal_triangles(renderer):
+def test_a_furrow_runs_whole_over_unequal_triangles(surface):
     """Light on a slope does not jump where one triangle is stretched more than its neighbour."""
-    shape = square()
-    stream = lent(renderer, shape, columns=16)
-    stream.vertices[:, 6:8] = shape.positions[:, :2] / 100.0 + 0.5
-    stream.vertices[1, 6:8] = (0.6, 0.4)
-    stream.vertices[:, 8:10] = 1.0
-    stream.vertices[:, 10:] = (0.01, 0.0, 0.0, 0.0, 0.01, 0.0)
-    stream.upload(len(shape.positions), len(shape.triangles), has_bumps=True)
-    texels = np.full((32, 32, 4), (190, 128, 0, 0), np.uint8)
-    skin = render.Skin(stream, render.SkinMaps(bumps=render.BumpMap(renderer.surface, texels, 1e2)))
-    frame = draw(renderer, skin)
+    slope = (190, 128, 0, 0)
+    frame = furrowed(surface, slope, (1.0, 1.0), left=slope, corner=(0.6, 0.4))
     beside = np.abs(at(frame, 5, -5) - at(frame, -5, 5))
     across = np.abs(at(frame, 10, 0) - at(frame, 5, -5))
     assert beside.max() <= across.max() + 2

@@ -9,7 +9,15 @@ from scipy.spatial.transform import Rotation
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Forced, GivenMetric, edge_count_of, kahler, scheme_of, surface_at
+from tests.refine.cases import (
+    SOME_PLACES,
+    Forced,
+    GivenMetric,
+    edge_count_of,
+    kahler,
+    scheme_of,
+    surface_at,
+)
 
 SCHEMES = ("loop", "cubic", "detail")
 QUICK_SCHEMES = [
@@ -35,7 +43,6 @@ def jumps(scheme, blend, criterion, mesh=None):
     wave = meshes.wrinkled(mesh, 5, 0.5) - mesh.vertices
     scheme = scheme_of(scheme, mesh.vertices + 0.02, mesh.faces)
     refiner = kahler(mesh, scheme=scheme, blend=blend, criterion=criterion)
-    places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
     before = None
     most = 0.0
     turn = 0.0
@@ -43,7 +50,7 @@ def jumps(scheme, blend, criterion, mesh=None):
     seen = set()
     for step in range(1, STEPS):
         positions = mesh.vertices + np.sin(1.6 * step / STEPS * np.pi) * wave
-        now = surface_at(refiner, refiner.refine(positions), mesh.faces, places)
+        now = surface_at(refiner, refiner.refine(positions), mesh.faces, SOME_PLACES)
         seen.add(refiner.splits.tobytes())
         moved = norm(positions - positions_before, axis=1).max()
         if before is not None and moved > 1e-6:  # the motion turns back once
@@ -94,7 +101,6 @@ def test_outlines_do_not_pop(name, scheme):
         "box": trimesh.creation.box,
         "cone": lambda: trimesh.creation.cone(1.0, 2.0, sections=8),
     }[name]()
-    places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
     eye = np.array([0.0, 0.0, 8.0])
 
     def most(blend):
@@ -112,7 +118,7 @@ def test_outlines_do_not_pop(name, scheme):
             turn = Rotation.from_rotvec(np.array([0.3, 0.5, 0.1]) * step / STEPS)
             positions = turn.apply(body.vertices)
             refined = refiner.refine(positions, view=refine.View(eye))
-            points = surface_at(refiner, refined, body.faces, places)[..., :3]
+            points = surface_at(refiner, refined, body.faces, SOME_PLACES)[..., :3]
             if before is not None:
                 moved = norm(positions - before[0], axis=1).max()
                 jump = norm(points - before[1], axis=2).max()

@@ -13,7 +13,14 @@ from risorius import refine
 from risorius.refine.beyond import whole_surface
 from risorius.refine.mesh.threads import share
 from tests import meshes
-from tests.refine.cases import GivenMetric, edge_count_of, kahler, scheme_of, surface_at
+from tests.refine.cases import (
+    SOME_PLACES,
+    GivenMetric,
+    edge_count_of,
+    kahler,
+    scheme_of,
+    surface_at,
+)
 
 SCHEMES = ("loop", "cubic", "detail")
 STEPS = 800
@@ -115,7 +122,6 @@ def test_normals_do_not_pop(scheme):
     twice that with steps of half the size.
     """
     mesh = meshes.open_grid(8, 6)
-    places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
 
     def most(blend):
         refiner = bound(mesh, scheme, [refine.Displacement(0.02, 0.08)], blend=blend)
@@ -125,7 +131,7 @@ def test_normals_do_not_pop(scheme):
         seen = set()
         for step in range(STEPS):
             positions = smooth_wave(mesh, 0.6 * step / STEPS)
-            shown = surface_at(refiner, refiner.refine(positions), mesh.faces, places)[..., 3:]
+            shown = surface_at(refiner, refiner.refine(positions), mesh.faces, SOME_PLACES)[..., 3:]
             surface = own.refine(positions).normals.copy()
             seen.add(refiner.splits.tobytes())
             if before is not None:
@@ -154,13 +160,12 @@ def test_geomorph_has_no_steps(seed, scheme, edge, at):
     """
     mesh = meshes.open_grid(5, 4)
     positions = smooth_wave(mesh, 0.4)
-    places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
     metric = metrics(mesh, seed)
 
     def shading(value):
         metric[edge % len(metric)] = value
         refiner = bound(mesh, scheme, GivenMetric(metric))
-        return surface_at(refiner, refiner.refine(positions), mesh.faces, places)[..., 3:]
+        return surface_at(refiner, refiner.refine(positions), mesh.faces, SOME_PLACES)[..., 3:]
 
     assert turns(shading(at - 1e-4), shading(at + 1e-4)).max() < 0.05
 

@@ -13,26 +13,26 @@ def test_warren_weights():
     assert warren_weight(np.array([3, 4, 6])).tolist() == [3 / 16, 3 / 32, 1 / 16]
 
 
+def refined_points(splits, heights):
+    """Points of two triangles whose inner edge is split, their vertices at these heights."""
+    mesh = meshes.two_triangles()
+    is_interior = refine.connect(mesh.faces, 4).around.is_interior
+    lifted = np.column_stack([mesh.vertices[:, :2], heights])
+    return kahler(mesh, criterion=Forced(splits * is_interior)).refine(lifted).positions
+
+
 def test_first_level_by_hand():
     """One inner edge split once: 3/8, 3/8, 1/8, 1/8, and its ends follow the border rule."""
-    mesh = meshes.two_triangles()
-    connectivity = refine.connect(mesh.faces, 4)
-    refiner = kahler(mesh, criterion=Forced(connectivity.around.is_interior))
-    lifted = mesh.vertices + np.array([[0, 0, 0], [0, 0, 8], [0, 0, 16], [0, 0, 32]])
-    refined = refiner.refine(lifted)
-    assert refined.positions[4].tolist() == [0.5, 0.5, 3 + 6 + 4]
-    assert refined.positions[1].tolist() == [0.75 + 0.125, 0.125, 6 + 4]
-    assert refined.positions[0].tolist() == [0, 0, 0]
-    assert refined.positions[3].tolist() == [1, 1, 32]
+    points = refined_points(1, [0, 8, 16, 32])
+    assert points[4].tolist() == [0.5, 0.5, 3 + 6 + 4]
+    assert points[1].tolist() == [0.75 + 0.125, 0.125, 6 + 4]
+    assert points[0].tolist() == [0, 0, 0]
+    assert points[3].tolist() == [1, 1, 32]
 
 
 def test_second_level_by_hand():
     """The same edge split twice: quarter points lean on midpoints of edges that are not split."""
-    mesh = meshes.two_triangles()
-    connectivity = refine.connect(mesh.faces, 4)
-    refiner = kahler(mesh, criterion=Forced(2 * connectivity.around.is_interior))
-    lifted = mesh.vertices + np.array([[0, 0, 0], [0, 0, 64], [0, 0, 128], [0, 0, 256]])
-    height = refiner.refine(lifted).positions[:, 2]
+    height = refined_points(2, [0, 64, 128, 256])[:, 2]
     a = 64.0
     b = 128.0
     c = 0.0
