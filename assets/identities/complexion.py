@@ -28,14 +28,15 @@ from risorius.geometry.colour import to_linear, to_screen
 from ...geometry.arrays import Floats32, Floats64
 from ..data_files import Image, read_arrays, read_image
 from ..loading import load
-from ..model import Head, Part, Segment
+from ..model import FineShape, Head, Part, Segment
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
 from ..smooth import shrunk
 from .brows import painted, stubble
 from .eyes import beside_skin, with_irises
 from .features import PLAIN, Features
 from .hair import CUTS, HAIR, OWN_CUT, Fall, hair_of, scalp_of
-from .lids import shaded, with_folds
+from .larynx import larynx_of
+from .lids import EYES, fold_of, shaded, with_folds
 from .long_hair import falling_hair, tied_hair
 from .person import Person
 from .population import DARKEST, LIGHTEST
@@ -196,11 +197,19 @@ def coloured(
         albedo=in_tone(angle),
         ambient_occlusion=shaded(_occlusion(shrink), person),
         # In small pictures nobody sees slopes of folds, and all persons share one map.
-        fine_shape=with_folds(known, person) if shrink == 1 else known,
+        fine_shape=_own_shape(person) if shrink == 1 else known,
         parts=_with_hair(person, parts, angle, features, behind),
         segments=_haired_segments(person.segments, features, behind),
         in_tone=in_tone,
     )
+
+
+def _own_shape(person: Person) -> FineShape:
+    """The fine shape of the built-in head, with lids and larynx of a person."""
+    known = load("head").fine_shape
+    size = len(known.slopes)
+    lids = [fold_of(person, side, size) for side in EYES]
+    return with_folds(known, [*lids, larynx_of(person, size)])
 
 
 def _beside_light_skin(angle: float) -> Floats64:

@@ -8,6 +8,7 @@ upper eyelid and eyebrow dimensions in healthy white individuals", Am. J. Ophtha
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -40,12 +41,11 @@ class Fold(NamedTuple):
     light: Floats64
 
 
-def with_folds(known: FineShape, person: Person) -> FineShape:
-    """A fine shape with the folds of a person's upper lids."""
+def with_folds(known: FineShape, folds: Sequence[Fold]) -> FineShape:
+    """A fine shape with folds in maps of its size."""
     slopes = known.slopes.copy()
     height, width = slopes.shape[:2]
-    for side in EYES:
-        fold = fold_of(person, side, height)
+    for fold in folds:
         down, across = np.gradient(fold.heights)
         added = np.stack([across * width, -down * height], axis=2) * (127.0 / known.steepest)
         near = slopes[fold.rows, fold.columns]

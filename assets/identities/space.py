@@ -77,6 +77,7 @@ class Identity:
     seen_lid: how much of the upper lid's skin is seen below its crease [mm]; below 0: none.
     hooding: how much less of it is seen at the outer corner [mm].
     smile: which muscles join in it.
+    larynx: how far it stands out [mm].
     """
 
     sex: Sex
@@ -92,6 +93,7 @@ class Identity:
     seen_lid: float = 1.4
     hooding: float = 0.0
     smile: Smile = USUAL_SMILE
+    larynx: float = 0.0
 
     def scaled(self, share: float) -> Identity:
         """An identity with a share of all that is its own: 0 is the mean of people."""
@@ -252,6 +254,7 @@ def sample_identity(
         seen_lid=float(1.2 + 0.5 * is_woman + spread * seen),
         hooding=float(max(0.3 + 0.5 * hooded + 0.25 * late, 0.0)),
         smile=drawn_smile(is_woman, random),
+        larynx=float(random.uniform(*((0.0, 0.8) if is_woman else (1.5, 5.0)))),
     )
 
 

@@ -1,11 +1,12 @@
-"""Folds of upper lids: the crease lies where the identity says, in both maps, and nowhere else."""
+"""Folds of lids, and the larynx: in the maps where the identity says, and nowhere else."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from risorius.assets.identities import Person, coloured, make_person, sample_identity
+from risorius.assets.identities import Person, Sex, coloured, make_person, sample_identity
+from risorius.assets.identities.larynx import larynx_of
 from risorius.assets.identities.lids import fold_of
 from risorius.assets.loading import load
 
@@ -55,7 +56,7 @@ def test_hooding_lowers_the_outer_half_alone(person):
 def test_maps_differ_at_the_lids_alone_and_small_pictures_share_one(person):
     """All else is the built-in head's; a map with fewer texels has the same shade."""
     head = load("head")
-    drawn = coloured(folded(person, seen_lid=2.0), angle=50.0)
+    drawn = coloured(folded(person, seen_lid=2.0, larynx=0.0), angle=50.0)
     changed = (drawn.fine_shape.slopes != head.fine_shape.slopes).any(axis=2)
     rows, columns = np.nonzero(changed)
     size = len(changed)
@@ -80,3 +81,16 @@ def test_people_show_as_much_of_their_lids_as_measured():
     seen = [sample_identity(seed, age=50.0).seen_lid for seed in range(200)]
     assert 1.2 < np.mean(seen) < 1.7
     assert 0.9 < np.std(seen) < 1.4
+
+
+def test_the_larynx_stands_out_as_far_as_the_identity_says(person):
+    """A ridge in the middle of the neck, higher in men, that fades within its map."""
+    found = larynx_of(folded(person, larynx=4.0), 1024)
+    column = found.heights.max(axis=0).argmax()
+    assert column + found.columns.start == pytest.approx(511.5, abs=12.0)
+    assert found.heights.max() == pytest.approx(4.0, abs=0.6)
+    assert np.abs(found.heights[:, [0, -1]]).max() < 0.01
+    assert np.abs(found.heights[[0, -1]]).max() < 0.4
+    for sex, least, most in ((Sex.MAN, 1.5, 5.0), (Sex.WOMAN, 0.0, 0.8)):
+        drawn = [sample_identity(seed, sex=sex).larynx for seed in range(20)]
+        assert least <= min(drawn) < max(drawn) <= most

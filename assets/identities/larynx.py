@@ -1,0 +1,51 @@
+"""The prominence of the larynx, which men's necks show: a rounded ridge in the map of fine shape.
+
+The plates of men's thyroid cartilages meet at a right angle, women's at 120 degrees (Standring,
+"Gray's Anatomy", larynx), so hers hardly shows. How high and wide it is was chosen by eye.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from risorius.geometry.texels import Texels
+
+from ...geometry.arrays import Floats64
+from ..loading import load
+from ..smooth import smooth_step
+from .lids import Fold
+from .person import Person
+
+
+def larynx_of(person: Person, size: int) -> Fold:
+    """Heights of the larynx in a map of so many texels each way."""
+    texels = _neck(size)
+    x, y, _ = texels.interpolate(person.vertices[person.faces]).T
+    throat = person.vertices[person.anatomy["cervicale"], 1]
+    below = 15.0  # [mm] below the angle between chin and neck
+    half_width, half_height = 6.5, 9.0  # [mm]
+    notch = 0.25 * np.exp(-((x / 2.5) ** 2) - ((y - throat + below - 6.0) / 3.0) ** 2)
+    ridge = np.exp(-((x / half_width) ** 2) - ((y - throat + below) / half_height) ** 2)
+    inside = smooth_step(0.02, 0.1, ridge)
+    rows, columns = (
+        slice(int(each.min()), int(each.max()) + 1) for each in (texels.rows, texels.columns)
+    )
+    heights: Floats64 = np.zeros((rows.stop - rows.start, columns.stop - columns.start))
+    at = texels.rows - rows.start, texels.columns - columns.start
+    heights[at] = person.identity.larynx * inside * (ridge - notch)
+    return Fold(rows, columns, heights, np.ones_like(heights))
+
+
+@lru_cache(maxsize=2)
+def _neck(size: int) -> Texels:
+    """The texels of the neck below the chin, in front."""
+    head = load("head")
+    x, y, z = head.vertices[head.faces].transpose(2, 0, 1)
+    is_front = (
+        (np.abs(x) < 25.0) & (y < head.vertices[head.anatomy["menton"], 1]) & (z > 30.0)
+    ).all(axis=1)
+    corners = head.uv[head.face_uv].astype(np.float64)
+    corners[~is_front] = -1.0  # outside the map
+    return Texels.within(corners, (size, size))
