@@ -8,15 +8,18 @@ from typing import Any
 
 import numpy as np
 import scipy
+from scipy import sparse
+from scipy.sparse import csgraph
 
 from risorius.geometry.arrays import Flags, Floats32, Floats64, Integers32
 from risorius.geometry.read_only import make_read_only
+from risorius.geometry.sides import different_pairs, sides_of
 
 from ..errors import AssetError
 from ..model import Eye, Layer, Part
 from ..topology import border_vertices, decimated
 from .landmark_file import nearest_vertices
-from .mesh_validation import SkinPiece, check_manifold
+from .mesh_validation import SkinPiece, check_manifold, pieces_of
 
 MOST_SIMULATED = 20_000  # triangles: with more the picture is no better, and waits for physics
 SIMPLIFIED = 15_000  # triangles are left
@@ -56,7 +59,7 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
     is_head = (distance < head_reach)[skin.faces].any(axis=1)
     most_attempts = 8  # to simplify a mesh so that it stays a surface
     for attempt in range(most_attempts):
-        vertices, faces = _fewer(skin, is_head, attempt)
+        vertices, faces = unpinched(*_fewer(skin, is_head, attempt))
         with contextlib.suppress(AssetError):
             check_manifold(faces)
             break
@@ -95,6 +98,33 @@ def _part_with(
     if len(part) <= count:
         return vertices[used], part
     return decimated(vertices[used], part, count, attempt)
+
+
+def unpinched(vertices: Floats64, faces: Integers32) -> tuple[Floats64, Integers32]:
+    """The same mesh, whose sheets take vertices of their own where they touch along an edge.
+
+    `decimated` pinches folds of a dense mesh, so that more than two triangles meet at an edge. A
+    vertex stays one as long as triangles around it hang together by edges of two; the largest piece
+    is kept, since others are scraps that hung by such an edge alone.
+    """
+    sides = sides_of(faces)
+    _, edge = different_pairs(np.sort(sides, axis=1))
+    uses = np.bincount(edge)
+    if uses.max() <= 2:
+        return vertices, faces
+    corners = sides_of(np.arange(faces.size).reshape(faces.shape))
+    corners = np.take_along_axis(corners, np.argsort(sides, axis=1), axis=1)
+    is_shared = uses[edge] == 2
+    both = corners[is_shared][np.argsort(edge[is_shared], kind="stable")].reshape(-1, 2, 2)
+    links = (both[:, 0].ravel(), both[:, 1].ravel())
+    graph = sparse.coo_array((np.ones(len(links[0])), links), shape=(faces.size, faces.size))
+    number = csgraph.connected_components(graph, directed=False)[1]
+    _, first_corner = np.unique(number, return_index=True)
+    parted = number.reshape(faces.shape)
+    piece = pieces_of(parted, len(first_corner))
+    kept = parted[piece[parted[:, 0]] == np.bincount(piece[parted[:, 0]]).argmax()]
+    used, numbers = np.unique(kept, return_inverse=True)
+    return vertices[faces.ravel()[first_corner[used]]], numbers.reshape(-1, 3).astype(np.int32)
 
 
 def _sewn(

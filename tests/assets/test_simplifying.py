@@ -57,3 +57,30 @@ def test_a_dense_head_leaves_its_body_a_share(with_body, head, monkeypatch):
     assert len(found.faces) <= 1800
     assert checks.component_count(found.faces) == 1
     assert len(boundary_loops(found.faces)) == len(boundary_loops(with_body.faces))
+
+
+def test_sheets_that_touch_along_an_edge_are_parted():
+    """A fold that simplification pinched: the sheet goes on, and the scrap below it is left out."""
+    sheet = grid_faces(np.arange(25).reshape(5, 5))
+    scrap = np.array([[12, 13, 25], [13, 12, 26], [12, 25, 26], [25, 13, 26]])
+    vertices = np.random.default_rng(0).normal(size=(27, 3))
+    pinched = np.vstack([sheet, scrap]).astype(np.int32)
+    assert not checks.is_manifold(pinched)
+    points, faces = simplifying.unpinched(vertices, pinched)
+    assert checks.is_manifold(faces)
+    assert np.array_equal(points[faces], vertices[sheet])
+
+
+def test_two_folds_pinched_together_stay_one_surface():
+    """Opposite walls of a pocket meet at an edge: all triangles stay, and none has a new place."""
+    rows = np.arange(30).reshape(6, 5)
+    sheet = grid_faces(rows)
+    number = np.arange(30)
+    number[rows[4, 2:4]] = rows[1, 2:4]  # two edges of the sheet far apart become one
+    vertices = np.random.default_rng(0).normal(size=(30, 3))
+    pinched = number[sheet].astype(np.int32)
+    assert not checks.is_manifold(pinched)
+    points, faces = simplifying.unpinched(vertices, pinched)
+    assert checks.is_manifold(faces)
+    assert checks.component_count(faces) == 1
+    assert np.array_equal(points[faces], vertices[pinched])
