@@ -49,7 +49,6 @@ GROUPS = {
 class Scans:
     """A neutral face and its displacement by expressions, as they were scanned [mm]."""
 
-    directory: Path
     mesh: Mesh
     landmarks: Faces
     """The 68, as vertex numbers."""
@@ -78,7 +77,7 @@ class Scans:
             moved = MILLIMETRES * array.astype(np.float64)
             fields[name] = fields.get(name, np.zeros_like(moved)) + moved
         mesh = Mesh(MILLIMETRES * vertices.astype(np.float64), triangles.astype(np.int32))
-        return cls(directory, mesh, landmarks.astype(np.int32), fields)
+        return cls(mesh, landmarks.astype(np.int32), fields)
 
     @cached_property
     def head(self) -> FittedHead:

@@ -235,12 +235,14 @@ def rotation(seed: int) -> npt.NDArray[np.float64]:
     return np.asarray(matrix * np.linalg.det(matrix))
 
 
-def slit(columns: int = 10, rows: int = 6) -> Mesh:
+def slit() -> Mesh:
     """A flat rectangle of unit cells around the origin, with a slit along x; symmetric in x and y.
 
     Two cells at each end of the middle row are whole. Of the slit's two sides the lower one has the
     numbers that a grid without it would have, and the upper one the last.
     """
+    columns = 10
+    rows = 6
     across = columns + 1
     x, y = np.meshgrid(np.arange(across) - columns / 2, np.arange(rows + 1) - rows / 2)
     vertices = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])

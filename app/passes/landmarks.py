@@ -107,8 +107,7 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
 
 def _normals(pixels: Floats64, outward: Floats64) -> Floats64:
     """Unit normals of a line in the picture, (n, 2), on the side of directions (n, 2)."""
-    along = np.gradient(pixels, axis=0)
-    along = unit_vectors(along)
+    along = unit_vectors(np.gradient(pixels, axis=0))
     normals = along @ np.array([[0.0, 1.0], [-1.0, 0.0]])
     return np.asarray(normals * np.sign((normals * outward).sum(axis=1, keepdims=True)))
 
@@ -153,7 +152,7 @@ def _is_on_surface(
     points: Floats64, tolerance: Floats64, camera: CameraLabels, depth: Floats32
 ) -> Flags:
     """Whether points (n, 3) lie on the nearest surface to within `tolerance` [mm], (n,)."""
-    seen, is_inside = _depths_at(camera.project(points), depth)
+    seen, is_inside = _values_at(camera.project(points), depth)
     depths = camera.to_camera(points)[:, 2]
     # The surface may be steep within a pixel.
     tolerance = np.maximum(tolerance, depths / camera.intrinsics[0, 0])
@@ -173,24 +172,22 @@ def _is_uncovered(points: Floats64, camera: CameraLabels, depth: Floats32) -> Fl
     steep = 6.0  # [mm] along the camera's axis, by which an outline bends away within a pixel
     is_free = np.zeros(len(points), dtype=np.bool_)
     for places in (pixels, pixels + np.maximum(beside, 1.0) * outward):
-        seen, is_inside = _depths_at(places, depth)
+        seen, is_inside = _values_at(places, depth)
         is_free |= is_inside & ((seen == 0.0) | (seen >= depths - steep))
-    return np.asarray(is_free & _depths_at(pixels, depth)[1])
+    return np.asarray(is_free & _values_at(pixels, depth)[1])
 
 
-def _depths_at(pixels: Floats64, depth: Floats32) -> tuple[Floats64, Flags]:
-    """Depths [mm] at pixels (n, 2), and which of them are in the picture."""
-    height, width = depth.shape
+def _values_at(pixels: Floats64, image: Floats32 | Flags) -> tuple[Floats64, Flags]:
+    """Values of an image (H, W) at pixels (n, 2), and which of them are in the picture."""
+    height, width = image.shape
     columns, rows = np.floor(pixels).astype(int).T
     is_inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
-    seen = depth[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)]
-    return seen.astype(np.float64), is_inside
+    values = image[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)]
+    return values.astype(np.float64), is_inside
 
 
 def _is_covered(pixels: Floats64, covered: Flags | None) -> Flags:
     """Which of pixels (n, 2) are among those that are covered, (H, W)."""
     if covered is None:
         return np.zeros(len(pixels), dtype=np.bool_)
-    height, width = covered.shape
-    columns, rows = np.floor(pixels).astype(int).T
-    return np.asarray(covered[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)])
+    return _values_at(pixels, covered)[0] > 0.0

@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from risorius.geometry.arrays import Floats64
 
 from .angles import in_degrees
-from .names import HEAD_ANGLES, angle_of
+from .names import HEAD_ANGLES, angle_of, letters_of
 
 MATRICES = ("facialtransformationmatrixes", "facialtransformationmatrices", "matrix")
 POSES = re.compile(
@@ -65,7 +65,7 @@ def _named_angles(
     for row, frame in enumerate(frames):
         for key, value in frame.items():
             if isinstance(value, dict) and is_pose(key):
-                inner = {_letters(each): angle for each, angle in value.items()}
+                inner = {letters_of(each): angle for each, angle in value.items()}
                 if not any(ANGLE.match(each) for each in inner):
                     continue
             elif ANGLE.match(key) or angle_of(key):
@@ -107,7 +107,7 @@ def _turned(values: Sequence[Any], key: str, notes: list[str]) -> list[Floats64 
 def _quaternion(value: Any) -> Floats64 | None:
     """The four numbers of a quaternion in their order, None for another value."""
     if isinstance(value, dict):
-        parts = {_letters(each).removeprefix("q"): number for each, number in value.items()}
+        parts = {letters_of(each).removeprefix("q"): number for each, number in value.items()}
         value = [parts.get(each) for each in "xyzw"]
     if not isinstance(value, list) or len(value) != 4 or not all(map(_is_number, value)):
         return None
@@ -144,7 +144,3 @@ def _matrix(value: Any) -> Floats64 | None:
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e30
-
-
-def _letters(key: Any) -> str:
-    return re.sub(r"[^a-z0-9]", "", str(key).casefold())

@@ -63,7 +63,7 @@ def measured(name: str, values: Floats64) -> Floats64:
     return np.where(np.abs(values) > largest, np.nan, values)
 
 
-def _letters(name: str) -> str:
+def letters_of(name: str) -> str:
     """The name without capitals and what stands between words."""
     return re.sub(r"[^a-z0-9]", "", name.casefold())
 
@@ -72,16 +72,16 @@ def _spellings() -> dict[str, str]:
     """Letters -> shape; sides also as L and R, in front or behind."""
     found = {}
     for name in ARKIT:
-        found[_letters(name)] = name
+        found[letters_of(name)] = name
         for side in ("Left", "Right"):
             if name.endswith(side):
-                found[_letters(name.removesuffix(side) + side[0])] = name
+                found[letters_of(name.removesuffix(side) + side[0])] = name
     return found
 
 
 def _angle_spellings() -> dict[str, str]:
     """Letters -> angle, in the order of words that packets and files use."""
-    found = {_letters(name): name for name in (*HEAD_ANGLES, *EYE_ANGLES)}
+    found = {letters_of(name): name for name in (*HEAD_ANGLES, *EYE_ANGLES)}
     for name in EYE_ANGLES:
         _, axis, side = name.split("_")
         for spelling in (f"{side}eye{axis}", f"eye{axis}{side[0]}", f"eye{side}{axis}"):
@@ -130,12 +130,13 @@ def unit_of(column: str) -> Unit | None:
 @functools.lru_cache(maxsize=4096)  # JSON names each shape again in each frame
 def shape_of(column: str) -> str | None:
     """The ARKit shape that a column holds; None for another column."""
-    return _SHAPES.get(_letters(column)) or _SHAPES.get(_letters(re.split(r"[.:/|]", column)[-1]))
+    last_word = re.split(r"[.:/|]", column)[-1]
+    return _SHAPES.get(letters_of(column)) or _SHAPES.get(letters_of(last_word))
 
 
 def angle_of(column: str) -> str | None:
     """The angle of head or eye that a column holds, unit and sign aside."""
-    return _ANGLES.get(_letters(column))
+    return _ANGLES.get(letters_of(column))
 
 
 def viseme_of(column: str) -> str | None:

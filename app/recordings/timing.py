@@ -16,6 +16,7 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
+from .names import letters_of
 from .row_times import DAY, frame_times, mostly_rises, spread
 from .table import Table
 from .timecode import TIMECODE, timecode_times, with_colons
@@ -70,7 +71,7 @@ class Stamp:
 
 def stamp_of(name: str) -> Stamp | None:
     """The meaning of a column or key by its name; None if it is no time."""
-    letters = _letters(name)
+    letters = letters_of(name)
     stamp_names = (  # without the unit behind them; the first that a file has and that rises counts
         "timestamp",
         "time",
@@ -127,11 +128,7 @@ def is_frame(name: str) -> bool:
         "framenum",
         "framecount",
     )
-    return _letters(name) in frame_names
-
-
-def _letters(name: str) -> str:
-    return re.sub(r"[^a-z0-9]", "", name.casefold())
+    return letters_of(name) in frame_names
 
 
 def times_of(table: Table, rate: float | None, notes: list[str]) -> tuple[Floats64, set[str]]:

@@ -7,7 +7,6 @@ many say so in a flag.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
@@ -16,7 +15,7 @@ import numpy.typing as npt
 from risorius.geometry.arrays import Floats64
 
 from ..text import counted
-from .names import ARKIT, NONSENSE, measured
+from .names import ARKIT, NONSENSE, letters_of, measured
 
 Rows = npt.NDArray[np.bool_]
 
@@ -28,7 +27,7 @@ ZERO = 1e-6
 
 def is_flag(name: str) -> bool:
     """Whether a column or key says if a face is seen."""
-    letters = _letters(name)
+    letters = letters_of(name)
     sure_flags = (
         "facedetected",
         "detected",
@@ -62,11 +61,11 @@ def rows_without_face(
     """
     lost = np.zeros(count, dtype=bool)
     flags = [name for name in names if is_flag(name)]
-    plain = [name for name in flags if "confidence" not in _letters(name)]
+    plain = [name for name in flags if "confidence" not in letters_of(name)]
     least_confidence = 0.5  # a flag is 0 or 1; a confidence below is none
     for name in plain or flags:
         values = np.array([_flag_in(cell) for cell in texts(name)])
-        if _letters(name) == COUNT:
+        if letters_of(name) == COUNT:
             is_lost = values == 0.0
             if is_lost.all():  # of a program that counts nothing
                 continue
@@ -187,7 +186,3 @@ def _flag_in(cell: str) -> float:
         return float(word)
     except ValueError:
         return np.nan
-
-
-def _letters(name: str) -> str:
-    return re.sub(r"[^a-z0-9]", "", name.casefold())

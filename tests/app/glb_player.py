@@ -1,5 +1,7 @@
 """A plain player of glTF files: where every vertex is at a time, by the specification's words."""
 
+import json
+import struct
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,14 @@ import pygltflib
 Array = npt.NDArray[Any]
 COMPONENTS = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+
+
+def document(path: Path) -> dict[str, Any]:
+    """The JSON of a GLB."""
+    data = path.read_bytes()
+    (length,) = struct.unpack_from("<I", data, 12)
+    found: dict[str, Any] = json.loads(data[20 : 20 + length])
+    return found
 
 
 class Player:
@@ -49,13 +59,13 @@ class Player:
         start = (self.file.bufferViews[view].byteOffset or 0) + (offset or 0)
         return np.frombuffer(self.blob, kind, int(np.prod(shape)), start).reshape(shape)
 
-    def shapes(self, name: str, attribute: str = "POSITION") -> dict[str, Array]:
-        """The named targets of a node's mesh."""
+    def shapes(self, name: str) -> dict[str, Array]:
+        """How far the named targets of a node's mesh move its vertices."""
         mesh = self.file.meshes[self.file.nodes[self.numbers[name]].mesh]
         targets = mesh.primitives[0].targets or []
         names = (mesh.extras or {}).get("targetNames", [])
         return {
-            each: self.values(target[attribute])
+            each: self.values(target["POSITION"])
             for each, target in zip(names, targets, strict=True)
         }
 

@@ -245,8 +245,7 @@ def test_capture_shows_the_map_behind(tmp_path, lit):
     light = ("--light", path) if lit == "file" else ("--style", "light=room")
     light_map = read_light_map(path) if lit == "file" else render.LIGHT_MAPS["room"]
     options = ("--scene", "plane", "--size", "80x60", "--background", "map")
-    result = risorius("capture", *options, *light, "--quiet", "-o", tmp_path / "seen.png")
-    assert result.exit_code == 0, result.output
+    succeeded("capture", *options, *light, "--quiet", "-o", tmp_path / "seen.png")
     seen = np.asarray(PIL.Image.open(tmp_path / "seen.png"))[2, 2, 0]
     lens = render.OrbitCamera.field_of_view
     assert_allclose(seen, _painted(light_map.background(), lens)[2, 2], atol=2)

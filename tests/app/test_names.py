@@ -126,16 +126,14 @@ def test_sets_and_lists_with_such_names(tmp_path):
     folder = tmp_path / f"{RAW}_set"
     words = ("--background", backgrounds, *SMALL, "--refiner", "none", "--quiet")
     for count, more in ((1, ()), (2, ("--resume",))):
-        result = risorius("dataset", "--count", count, "-o", folder, *words, *more)
-        assert result.exit_code == 0, result.output
+        succeeded("dataset", "--count", count, "-o", folder, *words, *more)
     assert json.loads((folder / "000000.json").read_text("utf-8"))["background"] == f"{SHOWN}.png"
     assert f"{SHOWN}_pictures" in (folder / "README.md").read_text("utf-8")
     listing = tmp_path / f"{RAW}.txt"
     script = pose(tmp_path / "pose.toml")
     target = tmp_path / "out.npz"
     listing.write_text(f"export '{script}' -o '{target}' --fps 5\n", "utf-8")
-    result = risorius("batch", listing, "--jobs", 1, "--quiet")
-    assert result.exit_code == 0, result.output
+    succeeded("batch", listing, "--jobs", 1, "--quiet")
     with (tmp_path / f"{RAW}_logs" / "summary.csv").open(encoding="utf-8", newline="") as file:
         (row,) = csv.DictReader(file)
     assert f"{SHOWN}_logs" in row["log"]

@@ -23,9 +23,9 @@ RATE = 60
 take_of = partial(recording_files.take_of, seconds=3.0, rate=RATE)
 
 
-def wave(seconds=3.0):
+def wave():
     """A channel that comes and goes, from 0 to 1."""
-    times = np.arange(round(seconds * RATE) + 1) / RATE
+    times = np.arange(3 * RATE + 1) / RATE
     return 0.5 - 0.5 * np.cos(5.0 * times)
 
 

@@ -176,12 +176,12 @@ def test_json_of_something_else(text, tmp_path):
 # Visemes
 
 
-def tracks(height=0.42):
+def tracks():
     """A word of OpenFaceFX: silence, aa, PP, oh, silence; each moment is shared out."""
     keys = {
         "sil": [[0.0, 0.44], [0.2, 0.0], [0.8, 0.0], [1.0, 0.44]],
         "aa": [[0.0, 0.3], [0.2, 0.8], [0.4, 0.4], [0.6, 0.1]],
-        "PP": [[0.2, 0.05], [0.4, height], [0.6, 0.05]],
+        "PP": [[0.2, 0.05], [0.4, 0.42], [0.6, 0.05]],
         "O": [[0.0, 0.2], [0.4, 0.1], [0.6, 0.7], [1.0, 0.3]],
         "tail": [[0.0, 1.0]],
     }

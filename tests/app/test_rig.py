@@ -5,7 +5,6 @@ import re
 import struct
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -31,19 +30,11 @@ from risorius.geometry.normals import vertex_normals
 from ..heads import TURN, stranger
 from ..meshes import ball
 from .command_line import refusal, risorius, shape_keys_in_blender, succeeded
-from .glb_player import Player
+from .glb_player import Player, document
 from .rig_files import LIBRARY, PICTURE, write_whole_head
 
 METRES = 0.001
 SEEN = 0.02  # [mm] that nobody sees
-
-
-def document(path):
-    """The JSON of a GLB."""
-    data = path.read_bytes()
-    (length,) = struct.unpack_from("<I", data, 12)
-    found: dict[str, Any] = json.loads(data[20 : 20 + length])
-    return found
 
 
 @pytest.fixture(scope="module")

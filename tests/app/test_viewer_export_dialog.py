@@ -1,8 +1,6 @@
 """File > Export, driven with mouse and keys: films, motion, progress, cancel, errors."""
 
-import json
 import signal
-import struct
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -33,6 +31,7 @@ from .driving import (
     until,
     write,
 )
+from .glb_player import document
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -201,11 +200,9 @@ def test_a_head_of_the_user_becomes_an_avatar(viewer, tmp_path):
     assert until(viewer, lambda: 0.2 < job.task.share < 1.0, LONG)
     assert until(viewer, lambda: viewer.exporter.job is None, LONG)
     assert not viewer.messages.is_error, viewer.messages.text
-    data = job.target.read_bytes()
-    (length,) = struct.unpack_from("<I", data, 12)
-    document = json.loads(data[20 : 20 + length])
-    head = next(each for each in document["meshes"] if each["name"] == "head")
+    found = document(job.target)
+    head = next(each for each in found["meshes"] if each["name"] == "head")
     assert tuple(head["extras"]["targetNames"]) == ARKIT
     position = head["primitives"][0]["attributes"]["POSITION"]
-    assert document["accessors"][position]["count"] == len(stranger().mesh.vertices)
-    assert "teeth_lower" in {each["name"] for each in document["meshes"]}
+    assert found["accessors"][position]["count"] == len(stranger().mesh.vertices)
+    assert "teeth_lower" in {each["name"] for each in found["meshes"]}

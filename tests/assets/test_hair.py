@@ -26,9 +26,9 @@ from tests.assets.checks import check_part
 
 
 @cache
-def haired(cut, *, number=0, receded=0.0, length=1.0):
+def haired(cut, *, receded=0.0, length=1.0):
     """Somebody with a cut."""
-    identity = replace(sample_identity(number), cut=cut, hair=length)
+    identity = replace(sample_identity(0), cut=cut, hair=length)
     return coloured(
         make_person(identity), angle=30.0, features=Features(hairline=Hairline(front=receded))
     )
@@ -116,9 +116,9 @@ def test_hair_keeps_its_colour_in_other_tones_of_skin():
     assert darker.colours.mean() < 0.8 * mine.colours.mean()
 
 
-def label_of(person, size=200):
+def label_of(person):
     """A picture and its classes."""
-    options = CaptureOptions(size=(size, size), passes=("segmentation",))
+    options = CaptureOptions(size=(200, 200), passes=("segmentation",))
     with Capture(FaceScene(person), options) as capture:
         image = capture.draw_image()
         passes = Passes(capture.pipeline, capture.viewports[-1].drawn)

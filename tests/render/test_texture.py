@@ -18,7 +18,6 @@ def textured(
     style=PLAIN,
     *,
     shape=None,
-    camera=None,
     values=None,
     occlusion=None,
     fine_shape=None,
@@ -32,7 +31,7 @@ def textured(
     fine = None if fine_shape is None else renderer.bump_map(*fine_shape, channels=2)
     texture = render.Texture(renderer.surface, image, occlusion, fine)
     skin = render.Skin(stream, render.SkinMaps(texture), values=values)
-    return draw(renderer, skin, style, camera=camera)
+    return draw(renderer, skin, style)
 
 
 def plain_image(colour, size=(8, 8)):

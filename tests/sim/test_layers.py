@@ -50,6 +50,11 @@ UNITS = layer(
 FACES = layer("Faces", both={"A": 0.5, "slide": 0.25}, lopsided={"A_left": 1.5})
 
 
+def sums_of(*numbers):
+    """Sums of the lowest controls, in their order."""
+    return dict(zip(LOWEST, numbers, strict=True))
+
+
 def wanted(subject, **values):
     """The sums of the lowest controls when these values are set and no others."""
     subject.pose(values)
@@ -59,13 +64,9 @@ def wanted(subject, **values):
 def test_rows_share_into_the_layers_below():
     """A row scales its entries, through every layer down to the muscles."""
     subject = controls(UNITS, FACES)
-    assert wanted(subject, both=1.0) == approx(
-        {"puller_left": 0.4, "puller_right": 0.4, "middle": 0.3, "slide": 0.25}
-    )
+    assert wanted(subject, both=1.0) == approx(sums_of(0.4, 0.4, 0.3, 0.25))
     assert wanted(subject, both=0.5)["puller_left"] == approx(0.2)
-    assert wanted(subject, puller=0.7) == {
-        "puller_left": 0.7, "puller_right": 0.7, "middle": 0.0, "slide": 0.0,
-    }  # fmt: skip
+    assert wanted(subject, puller=0.7) == sums_of(0.7, 0.7, 0.0, 0.0)
 
 
 def test_sides_of_a_pair_add_up_to_the_whole():
@@ -73,7 +74,7 @@ def test_sides_of_a_pair_add_up_to_the_whole():
     subject = controls(UNITS)
     left = wanted(subject, A_left=1.0)
     right = wanted(subject, A_right=1.0)
-    assert left == approx({"puller_left": 0.8, "puller_right": 0.0, "middle": 0.3, "slide": 0.0})
+    assert left == approx(sums_of(0.8, 0.0, 0.3, 0.0))
     assert wanted(subject, A=1.0) == approx({n: left[n] + right[n] for n in LOWEST})
 
 
@@ -82,9 +83,7 @@ def test_sides_may_be_spelled_as_arkit_does():
     subject = controls(layer("Shapes", smile={"pair": "Left Right", "puller": 0.5, "middle": 0.2}))
     assert subject.groups["Shapes"] == ("smileLeft", "smileRight")
     assert "smile" not in subject.names
-    assert wanted(subject, smileLeft=1.0) == approx(
-        {"puller_left": 0.5, "puller_right": 0.0, "middle": 0.1, "slide": 0.0}
-    )
+    assert wanted(subject, smileLeft=1.0) == approx(sums_of(0.5, 0.0, 0.1, 0.0))
 
 
 SHARED = layer(
@@ -131,7 +130,7 @@ def test_what_rows_make_sure_of_does_not_add():
     assert wanted(subject, both=1.0, slide=0.3)["slide"] == approx(0.4)
     assert wanted(subject, slide=-0.5)["slide"] == -0.5
     left = wanted(subject, B_left=1.0)
-    assert left == {"puller_left": 0.3, "puller_right": 0.0, "middle": 0.0, "slide": 0.2}
+    assert left == sums_of(0.3, 0.0, 0.0, 0.2)
     assert wanted(subject, B_left=1.0, B_right=1.0) == wanted(subject, B=1.0)
 
 

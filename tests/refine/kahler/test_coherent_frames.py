@@ -71,18 +71,18 @@ def turned_per_frame(refiner, frames):
     return counts
 
 
-def growing(mesh, seed, count=25):
+def growing(mesh, seed):
     """A deformation that grows from nothing."""
     full = meshes.wrinkled(mesh, seed, 0.5) - mesh.vertices
-    return [mesh.vertices + share * full for share in np.linspace(0.0, 1.0, count)]
+    return [mesh.vertices + share * full for share in np.linspace(0.0, 1.0, 25)]
 
 
-def splitting(mesh, seed, count=12):
+def splitting(mesh, seed):
     """A criterion that splits ever more edges at random, and frames that call it."""
     generator = np.random.default_rng(seed)
     edge_count = edge_count_of(mesh)
     criterion = Forced(np.zeros(edge_count))
-    return criterion, [generator.random(edge_count) for _ in range(count)]
+    return criterion, [generator.random(edge_count) for _ in range(12)]
 
 
 def played(mesh, criterion, chances):
