@@ -29,7 +29,7 @@ from .surface import METRES
 UNITS = (1.0, 10.0, 25.4, 100.0, 304.8, 1000.0)
 MOST_OFF = 1.25
 CLAMP_TO_EDGE = 33071
-SHORT = 65535  # vertices that 16 bits can number
+SHORT = 65535  # the greatest number of 16 bits, which glTF keeps for no vertex
 
 
 @dataclass(frozen=True)
@@ -79,21 +79,10 @@ class FileMeshWriter:
 
     def add(self, names: tuple[str, ...], chosen: npt.NDArray[np.bool_]) -> int:
         """Add the mesh with those of its triangles that are chosen, (F,); return its number."""
-        split = self._split
         attributes = self._attributes()
-        short = np.uint16 if len(split.vertex) <= SHORT else np.uint32
         targets = self._targets()
-        primitives = []
-        for material in np.unique(self._painted.material[chosen]):
-            corners = split.corners[chosen & (self._painted.material == material)]
-            primitive: dict[str, Any] = {
-                "attributes": attributes,
-                "indices": self._glb.accessor(corners.astype(short).ravel(), ELEMENT_ARRAY_BUFFER),
-                "material": self._material(int(material)),
-            }
-            if targets:
-                primitive["targets"] = targets
-            primitives.append(primitive)
+        more = {"targets": targets} if targets else {}
+        primitives = self._primitives(attributes, self._split.corners[chosen], chosen, more)
         mesh: dict[str, Any] = {"name": self._shaped.body.name, "primitives": primitives}
         if targets:
             mesh["weights"] = [0.0] * len(targets)
@@ -112,20 +101,26 @@ class FileMeshWriter:
             "NORMAL": self._glb.accessor(_singles(normals), ARRAY_BUFFER),
         }
         attributes.update(self._paint(used))
-        short = np.uint16 if len(used) <= SHORT else np.uint32
-        primitives = []
-        number = number.reshape(-1, 3)
-        materials = self._painted.material[chosen]
-        for material in np.unique(materials):
-            indices = number[materials == material].astype(short).ravel()
-            primitives.append(
-                {
-                    "attributes": attributes,
-                    "indices": self._glb.accessor(indices, ELEMENT_ARRAY_BUFFER),
-                    "material": self._material(int(material)),
-                }
-            )
+        primitives = self._primitives(attributes, number.reshape(-1, 3), chosen, {})
         return self._glb.add("meshes", {"name": name, "primitives": primitives})
+
+    def _primitives(
+        self,
+        attributes: dict[str, int],
+        corners: Integers,
+        chosen: npt.NDArray[np.bool_],
+        more: dict[str, Any],
+    ) -> list[dict[str, Any]]:
+        """A primitive for each material of chosen triangles; corners: theirs, (n, 3)."""
+        short = np.uint16 if corners.max(initial=0) < SHORT else np.uint32
+        materials = self._painted.material[chosen]
+        primitives = []
+        for material in np.unique(materials):
+            indices = corners[materials == material].astype(short).ravel()
+            number = self._glb.accessor(indices, ELEMENT_ARRAY_BUFFER)
+            own = {"indices": number, "material": self._material(int(material)), **more}
+            primitives.append({"attributes": attributes, **own})
+        return primitives
 
     def _attributes(self) -> dict[str, int]:
         """The vertices at rest: places, normals, and what paints them."""
