@@ -199,10 +199,10 @@ class _Reader:
         if row.pair:
             for side in (*SIDES, *ENDINGS["Left Right"]):
                 if name.endswith(side):
-                    raise ValueError(f"{where}: a pair adds the sides; leave '{side}' away")
+                    raise ValueError(f"{where}: a pair adds the sides; omit '{side}'")
             for control in (*row.entries, *row.at_least):
                 if control.endswith(SIDES):
-                    raise ValueError(f"{where}: in a pair leave the side of '{control}' away")
+                    raise ValueError(f"{where}: in a pair omit the side of '{control}'")
         self._check_entries(where, row, below)
 
     def _check_entries(self, where: str, row: _Row, below: Mapping[str, Floats64]) -> None:

@@ -249,7 +249,7 @@ def _muscles(tables: dict[str, Muscle]) -> tuple[Muscle, ...]:
         if not name.isidentifier() or name != name.lower():
             raise ValueError(f"'{name}': a name is lower case letters, digits and underscores")
         if name.endswith(("_left", "_right")):
-            raise ValueError(f"'{name}': the side is added by itself, leave '_left'/'_right' away")
+            raise ValueError(f"'{name}': the side is added by itself, omit '_left' and '_right'")
         if isinstance(muscle, LinearMuscle) and not muscle.fibres:
             raise ValueError(
                 f"'{name}': a linear muscle needs at least one [[muscle.{name}.fibre]]"
@@ -264,7 +264,7 @@ def _check_what_carries(muscle: Muscle, muscles: Mapping[str, Muscle]) -> None:
     """Refuse a muscle on one that is not there, on or under a lid, or at last on itself."""
     where = f"'{muscle.name}', 'lies_on'"
     if muscle.lies_on and isinstance(muscle, LidMuscle):
-        raise ValueError(f"{where}: a lid lies on the eyeball; leave the key away")
+        raise ValueError(f"{where}: a lid lies on the eyeball; omit the key")
     for name in muscle.lies_on:
         if name not in muscles:
             raise ValueError(f"{where}: there is no muscle '{name}'{question(name, muscles)}")

@@ -281,7 +281,7 @@ def _check_unmoved(
 
 def _require(holds: bool, relation: str) -> None:
     if not holds:
-        raise BrokenMeshError(f"not so: {relation}")
+        raise BrokenMeshError(f"this rule is broken: {relation}")
 
 
 def _require_all(
@@ -291,4 +291,6 @@ def _require_all(
     broken = np.flatnonzero(~holds)
     if len(broken):
         number = broken[0] if numbers is None else numbers[broken[0]]
-        raise BrokenMeshError(f"not so at {number} ({len(broken)} of {len(holds)}): {relation}")
+        raise BrokenMeshError(
+            f"this rule is broken at {number} ({len(broken)} of {len(holds)}): {relation}"
+        )
