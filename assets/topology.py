@@ -18,13 +18,19 @@ def boundary_loops(faces: Faces) -> list[list[int]]:
     At a vertex where holes meet, a row goes on around the faces beside it; it may come back there.
     Raises ValueError if two faces run along an edge the same way: that is no surface.
     """
-    third: dict[Edge, int] = {}  # vertex of the face to the left of each directed edge
-    for a, b, c in faces.tolist():
-        for first, second, other in ((a, b, c), (b, c, a), (c, a, b)):
-            if (first, second) in third:
-                raise ValueError(f"two faces run from vertex {first} to {second}")
-            third[first, second] = other
-    left = {way for way in third if way[::-1] not in third}
+    sides, number = different_pairs(sides_of(faces))
+    if len(sides) < len(number):
+        first, second = sides[np.bincount(number).argmax()].tolist()
+        raise ValueError(f"two faces run from vertex {first} to {second}")
+    edges, edge = different_pairs(np.sort(sides, axis=1))
+    is_border = np.bincount(edge) == 1
+    left = {(first, second) for first, second in sides[is_border[edge]].tolist()}
+    at_border = np.isin(faces, edges[is_border]).any(axis=1)
+    third: dict[Edge, int] = {}  # vertex of the face to the left of each directed edge there
+    for a, b, c in faces[at_border].tolist():
+        third[a, b] = c
+        third[b, c] = a
+        third[c, a] = b
     loops = []
     while left:
         first, second = min(left)

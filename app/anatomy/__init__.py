@@ -57,7 +57,7 @@ class Anatomy:
     def __init__(self, scene: Drawable) -> None:
         self._scene = scene
         self._skull: dict[str, Any] = {}
-        self._necks: list[Any] = []
+        self._necks: list[Any] | None = None  # a mask has none
         self._muscles: Muscles | None = None
         self._followed = np.empty(0)  # the values that shaped the muscles last
         self._halves: dict[tuple[float, str], Any] = {}  # of parts, by the side that is opened
@@ -112,7 +112,8 @@ class Anatomy:
         self._skull = self._skull or build_skull(
             face.simulated_head, face.simulation.bones.pivots()
         )
-        self._necks = self._necks or neck_sections(face.head)
+        if self._necks is None:
+            self._necks = neck_sections(face.head)
         muscles = [self._muscles_now(face)] if "muscles" in view.structures else []
         return [*self._necks, *(self._skull[name] for name in names), *muscles]
 

@@ -205,3 +205,19 @@ def pixels_of(camera, points):
     clip = np.hstack([points, np.ones((len(points), 1))]) @ matrix
     place = 0.5 * (clip[:, :2] / clip[:, 3:] + 1.0)
     return np.stack([place[:, 0] * SIZE[0], (1.0 - place[:, 1]) * SIZE[1]], axis=1)
+
+
+def test_a_mask_is_searched_for_a_neck_once(monkeypatch):
+    """A head without a neck looked for one in each frame: half a second of a dense scan."""
+    searched = []
+
+    def no_sections(head):
+        """The sections of a mask: none."""
+        searched.append(head)
+        return []
+
+    monkeypatch.setattr("risorius.app.anatomy.neck_sections", no_sections)
+    anatomy = Anatomy(FaceScene())
+    for _ in range(2):
+        anatomy.dissect(BOTH)
+    assert len(searched) == 1
