@@ -87,9 +87,9 @@ def fold_of(person: Person, side: str, size: int) -> Fold:
     groove_width = 0.6  # [mm]
     groove = np.exp(-((above / groove_width) ** 2)) * shows
     hangs = smooth_step(-0.1, 1.3, above) * (1.0 - smooth_step(2.0, 7.0, above)) * is_lid
-    groove_depth = 0.3  # [mm]
+    groove_depth = 0.2  # [mm]
     fold_height = 0.55 + 0.25 * identity.hooding  # [mm]
-    crease_dark = 0.6  # share of ambient light that a crease lacks
+    crease_dark = 0.4  # share of ambient light that a crease lacks
     below_dark = 0.2  # the same, below a fold
     below = shows * (1.0 - smooth_step(-1.2, 0.3, above)) * smooth_step(0.0, 0.4, away)
     shape = near.rows.stop - near.rows.start, near.columns.stop - near.columns.start
