@@ -115,7 +115,7 @@ def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHea
     file = Path(landmarks)
     numbers, points = read_landmarks(file, found)
     try:
-        fitted = _fit_shut_or_not(found, partial(read_landmarks, file))
+        fitted = _fit_shut_or_not(found, (numbers, points), partial(read_landmarks, file))
     except AssetError as error:
         reason = error
         are_faces = [is_face(found.vertices[numbers - first]) for first in (0, 1)]
@@ -128,12 +128,12 @@ def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHea
 Marks = tuple[Integers32, Floats64 | None]  # landmarks as `read_landmarks` has them
 
 
-def _fit_shut_or_not(mesh: Mesh, marks: Callable[[Mesh], Marks]) -> FittedHead:
+def _fit_shut_or_not(mesh: Mesh, marks: Marks, marks_of: Callable[[Mesh], Marks]) -> FittedHead:
     """Fit a mesh. Filled openings are opened first, and lips that are joined by skin parted.
 
-    marks: reads the landmarks of a mesh with those vertices.
+    marks_of: finds the landmarks of a mesh with those vertices and other triangles.
     """
-    numbers, points = marks(mesh)
+    numbers, points = marks
     places = mesh.vertices[numbers] if points is None else points
     try:
         return fit(mesh, numbers, points=points)
@@ -141,13 +141,14 @@ def _fit_shut_or_not(mesh: Mesh, marks: Callable[[Mesh], Marks]) -> FittedHead:
         reason = error
     filling = filling_of(mesh, numbers, places)
     if filling is not None:
-        fitted = _fit_shut_or_not(mesh.without(filling.triangles), marks)
+        opened = mesh.without(filling.triangles)
+        fitted = _fit_shut_or_not(opened, marks_of(opened), marks_of)
         return replace(fitted, notes=(*fitted.notes, filling.in_words))
     if not isinstance(reason, ShutMouthError):
         raise reason
     parted = lips_parted(mesh, places)
     if parted is not None:
-        parted_numbers, parted_points = marks(parted)
+        parted_numbers, parted_points = marks_of(parted)
         with contextlib.suppress(ShutMouthError):
             return fit(parted, parted_numbers, points=parted_points)
     cut = lip_cut(mesh, numbers, places)
@@ -170,18 +171,16 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
             "go together; `risorius view --head MESH` helps to mark the landmarks"
         )
 
-    def marks(parted: Mesh) -> Marks:
+    def marks_of(parted: Mesh) -> Marks:
         """The known landmarks; those of lips that were parted on their own lip each."""
         numbers = known.landmarks
-        if parted is mesh:
-            return numbers, None
         nearest = nearest_vertices(mesh.vertices[numbers], parted.vertices, parted.faces)
         inner_lips = np.arange(COUNT) >= 60
         return np.where(inner_lips, nearest, numbers), None
 
     note = f"its vertices are those of {known.name}, whose landmarks are known"
     try:
-        fitted = _fit_shut_or_not(mesh, marks)
+        fitted = _fit_shut_or_not(mesh, (known.landmarks, None), marks_of)
     except AssetError as error:
         raise MisfitError(
             f"{named(path)}: {note}; but {error}; else mark its landmarks: "
