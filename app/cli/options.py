@@ -276,7 +276,7 @@ class Drawing(Subject):
         flag_value=",".join(STRUCTURES),
         metavar="[NAME,...]",
         help="Draw muscles, skull or both under translucent skin; opacity=0..1 of the skin, 0.25 "
-        "by default; dissect=left or right: the only side with translucent skin.",
+        "by default; dissect=left or right: the subject's side that alone has such skin.",
     )
     style_settings: tuple[str, ...] = option(
         "--style",
