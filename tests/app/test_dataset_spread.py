@@ -25,7 +25,7 @@ from risorius.app.dataset.sampling import draw
 from risorius.app.dataset.sharing import Share, made_on_cluster, make_samples
 from risorius.app.dataset.table import load_table
 from risorius.app.errors import UserError
-from risorius.assets.identities import own_colours, person_called, sample_identity
+from risorius.assets.identities import EVERYBODY, own_colours, person_called, sample_identity
 from risorius.faces import UNITS, Faces
 
 from .test_dataset import content
@@ -207,6 +207,7 @@ def test_persons_of_a_seed_are_nobody_elses():
     assert all(len(some) > 100 for some in persons)
     assert len(set.union(*persons)) == sum(map(len, persons))
     assert min(persons[2]) // 10**6 == max(persons[2]) // 10**6 == 7
+    assert table.population == EVERYBODY
     number = min(persons[1])
     identity = sample_identity(number, population=table.population)
     assert identity == sample_identity(number)
