@@ -36,10 +36,11 @@ from .eyes import beside_skin, with_irises
 from .features import PLAIN, Features
 from .hair import CUTS, HAIR, OWN_CUT, Fall, hair_of, scalp_of
 from .larynx import larynx_of
-from .lids import EYES, fold_of, shaded, with_folds
+from .lids import EYES, fold_of, shaded
 from .long_hair import falling_hair, tied_hair
 from .person import Person
 from .population import DARKEST, LIGHTEST
+from .relief import with_reliefs
 
 GREY_HAIR = (0.54, 0.52, 0.49)
 LOCKS_LIGHTER = 1.2  # than painted hair, which no other hair shades
@@ -209,7 +210,7 @@ def _own_shape(person: Person) -> FineShape:
     known = load("head").fine_shape
     size = len(known.slopes)
     lids = [fold_of(person, side, size) for side in EYES]
-    return with_folds(known, [*lids, larynx_of(person, size)])
+    return with_reliefs(known, [*lids, larynx_of(person, size)])
 
 
 def _beside_light_skin(angle: float) -> Floats64:

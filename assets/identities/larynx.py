@@ -15,12 +15,12 @@ from risorius.geometry.texels import Texels
 from ...geometry.arrays import Floats64
 from ..loading import load
 from ..smooth import smooth_step
-from .lids import Fold
 from .person import Person
+from .relief import Relief, relief_of
 
 
-def larynx_of(person: Person, size: int) -> Fold:
-    """Heights of the larynx in a map of so many texels each way."""
+def larynx_of(person: Person, size: int) -> Relief:
+    """Heights of the larynx in a map of this many texels each way."""
     texels = _neck(size)
     x, y, _ = texels.interpolate(person.vertices[person.faces]).T
     throat = person.vertices[person.anatomy["cervicale"], 1]
@@ -29,13 +29,8 @@ def larynx_of(person: Person, size: int) -> Fold:
     notch = 0.25 * np.exp(-((x / 2.5) ** 2) - ((y - throat + below - 6.0) / 3.0) ** 2)
     ridge = np.exp(-((x / half_width) ** 2) - ((y - throat + below) / half_height) ** 2)
     inside = smooth_step(0.02, 0.1, ridge)
-    rows, columns = (
-        slice(int(each.min()), int(each.max()) + 1) for each in (texels.rows, texels.columns)
-    )
-    heights: Floats64 = np.zeros((rows.stop - rows.start, columns.stop - columns.start))
-    at = texels.rows - rows.start, texels.columns - columns.start
-    heights[at] = person.identity.larynx * inside * (ridge - notch)
-    return Fold(rows, columns, heights, np.ones_like(heights))
+    heights: Floats64 = person.identity.larynx * inside * (ridge - notch)
+    return relief_of(texels, heights, np.ones_like(heights))
 
 
 @lru_cache(maxsize=2)

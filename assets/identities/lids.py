@@ -8,7 +8,6 @@ upper eyelid and eyebrow dimensions in healthy white individuals", Am. J. Ophtha
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -20,38 +19,12 @@ from risorius.geometry.texels import Texels
 from ...geometry.arrays import Floats64, Integers64
 from ..data_files import Image
 from ..loading import load
-from ..model import FineShape
 from ..smooth import smooth_step
 from .person import Person
+from .relief import Relief, relief_of
 
 EYES = ("left", "right")
 STEPS = 81  # along the edge of a lid
-
-
-class Fold(NamedTuple):
-    """The fold of one upper lid in a map.
-
-    rows, columns: the part of the map that it lies in. heights: that it adds to the skin [mm],
-    light: share of ambient light that gets there, both of shape (h, w).
-    """
-
-    rows: slice
-    columns: slice
-    heights: Floats64
-    light: Floats64
-
-
-def with_folds(known: FineShape, folds: Sequence[Fold]) -> FineShape:
-    """A fine shape with folds in maps of its size."""
-    slopes = known.slopes.copy()
-    height, width = slopes.shape[:2]
-    for fold in folds:
-        down, across = np.gradient(fold.heights)
-        added = np.stack([across * width, -down * height], axis=2) * (127.0 / known.steepest)
-        near = slopes[fold.rows, fold.columns]
-        near[...] = np.clip(np.rint(near + added), 0.0, 255.0).astype(np.uint8)
-    slopes.flags.writeable = False
-    return FineShape(slopes, known.steepest)
 
 
 def shaded(occlusion: Image, person: Person) -> Image:
@@ -65,8 +38,8 @@ def shaded(occlusion: Image, person: Person) -> Image:
     return found
 
 
-def fold_of(person: Person, side: str, size: int) -> Fold:
-    """The fold of one upper lid in a map of so many texels each way.
+def fold_of(person: Person, side: str, size: int) -> Relief:
+    """The fold of one upper lid in a map of this many texels each way.
 
     All its lengths are chosen by eye but that of the skin that is seen.
     """
@@ -92,24 +65,17 @@ def fold_of(person: Person, side: str, size: int) -> Fold:
     crease_dark = 0.4  # share of ambient light that a crease lacks
     below_dark = 0.2  # the same, below a fold
     below = shows * (1.0 - smooth_step(-1.2, 0.3, above)) * smooth_step(0.0, 0.4, away)
-    shape = near.rows.stop - near.rows.start, near.columns.stop - near.columns.start
-    heights = np.zeros(shape)
-    light = np.ones(shape)
-    at = texels.rows - near.rows.start, texels.columns - near.columns.start
-    heights[at] = fold_height * hangs - groove_depth * groove
-    light[at] = 1.0 - crease_dark * groove - below_dark * below
-    return Fold(near.rows, near.columns, heights, light)
+    heights = fold_height * hangs - groove_depth * groove
+    return relief_of(texels, heights, 1.0 - crease_dark * groove - below_dark * below)
 
 
 class _About(NamedTuple):
-    """The texels about an eye, and the part of a map that they lie in.
+    """The texels about an eye.
 
     nearest: number of the sample of the upper lid's edge that is nearest to each texel on the
     built-in head.
     """
 
-    rows: slice
-    columns: slice
     texels: Texels
     nearest: Integers64
 
@@ -136,7 +102,4 @@ def _about(side: str, size: int) -> _About:
     texels = Texels(
         texels.rows[kept], texels.columns[kept], texels.faces[kept], texels.weights[kept]
     )
-    rows, columns = (
-        slice(int(each.min()) - 1, int(each.max()) + 2) for each in (texels.rows, texels.columns)
-    )
-    return _About(rows, columns, texels, nearest[kept])
+    return _About(texels, nearest[kept])

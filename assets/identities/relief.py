@@ -1,0 +1,52 @@
+"""Heights that a person's skin has more than the built-in head's, in a part of its maps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from risorius.geometry.texels import Texels
+
+from ...geometry.arrays import Floats64
+from ..model import FineShape
+
+
+class Relief(NamedTuple):
+    """A part of a map, with what a person has there.
+
+    rows, columns: the part. heights: added to the skin [mm], light: share of ambient light that
+    gets there, both of shape (h, w).
+    """
+
+    rows: slice
+    columns: slice
+    heights: Floats64
+    light: Floats64
+
+
+def relief_of(texels: Texels, heights: Floats64, light: Floats64) -> Relief:
+    """The part of a map that holds these texels; heights and light: of each, shape (n,)."""
+    top, left = texels.rows.min(), texels.columns.min()
+    rows = slice(int(top), int(texels.rows.max()) + 1)
+    columns = slice(int(left), int(texels.columns.max()) + 1)
+    shape = rows.stop - rows.start, columns.stop - columns.start
+    found = Relief(rows, columns, np.zeros(shape), np.ones(shape))
+    at = texels.rows - top, texels.columns - left
+    found.heights[at] = heights
+    found.light[at] = light
+    return found
+
+
+def with_reliefs(known: FineShape, reliefs: Sequence[Relief]) -> FineShape:
+    """A fine shape with reliefs in maps of its size."""
+    slopes = known.slopes.copy()
+    height, width = slopes.shape[:2]
+    for relief in reliefs:
+        down, across = np.gradient(relief.heights)
+        added = np.stack([across * width, -down * height], axis=2) * (127.0 / known.steepest)
+        near = slopes[relief.rows, relief.columns]
+        near[...] = np.clip(np.rint(near + added), 0.0, 255.0).astype(np.uint8)
+    slopes.flags.writeable = False
+    return FineShape(slopes, known.steepest)
