@@ -19,3 +19,17 @@ float key_lightness(vec3 place) {
         + high_weight.x * texture(shadow_map, vec3(high, place.z));
     return (low_weight.y * lower + high_weight.y * upper) / 16.0;
 }
+
+#if defined(LIFTED)
+// A place further above its triangle, if that is steeper toward the light than its normals say: few
+// triangles that are shaded as a round surface would else be shadowed in stripes.
+// place: in the shadow map; lift: how far it stands above the surface already, along the normal.
+vec3 above_triangle(vec3 place, vec3 lift) {
+    const float REACH = 2.0;  // of the look-up, to each side [texels]
+    vec3 surface = place - lift;
+    vec3 across = normalize(cross(dFdx(surface), dFdy(surface)));
+    across = dot(across, lift) < 0.0 ? -across : across;
+    float rise = REACH / float(textureSize(shadow_map, 0).x) * length(across.xy);
+    return place + max(rise - dot(across, lift), 0.0) * across;
+}
+#endif

@@ -51,7 +51,10 @@ uniform float sharpness;
 #else
 #define BUMP_VARYING
 #endif
-#if defined(SHADOWS)
+#if defined(SHADOWS) && !defined(COLOURED)
+#define LIFTED  // parts are so fine that their normals are those of their triangles
+#define SHADOW_VARYING vec3 light_place; vec3 lift;
+#elif defined(SHADOWS)
 #define SHADOW_VARYING vec3 light_place;
 #else
 #define SHADOW_VARYING
@@ -97,7 +100,7 @@ uniform mat4 projection;
 #if defined(SHADOWS)
 uniform mat4 shadow_matrix;   // view space -> place in the shadow map
 // A receiver stands above itself, lest it shadow itself: by a little, and by as much as its slope
-// rises within the reach of the look-up.
+// rises within the reach of the look-up. Here its slope is that of its normal.
 uniform float shadow_offset;
 uniform float shadow_reach;
 #endif
@@ -159,6 +162,9 @@ void main() {
     float height = shadow_offset + shadow_reach * length(cross(normal, to_key));
     surface.light_place = (shadow_matrix * vec4(position.xyz + height * normal, 1.0)).xyz;
 #endif
+#if defined(LIFTED)
+    surface.lift = mat3(shadow_matrix) * (height * normal);
+#endif
     gl_Position = projection * position;
 #if defined(STRANDS)
     vec4 own = projection * vec4(middle, 1.0);  // only as deep as it is
@@ -218,6 +224,9 @@ void main() {
 #endif
 #if defined(SHADOWS)
         drawn.light_place = corner[i].light_place;
+#endif
+#if defined(LIFTED)
+        drawn.lift = corner[i].lift;
 #endif
         drawn.edge_distance = vec3(0.0);
         drawn.edge_distance[i] = height[i];
@@ -375,7 +384,11 @@ void main() {
     front *= strand.tone;
 #endif
 #if defined(SHADOWS)
+#if defined(LIFTED)
+    float lightness = key_lightness(above_triangle(surface.light_place, surface.lift));
+#else
     float lightness = key_lightness(surface.light_place);
+#endif
 #else
     float lightness = 1.0;
 #endif

@@ -77,6 +77,33 @@ def test_convex_things_do_not_shadow_themselves(surface, shading):
     assert np.abs(within - without).mean() < 0.7
 
 
+@pytest.mark.parametrize("shading", [render.Shading.GOURAUD, render.Shading.PIXEL])
+def test_few_triangles_with_round_normals_have_no_stripes(surface, shading):
+    """A square that the key light grazes, shaded as if it looked 35 degrees more toward the light.
+
+    So is the side of a nose of few triangles: it stood too little above itself, and had stripes.
+    """
+    toward_key = np.array([-0.53, 0.63, 0.57])
+    toward_key /= np.linalg.norm(toward_key)
+    beside = np.array([0.0, 0.0, 1.0]) - toward_key[2] * toward_key
+    beside /= np.linalg.norm(beside)
+    grazed = 0.15 * toward_key + np.sqrt(1.0 - 0.15**2) * beside
+    angle = np.arccos(0.15) - np.radians(35.0)
+    round_normal = np.cos(angle) * toward_key + np.sin(angle) * beside
+    right = np.cross(toward_key, beside)
+    flat = square(25.0)
+    corners = flat.positions[:, :1] * right + flat.positions[:, 1:2] * np.cross(grazed, right)
+    shape = Shape(corners, np.tile(round_normal, (len(corners), 1)), flat.triangles)
+    style = replace(PLAIN, albedo=render.CLAY, shading=shading)
+    without = draw_image(surface, shape, style)
+    within = draw_image(surface, shape, replace(style, shadows=True))
+    drawn = np.abs(without - draw_image(surface, square(0.01), style)).max(axis=2) > 8.0
+    assert np.count_nonzero(drawn) > 1000
+    inside = drawn & np.roll(drawn, 4, 0) & np.roll(drawn, -4, 0)
+    inside &= np.roll(drawn, 4, 1) & np.roll(drawn, -4, 1)
+    assert np.abs(within - without)[inside].max() < 3
+
+
 @pytest.mark.parametrize("shadows", [True, False])
 def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(renderer, shadows):
     """A ball of hair before a wall darkens it to its lower right, where shadows are on.
