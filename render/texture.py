@@ -71,11 +71,15 @@ class Texture(_Mipmaps):
                 f"takes at most {limit} each way: shrink the image"
             )
         self.redness = _median_redness(image)
-        alpha = np.full(image.shape[:2], 255, np.uint8) if occlusion is None else occlusion
         lights = to_linear(np.arange(256) / 255.0).astype(np.float32)
         shares = np.arange(256, dtype=np.float32) / np.float32(255.0)
-        super().__init__(surface, np.dstack([_roots(lights)[image], _roots(shares)[alpha]]))
-        texels = np.dstack([lights[image], shares[alpha]])
+        values = np.concatenate([lights, shares])
+        places = np.empty((*image.shape[:2], 4), np.intp)  # in `values`
+        places[..., :3] = image
+        places[..., 3] = 255 if occlusion is None else occlusion
+        places[..., 3] += 256
+        super().__init__(surface, _roots(values).take(places))
+        texels = values.take(places)
         for level in range(1, max(self.size).bit_length()):
             texels = _halved(texels)
             self._texture.write(_roots(texels)[::-1].tobytes(), level=level)
@@ -143,11 +147,16 @@ def _roots(values: Floats32) -> Image:
 
 def _halved(values: Floats32) -> Floats32:
     """Means of 2 x 2 values; a last row or column without another is left out, unless alone."""
-    for axis in (0, 1):
-        count = values.shape[axis] // 2
-        if count:
-            pairs = np.moveaxis(values, axis, 0)[: 2 * count]
-            values = np.moveaxis(0.5 * (pairs[::2] + pairs[1::2]), 0, axis)
+    height, width, channels = values.shape
+    half = np.float32(0.5)
+    if height > 1:
+        values = half * (values[: height // 2 * 2 : 2] + values[1::2])
+    if width > 1:
+        end = width // 2 * 2
+        pairs = np.empty((len(values), width // 2, channels), np.float32)
+        for channel in range(channels):  # numpy adds long rows faster than many short ones
+            np.add(values[:, :end:2, channel], values[:, 1:end:2, channel], out=pairs[..., channel])
+        values = half * pairs
     return values
 
 

@@ -25,7 +25,7 @@ import scipy
 
 from risorius.geometry.colour import to_linear, to_screen
 
-from ...geometry.arrays import Floats32, Floats64
+from ...geometry.arrays import Floats32, Floats64, Integers64
 from ..data_files import Image, read_arrays, read_image
 from ..loading import load
 from ..model import FineShape, Head, Part, Segment
@@ -48,6 +48,7 @@ BEHIND = 30.0  # [mm] of the scalp, in the map of it: from the hairline back
 IN_FRONT = 10.0
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
 LEVELS = 4096  # of the table from light to bytes
+BAND = 64  # rows of texels that are coloured together: caches hold them
 
 
 @dataclass(frozen=True)
@@ -104,33 +105,42 @@ def recoloured(
     density, redness, _ = _changes(tints.melanin_of(angle), blood)
     hair = _hair_light(angle if haired_as is None else haired_as, features)
     grey_share = 0.12  # of how grey hair on the scalp is; lashes have the segment of brows
-    grey = features.grey * np.where(tints.scalp > 0.01, np.float32(1.0), np.float32(grey_share))
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
     kept = _kept_hair(tints, features, shrink)
-    covered = np.zeros_like(tints.hair)
-    if haired_as is not None:
-        kept = np.where(tints.scalp > 0.01, np.float32(0.0), kept)
-        covered = _grown_over(_behind(tints, features))
+    behind = None if haired_as is None else _behind(tints, features)
     root_light = 0.5  # share between hairs where they are dense
-    shaded = 1.0 - (1.0 - root_light) * covered
-    light = np.empty_like(tints.light)
-    relief = features.relief * tints.detail
+    picture = np.empty_like(tints.light, np.uint8)
     lips = features.lips * BLOOD - features.pale_lips * np.maximum(density, 0.0)
     beard = features.beard * SHADOW
     # In double precision it takes twice as long.
     density, redness, hair, skin, lips, beard = np.array(
         [density, redness, hair, skin, lips, beard], dtype=np.float32
     )
-    for channel in range(3):
-        lost = density[channel] * tints.melanin + redness[channel] * tints.blood - relief
-        lost += lips[channel] * tints.lips
-        lost += beard[channel] * tints.beard
-        bare = tints.light[..., channel] * np.exp(-lost) + skin[channel] * (tints.hair - kept)
-        own = hair[channel] + grey * (GREY_LIGHT[channel] - hair[channel])
-        haired = bare + own * kept
-        light[..., channel] = haired + covered * (own * shaded - haired)
-    steps = (np.sqrt(np.clip(light, 0.0, 1.0)) * (LEVELS - 1)).astype(np.int16)
-    return _screen_bytes()[steps]
+    for first in range(0, len(picture), BAND):
+        rows = slice(first, first + BAND)
+        on_scalp = tints.scalp[rows] > 0.01
+        grey = features.grey * np.where(on_scalp, np.float32(1.0), np.float32(grey_share))
+        relief = features.relief * tints.detail[rows]
+        haired = kept[rows]
+        covered = shaded = np.zeros((), np.float32)
+        if behind is not None:
+            haired = np.where(on_scalp, np.float32(0.0), haired)
+            covered = _grown_over(behind[rows])
+            shaded = 1.0 - (1.0 - root_light) * covered
+        for channel in range(3):
+            lost = density[channel] * tints.melanin[rows] + redness[channel] * tints.blood[rows]
+            lost -= relief
+            lost += lips[channel] * tints.lips[rows]
+            lost += beard[channel] * tints.beard[rows]
+            light = tints.light[rows, :, channel] * np.exp(-lost)
+            light += skin[channel] * (tints.hair[rows] - haired)
+            own = hair[channel] + grey * (GREY_LIGHT[channel] - hair[channel])
+            light += own * haired
+            if behind is not None:
+                light += covered * (own * shaded - light)
+            steps = np.sqrt(np.clip(light, 0.0, 1.0)) * (LEVELS - 1)
+            picture[rows, :, channel] = _screen_bytes().take(steps.astype(np.intp))
+    return picture
 
 
 def _hair_light(angle: float, features: Features) -> Floats64:
@@ -200,7 +210,7 @@ def coloured(
         # In small pictures nobody sees slopes of folds, and all persons share one map.
         fine_shape=_own_shape(person) if shrink == 1 else known,
         parts=_with_hair(person, parts, angle, features, behind),
-        segments=_haired_segments(person.segments, features, behind),
+        segments=_haired_segments(features, behind),
         in_tone=in_tone,
     )
 
@@ -224,14 +234,14 @@ def _beside_light_skin(angle: float) -> Floats64:
     return np.asarray(np.exp(lost[1] - lost[0]))
 
 
-def _haired_segments(segments: Image, features: Features, behind: Floats32) -> Image:
+def _haired_segments(features: Features, behind: Floats32) -> Image:
     """What texels belong to, with brows and the hairline of a person."""
-    brows = (Segment.RIGHT_BROW, Segment.LEFT_BROW)
-    found = segments.copy()
-    haired = np.flatnonzero(segments == Segment.HAIR)
-    found.flat[haired[_grown_over(behind.flat[haired]) < 0.5]] = Segment.SKIN
+    found = load("head").segments.copy()
+    texels = found.reshape(-1)
+    haired = _texels_of(Segment.HAIR)
+    texels[haired[_grown_over(behind.reshape(-1)[haired]) < 0.5]] = Segment.SKIN
     if features.brows is not None:
-        found[(found == brows[0]) | (found == brows[1])] = Segment.SKIN
+        texels[_texels_of(Segment.RIGHT_BROW, Segment.LEFT_BROW)] = Segment.SKIN
         hairs = painted(features.brows, len(found))
         blur = 2.0  # [texels]
         wide = round(5.0 * blur)
@@ -246,6 +256,14 @@ def _haired_segments(segments: Image, features: Features, behind: Floats32) -> I
         is_brow = (covered > least_cover) & (found[near] == Segment.SKIN)
         found[near] = np.where(is_brow, sides, found[near])
     return found
+
+
+@lru_cache(maxsize=2)
+def _texels_of(*segments: Segment) -> Integers64:
+    """Numbers of the texels, row by row, that belong to segments of the built-in head."""
+    places = np.flatnonzero(np.isin(load("head").segments, segments))
+    places.flags.writeable = False
+    return places
 
 
 def _with_hair(
@@ -274,10 +292,15 @@ def built_in_hair(head: Head) -> tuple[Part, ...]:
 def _behind(tints: _Tints, features: Features) -> Floats32:
     """How far texels lie behind a person's hairline [mm]; half as far if the top is bald."""
     scalp = tints.scalp
-    lies = np.float32(BEHIND) * scalp - np.float32(IN_FRONT)
+    behind = np.float32(BEHIND) * scalp - np.float32(IN_FRONT)
     line = features.hairline
-    moved = (lies - line.shift(len(scalp))) / np.float32(1.0 + line.crown)
-    return np.where(scalp > 0.01, moved, lies)
+    on_scalp = scalp > 0.01
+    hairy = np.flatnonzero(on_scalp.any(axis=1))
+    rows = slice(hairy[0], hairy[-1] + 1)  # half of all
+    moved = behind[rows] - line.shift(len(scalp), rows)
+    moved /= np.float32(1.0 + line.crown)
+    np.copyto(behind[rows], moved, where=on_scalp[rows])
+    return behind
 
 
 def _changes(melanin: float, blood: float) -> tuple[Floats64, Floats64, Floats64]:

@@ -93,8 +93,8 @@ class Hairline:
     temples: float = 0.0
     crown: float = 0.0
 
-    def shift(self, size: int) -> Floats32:
-        """How far it lies behind the built-in head's [mm], (size, size)."""
+    def shift(self, size: int, rows: slice = slice(None)) -> Floats32:
+        """How far it lies behind the built-in head's [mm], these rows of (size, size)."""
         across = np.linspace(-0.5, 0.5, size)
         up = np.linspace(1.0, 0.0, size)
         row = self.front * np.exp(-((across / 0.17) ** 4))
@@ -104,7 +104,8 @@ class Hairline:
         beside = self.crown * bald_depth * np.exp(-((across / 0.14) ** 2))
         top = np.exp(-(((up - 0.78) / 0.15) ** 2))
         ahead, row, top, beside = np.array([ahead, row, top, beside], dtype=np.float32)
-        whole = np.multiply.outer(ahead, row) + np.multiply.outer(top, beside)
+        whole = np.multiply.outer(ahead[rows], row)
+        whole += np.multiply.outer(top[rows], beside)
         return np.asarray(whole, np.float32)
 
 

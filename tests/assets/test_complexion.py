@@ -13,6 +13,7 @@ from risorius.assets.identities import (
     Features,
     Sex,
     coloured,
+    complexion,
     drawn_irises,
     features_of,
     in_colours,
@@ -23,7 +24,7 @@ from risorius.assets.identities import (
     sample_identity,
 )
 from risorius.assets.identities.brows import Brows
-from risorius.assets.identities.complexion import _tints, typology_angle
+from risorius.assets.identities.complexion import _behind, _tints, typology_angle
 from risorius.assets.identities.eyes import Iris, drawn_iris
 from risorius.assets.identities.hair import Hairline
 from risorius.assets.identities.population import IRIS_SHARES
@@ -149,6 +150,26 @@ def test_colours_of_a_number(head):
             tanned += 1
             assert redness(one.parts[0].colours) > 0.6 * redness(brown) > 1.0
     assert 2 <= tanned <= 10
+
+
+def test_bands_of_texels_have_the_colours_of_the_whole(monkeypatch):
+    """Byte by byte, whatever number of rows is coloured at once."""
+    colours = own_colours(sample_identity(3), 3)
+    given = {"features": colours.features, "haired_as": colours.angle, "shrink": 2}
+    usual = recoloured(colours.angle, **given)
+    for rows in (37, 640):
+        monkeypatch.setattr(complexion, "BAND", rows)
+        assert (recoloured(colours.angle, **given) == usual).all()
+
+
+def test_a_hairline_is_moved_on_the_scalp_alone():
+    """Rows of texels without scalp are left out; the others have the plain formula's values."""
+    line = Hairline(front=4.0, temples=7.0, crown=0.6)
+    tints = _tints()
+    plain = np.float32(complexion.BEHIND) * tints.scalp - np.float32(complexion.IN_FRONT)
+    moved = (plain - line.shift(len(plain))) / np.float32(1.6)
+    wanted = np.where(tints.scalp > 0.01, moved, plain)
+    assert (_behind(tints, Features(hairline=line)) == wanted).all()
 
 
 def test_eyes_go_with_dark_skin():

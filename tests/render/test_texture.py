@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from risorius import render
+from risorius.render.texture import _halved
 
 from .scenes import PLAIN, Shape, draw, draw_image, lent, sphere, square
 
@@ -84,6 +85,17 @@ def test_texture_is_filtered_in_linear_light(surface):
     frame = textured(surface, checker)[30:66, 30:66]
     expected = textured(surface, plain_image((188, 188, 188)))[30:66, 30:66]
     assert np.abs(frame - expected).max() <= 4
+
+
+@pytest.mark.parametrize("size", [(6, 4), (7, 5), (1, 6), (5, 1)])
+def test_smaller_versions_are_means_of_blocks(size):
+    """A last row or column without another is left out, unless it is alone."""
+    values = np.random.default_rng(0).random((*size, 4), np.float32)
+    height, width = (max(count // 2, 1) for count in size)
+    tall, wide = (min(count, 2) for count in size)
+    whole = values[: tall * height, : wide * width].astype(np.float64)
+    means = whole.reshape(height, tall, width, wide, 4).mean(axis=(1, 3))
+    assert _halved(values) == pytest.approx(means, abs=1e-6)
 
 
 def test_untextured_style_is_the_plain_picture(surface):
