@@ -35,7 +35,7 @@ MOVED: Mapping[str, str] = {
     "--splits": _WORD,
     "--skin-opacity": "write --anatomy muscles,skull,opacity=VALUE",
     "--dissect": "write --anatomy muscles,skull,dissect=VALUE",
-    "--person": "write --head NUMBER, or the person's name",
+    "--person": "write --head NUMBER, or the person's name; `risorius rig` takes it as HEAD",
     "--range": "write --time FROM:TO",
     "--turntable": "write --camera turntable, or --camera VIEW,turntable",
     "--shading": "risorius reproduce figure9 draws flat and Gouraud shading",
@@ -48,8 +48,24 @@ MOVED: Mapping[str, str] = {
 """What to do instead of an option that was removed; {option}: as typed, {name}: without dashes."""
 
 
-class GroupedCommand(click.Command):
-    """A command with options under headings; its errors name the replacements of old options."""
+class RenewedCommand(click.Command):
+    """A command whose errors name the replacements of options that were removed."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse; the error for an option that was removed names its replacement."""
+        try:
+            return super().parse_args(ctx, args)
+        except click.NoSuchOption as error:
+            instead = MOVED.get(error.option_name)
+            if instead is None:
+                raise
+            name = error.option_name.removeprefix("--")
+            cure = instead.format(option=error.option_name, name=name)
+            raise click.UsageError(f"{error.option_name} was removed: {cure}", ctx) from None
+
+
+class GroupedCommand(RenewedCommand):
+    """The same, with options under headings."""
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options, group by group."""
@@ -65,15 +81,3 @@ class GroupedCommand(click.Command):
                     formatter.write_dl(group)
         with formatter.section("Others"):
             formatter.write_dl(list(rows.values()))  # --help, at least
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse; the error for an option that was removed names its replacement."""
-        try:
-            return super().parse_args(ctx, args)
-        except click.NoSuchOption as error:
-            instead = MOVED.get(error.option_name)
-            if instead is None:
-                raise
-            name = error.option_name.removeprefix("--")
-            cure = instead.format(option=error.option_name, name=name)
-            raise click.UsageError(f"{error.option_name} was removed: {cure}", ctx) from None

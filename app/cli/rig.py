@@ -10,6 +10,7 @@ import click
 
 from ..errors import UserError
 from ..text import counted, in_one_line
+from .help import RenewedCommand
 from .options import PATH, HeadName, option, packed
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ class Rigging:
     quiet: bool = option(is_flag=True, help="Print nothing but errors.")
 
 
-@click.command()
+@click.command(cls=RenewedCommand)
 @click.argument("head", metavar="[HEAD]", type=HeadName(), required=False)
 @click.option("-o", "--output", type=PATH, required=True, help="avatar.glb")
 @packed(Rigging)

@@ -54,6 +54,7 @@ REFUSED = {
     "export good.toml -o x.glb --light side": "--light was removed: write --style light=VALUE",
     "dataset -o set --count 1 --light none": "--light none: no such file or folder",
     "view --person 3": "--person was removed: write --head NUMBER",
+    "rig --person 7 -o seven.glb": "`risorius rig` takes it as HEAD",
     "replay good.toml --no-skin-maps": "--no-skin-maps was removed: pictures always have skin maps",
     "export good.toml -o x.npz --rate 30": "--rate was removed: convert the recording first",
     "view --mirror": "--mirror goes with --live",
