@@ -67,7 +67,8 @@ def falling_hair(
     risen = 0.1 + 0.9 * np.sin(0.5 * np.pi * rise)
     thick = VOLUME * risen * np.sin(0.5 * np.pi * beside)[:, None]
     solid = np.vstack([scalp.points, vertices[vertices[:, 1] > ear[1] - 53.0]]) - middle
-    clearance = 5.0  # [mm] of the inner side, off the skin
+    # [mm] of the inner side off the skin, at roots, where light must not pass below, and beyond.
+    clearance = np.where(over > 0.0, 5.0, 2.5)
     places = middle + (_reach(ways, solid) + clearance + thick)[..., None] * ways
     start = places[:, -1:]
     wide = np.linalg.norm((start - middle)[..., [0, 2]], axis=-1)
@@ -85,7 +86,7 @@ def falling_hair(
     off = 88.0 * (angle - EDGE)[:, None]
     # Hair gets dense over 2 mm from the parting and 4 mm from the face: farther, and strands in
     # front are bars over the skin.
-    dense = np.minimum(0.6 + along / 2.0, 0.55 + off / 4.0)
+    dense = np.minimum(0.5 + along / 1.4, 0.1 + off / 2.4)
     dense = np.minimum(dense, (along[:, -1:] - along) / HEM)
     hair = _layers(HAIR, bent, across[:, None], thick, dense, colour)
     return from_within(hair, hair.faces), short.loose_hairs(hair), hair

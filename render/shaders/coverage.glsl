@@ -57,7 +57,7 @@ out float sample_number;
 
 void main() {
 #if defined(SHELLS)
-    if (!is_hair(surface.dense, surface.facing)) discard;
+    if (!has_edge(surface.dense, surface.facing)) discard;
 #elif defined(TRANSLUCENT)
     if (!gl_FrontFacing && surface.from_cut < 0.0) discard;
 #endif

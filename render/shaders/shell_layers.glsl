@@ -22,3 +22,9 @@ float seen_share(float facing) {
 bool is_hair(float dense, float facing) {
     return dense >= 0.5 * seen_share(facing);
 }
+
+// Where hair has an edge that is smoothed. Its hem has none: it fades by itself, and layers end there
+// at other places each.
+bool has_edge(float dense, float facing) {
+    return dense >= 0.9 * seen_share(facing);
+}

@@ -29,6 +29,7 @@ void main() {
     float layer = layer_place(float(first + gl_InstanceID), layers);
     vec4 position = model_view * vec4(in_position + (layer - MEAN) * in_way, 1.0);
     vec3 normal = normalize(mat3(model_view) * in_normal), along = mat3(model_view) * in_way;
+    along -= dot(along, normal) * normal;  // as strands lie; by their tips a ring lay around whorls
     // Hair scatters light, so it is lit some way past where it turns away.
     float facing = dot(normal, to_key);
     float lit = clamp((facing + 0.3) / 1.3, 0.0, 1.0);
@@ -54,9 +55,9 @@ layout(location = 1) out vec4 pixel_surface;
 
 const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks of them
 const float LONG = 11.0;                 // [mm] after which a strand is another one
-const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
+const float TILT = 0.10, UNEVEN = 0.45;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
-const vec2 SIDEWAYS = vec2(0.45, 0.75);  // facing, from which on single strands are seen
+const vec2 SIDEWAYS = vec2(0.6, 0.85);  // facing, from which on single strands are seen
 const vec2 RAGGED = vec2(0.4, 0.08);     // of density, by strands: so hems are no lines
 const vec2 CRISP = vec2(1.1, 1.6);       // how abruptly hems end: where locks are seen, and single strands
 const float DARK = 0.45;                 // of the light, at roots
@@ -78,14 +79,16 @@ vec2 reach(vec2 number) {
 }
 
 void main() {
-    // Smooth between neighbours; those finer than a pixel fade into their mean.
-    vec2 at = surface.strand.x / vec2(THIN, THICK), number = floor(at), place = at - number;
+    // Strands that are finer than a pixel fade into their mean.
     vec2 share = clamp(1.5 - fwidth(surface.strand.x) / vec2(THIN, THICK), 0.0, 1.0);
-    vec2 tones = share * (mix(reach(number), reach(number + 1.0), smoothstep(0.0, 1.0, place)) - 0.5);
     // Of the tips a look from the side sees lines with gaps.
-    float seen = seen_share(surface.facing);
     float single = smoothstep(SIDEWAYS.x, SIDEWAYS.y, surface.facing);
     float outline = outline_place(layers) + SHARP;
+    if (single == 0.0 && surface.layer > outline + SHARP) discard;  // at once: it takes less time
+    // Smooth between neighbours.
+    vec2 at = surface.strand.x / vec2(THIN, THICK), number = floor(at), place = at - number;
+    vec2 tones = share * (mix(reach(number), reach(number + 1.0), smoothstep(0.0, 1.0, place)) - 0.5);
+    float seen = seen_share(surface.facing);
     vec2 apart = vec2(0.5, 0.4) * clamp(surface.dense, 0.25, 1.0);  // where hems begin no teeth
     float tall = mix(outline, 0.65 + dot(apart, tones), single);
     // Toward hems there are fewer strands, and shorter ones; where they are finer than a pixel, a veil.
@@ -104,7 +107,7 @@ void main() {
     vec3 front = surface.colour * (1.0 + 1.0 * uneven) * open;
     vec3 shine = surface.shine * open * max(1.0 + 2.0 * uneven, 0.0) * (bright * (0.06 + 0.4 * front) + 0.3 * glow * front);
     // Of no depth: it is none, but several layers.
-    pixel_surface = is_hair(surface.dense, surface.facing) ? vec4(surface_number(0.0), 0.0, 0.0, 1.0) : vec4(0.0);
+    pixel_surface = has_edge(surface.dense, surface.facing) ? vec4(surface_number(0.0), 0.0, 0.0, 1.0) : vec4(0.0);
     pixel_colour = vec4(display(front * surface.diffuse + shine), cover);
 }
 

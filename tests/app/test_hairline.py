@@ -3,8 +3,11 @@
 import numpy as np
 
 from risorius import render
+from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import Refinement
+from risorius.app.scenes import FaceScene
+from risorius.assets.identities import person_called
 
 SIZE = (480, 360)
 HEIGHT = 105.0  # [mm] of the picture
@@ -36,3 +39,15 @@ def test_the_front_is_no_saw_and_throws_no_hard_patch(scene):
     assert np.abs(np.diff(millimetres)).mean() < 0.6
     below = light[edge.max() + 20 : 280, columns]
     assert below.min() > 0.75 * skin
+
+
+def test_no_dots_lie_along_the_front():
+    """Smooth edges take no dark pixels of dense hair down into the hem, which fades by itself."""
+    scene = FaceScene(person_called(40))
+    front = slice(100, 250), slice(250, 470)
+    pictures = []
+    for samples in (0, 4):
+        with Capture(scene, CaptureOptions(size=(720, 720), samples=samples)) as capture:
+            pictures.append(capture.draw_image()[front].astype(np.float64).mean(axis=2))
+    assert pictures[0].max() > pictures[0].min() + 100.0  # hair and skin
+    assert np.abs(pictures[1] - pictures[0]).max() < 16.0

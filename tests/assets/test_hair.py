@@ -170,9 +170,9 @@ def test_lobes_of_ears_stay_under_hair_that_falls():
     assert off.max() < -2.0
 
 
-def gaps(person, rows):
+def gaps(person, rows, camera="60,5"):
     """How many pixels of some rows, from the left outline to the right one, show nothing."""
-    options = CaptureOptions((700, 700), camera="60,5", style=Style(background=None))
+    options = CaptureOptions((700, 700), camera=camera, style=Style(background=None))
     with Capture(FaceScene(person), options) as capture:
         is_seen = capture.draw_image()[rows, :, 3] >= 128
     is_inside = np.logical_or.accumulate(is_seen, axis=1)
@@ -190,3 +190,8 @@ def test_no_slit_is_below_the_hem_of_a_bald_crown():
     features = Features(hairline=Hairline(front=6.0, temples=12.0, crown=0.5))
     person = make_person(replace(sample_identity(0), cut="swept", hair=1.0))
     assert gaps(coloured(person, angle=30.0, features=features), slice(30, 70)) < 40
+
+
+def test_no_slit_is_below_the_outline_of_hair_from_above():
+    """Layers of hair that is drawn back are closed where a look goes over them."""
+    assert gaps(haired("knotted"), slice(0, 330), camera="0,65") < 40

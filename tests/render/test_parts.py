@@ -145,6 +145,20 @@ def test_hair_hides_the_skin_behind_it(renderer):
     assert at(frame, 0.0, 0.0).max() < 100 < at(frame, 30.0, 30.0).max()
 
 
+def test_hair_shines_where_it_lies_and_not_by_how_far_it_stands_off(renderer):
+    """Else a dark patch with a ring around it lies where strands begin."""
+    ball = Ball(colour=(0.02, 0.02, 0.02), shine=0.4)
+    out = ball.normals
+    down = np.array([0.0, -1.0, 0.0]) + out[:, 1:2] * out
+    rows = []
+    for lean in (0.2, 1.0):
+        columns = ball.vertices[:, :1], 0.0 * out[:, :1], 2.0 * (lean * out + down)
+        striation = np.column_stack([*columns, np.full(len(out), 2.0)])
+        image = draw(renderer, parts=still(reshaped(ball, striation=striation)))
+        rows.append(np.argmax(image[34:60, 38:58].sum(axis=(1, 2))))
+    assert abs(int(rows[1]) - int(rows[0])) < 3
+
+
 def test_a_hem_of_hair_throws_no_shadow(renderer):
     """Where no strand is to be seen, light gets through; dense hair shades what is below."""
     lit = []
