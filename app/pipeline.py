@@ -14,7 +14,10 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from risorius import render
+from risorius.geometry.arrays import Integers64
 
 from .anatomy import SKIN_ALONE, Anatomy, AnatomyView, Dissection
 from .refining.drawn_mesh import DrawnMesh, bind
@@ -47,6 +50,7 @@ class Pipeline:
         self.anatomy = Anatomy(scene)
         self.maps = render.NO_MAPS
         self._compression: Compression | None = None
+        self._fading = _around_fading(scene)
         if (wrinkles := scene.skin.wrinkles) is not None:
             self._compression = Compression(scene)
             bumps = renderer.bump_map(wrinkles.map, wrinkles.steepest)
@@ -100,7 +104,10 @@ class Pipeline:
             values = drawn.splits()
         elif drawn.mesh is not None and style.colour_by is render.ColourBy.SPLIT_WIRES:
             values = drawn.splits_beyond_rest()
-        skin = render.Skin(drawn.stream, maps, self.scene.skin.fade, values)
+        fading = None
+        if self._fading is not None and drawn.can_fade and drawn.positions is not None:
+            fading = drawn.positions[self._fading]
+        skin = render.Skin(drawn.stream, maps, fading, values)
         style = replace(style, opacity=style.opacity * seen.opacity)
         view = render.CameraView(camera, area, clip)
         return render.Frame(view, style, skin, seen.parts, seen.cut, overlays)
@@ -131,6 +138,14 @@ class Pipeline:
             self.renderer.draw(
                 *(self.frame_of(camera, style, each, seen, overlays) for each in viewports)
             )
+
+
+def _around_fading(scene: Drawable) -> Integers64 | None:
+    """The vertices of triangles that fade; None: the skin of the scene does not."""
+    fade = scene.skin.fade
+    if fade is None:
+        return None
+    return np.unique(scene.faces[(fade[scene.faces, 0] < 1.0).any(axis=1)]).astype(np.int64)
 
 
 def side_by_side(size: tuple[int, int], meshes: Sequence[DrawnMesh]) -> list[Viewport]:

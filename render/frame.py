@@ -121,15 +121,15 @@ class Skin:
     """The mesh of a frame: the last upload of a stream, and what lies on it.
 
     maps: they need a stream of 8 columns or more, ValueError else.
-    fade: the larger a x + b y + c z + d of two planes, from 0 to 1, is the share of the mesh that
-        shows at (x, y, z).
+    fading: places around all of the mesh that fades as its columns 17 and 18 have it, (n, 3); None:
+        all of it shows. They need a stream of 18 columns, ValueError else.
     values: the number that colours each triangle, see `ColourBy`, shape (M,), uint8; needed unless
         that is NONE.
     """
 
     stream: MeshBuffers
     maps: SkinMaps = NO_MAPS
-    fade: tuple[Plane, Plane] | None = None
+    fading: Floats64 | None = None
     values: Unsigned8 | None = None
     mesh: UploadedMesh = field(init=False)
     """The upload that it shows."""
@@ -138,6 +138,8 @@ class Skin:
         object.__setattr__(self, "mesh", self.stream.mesh)
         if self.maps.texture is not None or self.maps.bumps is not None:
             self.stream.check_uv()
+        if self.fading is not None:
+            self.stream.check_fade()
 
     def check(self) -> None:
         """Raise ValueError if the stream holds another mesh by now."""

@@ -36,7 +36,14 @@ from .stream import GpuStream, MeshBuffers, Share, Stream
 from .style import ColourBy, Shading, Style
 from .surface import NEWEST_VERSION, Image, Surface
 from .texture import BumpMap
-from .translucency import SUNK_DEPTH, blending, draw_nearest, fade_seen, set_cut, set_translucency
+from .translucency import (
+    SUNK_DEPTH,
+    blending,
+    draw_nearest,
+    is_fade_seen,
+    set_cut,
+    set_translucency,
+)
 
 # Texture units; the target uses 1.
 _VALUE_UNIT = 0
@@ -211,11 +218,11 @@ class Renderer:
             values = value_texture(self._gl, frame.skin.values, stream.triangle_count)
         if not self._use_surfaces(view, stream.corners):
             return
-        fade = fade_seen(frame.skin, view)
+        fades = is_fade_seen(frame.skin, view)
         if values is not None:
             values.use(_VALUE_UNIT)
         drawn = [
-            (self._skin_program(frame, view, maps, shadow, fade), share)
+            (self._skin_program(frame, view, maps, shadow, fades=fades), share)
             for share, maps in _shares(frame.skin, style)
         ]
         if frame.is_opened:
@@ -223,7 +230,7 @@ class Renderer:
                 set_translucency(program, frame, view)
             draw_nearest(self._gl, stream, drawn)
             return
-        with nullcontext() if fade is None else blending(self._gl, hides=True):
+        with blending(self._gl, hides=True) if fades else nullcontext():
             if self.surface.is_software:
                 self._draw_sides(stream, drawn)
                 return
@@ -248,18 +255,17 @@ class Renderer:
         view: PlacedView,
         maps: dict[BumpMap, float],
         shadow: Shadow | None,
-        fade: tuple[Plane, Plane] | None,
+        *,
+        fades: bool,
     ) -> moderngl.Program:
         """The program of a frame's skin, with all that it looks up."""
         assert frame.skin is not None
         style = frame.style
         texture = frame.skin.maps.texture if style.textured else None
-        names = mesh_shader(style, texture is not None, maps, fade is not None)
+        names = mesh_shader(style, texture is not None, maps, fades)
         program = self._program(*names)
         write_uniform(program, "model_view", view.world_to_view)
         write_uniform(program, "projection", view.projection)
-        if fade is not None:
-            write_uniform(program, "fade", np.array(fade))
         set_numbers(program, SKIN_NUMBERS, view)
         set_mesh(program, style, view, self._line_scale)
         if shadow is not None:

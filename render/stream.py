@@ -40,6 +40,16 @@ LAYOUTS = {
         "in_u_gradient",
         "in_v_gradient",
     ),
+    18: (
+        "3f 3f 2f 2f 3f 3f 2f",
+        "in_position",
+        "in_normal",
+        "in_uv",
+        "in_bumps",
+        "in_u_gradient",
+        "in_v_gradient",
+        "in_fade",
+    ),
 }  # of a vertex in OpenGL, by the columns of rows
 BUMPS = slice(8, 10)  # columns with the amounts of a bump map
 _Ranges = dict[Share, tuple[int, int]]  # first triangle and how many, in a buffer of indices
@@ -83,12 +93,12 @@ class _Uploaded(NamedTuple):
 class MeshBuffers:
     """One mesh of at most this many vertices and triangles, rewritten every frame, to be drawn.
 
-    columns: of its rows, 6 (position, normal), 8 (and texture u, v) or 16 (and how much of a bump
-        map shows, 0..1 in either slot of it, and the gradients of u and v along the surface).
+    columns: of its rows, 6 (position, normal), 8 (and texture u, v), 16 (and how much of a bump
+        map shows, 0..1 in either slot of it, and the gradients of u and v along the surface) or 18
+        (and the share that shows, 0..1, and a number below 0 where the inner side does not).
     mesh: the last one that was written into the buffers; a new object after each upload.
     has_bumps: whether the amounts of that mesh count.
     corners: of a box that holds its vertices, shape (8, 3), float64.
-    places: where its vertices are, or some near them, shape (n, 3).
     """
 
     def __init__(
@@ -96,8 +106,8 @@ class MeshBuffers:
     ) -> None:
         if columns not in LAYOUTS:
             raise ValueError(
-                f"columns is {columns}; it must be 6 (position, normal), 8 (and texture u, v) or "
-                "16 (and two amounts of a bump map, gradients of u and v)"
+                f"columns is {columns}; it must be 6 (position, normal), 8 (and texture u, v), "
+                "16 (and two amounts of a bump map, gradients of u and v) or 18 (and two of a fade)"
             )
         if vertex_capacity < 1 or triangle_capacity < 1:
             raise ValueError(
@@ -108,7 +118,6 @@ class MeshBuffers:
         self.columns = columns
         none = np.zeros((0, columns), np.float32)
         self.mesh: UploadedMesh = _Uploaded(none, np.zeros((0, 3), np.uint32))
-        self.places: Floats32 = none[:, :3]
         self.corners = np.zeros((8, 3))
         self.has_bumps = False
         self._triangle_capacity = triangle_capacity
@@ -167,6 +176,14 @@ class MeshBuffers:
                 "stream of 8 columns (position, normal, u v), or draw without texture"
             )
 
+    def check_fade(self) -> None:
+        """Raise ValueError if rows do not have how the mesh fades, but it shall."""
+        if self.columns < 18:
+            raise ValueError(
+                f"a fade on a stream of {self.columns} columns; it is columns 17 and 18: lend a "
+                "stream of 18 columns, or draw without a fade"
+            )
+
     def choose(self, is_chosen: Flags) -> None:
         """Choose among the uploaded triangles, (triangle_count,), for `draw`."""
         chosen = self.mesh.triangles[is_chosen]
@@ -213,7 +230,7 @@ class MeshBuffers:
 class Stream(MeshBuffers):
     """Arrays of such a mesh, lent to its maker, and uploaded.
 
-    vertices: x y z, nx ny nz[, u v[, columns of bumps]], shape (vertex_capacity, 6, 8 or 16),
+    vertices: x y z, nx ny nz[, u v[, columns of bumps]], shape (vertex_capacity, columns),
         float32; the borrower writes.
     triangles: vertex numbers, shape (triangle_capacity, 3), uint32; the borrower writes.
     source: number of the triangle that each one comes from, shape (triangle_capacity,), int32; the
@@ -245,12 +262,11 @@ class Stream(MeshBuffers):
         rows = self.vertices[:vertex_count]
         triangles = self.triangles[:triangle_count]
         self.mesh = _Uploaded(rows, triangles)
-        self.places = rows[:, :3]
         self.has_bumps = has_bumps
         self._ranges = {}
         if vertex_count == 0 or triangle_count == 0:
             return
-        self.corners = box_corners(self.places)
+        self.corners = box_corners(rows[:, :3])
         _write_anew(self.vertex_buffer, rows)
         _write_anew(self.index_buffer, triangles)
         if has_bumps:
@@ -306,7 +322,6 @@ class GpuStream(MeshBuffers):
         """
         self._check_bumps(has_bumps)
         self.mesh = mesh
-        self.places = positions.astype(np.float32)
         self.has_bumps = has_bumps
         self._ranges = {}
         box = np.stack([positions.min(axis=0) - self._margin, positions.max(axis=0) + self._margin])

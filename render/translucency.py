@@ -81,15 +81,9 @@ def in_view(plane: Plane, view: PlacedView) -> Plane:
     return a, b, c, d
 
 
-def fade_seen(skin: Skin, view: PlacedView) -> tuple[Plane, Plane] | None:
-    """The planes by which a skin fades, in view space; None if no picture shows that."""
-    fade = skin.fade
-    if fade is None:
-        return None
-    places = skin.stream.places
-    planes = np.array(fade, np.float32)
-    share = (places @ planes[:, :3].T + planes[:, 3]).max(axis=1)
-    faded = places[share < 1.0].astype(np.float64)
-    is_seen = len(faded) and min(view.covered_pixels(faded, 0.0)[2:]) > 0
-    neck, ahead = fade
-    return (in_view(neck, view), in_view(ahead, view)) if is_seen else None
+def is_fade_seen(skin: Skin, view: PlacedView) -> bool:
+    """Whether a picture may show that a skin fades."""
+    fading = skin.fading
+    if fading is None or not len(fading):
+        return False
+    return min(view.covered_pixels(fading, 0.0)[2:]) > 0

@@ -22,6 +22,7 @@ from .presets import ON_CARD, Refinement
 from .refiners import refiner_for
 from .wrinkling import GRADIENTS, WRINKLES, Wrinkling
 
+FADE = "fade"  # an attribute of refined meshes
 LARGE_MESH = 20_000  # triangles from which on a graphics card refines, where it may choose
 
 
@@ -98,7 +99,12 @@ class DrawnMesh:
     @property
     def can_wrinkle(self) -> bool:
         """Whether rows carry wrinkles, too."""
-        return self.refiner.vertex_columns == 16
+        return self.refiner.vertex_columns >= 16
+
+    @property
+    def can_fade(self) -> bool:
+        """Whether rows carry how the skin fades, too."""
+        return self.refiner.vertex_columns == 18
 
     @property
     def triangle_count(self) -> int:
@@ -135,16 +141,17 @@ def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> 
 
 
 def _attributes_of(scene: Drawable) -> dict[str, Any]:
-    """What rows carry beside texture coordinates: wrinkles, where the scene has any."""
+    """What rows carry beside texture coordinates: wrinkles, where the scene has any, and a fade."""
     skin = scene.skin
     if skin.wrinkles is None or skin.uv is None:
         return {}
     amounts = np.zeros((len(scene.rest_positions), 2), np.float32)
     gradients = np.zeros((len(skin.uv), 6), np.float32)
-    return {
+    attributes: dict[str, Any] = {
         WRINKLES: amounts,
         GRADIENTS: gradients if skin.face_uv is None else (gradients, skin.face_uv),
     }
+    return attributes if skin.fade is None else attributes | {FADE: skin.fade}
 
 
 def _stream_for(

@@ -20,7 +20,6 @@ from .openings import Rim
 
 Points = npt.NDArray[np.float64]
 Pixels = npt.NDArray[np.uint8]
-_Plane = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -31,8 +30,8 @@ class SkinImages:
     albedo: sRGB, (H, W, 3). in_tone: albedos by their individual typology angle [deg].
     ambient_occlusion: over the albedo, (H, W); None: light gets everywhere.
     fine_shape: of the skin, which its triangles do not hold. wrinkles: where skin wrinkles.
-    fade: the larger a x + b y + c z + d of two planes, from 0 to 1, is the share of the mesh that
-        shows at (x, y, z).
+    fade: of each vertex, (V, 2): the share that shows, 0 to 1, also beyond; and a number below 0
+        where the inner side does not show. None: all of it shows.
     """
 
     uv: Floats32 | None = None
@@ -42,7 +41,7 @@ class SkinImages:
     ambient_occlusion: Pixels | None = None
     fine_shape: assets.FineShape | None = None
     wrinkles: assets.Wrinkles | None = None
-    fade: tuple[_Plane, _Plane] | None = None
+    fade: Floats32 | None = None
 
 
 BARE = SkinImages()

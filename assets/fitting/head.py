@@ -58,7 +58,7 @@ from .mesh_validation import (
     without_bag,
 )
 from .mouth_walls import FittedSkin, opened_jaws
-from .neck_fading import Plane, neck_fade
+from .neck_fading import fading_last, neck_fade
 from .organs import place_eyes, place_parts, with_eyelid_rims
 from .own_lip import nearest_own
 from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spread_uv
@@ -96,8 +96,8 @@ class FittedHead(simplifying.SimulatedHead):
     files: tuple[Path, ...] = field(default=(), kw_only=True)
     lip_cut: LipCut | None = field(default=None, kw_only=True)
 
-    def fade(self) -> tuple[Plane, Plane] | None:
-        """How the head ends, see `neck_fade`; None: the mesh has no edge at the neck."""
+    def fade(self) -> Floats32 | None:
+        """How its skin fades, (V, 2), see `neck_fade`; None: there is no edge at the neck."""
         return neck_fade(self.vertices, self.faces, self.landmarks)
 
 
@@ -221,16 +221,17 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
         carried = _carried_over(known, skin, target, pieces, jaw)
     layout, albedo, maps = _painted(mesh, own, skin, Layout(carried.uv, skin.faces))
     wrinkles, segments, light = maps
+    order = fading_last(skin.vertices, skin.faces, skin.landmarks)
     return FittedHead(
         vertices=skin.vertices,
-        faces=skin.faces,
+        faces=skin.faces[order],
         landmarks=skin.landmarks,
         bone_depth=carried.bone_depth,
         mandible_weight=carried.mandible_weight,
         eyes=carried.eyes,
         parts=with_eyelid_rims(carried.parts, skin.vertices, skin.faces, carried.eyes),
         uv=layout.uv,
-        face_uv=layout.face_uv,
+        face_uv=layout.face_uv[order],
         albedo=albedo,
         wrinkles=replace(wrinkles, across=carried.across),
         segments=segments,

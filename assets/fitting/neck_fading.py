@@ -2,20 +2,18 @@
 
 import numpy as np
 
-from ...geometry.arrays import Floats64, Integers32
+from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
 from ..topology import boundary_loops
 
-Plane = tuple[float, float, float, float]  # (a, b, c, d): a x + b y + c z + d
 
+def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Floats32 | None:
+    """How much of the skin shows at each vertex, wherever that goes, and from where, (V, 2).
 
-def neck_fade(
-    vertices: Floats64, faces: Integers32, landmarks: Integers32
-) -> tuple[Plane, Plane] | None:
-    """Planes of which the larger value of a x + b y + c z + d is the share of skin that shows.
-
-    The first is 0 along the neck's edge, and 1 up to 25 mm above. The second grows from 0 ahead of
-    all skin that fades at rest: a chin that goes down there stays whole. vertices: [mm], (V, 3).
-    landmarks: vertices, (68,). None: the mesh has no edge at the neck.
+    The first column is the share that shows: 0 along the neck's edge, and 1 up to 25 mm above. The
+    second is the way [mm] ahead of all skin that fades: where it is negative the inner side would
+    be seen through the neck, and does not show. They belong to the vertices, not to places: a chin
+    that goes down beside a short neck stays whole. vertices: at rest [mm], (V, 3). landmarks:
+    vertices, (68,). None: the mesh has no edge at the neck.
     """
     chin_landmark = 8
     chin = vertices[landmarks[chin_landmark]]
@@ -34,11 +32,19 @@ def neck_fade(
     bottom = float((points @ up).max())
     full_height = 25.0  # [mm] above a neck's edge, at most half the way to the chin
     height = min(full_height, 0.5 * (float(chin @ up) - bottom))
-    a, b, c = (up / max(height, 1e-9)).tolist()
     if height <= 0.0:
         return None
-    neck = (a, b, c, -bottom / height)
-    share = vertices @ np.array(neck[:3]) + neck[3]
-    front = float(vertices[share < 1.0, 2].max())
-    soft_depth = 8.0  # [mm]
-    return neck, (0.0, 0.0, 1.0 / soft_depth, -front / soft_depth)
+    share = (vertices @ up - bottom) / height
+    ahead = vertices[:, 2] - vertices[share < 1.0, 2].max()
+    return np.stack([share, ahead], axis=1).astype(np.float32)
+
+
+def fading_last(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers64:
+    """The order of triangles in which those that fade come after all others, (F,).
+
+    Skin is blended in that order. So a chin that sinks into a faded neck is seen through it.
+    """
+    fade = neck_fade(vertices, faces, landmarks)
+    if fade is None:
+        return np.arange(len(faces))
+    return np.argsort((fade[faces, 0] < 1.0).any(axis=1), kind="stable")

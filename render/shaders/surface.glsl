@@ -4,7 +4,7 @@
 // from a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), STRANDS (thin cones of
 // three sides; pixels take as much of them as they cover), FIBRES (striation), TRANSLUCENT (skin that
 // shows the parts under it), SUNK (those parts, hidden where skin is opaque), FADED (skin that fades
-// toward a plane), TRIANGLES (numbered singly), FILLED or BEHIND (parts to which light comes through an opening; opening.glsl).
+// as its vertices have it), TRIANGLES (numbered singly), FILLED or BEHIND (parts to which light comes through an opening; opening.glsl).
 
 #include "lighting.glsl"
 #if defined(FILLED) || defined(BEHIND)
@@ -74,8 +74,13 @@ uniform float sharpness;
 #else
 #define OPENING_VARYING
 #endif
+#if defined(FADED)
+#define FADE_VARYING vec2 fade;
+#else
+#define FADE_VARYING
+#endif
 #define VARYINGS vec3 position; NORMAL_VARYING LIT_VARYING COLOUR_VARYING TEXTURE_VARYING \
-    SHADOW_VARYING BUMP_VARYING STRAND_VARYING FIBRE_VARYING OPENING_VARYING
+    SHADOW_VARYING BUMP_VARYING STRAND_VARYING FIBRE_VARYING OPENING_VARYING FADE_VARYING
 
 #if defined(VERTEX_STAGE)
 
@@ -91,6 +96,9 @@ in vec2 in_uv;
 in vec2 in_bumps;
 in vec3 in_u_gradient;  // of texture coordinates along the surface [1/mm]
 in vec3 in_v_gradient;
+#endif
+#if defined(FADED)
+in vec2 in_fade;  // the share of skin that shows; below 0 its inner side does not
 #endif
 #if defined(FIBRES)
 in vec2 in_fibre;  // across and along the fibres [mm]
@@ -146,6 +154,9 @@ void main() {
 #if defined(BEHIND)
     // Not in each pixel: parts behind lips have many vertices, and few are seen at a time.
     surface.let_in = reddened(light_let_in(surface.position, normal));
+#endif
+#if defined(FADED)
+    surface.fade = in_fade;
 #endif
 #if defined(FIBRES)
     surface.fibre = in_fibre;
@@ -228,6 +239,9 @@ void main() {
 #if defined(LIFTED)
         drawn.lift = corner[i].lift;
 #endif
+#if defined(FADED)
+        drawn.fade = corner[i].fade;
+#endif
         drawn.edge_distance = vec3(0.0);
         drawn.edge_distance[i] = height[i];
         drawn.wire_strength = strength;
@@ -286,9 +300,6 @@ uniform vec4 cut;  // plane, view space; in front of it the skin is whole
 uniform float cut_width;
 const vec3 FAT = vec3(0.78, 0.50, 0.34);  // linear light
 #endif
-#if defined(FADED)
-uniform vec4 fade[2];  // planes, view space: the larger value is the share of skin that shows
-#endif
 #include "surface_number.glsl"
 layout(location = 0) out vec4 pixel_colour;
 layout(location = 1) out vec4 pixel_surface;
@@ -336,11 +347,9 @@ void main() {
     vec3 front = front_albedo();
     float solid = 1.0;
 #if defined(FADED)
-    vec4 place = vec4(surface.position, 1.0);
-    solid = smoothstep(0.0, 1.0, max(dot(fade[0], place), dot(fade[1], place)));
+    solid = smoothstep(0.0, 1.0, surface.fade.x);
     // From below one would look into the neck. To discard its inside costs early depth tests.
-    bool is_behind = dot(fade[1], place) < 0.0;
-    if (!gl_FrontFacing && (solid < 1.0 || is_behind)) solid = 0.0;
+    if (!gl_FrontFacing && (solid < 1.0 || surface.fade.y < 0.0)) solid = 0.0;
 #endif
 #if defined(GOURAUD)
     Lit lit = Lit(surface.key, surface.rest, surface.specular);

@@ -85,8 +85,7 @@ def test_the_built_in_head_fits_itself(head, tmp_path):
 
 def test_the_edge_of_the_neck_fades(fitted):
     """Nothing shows of a head where it ends, all of it at the chin; a closed neck has no end."""
-    planes = np.array(fitted.fade())
-    shown = (fitted.vertices @ planes[:, :3].T + planes[:, 3]).max(axis=1)
+    shown = fitted.fade()[:, 0]
     edge = max(boundary_loops(fitted.faces), key=lambda x: -fitted.vertices[x, 1].mean())
     assert shown[edge].max() < 0.05
     assert shown[fitted.landmarks].min() > 1.0
@@ -97,14 +96,21 @@ def test_the_edge_of_the_neck_fades(fitted):
     assert closed.fade() is None
 
 
-def test_an_open_chin_does_not_fade_beside_a_short_neck(fitted):
-    """Ahead of the neck skin shows whole, even below its edge; the neck fades as before."""
-    neck, ahead = np.array(fitted.fade())
-    fading = fitted.vertices[fitted.vertices @ neck[:3] + neck[3] < 1.0]
-    open_chin = np.array([0.0, fading[:, 1].min(), fading[:, 2].max() + 10.0])
-    assert open_chin @ neck[:3] + neck[3] < 0.5
-    assert open_chin @ ahead[:3] + ahead[3] > 1.0
-    assert (fading @ ahead[:3] + ahead[3]).max() < 1e-6
+def test_the_inner_side_of_the_neck_does_not_show(fitted):
+    """None of it behind the front of skin that fades; that of lids and lips, ahead of it, does."""
+    share, ahead = fitted.fade().T
+    assert ahead[share < 1.0].max() == 0.0
+    assert ahead[fitted.landmarks[36:]].min() > 5.0
+
+
+def test_triangles_that_fade_are_drawn_last(fitted, other):
+    """They are blended over a chin that sinks in there; else the order is that of the file."""
+    fades = (fitted.fade()[fitted.faces, 0] < 1.0).any(axis=1)
+    assert fades.any()
+    assert (np.diff(fades.astype(np.int8)) >= 0).all()
+    first = fitted.file_vertices[fitted.faces[: (~fades).sum()]]
+    of_file = {tuple(face): k for k, face in enumerate(other.mesh.faces.tolist())}
+    assert (np.diff([of_file[tuple(face)] for face in first.tolist()]) > 0).all()
 
 
 def test_teeth_lie_behind_the_skin(fitted):
@@ -287,14 +293,14 @@ def test_pieces_that_are_left_away_may_be_anything(other):
     assert np.array_equal(head.file_vertices, np.arange(len(other.mesh.vertices)))
 
 
-def test_triangles_that_name_a_vertex_twice_are_left_away(other):
+def test_triangles_that_name_a_vertex_twice_are_left_away(other, fitted):
     """As decimated files and joined corners have them: the skin is what it is without them."""
     vertices, faces = other.mesh.vertices, other.mesh.faces
     alone = len(vertices)  # a vertex of no other triangle
     flat = np.array([[5, 6, 5], [7, 7, 7], [9, alone, alone]], np.int32)
     mesh = Mesh(np.vstack([vertices, vertices[9:10]]), np.vstack([faces[:9], flat, faces[9:]]))
     head = fit(mesh, other.landmarks)
-    assert np.array_equal(head.faces, faces)
+    assert np.array_equal(head.faces, fitted.faces)
     assert np.array_equal(head.file_vertices, np.arange(len(vertices)))
 
 

@@ -27,8 +27,9 @@ def renderer(request: pytest.FixtureRequest) -> Iterator[render.Renderer]:
 def frames_of(renderer):
     """Frames that need everything: shadows, hidden triangles, opened skin, hair, maps, clips."""
     shape = joined(square(70.0, z=-45.0), sphere(2, 30.0))
-    stream = lent(renderer, shape, columns=16)
+    stream = lent(renderer, shape, columns=18)
     stream.vertices[:, 8:] = 1.0
+    stream.vertices[:, 16] = 0.02 * shape.positions[:, 1] + 0.5
     stream.upload(len(shape.positions), len(shape.triangles), has_bumps=True)
     bumps = render.BumpMap(renderer.surface, np.full((8, 8, 4), FURROWED, np.uint8), 100.0)
     texture = render.Texture(renderer.surface, np.full((8, 8, 3), (200, 90, 30), np.uint8))
@@ -49,9 +50,7 @@ def frames_of(renderer):
         render.Frame(aside, replace(shaded, opacity=0.4), bare, [bone, hair], (1.0, 0.0, 0.0, 5.0)),
         render.Frame(aside, shaded, render.Skin(stream, render.SkinMaps(texture, bumps))),
         render.Frame(front, tinted, render.Skin(stream, values=values), still(Ball())),
-        render.Frame(
-            front, shaded, render.Skin(stream, fade=((0.0, 0.02, 0.0, 0.5), (0.0, 0.0, 0.0, 0.0)))
-        ),
+        render.Frame(front, shaded, render.Skin(stream, fading=shape.positions.astype(np.float64))),
         render.Frame(render.CameraView(turned, HALF, (10, 10, 20, 60)), PLAIN, None, [hair]),
     ]
 

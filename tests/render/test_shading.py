@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from risorius import render
 
@@ -67,14 +68,23 @@ def test_inner_side_is_dark_flesh(surface):
         assert behind[0] > 20
 
 
-def test_skin_fades_toward_a_plane(renderer):
-    """All of it at 1, half where the way is half done, nothing at 0."""
-    stream = lent(renderer, square(30.0))
+def fading(renderer, shape, shares, inner):
+    """A shape that fades by shares of its vertices, and a number below 0 hides its inner side."""
+    stream = lent(renderer, shape, columns=18)
+    stream.vertices[:, 16] = shares
+    stream.vertices[:, 17] = inner
+    stream.upload(len(shape.positions), len(shape.triangles))
+    return render.Skin(stream, fading=shape.positions.astype(np.float64))
+
+
+@pytest.mark.parametrize("wireframe", [False, True])
+def test_skin_fades_as_its_vertices_have_it(renderer, wireframe):
+    """All of it at 1, half where the way is half done, nothing at 0; with wires, too."""
+    skin = fading(renderer, square(30.0), (0.0, 0.0, 1.0, 1.0), 1.0)  # from below to above
     pictures = []
-    upward = (0.0, 1.0 / 60.0, 0.0, 0.5)  # from the lower edge to the upper one
-    nowhere = (0.0, 0.0, 0.0, -1.0)
-    for fade in (None, (upward, nowhere)):
-        image = draw(renderer, render.Skin(stream, fade=fade))
+    style = replace(PLAIN, wireframe=wireframe, wire_width=0.01)
+    for each in (render.Skin(skin.stream), skin):
+        image = draw(renderer, each, style)
         pictures.append(255.0 - image.mean(axis=2))
     whole, faded = pictures
     rows = np.flatnonzero(whole[:, 48] > 1.0)
@@ -85,11 +95,16 @@ def test_skin_fades_toward_a_plane(renderer):
 
 
 def test_the_inside_of_a_faded_neck_does_not_show(renderer):
-    """Back faces behind the second plane are not seen; those ahead, of lips and lids, are."""
+    """Back faces with a number below 0 are not seen; the others, of lips and lids, are."""
     shape = square(30.0)
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
-    stream = lent(renderer, turned)
-    rightward = (1.0 / 40.0, 0.0, 0.0, 1.0)  # half of it is whole
-    for distance, is_seen in ((0.5, True), (-0.5, False)):
-        skin = render.Skin(stream, fade=(rightward, (0.0, 0.0, 0.0, distance)))
+    for inner, is_seen in ((0.5, True), (-0.5, False)):
+        skin = fading(renderer, turned, (0.25, 1.75, 1.75, 0.25), inner)  # half of it is whole
         assert (draw(renderer, skin)[48, 60].mean() < 250.0) == is_seen
+
+
+def test_a_fade_needs_its_columns(renderer):
+    """Rows without it are refused."""
+    stream = lent(renderer, square(), columns=16)
+    with pytest.raises(ValueError, match="a fade on a stream of 16 columns"):
+        render.Skin(stream, fading=np.zeros((1, 3)))
