@@ -19,7 +19,6 @@ polyline, u_i = max(c t_i, 0.01)).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +35,38 @@ FIBRE_POINTS = 9  # segments of 4-10 mm: as fine as the built-in face's triangle
 SAMPLES = 17  # places along a fibre where its displacement is known, to 0.2 mm
 WRAP_NEIGHBOURS = 10  # vertices that say where the skin is (chosen)
 LEAST_ARC = 0.01  # Kähler's 0.01: the insertion never reaches the origin
+
+
+class AttachedPoints(NamedTuple):
+    """Points that may hang on a muscle: the skin, or control points of a muscle above it."""
+
+    positions: Floats64  # (n, 3) mm
+    normals: Floats64  # (n, 3) of the skin there
+    lip_side: Floats64  # (n,) of lip_lid_sides.lip_side
+
+
+class Gate(NamedTuple):
+    """Where a muscle may act."""
+
+    side: float  # +1 left, -1 right: it fades across the midline; 0: it does not
+    lip: float  # +1 upper, -1 lower: it fades on the other lip; 0: it does not
+
+
+@njit
+def gate_at(gate: Gate, lateral: float, lip_side: float) -> float:
+    """1 where a muscle may act, 0 where it must leave the skin alone; lateral: place [mm]."""
+    found = 1.0
+    if gate.side != 0.0:  # fades to 0 across the midline; twins add up to 1
+        midline_fade = 20.0  # mm across the midline over which a paired muscle yields to its twin
+        found = min(max(0.5 + gate.side * lateral / (2.0 * midline_fade), 0.0), 1.0)
+    if gate.lip != 0.0:
+        # A value of the lip side field: beyond it a gated muscle leaves the other lip alone.
+        gate_ends = -0.6
+        gate_full = 1.0  # where it has its full hold; in between it fades, or corners get square
+        t = (gate.lip * lip_side - gate_ends) / (gate_full - gate_ends)
+        t = min(max(t, 0.0), 1.0)
+        found *= t * t * (3.0 - 2.0 * t)
+    return found
 
 
 class FibreBundle(NamedTuple):
@@ -115,68 +146,118 @@ def over_skin(points: Floats64, surface: SkinSurface, *fields: Floats64) -> tupl
     return tuple(np.einsum("nk,nk...->n...", weight, field[vertices]) for field in fields)
 
 
-@dataclass(frozen=True)
-class FibreCoordinates:
-    """Where n places lie relative to one fibre."""
+class FibreHold(NamedTuple):
+    """How firmly places hang on a fibre, and how they move when it contracts."""
 
-    weight: Floats64  # (n,) 1 on the fibre .. 0 far away
-    arc: Floats64  # (n,) place along the fibre, 0..1
-    foot: Floats64  # (n, 3) nearest point of the fibre
-
-
-def fibre_coordinates(
-    points: Floats64, positions: Floats64, *, width: float, beyond: float
-) -> FibreCoordinates:
-    """Relate places (n, 3) to a fibre (k, 3): Gaussian falloff across it and past its end."""
-    found = FibreCoordinates(
-        np.empty(len(positions)), np.empty(len(positions)), np.empty((len(positions), 3))
-    )
-    _relate(points, positions, np.array([width, beyond]), found.weight, found.arc, found.foot)
-    return found
+    width: float  # mm across the fibre, of a Gaussian
+    beyond: float  # mm past its end, likewise
+    weight: float
+    drawn: float  # share of the way to the fibre that a place at its end goes
+    bulge: float  # mm along the normal, of a Gaussian along the fibre
+    bulge_at: float  # 0..1
+    lift: float  # mm along the normal, everywhere
+    gate: Gate
 
 
 @njit
-def _relate(
+def hang_on_fibre(
     points: Floats64,
-    positions: Floats64,
-    sizes: Floats64,
+    hold: FibreHold,
+    places: AttachedPoints,
     weight: Floats64,
     arc: Floats64,
-    foot: Floats64,
+    steady: Floats64,
 ) -> None:
-    """Fill weight, arc and foot of `FibreCoordinates`; sizes: width and beyond [mm]."""
+    """Fill the columns of an `Attachment` for the places that a fibre (k, 3) reaches."""
     cut_widths = 2.2  # widths at which the Gaussian (0.8 %) is cut to zero
-    width = sizes[0]
-    count = len(points) - 1
-    segment = points[1:] - points[:-1]
-    reached = np.zeros(count + 1)
-    for k in range(count):
-        reached[k + 1] = reached[k] + max(np.sqrt((segment[k] ** 2).sum()), 1e-9)
-    last = segment[count - 1] / (reached[count] - reached[count - 1])
-    at = np.empty(3)
-    for n in range(len(positions)):
-        nearest = np.inf
-        for k in range(count):
-            length = reached[k + 1] - reached[k]
-            dot = 0.0
-            for axis in range(3):
-                dot += (positions[n, axis] - points[k, axis]) * segment[k, axis]
-            t = min(max(dot / length**2, 0.0), 1.0)
-            squared = 0.0
-            for axis in range(3):
-                at[axis] = points[k, axis] + t * segment[k, axis]
-                squared += (positions[n, axis] - at[axis]) ** 2
-            if squared < nearest:  # of equal ones the first counts
-                nearest = squared
-                arc[n] = (reached[k] + t * length) / reached[count]
-                foot[n] = at
+    bulge_spread = 0.3  # of the fibre's length (fitted)
+    end = len(points) - 1
+    reached = _reached(points)
+    low = np.empty(3)
+    high = np.empty(3)
+    for axis in range(3):
+        low[axis] = points[:, axis].min()
+        high[axis] = points[:, axis].max()
+    farthest = cut_widths**2 * (hold.width**2 + hold.beyond**2)
+    last = reached[end] - reached[end - 1]
+    foot = np.empty(3)
+    for n in range(len(places.positions)):
+        place = places.positions[n]
+        outside = 0.0  # of the fibre's box: it reaches a tenth of the skin
+        for axis in range(3):
+            off = max(low[axis] - place[axis], 0.0, place[axis] - high[axis])
+            outside += off * off
+        if outside > farthest:
+            continue
+        squared, along = _nearest(points, reached, place, foot)
         past = 0.0
         for axis in range(3):
-            past += (positions[n, axis] - points[count, axis]) * last[axis]
-        reach = nearest / width**2
-        if arc[n] >= 1.0 - 1e-12 and past > 0.0:
-            reach = max(nearest - past**2, 0.0) / width**2 + (past / sizes[1]) ** 2
-        weight[n] = np.exp(-reach) if reach < cut_widths**2 else 0.0
+            ahead = (points[end, axis] - points[end - 1, axis]) / last
+            past += (place[axis] - points[end, axis]) * ahead
+        reach = squared / hold.width**2
+        if along >= 1.0 - 1e-12 and past > 0.0:
+            reach = max(squared - past**2, 0.0) / hold.width**2 + (past / hold.beyond) ** 2
+        if reach >= cut_widths**2:
+            continue
+        held = hold.weight * np.exp(-reach) * gate_at(hold.gate, place[0], places.lip_side[n])
+        if held == 0.0:
+            continue
+        bulge = hold.bulge * np.exp(-(((along - hold.bulge_at) / bulge_spread) ** 2))
+        bulge += hold.lift
+        weight[n] = held
+        arc[n] = along
+        for axis in range(3):
+            steady[n, axis] = held * (hold.drawn * along) * (foot[axis] - place[axis])
+            steady[n, axis] += held * bulge * places.normals[n, axis]
+
+
+@njit
+def arcs_along(points: Floats64, positions: Floats64) -> Floats64:
+    """Where along a line (k, 3), 0..1, it is nearest to each of the positions (n, 3)."""
+    reached = _reached(points)
+    arc = np.empty(len(positions))
+    foot = np.empty(3)
+    for n in range(len(positions)):
+        _, arc[n] = _nearest(points, reached, positions[n], foot)
+    return arc
+
+
+@njit
+def _reached(points: Floats64) -> Floats64:
+    """How long a line (k, 3) is up to each of its points, shape (k,)."""
+    reached = np.zeros(len(points))
+    for k in range(len(points) - 1):
+        squared = 0.0
+        for axis in range(3):
+            squared += (points[k + 1, axis] - points[k, axis]) ** 2
+        reached[k + 1] = reached[k] + max(np.sqrt(squared), 1e-9)
+    return reached
+
+
+@njit
+def _nearest(
+    points: Floats64, reached: Floats64, place: Floats64, foot: Floats64
+) -> tuple[float, float]:
+    """The squared distance of a line from a place, and where along it, 0..1; fills `foot` (3,)."""
+    end = len(points) - 1
+    nearest = np.inf
+    arc = 0.0
+    for k in range(end):
+        length = reached[k + 1] - reached[k]
+        dot = 0.0
+        for axis in range(3):
+            dot += (place[axis] - points[k, axis]) * (points[k + 1, axis] - points[k, axis])
+        t = min(max(dot / length**2, 0.0), 1.0)
+        squared = 0.0
+        for axis in range(3):
+            at = points[k, axis] + t * (points[k + 1, axis] - points[k, axis])
+            squared += (place[axis] - at) ** 2
+        if squared < nearest:  # of equal ones the first counts
+            nearest = squared
+            arc = (reached[k] + t * length) / reached[end]
+            for axis in range(3):
+                foot[axis] = points[k, axis] + t * (points[k + 1, axis] - points[k, axis])
+    return nearest, arc
 
 
 @njit

@@ -29,8 +29,8 @@ import numpy as np
 
 from ..geometry.arrays import Floats64, Integers64
 from ..geometry.polylines import arc_lengths
-from .fibres import FIBRE_POINTS, SAMPLES, Stack, over_skin
-from .muscles import AttachedPoints, Line, PlacedMuscle, attach
+from .fibres import FIBRE_POINTS, SAMPLES, AttachedPoints, Stack, over_skin
+from .muscles import Line, PlacedMuscle, attach
 from .surface import SkinSurface
 
 

@@ -20,21 +20,24 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Floats64, Integers32
-from .fibres import FIBRE_POINTS, bent_to_skin, fibre_coordinates, straight_fibre
-from .landmarks import Side, smoothstep
+from ..jit import njit
+from .fibres import (
+    FIBRE_POINTS,
+    AttachedPoints,
+    FibreHold,
+    Gate,
+    arcs_along,
+    bent_to_skin,
+    gate_at,
+    hang_on_fibre,
+    straight_fibre,
+)
+from .landmarks import Side
 from .rig import MOUTH, Fibre, LinearMuscle, Muscle, Rig, RingMuscle
 from .skull import LATERAL, UP, rotation
 from .surface import SkinSurface
 
 Ring = Callable[[], Integers32]  # finds skin vertices along a sphincter: only drawing asks for them
-
-
-class AttachedPoints(NamedTuple):
-    """Points that may hang on a muscle: the skin, or control points of a muscle above it."""
-
-    positions: Floats64  # (n, 3) mm
-    normals: Floats64  # (n, 3) of the skin there
-    lip_side: Floats64  # (n,) of lip_lid_sides.lip_side
 
 
 class Attachment(NamedTuple):
@@ -142,87 +145,103 @@ def attach(
     return attach_to_fibre(muscle, line.fibre, line.points, side, places)
 
 
-def _gate(muscle: Muscle, side: Side, places: AttachedPoints) -> Floats64:
-    """1 where a muscle of one side may act, 0 where it must leave the skin alone, shape (n,)."""
-    gate = np.ones(len(places.positions))
-    if muscle.pair and not muscle.crosses:  # fades to 0 across the midline; twins add up to 1
-        lateral = side.sign * places.positions[:, 0]
-        midline_fade = 20.0  # mm across the midline over which a paired muscle yields to its twin
-        gate = np.clip(0.5 + lateral / (2.0 * midline_fade), 0.0, 1.0)
-    if muscle.gate != "none":  # fades to 0 on the other lip
-        towards = places.lip_side if muscle.gate == "upper_lip" else -places.lip_side
-        # A value of the lip side field: beyond it a gated muscle leaves the other lip alone.
-        gate_ends = -0.6
-        gate_full = 1.0  # where it has its full hold; in between it fades, or corners get square
-        gate = gate * smoothstep((towards - gate_ends) / (gate_full - gate_ends))
-    return gate
+def _gate(muscle: Muscle, side: Side) -> Gate:
+    """Where a muscle of one side may act."""
+    is_divided = muscle.pair and not muscle.crosses
+    lip = {"upper_lip": 1.0, "lower_lip": -1.0}.get(muscle.gate, 0.0)
+    return Gate(side.sign if is_divided else 0.0, lip)
 
 
 def attach_to_fibre(
     muscle: LinearMuscle, fibre: Fibre, points: Floats64, side: Side, places: AttachedPoints
 ) -> Attachment:
     """Hang places on a fibre of a linear muscle; the skin slides, converges and bulges."""
-    factor = fibre.width_factor
-    at = fibre_coordinates(
-        points, places.positions, width=muscle.width * factor, beyond=muscle.beyond * factor
+    hold = FibreHold(
+        width=muscle.width * fibre.width_factor,
+        beyond=muscle.beyond * fibre.width_factor,
+        weight=fibre.weight,
+        drawn=fibre.gain * fibre.convergence * muscle.contraction,
+        bulge=muscle.bulge,
+        bulge_at=muscle.bulge_at,
+        lift=fibre.lift,
+        gate=_gate(muscle, side),
     )
-    near = np.flatnonzero(at.weight)  # a fibre reaches a tenth of the skin
-    weight = np.zeros(len(at.weight))
-    reached = AttachedPoints(*(each[near] for each in places))
-    weight[near] = fibre.weight * at.weight[near] * _gate(muscle, side, reached)
-    on = np.flatnonzero(weight)
-    arc = at.arc[on]
-    drawn = fibre.gain * fibre.convergence * muscle.contraction * arc
-    bulge_spread = 0.3  # of the fibre's length (fitted)
-    bulge = muscle.bulge * np.exp(-(((arc - muscle.bulge_at) / bulge_spread) ** 2))
-    bulge += fibre.lift
-    steady = np.zeros((len(weight), 3))
-    steady[on] = (weight[on] * drawn)[:, None] * (at.foot[on] - places.positions[on])
-    steady[on] += (weight[on] * bulge)[:, None] * places.normals[on]
-    return Attachment(weight, at.arc, steady)
+    count = len(places.positions)
+    found = Attachment(np.zeros(count), np.zeros(count), np.zeros((count, 3)))
+    hang_on_fibre(points, hold, places, *found)
+    return found
 
 
 def attach_to_ring(
     muscle: RingMuscle, points: Floats64, landmarks: Floats64, side: Side, places: AttachedPoints
 ) -> Attachment:
     """Hang places on a sphincter: an elliptic ring around `shape`, drawn to `centre`."""
-    x = places.positions
     _, up, down = muscle.radii
     rho, weight = _within_ring(muscle, landmarks, side, places)
     on = np.flatnonzero(weight)  # most of the skin lies beside the arc or on the other lip
-    steady = np.zeros((len(x), 3))
     held = AttachedPoints(*(each[on] for each in places))
-    steady[on] = weight[on, None] * _ring_pull(muscle, landmarks, side, held)
+    count = len(weight)
+    found = Attachment(weight, np.zeros(count), np.zeros((count, 3)))
+    found.steady[on] = weight[on, None] * _ring_pull(muscle, landmarks, side, held)
+    x = held.positions
     if (muscle.shape or muscle.centre) == MOUTH:  # between the lips both halves are as near
-        to_line = np.where(places.lip_side > 0.0, up, down) * np.maximum(1.0 - rho, 0.0)
-        x = x + (places.lip_side * to_line)[:, None] * UP
-    arc = np.zeros(len(x))
-    arc[on] = fibre_coordinates(points, x[on], width=1.0, beyond=1.0).arc
-    return Attachment(weight, arc, steady)
+        to_line = np.where(held.lip_side > 0.0, up, down) * np.maximum(1.0 - rho[on], 0.0)
+        x = x + (held.lip_side * to_line)[:, None] * UP
+    found.arc[on] = arcs_along(points, x)
+    return found
 
 
 def _within_ring(
     muscle: RingMuscle, landmarks: Floats64, side: Side, places: AttachedPoints
 ) -> tuple[Floats64, Floats64]:
     """How far out places lie, 1 on the ellipse, and how firmly a sphincter holds them, (n,)."""
-    x = places.positions
-    lateral, up, down = muscle.radii
-    aside, height, _ = (x - _middle(muscle, landmarks, side)).T
-    radius = np.where(height > 0.0, up, down)
-    rho = np.hypot(aside / lateral, height / radius)
-    outside, inside = muscle.edge
-    beyond = np.maximum(rho - 1.0, 0.0) / outside
-    within = np.maximum(1.0 - rho, 0.0) / inside
-    weight = np.exp(-0.5 * beyond**2)
-    weight *= np.exp(-0.5 * within**2)
-    at, half, fade = muscle.arc_deg
-    angle = np.degrees(np.arctan2(height, aside * side.sign))
-    off = np.abs((angle - at + 180.0) % 360.0 - 180.0)
-    weight *= smoothstep(1.0 - (off - half) / max(fade, 1e-3))
     face_depth = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
-    weight *= x[:, 2] > landmarks[[36, 45], 2].mean() - face_depth
-    weight *= _gate(muscle, side, places)
+    rear = float(landmarks[[36, 45], 2].mean()) - face_depth
+    ellipse = (*_middle(muscle, landmarks, side).tolist(), *muscle.radii)
+    arc = (side.sign, *muscle.arc_deg)
+    count = len(places.positions)
+    rho = np.zeros(count)
+    weight = np.zeros(count)
+    _hold_in_ring(ellipse, muscle.edge, arc, rear, _gate(muscle, side), places, rho, weight)
     return rho, weight
+
+
+@njit
+def _hold_in_ring(
+    ellipse: tuple[float, ...],
+    edge: tuple[float, float],
+    arc: tuple[float, ...],
+    rear: float,
+    gate: Gate,
+    places: AttachedPoints,
+    rho: Floats64,
+    weight: Floats64,
+) -> None:
+    """Fill what `_within_ring` returns, where a sphincter holds.
+
+    ellipse: its middle, and its radii to the side, up and down [mm]. edge: falloff outside and
+    inside. arc: side, and `arc_deg` of the muscle. rear: z that the ring does not reach.
+    """
+    x, y, _, lateral, up, down = ellipse
+    outside, inside = edge
+    sign, at, half, fade = arc
+    for n in range(len(rho)):
+        place = places.positions[n]
+        may_act = gate_at(gate, place[0], places.lip_side[n])
+        if place[2] <= rear or may_act == 0.0:
+            continue
+        aside = place[0] - x
+        height = place[1] - y
+        angle = np.degrees(np.arctan2(height, aside * sign))
+        off = abs((angle - at + 180.0) % 360.0 - 180.0)
+        t = min(max(1.0 - (off - half) / max(fade, 1e-3), 0.0), 1.0)
+        if t == 0.0:
+            continue
+        rho[n] = np.hypot(aside / lateral, height / (up if height > 0.0 else down))
+        beyond = max(rho[n] - 1.0, 0.0) / outside
+        within = max(1.0 - rho[n], 0.0) / inside
+        held = np.exp(-0.5 * beyond**2) * np.exp(-0.5 * within**2)
+        weight[n] = held * (t * t * (3.0 - 2.0 * t)) * may_act
 
 
 def _ring_pull(

@@ -9,7 +9,10 @@ from numpy.linalg import norm
 from risorius import sim
 from risorius.sim.contact import Grip, watch_eyeballs
 from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
+from risorius.sim.landmarks import smoothstep
 from risorius.sim.lid_motion import turn_lids
+from risorius.sim.muscles import place_muscles
+from risorius.sim.rig import LinearMuscle, RingMuscle
 from risorius.sim.skin_model import Tick
 from risorius.sim.skull import REST
 from risorius.sim.state import State
@@ -118,6 +121,84 @@ def _sealed_speeds(skin, state, grip, h):
     np.add.at(speeds, lips.beside[:, 0], -w * impulse * inverse[lips.beside[:, 0]])
     np.add.at(speeds, lips.beside[:, 1], -(1.0 - w) * impulse * inverse[lips.beside[:, 1]])
     return speeds
+
+
+@pytest.fixture(scope="module")
+def placed(model):
+    """The muscles of the built-in head as they are placed."""
+    return place_muscles(model.rig, model.surface, model.landmarks, model.lip_side)
+
+
+def gate_of(muscle, side, model):
+    """Where a muscle may act, as the rig says it: on its side, and on its lip."""
+    gate = np.ones(model.surface.vertex_count)
+    if muscle.pair and not muscle.crosses:
+        gate = np.clip(0.5 + side.sign * model.surface.positions[:, 0] / 40.0, 0.0, 1.0)
+    if muscle.gate != "none":
+        towards = model.lip_side * (1.0 if muscle.gate == "upper_lip" else -1.0)
+        gate = gate * smoothstep((towards + 0.6) / 1.6)
+    return gate
+
+
+def test_skin_hangs_on_fibres_by_the_formula(placed, model):
+    """A Gaussian across each fibre and past its end, and where contraction takes its skin."""
+    x = model.surface.positions
+    for at in placed:
+        if not isinstance(at.muscle, LinearMuscle):
+            continue
+        muscle = at.muscle
+        for line in at.lines:
+            fibre = line.fibre
+            along = np.diff(line.points, axis=0)
+            lengths = norm(along, axis=1)
+            t = ((x[:, None] - line.points[:-1]) * along).sum(axis=2) / lengths**2
+            t = np.clip(t, 0.0, 1.0)
+            feet = line.points[:-1] + t[..., None] * along
+            squared = ((x[:, None] - feet) ** 2).sum(axis=2)
+            nearest = squared.argmin(axis=1)
+            rows = np.arange(len(x))
+            arc = (np.cumsum(lengths) - lengths)[nearest] + (t * lengths)[rows, nearest]
+            arc /= lengths.sum()
+            foot = feet[rows, nearest]
+            squared = squared[rows, nearest]
+            width, beyond = np.array([muscle.width, muscle.beyond]) * fibre.width_factor
+            past = (x - line.points[-1]) @ along[-1] / lengths[-1]
+            ended = np.maximum(squared - past**2, 0.0) / width**2 + (past / beyond) ** 2
+            is_past = (arc >= 1.0 - 1e-12) & (past > 0.0)
+            reach = np.where(is_past, ended, squared / width**2)
+            weight = np.where(reach < 2.2**2, fibre.weight * np.exp(-reach), 0.0)
+            weight *= gate_of(muscle, at.side, model)
+            drawn = fibre.gain * fibre.convergence * muscle.contraction * arc
+            bulge = muscle.bulge * np.exp(-(((arc - muscle.bulge_at) / 0.3) ** 2)) + fibre.lift
+            steady = (weight * drawn)[:, None] * (foot - x)
+            steady += (weight * bulge)[:, None] * model.surface.normals
+            on = weight > 0.0
+            assert line.skin.weight == pytest.approx(weight, rel=1e-9, abs=1e-9)
+            assert line.skin.arc[on] == pytest.approx(arc[on], abs=1e-9)
+            assert line.skin.steady == pytest.approx(steady, abs=1e-9)
+
+
+def test_skin_hangs_on_sphincters_by_the_formula(placed, model):
+    """Gaussians inside and outside an ellipse, along its arc, before the corners of the eyes."""
+    x = model.surface.positions
+    rear = model.landmarks[[36, 45], 2].mean() - 25.0
+    for at in placed:
+        if not isinstance(at.muscle, RingMuscle):
+            continue
+        muscle = at.muscle
+        lateral, up, down = muscle.radii
+        middle = (muscle.shape or muscle.centre).on(model.landmarks, at.side)
+        aside, height, _ = (x - middle).T
+        rho = np.hypot(aside / lateral, height / np.where(height > 0.0, up, down))
+        outside, inside = muscle.edge
+        weight = np.exp(-0.5 * (np.maximum(rho - 1.0, 0.0) / outside) ** 2)
+        weight *= np.exp(-0.5 * (np.maximum(1.0 - rho, 0.0) / inside) ** 2)
+        where, half, fade = muscle.arc_deg
+        angle = np.degrees(np.arctan2(height, aside * at.side.sign))
+        off = np.abs((angle - where + 180.0) % 360.0 - 180.0)
+        weight *= smoothstep(1.0 - (off - half) / max(fade, 1e-3))
+        weight *= (x[:, 2] > rear) * gate_of(muscle, at.side, model)
+        assert at.lines[0].skin.weight == pytest.approx(weight, rel=1e-9, abs=1e-9)
 
 
 def test_fibres_contract_along_their_own_arc(stirred, model, state):
