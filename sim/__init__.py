@@ -5,7 +5,7 @@
     simulation.step(1 / 60)
     simulation.positions        # (V, 3)
 
-Knows nothing of rendering or refinement. Start reading at face.py; rig.py defines the rig file.
+It knows nothing of rendering or refinement. Start reading at face.py; rig.py defines the rig file.
 """
 
 from typing import Any
@@ -23,7 +23,7 @@ __all__ += ["controls_of", "create", "read_rig"]
 def create(head: Any) -> Simulation:
     """Build the simulation of a head: any object with `vertices` (V, 3) and `faces` (F, 3).
 
-    Optional attributes (landmarks, rig, mandible_weight, jaw_axis, eyes) add muscles, jaw and gaze,
-    see foundation.py. Raises ValueError naming the fault of the head or its rig.
+    Optional attributes (landmarks, rig, mandible_weight, jaw_axis, eyes) add muscles, jaw and gaze;
+    foundation.py lists them. Raises ValueError, which names the fault of the head or its rig.
     """
     return Simulation(build_face_model(head))

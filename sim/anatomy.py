@@ -1,4 +1,4 @@
-"""The current parts under the skin of a face, to draw and to measure; they do not move the face."""
+"""The present parts under the skin of a face, to draw and to measure; they do not move the face."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .state import State
 
 
 class Anatomy:
-    """Contracted muscles, the tongue, and how deep skin sits in the parts under it."""
+    """Contracted muscles, the tongue, and the depth of the skin in the parts under it."""
 
     def __init__(
         self, model: FaceModel, state: State, controls: Controls, bones: Bones, drive: MuscleDrive
@@ -32,8 +32,8 @@ class Anatomy:
     def tongue(self) -> Floats64 | None:
         """Vertices of the part "tongue" now, shape (T, 3); None for a head without one.
 
-        They are in the space of the mandible: the matrix of this bone puts them in their place.
-        A tongue at rest is the same array each time.
+        Their space is that of the mandible: the matrix of this bone puts them in their place. A
+        tongue at rest is the same array each time.
         """
         model = self._model
         if model.tongue is None:
@@ -44,7 +44,7 @@ class Anatomy:
         return model.space.to_head(model.tongue.bent(out, up, self._state.x, self._bones.mandible))
 
     def fibres(self) -> dict[str, list[Floats64]]:
-        """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""
+        """Contracted muscle fibres now, to draw: control name -> polylines (n, 3) [head units]."""
         pull = self._drive.pull(self._drive.activation())
         lines = self._model.muscles.lines(pull, self._bones.mandible, self._state)
         space = self._model.space
@@ -57,7 +57,7 @@ class Anatomy:
     def muscle_at(self, point: npt.ArrayLike, reach: float) -> str | None:
         """The muscle whose fibres come nearest to a point (3,) of the skin, within `reach`."""
         at = np.asarray(point, np.float64)[None]
-        nearest = {  # its end once more: a fibre may be a single point
+        nearest = {  # the first point is repeated: a fibre may be a single point
             name: min(float(polyline_distance(at, np.vstack([x, x[-1:]]))[0]) for x in lines)
             for name, lines in self.fibres().items()
             if lines
@@ -66,7 +66,7 @@ class Anatomy:
         return name if nearest.get(name, np.inf) <= reach else None
 
     def penetrations(self) -> dict[str, float]:
-        """Greatest depth of skin in the other lip, eyeballs and teeth, less that at rest [mm].
+        """Greatest depth of skin in the other lip, eyeballs and teeth, minus that at rest [mm].
 
         Names: "lips" (in the other lip, more than sealed lips are pressed together), "lids" (in an
         eyeball), "teeth".

@@ -14,10 +14,10 @@ from .skull import HEAD_CONTROLS, REST
 class Bones:
     """Cranium, mandible and eyeballs; only those that moved are computed again.
 
-    mandible_weight, head_weight: how far each vertex goes with the mandible, given or guessed, and
-    with the head's pose, which fades to 0 down the neck; 0 to 1, shape (V,).
-    jaw: its values now: open, forward, sideways. lips_closed: how far lips are kept together over
-    an open jaw now, 0 to 1. weight: the mandible's weights with that, shape (V,).
+    mandible_weight, head_weight: how far each vertex follows the mandible (given or guessed) and
+    the head's pose (fades to 0 down the neck), 0 to 1, shape (V,). jaw: its present values: open,
+    forward, sideways. lips_closed: how far lips are now kept together over an open jaw, 0 to 1.
+    weight: the mandible's weights at that value of lips_closed, shape (V,).
     """
 
     def __init__(self, model: FaceModel, controls: Controls) -> None:
@@ -39,7 +39,7 @@ class Bones:
         self.turn: Floats64 = read_only(np.eye(4))  # of the head, for column vectors [head units]
 
     def follow(self) -> None:
-        """Move jaw, lips and head as the controls are now."""
+        """Move jaw, lips and head to the present values of the controls."""
         reached = self._controls.reached
         *values, self.lips_closed = reached[self._mouth].tolist()
         if (jaw := tuple(values)) != self.jaw:
@@ -56,7 +56,7 @@ class Bones:
             self.turn = read_only(turn)
 
     def gaze(self) -> Floats64:
-        """Where each eyeball looks: to the subject's left and up, -1 to 1, shape (eyes, 2)."""
+        """The direction of each eyeball: to the subject's left and up, -1 to 1, shape (eyes, 2)."""
         return self._controls.reached[self._gaze].reshape(-1, 2)
 
     def transforms(self) -> dict[str, Floats64]:

@@ -1,7 +1,7 @@
-"""Checks of the arguments of callers: numbers, arrays and names, or a ValueError.
+"""Checks of arguments from callers: numbers, arrays and names. A wrong one raises ValueError.
 
-Every message names the argument, its value, and the values that are allowed. numpy alone would take
-strings for numbers, cut 0.7 down to vertex 0, and raise one of three other errors.
+Every message names the argument, its value, and the allowed values. numpy alone would take strings
+for numbers, cut 0.7 down to vertex 0, and raise one of three other errors.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Shape = tuple[int | None, ...]  # None: any length
 def number(what: str, value: Any) -> float:
     """A finite number."""
     try:
-        is_one = isinstance(value, int | float)  # by far the most, and quickly found
+        is_one = isinstance(value, int | float)  # by far the most common, and quickly checked
         is_one = is_one or (not isinstance(value, str | bytes) and np.ndim(value) == 0)
         result = float(value) if is_one else math.nan
     except (TypeError, ValueError, OverflowError):
@@ -37,7 +37,7 @@ def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Floats64:
     array = _array(what, given, "fiub", f"numbers, shape {wanted}")
     if not _fits(array, shape):
         raise ValueError(f"{what}: shape was {array.shape}, must be {wanted} and finite")
-    with np.errstate(all="ignore"):  # wider kinds of numbers become infinite
+    with np.errstate(all="ignore"):  # numbers of a wider type may become infinite
         result: Floats64 = np.array(array, dtype=np.float64, order="C")
     if not np.isfinite(result).all():
         raise ValueError(f"{what}: must all be finite numbers, but some are NaN or infinite")
@@ -49,7 +49,7 @@ def vertex_numbers(
 ) -> Integers64:
     """Numbers of vertices, a copy in rows; wanted: the allowed values, in words."""
     array = _array(what, given, "fiub", wanted)
-    is_whole = array.dtype.kind in "iu" or array.size == 0  # an empty list has no kind
+    is_whole = array.dtype.kind in "iu" or array.size == 0  # an empty list has no type
     if not is_whole or not _fits(array, shape):
         raise ValueError(f"{what}: was {array.dtype} of shape {array.shape}, must be {wanted}")
     if array.size and (array.min() < 0 or array.max() >= vertex_count):

@@ -1,12 +1,12 @@
 """Contact of skin with the eyeballs and the other lip, and the seal that keeps closed lips closed.
 
-Each vertex on the edge of either lip is paired with a point on the edge of the other lip, as a mesh
-may have more vertices on one of them: those in no pair would stand out as teeth of a saw. A spring
-holds the pair together as long as nothing opens the mouth (moist lips stick; without it a smile
-parts them by a millimetre). It must be stiffer than any muscle or one sees teeth through closed
-lips, so it is integrated implicitly, pair by pair, and costs the time step nothing. Pairs and
-eyeballs are also hard constraints: after each substep positions are projected out and the
-approaching part of the velocity is removed.
+Each vertex on the edge of either lip is paired with a point on the edge of the other lip. A mesh
+may have more vertices on one lip; a vertex without a pair would stand out like a tooth of a saw. A
+spring holds each pair together as long as nothing opens the mouth (moist lips stick; without the
+spring a smile parts them by a millimetre). The spring must be stiffer than any muscle, or teeth
+show through closed lips. So it is integrated implicitly, pair by pair, and does not shorten the
+time step. Pairs and eyeballs are also hard constraints: after each substep positions are projected
+out and the approaching part of the velocity is removed.
 
 Source: own; contact by projection after Müller et al. 2007, "Position based dynamics", section 3.
 Differs from it: all pairs are solved at once from one state and averaged (Jacobi), which keeps a
@@ -24,9 +24,9 @@ from .landmarks import mouth_line, polyline_distance
 from .skull import Eyeball
 from .surface import SkinSurface
 
-PAIR_GAP = 2.2  # mm: lips further apart at rest are no pair; their red must not fold on the line
-PRESSED_OVERLAP = 1.8  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
-SLIDE_DISTANCE = 3.0  # mm the lower lip comes forward, or rolls in, before it passes the upper one
+PAIR_GAP = 2.2  # mm: lips further apart at rest form no pair; their red must not fold on the line
+PRESSED_OVERLAP = 1.8  # mm of overlap of sealed lips when muscles act: smoothing thins a folded lip
+SLIDE_DISTANCE = 3.0  # mm that the lower lip moves forward or in before it passes the upper one
 EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the eyeball
 
 
@@ -39,7 +39,7 @@ class LipPairs(NamedTuple):
     below: Floats64  # (P,) 1 for a vertex of the lower lip, -1 for one of the upper
     least_gap: Floats64  # (P,) mm, vertical; small negative where lips overlap at rest
     seal: Floats64  # (P,) stiffness
-    averaging: Floats64  # (P,) 1 / number of pairs its vertices are in
+    averaging: Floats64  # (P,) 1 / the number of pairs that share its vertices
     members: Integers32  # (M,) all vertices in pairs
 
     def apart(self, values: Floats64) -> Floats64:
@@ -50,7 +50,7 @@ class LipPairs(NamedTuple):
         return apart
 
     def deepest(self, x: Floats64, rest: Floats64, pressed: float) -> float:
-        """How far the lips cross at most at positions (V, 3), more than `pressed` and at rest [mm].
+        """Greatest depth of crossing lips at positions (V, 3), beyond `pressed` and rest [mm].
 
         A lower lip in front of the upper one, or rolled in behind it (substep.py), crosses nothing.
         """
@@ -62,17 +62,17 @@ class LipPairs(NamedTuple):
 class Grip(NamedTuple):
     """How firmly the lips stick together at present."""
 
-    stiffness: float  # x the stiffness of each pair; 0 = open
+    stiffness: float  # factor of the stiffness of each pair; 0 = open
     overlap: float  # mm by which the lips are pressed into each other
 
     @classmethod
     def of(cls, strength: float, activity: float) -> Grip:
-        """Grip of a seal of `strength` 0 (broken) .. 1 under muscles of `activity` 0 .. 1.
+        """Grip of a seal with `strength` 0 (broken) .. 1, under muscles with `activity` 0 .. 1.
 
-        At full strength it is stronger than every muscle. It must yield early, or the mouth would
+        At full strength it is stronger than every muscle. It must weaken early, or the mouth would
         pop open.
         """
-        unbroken_seal = 100.0  # x the rig's seal while nothing opens the lips: gaps below 0.1 mm
+        unbroken_seal = 100.0  # factor of the rig's seal in a closed mouth: gaps below 0.1 mm
         stiffness = strength**5 / (1.0 - strength + 1.0 / unbroken_seal)
         full_press_activity = 0.25  # activity from which they overlap in full
         return cls(stiffness, PRESSED_OVERLAP * strength * min(activity / full_press_activity, 1.0))
@@ -91,7 +91,7 @@ def pair_lips(
     at_edge = polyline_distance(x, line) < lip_edge
     width = abs(line[-1, 0] - line[0, 0])
     at_edge &= np.abs(x[:, 0] - line[2, 0]) < 0.51 * width
-    own_side_level = 0.1  # of the lip side field: nearer to the corner lips are one
+    own_side_level = 0.1  # of the lip side field: lips are one nearer to the corner
     upper = np.flatnonzero(at_edge & (lip_side > own_side_level))
     lower = np.flatnonzero(at_edge & (lip_side < -own_side_level))
     pairs = []
@@ -115,7 +115,7 @@ class _LipPair(NamedTuple):
 def _point_beside(
     x: Floats64, vertex: int, other: Integers64
 ) -> tuple[tuple[int, int], float] | None:
-    """The other lip's point beside a lip's vertex: nearest vertices right and left, mixed."""
+    """The other lip's point beside a lip's vertex: a mix of the nearest vertices right and left."""
     here = x[vertex]
     reach = np.linalg.norm(x[other] - here, axis=1)
     across = x[other, 0]
@@ -156,20 +156,20 @@ def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipP
 
 
 class EyeContact(NamedTuple):
-    """Skin vertices near an eyeball and how near they may come to its centre."""
+    """Skin vertices near an eyeball, and the least distance of each from its centre."""
 
     vertex: Integers32  # (C,)
     centre: Floats64  # (C, 3)
     least_distance: Floats64  # (C,)
 
     def deepest(self, x: Floats64) -> float:
-        """How far skin at positions (V, 3) is inside an eyeball at most [mm]."""
+        """Greatest depth of skin at positions (V, 3) inside an eyeball [mm]."""
         distance = np.linalg.norm(x[self.vertex] - self.centre, axis=1)
         return float((self.least_distance - distance).max(initial=0.0))
 
 
 def watch_eyeballs(surface: SkinSurface, eyeballs: tuple[Eyeball, ...]) -> EyeContact:
-    """Find the vertices that could touch an eyeball; one that starts inside may not sink deeper."""
+    """Find the vertices that could touch an eyeball; those inside may not sink deeper."""
     vertices = []
     centres = []
     least = []

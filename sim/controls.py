@@ -1,7 +1,8 @@
-"""Controls: the named values a caller sets, and how the face and each muscle follow them.
+"""Controls: the named values that a caller sets, and the way in which face and muscles follow.
 
-Lowest are muscles, jaw and gaze; controls of the layers above (layers.py) are set in the same way
-and add to them. The `wanted` value of a lowest control is that sum, clamped to its limits.
+The lowest controls are muscles, jaw and gaze. Controls of the layers above (layers.py) are set in
+the same way and add to them. The `wanted` value of a lowest control is this sum, clamped to its
+limits.
 
 A muscle does not jump to a new activation: each control follows its value as a critically damped
 oscillator (90 % after some 90 ms, no overshoot). The oscillator is solved exactly for every tick,
@@ -48,14 +49,14 @@ class Control:
 class Controls:
     """All inputs of a face: the values that are set, and the activations that follow them.
 
-    A value beyond its limits raises ValueError; a caller with such values clamps them itself. Only
-    sums are clamped here.
+    A value beyond its limits raises ValueError, so a caller clamps such values before. Only sums
+    are clamped here.
 
     The first C of all N controls are the lowest; only they have a wanted sum and an activation.
     """
 
     names: tuple[str, ...]
-    """Of all controls."""
+    """Names of all controls."""
     lowest: tuple[str, ...]
     """Names of the lowest controls: muscles, lips, jaw, gaze, head."""
     layers: Mapping[str, tuple[str, ...]]
@@ -63,7 +64,7 @@ class Controls:
     limits: Mapping[str, tuple[float, float]]
     """Least and greatest value of each control, those of the layers included."""
     groups: Mapping[str, tuple[str, ...]]
-    """Control names by the title under which a panel may list them, layers last."""
+    """Control names by their title in a panel, layers last."""
     actions: Mapping[str, str]
     """The effect of each control, in words; "" where its file has none."""
     tables: Layers
@@ -73,7 +74,7 @@ class Controls:
     wanted: Floats64
     """Sums of the lowest controls, shape (C,), read only."""
     activation: Floats64
-    """What follows them, shape (C,), read only."""
+    """Values of the muscles, which follow `wanted`, shape (C,), read only."""
 
     def __init__(self, controls: tuple[Control, ...], layers: Layers = NO_LAYERS) -> None:
         self.lowest = tuple(control.name for control in controls)
@@ -96,7 +97,7 @@ class Controls:
         self._rate = np.array([control.rate for control in controls], dtype=np.float64)
         self._shares = np.array([layers.shares[name] for name in layers.shares])  # (N - C, C)
         floors = np.array([*layers.floors.values()]).reshape(len(layers.floors), len(controls))
-        self._floored = np.flatnonzero(floors.any(axis=1))  # few rows of layers have any
+        self._floored = np.flatnonzero(floors.any(axis=1))  # only few rows of layers have any
         self._floors = floors[self._floored]
         self._share_of: list[tuple[int, int]] = []
         for name, whole in layers.share_of.items():
@@ -110,9 +111,9 @@ class Controls:
         self.activation = self.reached[:-1]
 
     def place(self, name: str) -> int:
-        """Place of a control among `names`, of a lowest one also in `wanted` and `activation`.
+        """Place of a control among `names`; for a lowest control also in `wanted` and `activation`.
 
-        ValueError offers near names.
+        Raises ValueError, which offers similar names.
         """
         if not isinstance(name, str):
             raise ValueError(f"control: was {quoted(name)}, must be a name; see .limits for all")
@@ -124,9 +125,9 @@ class Controls:
 
     @property
     def values(self) -> dict[str, float]:
-        """The value last set of each control, those of the layers included.
+        """The last value of each control that was set, those of the layers included.
 
-        The face follows within some 0.1 s.
+        The face follows within about 0.1 s.
         """
         return dict(zip(self.names, self._values.tolist(), strict=True))
 
@@ -136,21 +137,21 @@ class Controls:
         return dict(zip(self.lowest, self.wanted.tolist(), strict=True))
 
     def places_in_reached(self, names: Iterable[str]) -> npt.NDArray[np.intp]:
-        """Places of lowest controls in `reached`; the last for controls that this face lacks."""
+        """Places of lowest controls in `reached`; the last place if the face lacks a control."""
         none = len(self.lowest)
         return np.array([min(self._places.get(name, none), none) for name in names], np.intp)
 
     def set(self, name: str, value: float) -> None:
-        """Set one control; ValueError for an unknown name, a value not finite or out of limits."""
+        """Set one control; ValueError for an unknown name, a number not finite or beyond limits."""
         self.place(name)  # a wrong name may not even be hashable
         self.set_all({name: value})
 
     def set_all(self, values: Mapping[str, float]) -> None:
-        """Set several controls; if one is refused (see `set`), none is set."""
+        """Set several controls; if `set` would refuse one, none is set."""
         self._set_over(self._values, values)
 
     def pose(self, values: Mapping[str, float]) -> None:
-        """Set several controls, all others to zero; if one is refused (see `set`), none is set."""
+        """Set several controls, all others to zero; if `set` would refuse one, none is set."""
         self._set_over(np.zeros_like(self._values), values)
 
     def _set_over(self, others: Floats64, values: Mapping[str, float]) -> None:
@@ -162,7 +163,7 @@ class Controls:
         self._take(wanted)
 
     def take(self, values: npt.ArrayLike) -> None:
-        """Set all controls, in the order of `names`, shape (N,); if one is refused, none is set."""
+        """Set all controls, in the order of `names`, shape (N,); if one is wrong, none is set."""
         self._take(numbers("values", values, self._values.shape))
 
     def _take(self, wanted: Floats64) -> None:
@@ -208,7 +209,7 @@ class Controls:
         self._speed[:] = 0.0
 
     def copy_from(self, other: Controls) -> None:
-        """Take on values and activations of controls of the same face."""
+        """Take over values and activations from the controls of the same face."""
         self._values[:] = other._values
         self._wanted[:] = other._wanted
         self._activation[:] = other._activation
@@ -223,15 +224,14 @@ class Controls:
 class MuscleDrive:
     """From control values to the activation and the pull of each muscle.
 
-    A muscle has its own control; one whose halves usually act together (the lips, procerus) also
-    has a control for both. They add up. The pull is a power of the activation,
+    A muscle has its own control. If its halves usually act together (the lips, procerus), there is
+    also a control for both. The two controls add up. The pull is a power of the activation,
 
         pull = activation ^ drive_power
 
-    because a muscle that contracts by half is also only half as stiff, so that the skin would go
-    less than half way; with the power, half an activation gives half the motion. One power does not
-    suit every muscle: the muscle's own `drive` multiplies it. Source: own; fitted to the motion of
-    skin at half activations.
+    because a muscle that contracts by half is also only half as stiff: without the power the skin
+    would go less than half way. One power does not suit every muscle, so the muscle's own `drive`
+    multiplies it. Source: own; fitted to the motion of skin at half activations.
     """
 
     def __init__(self, rig: Rig, names: tuple[str, ...], controls: Controls) -> None:
@@ -249,12 +249,12 @@ class MuscleDrive:
         return np.minimum(np.maximum(reached[self._own] + reached[self._whole], 0.0), 1.0)
 
     def pull(self, activation: Floats64) -> Floats64:
-        """The pull of the fibres: a power that makes the skin's motion about linear, shape (M,)."""
+        """The pull of the fibres, for about linear motion of the skin, shape (M,)."""
         return activation**self._power
 
 
 def _limits(controls: tuple[Control, ...], layers: Layers) -> dict[str, tuple[float, float]]:
-    """Least and greatest value of each control; both sides at once have those of a side."""
+    """Least and greatest value of each control; one for both sides has those of a side."""
     limits = {control.name: (control.low, control.high) for control in controls}
     for name in layers.shares:
         sides = [limits[name + side] for side in SIDES if name + side in limits]

@@ -1,9 +1,9 @@
 """The standard face space in which a face is simulated, and the way back to the head's own.
 
-A rig is written in millimetres of a head of standard size: landmarks span a space of three axes,
-lateral (to the subject's left), up and forward, into which a head of any size, place and
-orientation is brought by one similarity. Displacements become positions of the posed head in one
-compiled pass, because it runs in every frame and numpy needs eight for it.
+A rig is written in millimetres of a head of standard size. Landmarks span a space with three axes:
+lateral (to the subject's left), up and forward. One similarity brings a head of any size, place and
+orientation into it. Displacements become positions of the posed head in one compiled pass, because
+this happens in every frame and numpy needs eight passes.
 
 Source: Kähler, Haber, Yamauchi, Seidel 2002 ("Head shop"): landmarks carry muscles from head to
 head.
@@ -56,7 +56,7 @@ class FaceSpace:
 
     @classmethod
     def from_bounds(cls, vertices: Floats64) -> FaceSpace:
-        """The space for a mesh without landmarks: its own axes, its box scaled to a head's."""
+        """The space for a mesh without landmarks: its own axes, its box scaled to a head's box."""
         low = vertices.min(axis=0)
         high = vertices.max(axis=0)
         diagonal = float(np.linalg.norm(high - low))
@@ -92,11 +92,11 @@ def to_posed_head(
     share: Floats64,
     out: Floats64,
 ) -> int:
-    """Fill `out` (V, 3) [head units]; return how many vertices are not finite and left out.
+    """Fill `out` (V, 3) [head units] with positions; return how many are not finite.
 
-    x, rest: positions now and at rest [mm]; axes (3, 3): of the standard space in head coordinates,
-    times the scale; head_rest: rest positions [head units]; turn (4, 4): pose of the head;
-    share (V, 1): how far each vertex follows it.
+    Such vertices are left out. x, rest: positions now and at rest [mm]; axes (3, 3): those of the
+    standard space in head coordinates, times the scale; head_rest: rest positions [head units];
+    turn (4, 4): pose of the head; share (V, 1): how far each vertex follows it.
     """
     broken = 0
     for i in range(len(x)):

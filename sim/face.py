@@ -10,8 +10,8 @@
 
 Built once from a mesh (face_model.py), then `step` moves it. Everything inside runs in the standard
 face space, fixed to the cranium; only displacements are turned back into the head's own
-coordinates, so a face at rest has exactly the positions it came with. The pose of the head moves
-the result as a whole, but for the foot of the neck.
+coordinates, so a face at rest has exactly its input positions. The pose of the head moves the
+result as a whole, except the foot of the neck.
 
 Source: Kähler, Haber, Seidel 2001, "Geometry-based muscle modeling for facial animation"; Kähler
 et al. 2003, Figure 1 (left half).
@@ -50,11 +50,11 @@ class Simulation:
     """A face that follows its controls; made by `sim.create`.
 
     controls: muscles, jaw, gaze, and the layers above. bones: where the jaw and the eyeballs are.
-    anatomy: the parts under the skin now. touch: blows and pulls on the skin.
-    positions, rest_positions: of the vertices now and at rest [head units], shape (V, 3); `step`
-    rewrites the first. faces: triangles, shape (F, 3). areas: skin that belongs to each vertex at
-    rest [mm2 of the standard face], shape (V,). All of them are read only. grip: how firmly the
-    seal holds the lips together now.
+    anatomy: the present parts under the skin. touch: blows and pulls on the skin. positions,
+    rest_positions: of the vertices now and at rest [head units], shape (V, 3); `step` rewrites the
+    first. faces: triangles, shape (F, 3). areas: skin that belongs to each vertex at rest [mm2 of
+    the standard face], shape (V,). All of them are read only. grip: how firmly the seal holds the
+    lips together now.
     """
 
     def __init__(self, model: FaceModel, state: State | None = None) -> None:
@@ -87,13 +87,13 @@ class Simulation:
         self.place_targets()
 
     def clone(self) -> Simulation:
-        """Another simulation of this face as it is now, without a finger on its skin."""
+        """Another simulation of this face in its present state, without a finger on its skin."""
         clone = Simulation(self._model)
         clone.copy_from(self)
         return clone
 
     def copy_from(self, other: Simulation) -> None:
-        """Take on controls, positions and velocities of a clone; ValueError for any other."""
+        """Take over controls, positions and velocities of a clone; ValueError for others."""
         if not isinstance(other, Simulation) or other._model is not self._model:
             raise ValueError(f"other: was {quoted(other)}, must be a clone of this face")
         self.controls.copy_from(other.controls)
@@ -141,13 +141,13 @@ class Simulation:
             )
 
     def _are_targets_there(self) -> bool:
-        """Whether activations are as they were when targets were placed, and nobody draws."""
+        """Whether activations are those of the placed targets, and no finger pulls the skin."""
         if self._placed_for is None or self.touch.is_held:
             return False
         return bool((self._placed_for == self.controls.reached).all())
 
     def place_targets(self) -> None:
-        """Place the targets of the springs of bones, lids and muscles, for these activations."""
+        """Place the spring targets that bones, lids and muscles give at the present activations."""
         model = self._model
         bones = self.bones
         state = self._state

@@ -34,11 +34,11 @@ from .tissue import EdgeSprings, TissueSprings, masses_for_step
 from .tongue import Tongue, place_tongue
 
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
-SEAL_LOST_BY_THRUST = 0.15  # at full jaw_forward: lips slide, or the upper turns inside out
-NECK_LENGTH = 45.0  # mm below the chin; the turn of the head fades evenly, or the throat turns over
+SEAL_LOST_BY_THRUST = 0.15  # at full jaw_forward: lips slide, or the upper one turns inside out
+NECK_LENGTH = 45.0  # mm below the chin: the head's turn fades evenly, or the throat folds
 MEETING_SHARE = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
-WHOLE_LIP_REACH = 7.0  # mm from the mouth line, up to which skin goes along in full
-LIP_END_REACH = 32.0  # mm from the mouth line, from which on skin stays
+WHOLE_LIP_REACH = 7.0  # mm from the mouth line, up to which skin follows in full
+LIP_END_REACH = 32.0  # mm from the mouth line, beyond which skin stays
 STEP_MARGIN = 1.0 + ROUNDING  # a substep may be this much longer than LONGEST_SUBSTEP
 
 
@@ -55,7 +55,7 @@ class FaceModel(Foundation):
     closed_weight: Floats64  # (V,) of the mandible while the lips are kept closed over an open jaw
 
     def grip(self, activation: Floats64, jaw: tuple[float, ...], closed: float) -> Grip:
-        """How firmly the lips stick together; the jaw and some muscles part them.
+        """How firmly the lips stick together; jaw and some muscles part them.
 
         activation: of each muscle, shape (M,); jaw: its values open, forward, sideways; closed: how
         far the lips are kept together over an open jaw, 0..1.
@@ -81,7 +81,7 @@ def build_face_model(head: Any) -> FaceModel:
 
 
 def build_plain(foundation: Foundation) -> FaceModel:
-    """A spring mesh that may have a jaw and eyeballs: no lids, no tongue, no neck that stays."""
+    """A spring mesh that may have a jaw and eyeballs, but no lids, no tongue and no fixed neck."""
     count = foundation.surface.vertex_count
     return _assembled(
         foundation,
@@ -121,7 +121,7 @@ def _assembled(
     turns: Floats64,
     closed_weight: Floats64,
 ) -> FaceModel:
-    """Muscles, springs and contacts; corners: of the eyes, near which edges differ, (n, 3) [mm]."""
+    """Muscles, springs and contacts; corners: eye corners, where edges differ, (n, 3) [mm]."""
     rig = foundation.rig
     surface = foundation.surface
     landmarks = foundation.landmarks
@@ -162,7 +162,7 @@ def _assembled(
 def _masses(
     surface: SkinSurface, springs: TissueSprings, edges: EdgeSprings, greatest: Floats64
 ) -> Floats64:
-    """Mass of each vertex; `greatest`: stiffness of fully active muscles there, shape (V,)."""
+    """Mass of each vertex; `greatest`: stiffness there of fully active muscles, shape (V,)."""
     bound = edges.row_bound(surface.vertex_count)
     bound += np.maximum(springs.tangential, springs.normal) + greatest
     return masses_for_step(surface.areas, bound, LONGEST_SUBSTEP * STEP_MARGIN)
@@ -181,14 +181,14 @@ def _holds(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[Floats
 
 
 def _turning_share(surface: SkinSurface, landmarks: Floats64) -> Floats64:
-    """How far skin follows the pose of the head, shape (V, 1): the foot of the neck stays."""
+    """How far skin follows the pose of the head, shape (V, 1); the foot of the neck does not."""
     below = landmarks[8, 1] - surface.positions[:, 1]
     share: Floats64 = np.clip(1.0 - below / NECK_LENGTH, 0.0, 1.0)[:, None]
     return share
 
 
 def _closed_weight(surface: SkinSurface, landmarks: Floats64, weight: Floats64) -> Floats64:
-    """The mandible's weight where lips stay as at rest although the jaw is open, shape (V,)."""
+    """The mandible's weight that keeps lips as at rest although the jaw is open, shape (V,)."""
     distance = polyline_distance(surface.positions, mouth_line(landmarks))
     upper, lower = (landmarks[list(lip)] for lip in (UPPER_INNER, LOWER_INNER))
     if np.linalg.norm(upper - lower, axis=1).max() > PAIR_GAP:  # open at rest

@@ -1,11 +1,11 @@
-"""Muscle fibres: polylines from bone to skin that follow the face, and how they contract.
+"""Muscle fibres: polylines from bone to skin, which follow the face, and their contraction.
 
-A fibre is FIBRE_POINTS points p_0 (origin) .. p_n (insertion). Its skin is attached by arc length
-t in 0..1. Contracted by c, the point at t moves to where t (1 - c) was: skin slides along the
-fibre's own arc towards the origin. A muscle whose origin is no bone (frontalis: the scalp) stays
-still at t = f instead, and both ends slide to it: t moves to f + (t - f)(1 - c). All fibres share
-one table of displacements at SAMPLES places along them, filled again each tick; the skin, and
-muscles that lie on the fibre, read it by linear interpolation.
+A fibre is FIBRE_POINTS points p_0 (origin) .. p_n (insertion). Its skin is attached by arc length t
+in 0..1. At contraction c, the point at t moves to the earlier place of t (1 - c): skin slides along
+the fibre's own arc towards the origin. A muscle whose origin is no bone (frontalis: the scalp)
+stays still at t = f instead, and both ends slide to it: t moves to f + (t - f)(1 - c). All fibres
+share one table of displacements at SAMPLES places along them, which each tick fills again. The
+skin, and muscles that lie on the fibre, read it by linear interpolation.
 
                       t = 0                t (1 - c)   t                 t = 1
     origin on bone      o-------.-------.----*<--------o-------.-----------o  insertion in the skin
@@ -13,8 +13,8 @@ muscles that lie on the fibre, read it by linear interpolation.
 Before a fibre contracts, its points follow the bones and the muscles that it lies on
 (muscle_stack.py).
 
-Source: Kähler et al. 2001, section 4 (piecewise linear fibres, contraction q_i along the
-polyline, u_i = max(c t_i, 0.01)).
+Source: Kähler et al. 2001, section 4 (piecewise linear fibres, contraction q_i along the polyline,
+u_i = max(c t_i, 0.01)).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from .surface import SkinSurface
 
 FIBRE_POINTS = 9  # segments of 4-10 mm: as fine as the built-in face's triangles
 SAMPLES = 17  # places along a fibre where its displacement is known, to 0.2 mm
-WRAP_NEIGHBOURS = 10  # vertices that say where the skin is (chosen)
+WRAP_NEIGHBOURS = 10  # vertices that give the place of the skin (chosen)
 LEAST_ARC = 0.01  # Kähler's 0.01: the insertion never reaches the origin
 
 
@@ -72,7 +72,7 @@ def gate_at(gate: Gate, lateral: float, lip_side: float) -> float:
 class FibreBundle(NamedTuple):
     """All lines of a face: the fibres of linear muscles, and one along each sphincter.
 
-    A line comes after all that it lies on.
+    A line comes after all lines that it lies on.
     """
 
     muscle: Integers32  # (B,) number of its muscle
@@ -83,27 +83,27 @@ class FibreBundle(NamedTuple):
 
 
 class Stack(NamedTuple):
-    """Which points of a line lie on which lines; line b has rows[b] up to rows[b + 1]."""
+    """The points of lines that lie on other lines; line b has rows[b] up to rows[b + 1]."""
 
     rows: Unsigned32  # (B + 1,)
-    point: Unsigned32  # (n,) of the line that is carried
-    line: Unsigned32  # (n,) that carries it
-    sample: Floats64  # (n,) where along it, in samples
+    point: Unsigned32  # (n,) number within the carried line
+    line: Unsigned32  # (n,) number of the line that carries the point
+    sample: Floats64  # (n,) place along that line, in samples
     place: Floats64  # (n,) the same, in points
-    share: Floats64  # (n,) of its displacement
-    steady: Floats64  # (n, 3) mm of displacement at full activation that is linear in it
+    share: Floats64  # (n,) share of its displacement
+    steady: Floats64  # (n, 3) mm of the displacement that is linear in the activation, at 1
 
 
 class LineMotion(NamedTuple):
-    """How all lines are displaced [mm], rewritten each tick."""
+    """Displacements of all lines [mm], rewritten each tick."""
 
-    contracted: Floats64  # (B, SAMPLES, 3) along each line by its own contraction, if it is active
-    carried: Floats64  # (B, FIBRE_POINTS, 3) its points by the muscles beneath
-    is_carried: Flags  # (B,) whether any of those moves
+    contracted: Floats64  # (B, SAMPLES, 3) of each active line by its contraction
+    carried: Floats64  # (B, FIBRE_POINTS, 3) of its points by the muscles beneath
+    is_carried: Flags  # (B,) whether any muscle beneath moves
 
     @classmethod
     def of(cls, line_count: int) -> LineMotion:
-        """Room for this many lines."""
+        """Room for the displacements of this many lines."""
         return cls(
             np.zeros((line_count, SAMPLES, 3)),
             np.zeros((line_count, FIBRE_POINTS, 3)),
@@ -121,7 +121,7 @@ def straight_fibre(fibre: Fibre, landmarks: Floats64, side: Side) -> Floats64:
 
 
 def bent_to_skin(lines: Floats64, surface: SkinSurface, shares: Floats64) -> Floats64:
-    """Lines (n, FIBRE_POINTS, 3) moved by shares (n,) of the way to the skin near their points."""
+    """Lines (n, FIBRE_POINTS, 3), moved by shares (n,) of the way to the skin near their points."""
     if surface.vertex_count < WRAP_NEIGHBOURS or not len(lines):
         return lines
     skin, normal = over_skin(lines.reshape(-1, 3), surface, surface.positions, surface.normals)
@@ -137,10 +137,10 @@ def bent_to_skin(lines: Floats64, surface: SkinSurface, shares: Floats64) -> Flo
 
 
 def over_skin(points: Floats64, surface: SkinSurface, *fields: Floats64) -> tuple[Floats64, ...]:
-    """Fields of the skin, shape (V, ...), at points (n, 3) near it: means of the nearest."""
+    """Fields of the skin, shape (V, ...), at points (n, 3): means of the nearest vertices."""
     count = min(WRAP_NEIGHBOURS, surface.vertex_count)
     distance, vertices = surface.tree.query(points, k=range(1, count + 1))
-    # The furthest neighbour gets no weight, so a tie for its place cannot bend a midline fibre.
+    # The furthest neighbour gets no weight: two equally far ones cannot bend a midline fibre then.
     weight = (1.0 - (distance / np.maximum(distance[:, -1:], 1e-9)) ** 2) ** 2 + 1e-12
     weight /= weight.sum(axis=1, keepdims=True)
     return tuple(np.einsum("nk,nk...->n...", weight, field[vertices]) for field in fields)
@@ -268,7 +268,7 @@ def move_lines(
     mandible: RigidMotion,
     motion: LineMotion,
 ) -> None:
-    """Move all lines for one tick, each after those it lies on, and contract the active ones.
+    """Move all lines for one tick, each after the lines beneath it, and contract the active ones.
 
     activation: of each muscle, (M,); mandible: its RigidMotion. Fills `motion`.
     """
@@ -349,7 +349,7 @@ def carry_line(
 
 @njit
 def follow_bones(points: Floats64, share: Floats64, mandible: RigidMotion, moved: Floats64) -> None:
-    """Carry the points of a line by its bones; `share`: of the mandible's motion, by point."""
+    """Carry the points of a line by its bones; `share`: that of the mandible, by point."""
     turn = mandible.rotation
     shift = mandible.shift
     for p in range(len(points)):
@@ -363,7 +363,7 @@ def follow_bones(points: Floats64, share: Floats64, mandible: RigidMotion, moved
 
 @njit
 def contract(moved: Floats64, lost: float, fixed_at: float, displacement: Floats64) -> None:
-    """Fill `displacement` (SAMPLES, 3) along a fibre that loses a share of itself."""
+    """Fill `displacement` (SAMPLES, 3) along a fibre that loses the share `lost` of its length."""
     samples = len(displacement)
     count = len(moved)
     arc = np.empty(count)

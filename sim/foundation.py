@@ -1,7 +1,7 @@
 """The foundation of a face: the checked mesh, its size, bones, eyeballs, and names of controls.
 
 A head may be any object with `vertices` and `faces`; optional attributes add the parts of a face.
-Nothing here is compiled, so that the controls of a head are known at once.
+Nothing here needs compilation, so the controls of a head are known at once.
 
 Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landmarks alone.
 """
@@ -41,12 +41,12 @@ Faces = npt.NDArray[np.int32]
 class Given(NamedTuple):
     """The optional attributes of a head; None if the head has no such attribute."""
 
-    landmarks: Any  # give size, lips and lids; without them the face is a plain spring mesh
+    landmarks: Any  # give size, lips and lids; else the face is a plain spring mesh
     rig: Any  # gives muscles, where there are landmarks
     layers: Any  # give action units, expressions, ... above the muscles (layers.py)
     jaw_axis: Any  # gives a jaw; guessed from landmarks if it is None
     mandible_weight: Any  # of each vertex; guessed from landmarks if it is None
-    eyes: Any  # give gaze and contact; guessed from landmarks if they are None
+    eyes: Any  # give gaze and contact; guessed from landmarks if None
     parts: Any  # teeth (named "teeth_..."), on which lips and cheeks rest, and a "tongue"
 
 
@@ -54,30 +54,30 @@ class Given(NamedTuple):
 class Foundation:
     """A head before it has muscles and springs; lengths are of the standard face [mm]."""
 
-    vertices: Floats64  # (V, 3) as given [head units]
+    vertices: Floats64  # (V, 3) as the head has them [head units]
     space: FaceSpace
     rig: Rig
     surface: SkinSurface
-    landmarks: Floats64  # (68, 3); zeros without
+    landmarks: Floats64  # (68, 3); zeros for a head without landmarks
     lip_side: Floats64  # (V,) of lip_lid_sides.lip_side; zeros without landmarks
     skull: Skull
     controls: tuple[Control, ...]
     layers: Layers
     landmark_numbers: Integers64 | None  # (68,) vertices; None: a plain mesh
-    parts: Any  # as given
+    parts: Any  # as the head has them
 
 
 def controls_of(head: Any) -> Controls:
     """The controls that the simulation of a head has, at rest.
 
-    No muscle is placed, so this takes a moment. Raises ValueError as `create` does.
+    No muscle is placed, so this takes only a moment. Raises ValueError as `create` does.
     """
     foundation = foundation_of(head)
     return Controls(foundation.controls, foundation.layers)
 
 
 def foundation_of(head: Any) -> Foundation:
-    """Check a head, and place its bones; ValueError names the attribute that is wrong."""
+    """Check a head, and place its bones; ValueError names the wrong attribute."""
     vertices, faces = mesh_of("head", head)
     given = Given(*(getattr(head, name, None) for name in Given._fields))
     numbers = _landmark_numbers(given.landmarks, len(vertices))
@@ -88,7 +88,7 @@ def foundation_of(head: Any) -> Foundation:
 
 
 def _plain_foundation(vertices: Floats64, faces: Faces, given: Given, rig: Rig) -> Foundation:
-    """Of a mesh without landmarks: the jaw and the eyes that it brings, and no muscles."""
+    """Foundation of a mesh without landmarks: its own jaw and eyes, and no muscles."""
     rig = Rig(rig.tissue, rig.jaw, rig.eyes)
     space = FaceSpace.from_bounds(vertices)
     surface = build_surface(space.to_standard(vertices), faces)
@@ -107,7 +107,7 @@ def _plain_foundation(vertices: Floats64, faces: Faces, given: Given, rig: Rig) 
         lip_side=np.zeros(len(vertices)),
         skull=skull,
         controls=controls,
-        layers=_read_layers((), controls),  # its tables could speak of nothing
+        layers=_read_layers((), controls),  # its tables would have no controls to name
         landmark_numbers=None,
         parts=given.parts,
     )
@@ -116,7 +116,7 @@ def _plain_foundation(vertices: Floats64, faces: Faces, given: Given, rig: Rig) 
 def _face_foundation(
     vertices: Floats64, faces: Faces, given: Given, rig: Rig, numbers: Integers64
 ) -> Foundation:
-    """Of a face: bones and eyes that it does not bring are guessed from its landmarks."""
+    """Foundation of a face; landmarks give the bones and eyes that the head lacks."""
     space = FaceSpace.from_landmarks(vertices[numbers])
     surface = build_surface(space.to_standard(vertices), faces)
     landmarks = space.to_standard(vertices[numbers])
@@ -166,7 +166,7 @@ def mesh_of(what: str, given: Any) -> tuple[Floats64, Integers32]:
             )
     wanted = "(V, 3) with V > 0"
     vertices = checked.numbers(f"{what}.vertices", given.vertices, (None, 3), wanted)
-    # [head units] of a coordinate; squares and cubes of lengths stay finite
+    # Largest coordinate [head units]: squares and cubes of lengths stay finite.
     largest_coordinate = 1e9
     if (np.abs(vertices) > largest_coordinate).any():
         raise ValueError(
@@ -200,19 +200,19 @@ def _skull(
     rig: Rig,
     surface: SkinSurface,
 ) -> Skull:
-    """The bones; without condyles (2, 3) [mm] or the mandible's weight (V,) there is no jaw."""
+    """The bones; there is no jaw without condyles (2, 3) [mm] and the mandible's weight (V,)."""
     if condyles is None or weight is None:
         weight = np.zeros(surface.vertex_count)
         condyles = np.array([[-1.0, 0, 0], [1.0, 0, 0]])
     # Lips clamped to one bone open like a letter box; skin between the bones rounds the mouth.
     weight = np.clip(surface.smoothed(weight, rig.jaw.softness), 0.0, 1.0)
-    least_mandible = 1e-4  # share of the jaw's motion that is none
+    least_mandible = 1e-4  # share of the jaw's motion that counts as none
     weight[weight < least_mandible] = 0.0
     return Skull(condyles, weight, balls, rig.jaw, rig.eyes, rig.head)
 
 
 def _eyeballs(given: Any, space: FaceSpace) -> tuple[Eyeball, ...]:
-    """The eyes that a head brings."""
+    """The eyeballs that a head has itself."""
     balls = []
     for eye in checked.several("head.eyes", given, ("name", "centre", "radius")):
         if eye.name not in ("right", "left"):
@@ -233,7 +233,7 @@ def _face_controls(rig: Rig, skull: Skull) -> tuple[Control, ...]:
         both = [muscle.name] if muscle.halves else []
         names = [*both, *(name for name, _ in sides_of(muscle))]
         controls += [Control(name, muscle.group, action=muscle.action) for name in names]
-    if skull.mandible_weight.any():  # lips that are apart at rest stay so far apart
+    if skull.mandible_weight.any():  # lips that are apart at rest keep that distance
         controls.append(Control("lips_closed", "Lips"))
     controls += _jaw_controls(skull)
     controls += _gaze_controls(skull)
@@ -242,7 +242,7 @@ def _face_controls(rig: Rig, skull: Skull) -> tuple[Control, ...]:
 
 
 def _jaw_controls(skull: Skull) -> list[Control]:
-    """Of jaw and tongue, where there is a jaw."""
+    """Controls of jaw and tongue, where there is a jaw."""
     if not skull.mandible_weight.any():
         return []
     return [
@@ -255,7 +255,7 @@ def _jaw_controls(skull: Skull) -> list[Control]:
 
 
 def _gaze_controls(skull: Skull) -> list[Control]:
-    """Of each eyeball."""
+    """Controls of each eyeball."""
     return [
         Control(f"gaze_{way}_{ball.side.value}", "Gaze", -1.0, 1.0, GAZE_RATE)
         for way in ("horizontal", "vertical")

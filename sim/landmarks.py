@@ -1,8 +1,8 @@
-"""The 68 landmarks, and points described by them.
+"""The 68 landmarks, and points relative to them.
 
 A rig must move from head to head, so nothing in it may be a vertex number or a world coordinate.
-Everything is written relative to the 68 iBug/Multi-PIE landmarks: a weighted mix of landmarks
-plus an offset "lateral, up, forward" in millimetres of a head of standard size (coordinates.py).
+Each point is relative to the 68 iBug/Multi-PIE landmarks: a weighted mix of landmarks, plus an
+offset "lateral, up, forward" in millimetres of a head of standard size (coordinates.py).
 
 Source: Kähler, Haber, Yamauchi, Seidel 2002 ("Head shop"): landmarks carry muscles from head to
 head.

@@ -1,10 +1,10 @@
-"""Layers of controls: tables whose rows move the layers below them, down to the muscles.
+"""Layers of controls: tables whose rows move the layers below, down to the muscles.
 
     muscles, jaw, gaze  <  both sides  <  action units  <  expressions  <  visemes  <  ARKit shapes
 
 A layer is a table of rows; a row is a control of its own, named by its key. Each entry of a row is
-a share: the row at 1 adds so much to the control that the entry names, which must stand in a layer
-below. Five keys of a row are no entries. `action` describes its effect. `pair = true` makes
+a share: the row at 1 adds that share to the control that the entry names. This control must be in a
+layer below. Five keys of a row are no entries. `action` describes its effect. `pair = true` makes
 three controls of one row, for both sides, `..._left` and `..._right`; `pair = "Left Right"` makes
 two, `...Left` and `...Right`, the way ARKit spells them:
 
@@ -22,27 +22,27 @@ two, `...Left` and `...Right`, the way ARKit spells them:
     mirror = "wink_right"
     AU46_left = 1.0
 
-`share_of` names a control above it in the same table, or in a layer below: the row's value says how
-much of that one's it makes good, and counts as value / the other's value, at most 1:
+`share_of` names another control, above the row in the same table or in a layer below. The row then
+counts as its own value / the other control's value, at most 1:
 
     [mouthClose]
     action = "lips shut over the open jaw"
     share_of = "jawOpen"            # mouthClose 0.3 shuts the lips where jawOpen is 0.3, and
     lips_closed = 1.0               # where that is 0.6 half; without jawOpen it does nothing
 
-`at_least` holds shares that do not add to others: they are made sure of.
+`at_least` holds shares that do not add to others; they are minimum values, called floors.
 
     [AU22]
     action = "lip funneler"
     at_least = { jaw_open = 0.22 }  # lips need room for a funnel: nothing where the jaw is open
 
-How layers combine: everything adds up, in any order of setting. A muscle's value is its own plus,
-for each control above it, that control's value times its share; then at least the greatest floor of
-rows make sure of; cut off at the muscle's limits once, at the end.
+How layers combine: everything adds up, in any order of setting. A muscle's value is its own value,
+plus each control above it times its share. It is raised to the greatest floor, and cut off at the
+muscle's limits once, at the end.
 
 Source: Ekman, Friesen, Hager 2002, "Facial Action Coding System" (its action units); Apple,
-ARFaceAnchor.BlendShapeLocation (its shapes); the tables themselves are files of assets.
-Differs from FACS: units add, where some of theirs exclude each other.
+ARFaceAnchor.BlendShapeLocation (its shapes); the tables themselves are files of assets. Differs
+from FACS: all units add, but some units of FACS exclude each other.
 """
 
 from __future__ import annotations
@@ -67,18 +67,18 @@ ENDINGS: Mapping[bool | str, tuple[str, ...]] = MappingProxyType(  # of the name
 GREATEST_SHARE = 2.0  # a share beyond it is a slip of the pen
 Share = Annotated[float, Within(-GREATEST_SHARE, GREATEST_SHARE)]
 Floor = Annotated[float, Within(0.0, GREATEST_SHARE)]
-LEAST_WHOLE = 0.08  # of the control in `share_of`: below it the share fades instead of jumping
+LEAST_WHOLE = 0.08  # of the control in `share_of`: below this the share fades, or it would jump
 
 
 @dataclass(frozen=True)
 class Layers:
     """All controls above the lowest ones, with the effect of each on those.
 
-    groups: title of the layer -> its names, from the lowest layer up.
-    actions: name -> its effect, in words; "" if the table has none.
-    shares: name -> the amount that it adds to each of the C lowest controls at value 1, shape (C,).
-    floors: name -> the least value of each lowest control at value 1, 0 for none, shape (C,).
-    share_of: name -> the control whose value its own is a share of, where there is one.
+    groups: title of the layer -> its names, from the lowest layer up. actions: name -> its effect,
+    in words; "" if the table has none. shares: name -> its addition to each of the C lowest
+    controls at value 1, shape (C,). floors: name -> the least value of each lowest control at value
+    1, 0 for none, shape (C,). share_of: name -> the control in the row's `share_of`, where there is
+    one.
     """
 
     groups: Mapping[str, tuple[str, ...]]
@@ -92,18 +92,18 @@ NO_LAYERS = Layers(*(MappingProxyType({}) for _ in range(5)))
 
 
 def share_of_whole(value: float, whole: float) -> float:
-    """How a value counts that is a share of another control's: 0 .. 1, and 0 where that is 0."""
+    """A value divided by that of the control in its `share_of`, 0 .. 1; 0 where that value is 0."""
     return min(value, max(whole, 0.0)) / max(whole, LEAST_WHOLE)
 
 
 def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
     """Turn tables into shares of the lowest controls.
 
-    given: from the bottom up, objects with `title`, `source` (the name in errors: its file)
-    and `rows`, {row: {key: value}}; lowest: names of the lowest controls.
+    given: objects from the bottom up, with `title`, `source` (the file, for errors) and `rows`,
+    {row: {key: value}}; lowest: names of the lowest controls.
 
-    Raises ValueError that names file and row for a name that no layer below has, a share that is
-    no number, a name that is taken, and a pair that names a side.
+    Raises ValueError, which names file and row, for a name that no layer below has, a share that is
+    not a number, a name already in use, and a pair that names a side.
     """
     reader = _Reader(lowest)
     reader.add_both_sides()
@@ -164,7 +164,7 @@ class _Reader:
         self.groups[BOTH_SIDES] = names
 
     def add(self, where: str, name: str, row: _Row, below: Mapping[str, Floats64]) -> list[str]:
-        """Take in one row; the names of the controls that it makes."""
+        """Read one row, and return the names of the controls that it makes."""
         self._check(where, name, row, below)
         sides = zip(ENDINGS[row.pair], SIDES, strict=True) if row.pair else [("", "")]
         made = {name + ending: self._sums(row, side, below) for ending, side in sides}
@@ -187,7 +187,7 @@ class _Reader:
         return list(made)
 
     def _check(self, where: str, name: str, row: _Row, below: Mapping[str, Floats64]) -> None:
-        """ValueError for names that a row cannot have, or cannot speak of."""
+        """ValueError for names that a row cannot have, or cannot refer to."""
         if row.share_of is not None and row.share_of not in self.shares:
             raise ValueError(
                 f"{where}, 'share_of': no row above and no layer below has a control called "
@@ -206,7 +206,7 @@ class _Reader:
         self._check_entries(where, row, below)
 
     def _check_entries(self, where: str, row: _Row, below: Mapping[str, Floats64]) -> None:
-        """ValueError unless a layer below has all controls, and they can be part of a row."""
+        """ValueError unless layers below have all controls, and a row may have these as entries."""
         for control in (*row.entries, *row.at_least):
             if control not in below:
                 guess = question(control, below)
@@ -220,10 +220,10 @@ class _Reader:
     def _sums(
         self, row: _Row, side: str, below: Mapping[str, Floats64]
     ) -> tuple[Floats64, Floats64]:
-        """Shares and floors of a row, shape (C,) each; `side`: of a pair, or "".
+        """Shares and floors of a row, shape (C,) each; `side`: the side in a pair, or "".
 
-        A side takes its side of each entry. Of an entry without sides it adds half the share, and
-        takes the whole floor.
+        A side takes its own side of each entry. An entry without sides gives it half the share, and
+        the whole floor.
         """
         share, floor = (np.zeros(len(next(iter(below.values()), ()))) for _ in range(2))
         for control, part in row.entries.items():

@@ -1,10 +1,10 @@
-"""How far a closed lid must stand out, so that the eyeball does not look through it.
+"""How far a closed lid must be lifted so that the eyeball does not show through it.
 
-Lids turn over the eyeball vertex by vertex and are kept off the ball there (contact.py). But a
-triangle between three of them is flat, and the cornea stands out of the ball: where a mesh is
-coarse, they would cut through each other. So the lids are closed once when a face is built; where
-a triangle then cuts the eyeball, its corners on the upper lid are moved outward, each by its share
-in the deepest point. The lower lid hardly moves, and lies as it was brought.
+Lids turn over the eyeball vertex by vertex and are kept off the ball there (contact.py). But the
+triangle between three vertices is flat, and the cornea stands out of the ball: on a coarse mesh the
+two would cut through each other. So the lids are closed once when a face is built. Where a triangle
+then cuts the eyeball, its corners on the upper lid move outward, each by its share in the deepest
+point. The lower lid hardly moves, and keeps its form.
 
 Source: own; projection by shares as in Müller et al. 2007, "Position based dynamics", section 3.
 """
@@ -25,10 +25,10 @@ LIFT_TOLERANCE = 1e-3  # mm
 def lift_off(
     x: Floats64, rest: Floats64, faces: Integers32, moves: Floats64, ball: Eyeball
 ) -> Floats64:
-    """How far each vertex must come outward [mm], shape (V,), where a lid is closed.
+    """How far each vertex of a closed lid must move outward [mm], shape (V,).
 
-    x, rest: of the vertices with the lid closed and at rest (V, 3); skin that lay in the ball at
-    rest may stay in it. moves: 1 for those of the upper lid, else 0, shape (V,).
+    x, rest: vertices with the lid closed, and at rest (V, 3); skin inside the ball at rest may stay
+    there. moves: 1 for vertices of the upper lid, else 0, shape (V,).
     """
     away = x - ball.centre
     ways = unit_vectors(away, LIFT_TOLERANCE)
@@ -39,9 +39,9 @@ def lift_off(
     lift = np.zeros(len(x))
     before = np.linalg.norm(shares @ (rest - ball.centre)[faces], axis=2) - ball.radius
     kept = np.where(before < 0.0, before, EYE_CLEARANCE)
-    least_share = 0.5  # that corners on the upper lid have in a point, if they are to move for it
+    least_share = 0.5  # of a point, that corners on the upper lid have together if they move for it
     kept[moves[faces] @ shares.T < least_share] = -np.inf
-    most_passes = 30  # until corners that triangles share are out of the way for all of them
+    most_passes = 30  # at most: triangles share corners, so lifts are repeated
     for _ in range(most_passes):
         points = shares @ (away + lift[:, None] * ways)[faces]  # (F, S, 3)
         deep = _reach(points, ball.radius) + kept - np.linalg.norm(points, axis=2)
@@ -57,14 +57,17 @@ def lift_off(
 
 def _shares() -> Floats64:
     """Shares of the corners in points all over a triangle, shape (S, 3)."""
-    edge_steps = 6  # parts of a triangle's edges at whose ends it is held against the eyeball
+    edge_steps = 6  # parts of each edge; a triangle is compared with the eyeball at their ends
     n = edge_steps
     ways = [(i, j, n - i - j) for i in range(n + 1) for j in range(n + 1 - i)]
     return np.array(ways, np.float64) / n
 
 
 def _reach(points: Floats64, radius: float) -> Floats64:
-    """How far from its centre an eyeball's surface is towards `points` (..., 3); it looks ahead."""
+    """Distance of an eyeball's surface from its centre towards `points` (..., 3).
+
+    The eye looks straight ahead.
+    """
     ahead = points[..., 2] / np.maximum(np.linalg.norm(points, axis=-1), LIFT_TOLERANCE)
     cornea_width = 0.49  # radii of the ball: half its width
     beside = np.sqrt(np.maximum(1.0 - ahead**2, 0.0)) / cornea_width

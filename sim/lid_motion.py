@@ -1,4 +1,4 @@
-"""The lids in motion, compiled: the far ends of their tissue springs turn about the eyeballs.
+"""The compiled motion of the lids: the far ends of their tissue springs turn about the eyeballs.
 
 lids.py explains the motion, and finds the vertices that take part in it.
 """
@@ -24,14 +24,14 @@ class LidVertices(NamedTuple):
     overlap: Floats64  # (L,) rad by which closed lids overlap there
     sink: Floats64  # (L,) mm nearer to the eyeball when closed
     fold: Floats64  # (L,) share of the turn of the open lid
-    opening: Floats64  # (L,) rad, height of the opening at the vertex's column
+    opening: Floats64  # (L,) rad, height of the opening in the vertex's column
     aperture: Floats64  # (eyes,) rad, greatest height of the opening
-    along: Floats64  # (L,) share of the slide: 1 at the middle of the margin .. 0 around the eye
+    along: Floats64  # (L,) share of the slide: 1 in the middle of the margin .. 0 around the eye
     fold_hold: Floats64  # (L,) stiffness that holds the fold while it is moved
-    shut_hold: Floats64  # (L,) stiffness by which its muscle presses down an upper lid that is shut
+    shut_hold: Floats64  # (L,) stiffness by which the muscle presses a shut upper lid down
     centres: Floats64  # (eyes, 3)
     radii: Floats64  # (eyes,)
-    gaze_share: Floats64  # (eyes,) of the gaze that lids follow
+    gaze_share: Floats64  # (eyes,) share of the gaze that lids follow
     up: Floats64  # (eyes, 3) unit, across the lid axis
     forward: Floats64  # (eyes, 3) unit
     inward: Floats64  # (eyes, 3) unit, from the outer to the inner corner
@@ -49,14 +49,14 @@ def turn_lids(
     """Turn the far ends of the tissue springs of all lid vertices, and their normals.
 
     Adds the stiffness that holds moved folds to `state.hold`. drive: see Lids.drive; gaze: angles
-    of each eye to the subject's left and up that its lids follow [rad], shape (eyes, 2).
+    of each eye that its lids follow, to the subject's left and up [rad], shape (eyes, 2).
     """
     carried = state.carried
     normals = state.normals
     centres = lids.centres
     up = lids.up
     forward = lids.forward
-    steepest_slope = 0.45  # of its way up that the fold goes back: it slides on the orbit
+    steepest_slope = 0.45  # of its way up that the fold moves back at most: it slides on the orbit
     firm_fold_turn = 0.12  # rad of turn from which the fold is held in full
     for row in range(len(lids.vertex)):
         i = lids.vertex[row]
@@ -72,7 +72,7 @@ def turn_lids(
             low = free - alpha
             free = max(fold * (lids.aperture[e] * drive[e, 2] + follows * gaze[e, 1]), low)
             inward = close * lids.slide[0] + (1.0 - close) * drive[e, 2] * lids.raise_slide
-            angle -= close**3 * lids.overlap[row]  # late: half a blink is half closed
+            angle -= close**3 * lids.overlap[row]  # cubed, so that half a blink is half closed
         free *= 1.0 - close
         angle += free
         state.hold[i] += lids.fold_hold[row] * min(abs(free) / firm_fold_turn, 1.0)

@@ -2,22 +2,21 @@
 
 Each lid vertex turns about the axis through the centre of the eyeball that runs from corner to
 corner of the eye. Angles are measured per column of the eye opening (between its corners). Each
-vertex knows the turn that brings it to where the lids meet (`closing`) and the share that it takes
-in the motion of the open lid (`fold`); it turns by
+vertex has the turn that brings it to the line where the lids meet (`closing`), and a share in the
+motion of the open lid (`fold`). It turns by
 
     close closing + (1 - close) fold (raise + gaze)
 
-so that at close = 1 the lids meet on every eye, however wide, and wherever the lower lid is. The
-skin between the front edges of the lids comes to lie in one line: a margin is as thick as skin,
-and lids that meet with a slanted margin leave a groove, out of which the cornea looks.
-The open lid takes the fold under the brow along, as levator palpebrae ends in both; the fold is
-held only while it is moved, so that the brow can come down on it. A shut upper lid is held twice
-as firmly, because its muscle presses it down, and a brow that rises does not draw it open.
-A closing lid slides towards the nose, as the ring of fibres in it is fixed there; a raised one a
-little away from it; and both lids a little to where the eye looks, as the cornea draws them.
-The lids of each eye follow the gaze of that eye alone.
-The turn fades from the margin to the edge of the lid. It moves the tissue springs' far ends, not
-the skin: skin still slides and is still kept off the eyeball.
+so that at close = 1 the lids meet on every eye, however wide, and wherever the lower lid is. All
+skin between the front edges of the lids moves to one line. A margin is as thick as skin, so lids
+that met with a slanted margin would leave a groove, in which the cornea shows. The open lid takes
+the fold under the brow along, because levator palpebrae ends in both. The fold is held only while
+it moves, so that the brow can come down on it. A shut upper lid is held twice as firmly: its muscle
+presses it down, and a brow that rises does not draw it open. A closing lid slides towards the nose,
+where its ring of fibres is fixed. A raised lid slides a little away from the nose. Both lids follow
+the gaze a little to the side, because the cornea draws them. The lids of each eye follow the gaze
+of that eye alone. The turn fades from the margin to the edge of the lid. It moves the tissue
+springs' far ends, not the skin: skin still slides and is still kept off the eyeball.
 
 Source: own; the papers close the eye by a sphincter, which does not follow the eyeball. Angles
 from the visible lid margins.
@@ -50,7 +49,7 @@ class Lids(NamedTuple):
     muscles: tuple[tuple[int, int, int, float], ...]  # control, eye, action (LIDS), travel
 
     def drive(self, activation: Floats64) -> Floats64:
-        """How far each eye's upper lid is closed, its lower and its upper lid raised, (eyes, 3)."""
+        """Closing of each eye's upper lid, raising of its lower and its upper lid, (eyes, 3)."""
         drive = np.zeros((len(self.vertices.centres), 3))
         for control, eye, action, travel in self.muscles:
             drive[eye, action] += travel * max(activation[control], 0.0)
@@ -108,16 +107,17 @@ def place_lids(
 
 
 def gaze_share_of(radius: float) -> float:
-    """How much of a gaze lids follow: on a ball [mm] beyond a human's they move as far as on that.
+    """Share of a gaze that lids follow, for an eyeball of this radius [mm].
 
-    Artists put such balls behind openings that are no wider than a human's.
+    On a ball larger than a human's they move as far as on a human's: artists put such balls behind
+    openings of human width.
     """
     most_radius = 12.8  # mm
     return min(1.0, most_radius / radius)
 
 
 def _lift(lids: LidVertices, surface: SkinSurface, eyeballs: tuple[Eyeball, ...]) -> Floats64:
-    """How far each lid vertex must stand out [mm], shape (L,), when all eyes are closed."""
+    """How far each lid vertex must be lifted [mm], shape (L,), when all eyes are closed."""
     state = State.at_rest(surface)
     closed = np.zeros((len(eyeballs), len(LIDS)))
     closed[:, 0] = 1.0
@@ -157,7 +157,7 @@ def _up_and_forward(landmarks: Floats64, ball: Eyeball) -> tuple[Floats64, Float
 
 
 class _LidAxes(NamedTuple):
-    """Where a point lies about the line from the outer corner of an eye to the inner one."""
+    """Places of points about the line from the outer corner of an eye to the inner one."""
 
     centre: Floats64  # of the eyeball
     up: Floats64
@@ -197,7 +197,7 @@ def _one_eye(
     where = np.linspace(0.0, 1.0, COLUMNS)
     height = np.maximum(upper.front - lower.front, 0.0)
     wide = _smoothed(height)
-    least_opening = 0.05  # rad: at the corners lids do not overlap
+    least_opening = 0.05  # rad: closed lids do not overlap where an eye opens less
     widest = height.max()
     full = wide / max(widest, least_opening)
     slide = _slide(upper.slide + lower.slide, column, full)
@@ -211,15 +211,15 @@ def _one_eye(
     inward = slide * np.where(is_upper, *eyes.blink_slide)
     arrives = column + inward / np.linalg.norm(axes.axis)
     plain_seam = lower.front + eyes.blink_meeting * height
-    seam = raised_at_corners(plain_seam, upper.front)  # where closed lids meet
+    seam = raised_at_corners(plain_seam, upper.front)  # the line where closed lids meet
     meeting = np.interp(arrives, where, seam)
     rises = np.interp(column, where, plain_seam)
     closing += weight * (meeting - rises)
     margins = _margin(upper, 1.0, column, angle) | _margin(lower, -1.0, column, angle)
     closing[margins] = (meeting - angle)[margins]
     closing = _evened(surface, closing, np.minimum(upper.distance, lower.distance), margins)
-    before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is no lid
-    corner_share = 0.5  # of the motion of the open lid is there: their ligaments give
+    before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is not lid
+    corner_share = 0.5  # of the open lid's motion remains at the corners: their ligaments stretch
     rounded = np.sin(np.pi * np.clip(column, 0.0, 1.0))
     at_middle = corner_share + (1.0 - corner_share) * rounded
     fold = before * (upper.fold + lower.fold) * at_middle
@@ -229,7 +229,7 @@ def _one_eye(
     proud = proud_height * np.minimum(np.interp(column, where, full), 1.0)
     sink = np.interp(column, where, upper.depth - lower.depth) - proud
     sink *= is_upper * weight
-    least_turn = 1e-3  # lid vertices that move less are not lid
+    least_turn = 1e-3  # vertices that move less are not lid
     most_moved = np.maximum.reduce([weight, fold, slide])
     vertex = np.flatnonzero(most_moved > least_turn)
     overlap = weight * _pressed_turn(opening, least_opening)
@@ -238,14 +238,14 @@ def _one_eye(
 
 
 def _slide(near: Floats64, column: Floats64, full: Floats64) -> Floats64:
-    """Share of the slide of each vertex, shape (V,), by how far the eye opens at its column.
+    """Share of each vertex in the slide, shape (V,), by the opening of the eye in its column.
 
-    near: the share by the distance from the lids (V,). full: opening by column, 1 at the most.
-    Skin beyond a corner slides along, or it would fold there.
+    near: the share by the distance from the lids (V,). full: opening by column, 1 where it is
+    widest. Skin beyond a corner slides, too, or it would fold there.
     """
     slide_beyond = 0.2  # widths of the opening
     beyond = np.maximum(np.abs(column - 0.5) - 0.5, 0.0)
-    slide_ends = (0.1, 1.7)  # x the slide at the outer and the inner corner
+    slide_ends = (0.1, 1.7)  # factors of the slide at the outer and the inner corner
     ends: Floats64 = np.interp(column, (0.0, 1.0), slide_ends)
     opened = np.interp(column, np.linspace(0.0, 1.0, COLUMNS), full)
     return near * opened * ends * smoothstep(1.0 - beyond / slide_beyond)
@@ -275,10 +275,10 @@ def _margin(lid: _OneLid, sign: float, column: Floats64, angle: Floats64) -> Fla
 def _evened(
     surface: SkinSurface, closing: Floats64, distance: Floats64, margins: Flags
 ) -> Floats64:
-    """The turn [rad] of each vertex, evened out beyond the margins, as skin is a sheet.
+    """The turn [rad] of each vertex, smoothed beyond the margins, because skin is a sheet.
 
-    Else neighbours beside the corners turn by half as much, and a closed lid is a box with walls.
-    distance: from the nearest front edge [mm], shape (V,).
+    Without this, neighbours beside the corners turn by half as much, and a closed lid is a box with
+    walls. distance: from the nearest front edge [mm], shape (V,).
     """
     evened_area = 10.0  # mm2
     begins = 0.8  # mm from the front edge
@@ -289,8 +289,8 @@ def _evened(
 
 
 def _pressed_turn(opening: Floats64, least_opening: float) -> Floats64:
-    """How far closed lids are pressed into each other [rad], by how far the eye is open there."""
-    wide_opening = 0.3  # rad: from here on they are in full
+    """How far closed lids are pressed into each other [rad], by the opening of the eye there."""
+    wide_opening = 0.3  # rad: from this opening on they are pressed in full
     most_turn = 0.11  # rad (1.4 mm)
     width = (opening - least_opening) / (wide_opening - least_opening)
     return most_turn * smoothstep(width)
@@ -299,7 +299,7 @@ def _pressed_turn(opening: Floats64, least_opening: float) -> Floats64:
 def raised_at_corners(seam: Floats64, upper: Floats64) -> Floats64:
     """The seam [rad] by column without a step at a corner that lies above the lower lid's edge.
 
-    Lids that met below such a corner left a notch beside it. upper: front edge of the upper lid.
+    Lids that meet below such a corner leave a notch beside it. upper: front edge of the upper lid.
     """
     where = np.linspace(0.0, 1.0, COLUMNS)
     corner_slope = 0.5  # [rad] over the width of the opening
@@ -316,7 +316,7 @@ class _OneLid(NamedTuple):
     slide: Floats64  # (V,) share of the slide
     near: Flags  # (V,) near the margin
     distance: Floats64  # (V,) mm from the front edge
-    front: Floats64  # (COLUMNS,) rad, angle of the front edge
+    front: Floats64  # (COLUMNS,) rad, angle to the front edge
     depth: Floats64  # (COLUMNS,) mm from the centre of the eyeball to the front edge
 
 
@@ -335,8 +335,8 @@ def _one_lid(
     edge = edge[np.argsort(axes.column(edge), kind="stable")]
     places = axes.column(edge)
     where = np.linspace(0.0, 1.0, COLUMNS)
-    margin_reach = 3.5  # mm from a lid's front edge that are its margin
-    slide_reach = 1.9  # x the reach of the turn: skin around the lid slides along with it
+    margin_reach = 3.5  # mm from a lid's front edge that belong to its margin
+    slide_reach = 1.9  # factor of the turn's reach: skin around the lid slides with it
     return _OneLid(
         weight=on_lid * _share(distance, eyes.lid_plateau, eyes.lid_reach),
         fold=on_lid * _share(distance, *fold_ends),
@@ -349,19 +349,19 @@ def _one_lid(
 
 
 def _front_edge(surface: SkinSurface, line: Floats64, axes: _LidAxes) -> Floats64:
-    """The way along the mesh that keeps to a lid's line of landmarks (4, 3), points (n, 3)."""
+    """The way along the mesh that stays near a lid's line of landmarks (4, 3), points (n, 3)."""
     x = surface.positions
     reaches = np.linalg.norm(line - axes.centre, axis=1)
     order = np.argsort(axes.column(line))
     expected = np.interp(axes.column(x), axes.column(line)[order], reaches[order])
-    edge_cost = 0.3  # 1/mm off the landmarks' distance from the eyeball: no front edge
+    edge_cost = 0.3  # cost per mm off the landmarks' distance from the eyeball, where no edge is
     behind = edge_cost * np.abs(np.linalg.norm(x - axes.centre, axis=1) - expected)
     edge: Floats64 = x[surface.way_through(surface.nearest(line), behind)]
     return edge
 
 
 def _smoothed(height: Floats64) -> Floats64:
-    """The opening by column, ending softly: skin away from the margin must not crease there."""
+    """The opening by column, with soft ends: skin away from the margin must not crease there."""
     smooth_columns = 13  # a third of the opening's width
     wide = np.convolve(np.pad(height, smooth_columns), np.ones(smooth_columns) / smooth_columns)
     return np.asarray(wide[smooth_columns + smooth_columns // 2 :][:COLUMNS])

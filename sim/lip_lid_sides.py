@@ -1,8 +1,8 @@
 """Which side of the mouth and of an eye each vertex lies on.
 
 Closed lips and lids are a millimetre apart, so distance in space does not separate upper from
-lower; the way along the skin does: from a vertex of the upper lip the upper lip's landmarks are
-near and the lower lip's are only reached around the mouth corner.
+lower, but the way along the skin does. From a vertex of the upper lip the upper lip's landmarks are
+near, and the way to the lower lip's leads around the mouth corner.
 
 Source: our own; the gates of Kähler et al. 2001 are painted by hand.
 """
@@ -22,8 +22,8 @@ def lip_side(surface: SkinSurface, landmarks: Floats64) -> Floats64:
     lower = _distance(surface, landmarks, LOWER_LIP)
     lip_reach = 20.0  # mm from the middle of a lip within which skin belongs to it
     inside = np.flatnonzero(np.minimum(upper, lower) < lip_reach)
-    # On a lip the two ways differ by twice the distance to the mouth corner, where they are alike
-    # but for the lips' shape.
+    # On a lip the two ways differ by about twice the distance to the mouth corner: there they are
+    # alike, except for the lips' shape.
     longer = lower - upper
     longer = longer - longer[surface.nearest(landmarks[list(INNER_CORNERS)])].mean()
     corner_fade = 10.0  # mm from the mouth corner where a lip moves fully on its own
@@ -41,7 +41,7 @@ def lid_side(surface: SkinSurface, landmarks: Floats64, side: Side) -> Floats64:
     lower = _distance(surface, landmarks, (lower_outer, lower_inner))
     lid_reach = 14.0  # mm from the lid landmarks
     near = np.minimum(upper, lower) < lid_reach
-    certain_distance = 3.0  # mm by which one lid must be nearer; less only happens at the corners
+    certain_distance = 3.0  # mm by which one lid must be nearer; it is less at the corners alone
     balance = (lower - upper) / np.maximum(
         np.abs(lower - upper).max(where=near, initial=certain_distance), certain_distance
     )
@@ -52,6 +52,6 @@ def lid_side(surface: SkinSurface, landmarks: Floats64, side: Side) -> Floats64:
 
 
 def _distance(surface: SkinSurface, landmarks: Floats64, numbers: tuple[int, ...]) -> Floats64:
-    """Way along the skin [mm] to the nearest of some landmarks; far where there is none."""
+    """Way along the skin [mm] to the nearest of some landmarks; far where there is no way."""
     start = surface.nearest(landmarks[list(numbers)]).astype(np.int64)
     return np.minimum(surface.distances_from(start), 1e3)

@@ -1,4 +1,4 @@
-"""How contraction values become forces: one anchor per skin vertex, summed over active muscles.
+"""From contraction values to forces: one anchor per skin vertex, summed over active muscles.
 
 Every attached vertex hangs on its muscle by a spring of stiffness k w A (muscle, attachment weight,
 skin area). At activation a the spring is tightened from a passive share p to its full stiffness
@@ -50,7 +50,7 @@ class Attachments(NamedTuple):
     rows: Unsigned32  # (owners + 1,)
     vertex: Unsigned32  # (n,)
     weight: Floats64  # (n,) k w A
-    value: Floats64  # (n, 3) steady displacement x k A, or (n,) place along the line
+    value: Floats64  # (n, 3) steady displacement x k A; or (n,) place along the line
 
 
 class SkinAttachments(NamedTuple):
@@ -67,7 +67,7 @@ class SkinAttachments(NamedTuple):
 class MuscleForces:
     """All muscles of a face, ready to pull."""
 
-    names: tuple[str, ...]  # M control names
+    names: tuple[str, ...]  # names of the M muscles' controls
     opens_lips: Floats64  # (M,)
     reaches_lips: Floats64  # (M,) greatest attachment to the edge of a lip, 0..1
     bundle: FibreBundle
@@ -95,7 +95,7 @@ class MuscleForces:
     def lines(
         self, activation: Floats64, mandible: RigidMotion, state: State
     ) -> dict[str, list[Floats64]]:
-        """Polylines [mm] to draw: contracted fibres of linear muscles, skin rows of rings."""
+        """Polylines [mm] to draw: contracted fibres of linear muscles, rows of skin along rings."""
         lines: dict[str, list[Floats64]] = {name: [] for name in self.names}
         move_lines(self.bundle, self.stack, activation, mandible, state.lines)
         rings = dict(self.rings)
@@ -136,7 +136,7 @@ def build_muscle_forces(
     for at in placed:
         k = at.muscle.stiffness * strength
         holds.append((k * at.weight, k[:, None] * at.steady))
-    least_stiffness = 0.4  # per area, in units of the rig: attachments below it are dropped
+    least_stiffness = 0.4  # per area, in units of the rig: weaker attachments are dropped
     least = least_stiffness * strength
     return MuscleForces(
         names=tuple(at.name for at in placed),
@@ -165,7 +165,7 @@ def _bundle(
 ) -> FibreBundle:
     """All lines, muscle by muscle in `order`.
 
-    Origins are on their bone; insertions and sphincters are carried like the skin there.
+    Origins are carried by their bone; insertions and sphincters move like the skin there.
     """
     lines = [(n, placed[n].muscle, line) for n in order for line in placed[n].lines]
     points = np.array([line.points for _, _, line in lines]).reshape(-1, FIBRE_POINTS, 3)
@@ -214,14 +214,14 @@ def _carries(
 ) -> list[Part]:
     """How skin hangs on each line where it lies on others, places in points.
 
-    A vertex is carried by the line of a muscle that it hangs on most.
+    Among the lines of a muscle, the one that holds a vertex most carries it.
     """
     line_count = len(stack.rows) - 1
     lies = np.zeros((line_count, FIBRE_POINTS), dtype=np.bool_)
     line_of_row = np.repeat(np.arange(line_count), np.diff(stack.rows))
     lies[line_of_row, stack.point] = True
     parts: list[Part] = []
-    least_carried = 0.05  # likewise those by which one muscle carries the skin on another
+    least_carried = 0.05  # likewise for attachments by which one muscle carries the skin of another
     nothing = np.zeros(len(strength)), np.zeros(len(strength))
     for n in order:
         lines = placed[n].lines
@@ -248,7 +248,7 @@ def _carries(
 def _attachments(
     parts: list[tuple[Floats64, Floats64]], least: Floats64, empty: Floats64
 ) -> Attachments:
-    """Lay the vertices that matter of each part (weight, value) end to end."""
+    """Lay the vertices of each part (weight, value) that matter end to end."""
     on = [np.flatnonzero(weight > least) for weight, _ in parts]
     nothing = np.zeros(0, dtype=np.int64)
     return Attachments(
@@ -306,7 +306,7 @@ def gather_holds(
 def gather_lines(
     force: Floats64, activation: Floats64, skin: SkinAttachments, motion: LineMotion
 ) -> None:
-    """Add the pull of all lines that contract, and of all that others carry, to `force` (V, 3)."""
+    """Add the pull of all lines that contract, or that others carry, to `force` (V, 3)."""
     muscle = skin.muscle
     passive = skin.passive
     pulls = skin.pulls
@@ -325,7 +325,7 @@ def gather_lines(
 
 @njit(fastmath={"contract"})
 def add_pull(attached: Attachments, b: int, scale: float, along: Floats64, force: Floats64) -> None:
-    """Add the displacement `along` a line, between two of its rows, times each attachment."""
+    """Add the displacement `along` a line, interpolated between two rows, times each attachment."""
     last = along.shape[0] - 2
     for row in range(attached.rows[b], attached.rows[b + 1]):
         i = attached.vertex[row]

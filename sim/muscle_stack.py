@@ -2,18 +2,17 @@
 
 A row of the rig names the muscles that a muscle lies on (`lies_on`). Each control point of its
 lines hangs on each of those muscles as skin does (muscles.py), but on one line only, the one that
-holds it most.
-With w that hold, u the displacement along the contracting line at its foot, s the bulge there and
-the other terms that are linear in the activation a, and o' the displacement of that line by those
-beneath it, the point moves by
+holds it most. Let w be this hold, u the displacement along the contracting line at the point's
+foot, s the bulge there with the other terms that are linear in the activation a, and o' the
+displacement of that line by the muscles beneath it. The point moves by
 
     o = sum over muscles beneath of w (u + a s + o')  /  max(1, sum over muscles beneath of w)
 
-so a point on one muscle goes all the way with it, and one on the border of two goes between them.
-The fibre contracts along its points so moved, and skin that hangs on it, contracting or not, is
-carried by o (muscle_forces.py): the relaxed zygomaticus does not hold the cheek back while the
-buccinator bulges under it. A muscle at rest carries nothing. Lines are moved from below, each after
-those that it lies on; rig.py refuses circles.
+So a point on one muscle follows it all the way, and a point on the border of two follows their
+mean. The fibre contracts along the moved points. The displacement o carries its skin
+(muscle_forces.py), whether the fibre contracts or not: the relaxed zygomaticus does not hold the
+cheek back while the buccinator bulges under it. A muscle at rest carries nothing. Lines are moved
+from below, each after the lines beneath it; rig.py refuses circles.
 
 Source: Kähler et al. 2001, section 4 (muscles attached to muscles). The order of muscles: the four
 layers of Freilinger et al. 1987, "Surgical anatomy of the mimic muscle system".
@@ -40,7 +39,7 @@ def bottom_up(placed: Sequence[PlacedMuscle]) -> list[int]:
     heights: dict[str, int] = {}
 
     def height(name: str) -> int:
-        """How many muscles lie above each other up to this one."""
+        """Number of muscles in the tallest stack up to this one."""
         if name not in heights:
             heights[name] = 1 + max((height(n) for n in muscles[name].lies_on), default=0)
         return heights[name]
@@ -55,7 +54,7 @@ def stack_muscles(
     landmarks: Floats64,
     lip_side: Floats64,
 ) -> Stack:
-    """Find the lines under each point of each line; numbered muscle by muscle in `order`."""
+    """Find the lines under each point of each line; `order` gives the order of muscles."""
     lines = [line for n in order for line in placed[n].lines]
     points = np.array([line.points for line in lines]).reshape(-1, FIBRE_POINTS, 3)
     normals, sides = over_skin(points.reshape(-1, 3), surface, surface.normals, lip_side)
@@ -65,7 +64,7 @@ def stack_muscles(
     for n in order:
         above = [m for m in order if _is_under(placed[n], placed[m])]
         if above:
-            # Places are numbered through: FIBRE_POINTS of each line.
+            # Points are numbered through all lines, FIBRE_POINTS of each line.
             on = np.flatnonzero(np.repeat(np.isin(owners, above), FIBRE_POINTS))
             places = AttachedPoints(points.reshape(-1, 3)[on], normals[on], sides[on])
             found.append(_carried(placed[n], first, landmarks, places, on))
@@ -80,9 +79,9 @@ def _is_under(below: PlacedMuscle, above: PlacedMuscle) -> bool:
 
 
 class _Carried(NamedTuple):
-    """What hangs on one muscle, in the columns of `Stack`."""
+    """Points that hang on one muscle, in the columns of `Stack`."""
 
-    at: Integers64  # (n,) number of the point, FIBRE_POINTS of each line
+    at: Integers64  # (n,) number of the point, among FIBRE_POINTS of each line
     line: Integers64  # (n,)
     sample: Floats64  # (n,)
     place: Floats64  # (n,)
@@ -97,7 +96,7 @@ def _carried(
     places: AttachedPoints,
     at: Integers64,
 ) -> _Carried:
-    """Hang points, of these numbers, on a muscle, each on the line that holds it most.
+    """Hang points with the numbers `at` on a muscle, each on the line that holds it most.
 
     first: number of the muscle's first line.
     """
@@ -123,7 +122,7 @@ def points_along(line: Line, arc: Floats64) -> Floats64:
 
 
 def _stack_of(found: Sequence[_Carried], line_count: int) -> Stack:
-    """What was found, line by line, with shares that sum to at most 1 for each point."""
+    """The carried points line by line; the shares of each point sum to at most 1."""
     if not found:
         none = np.zeros(0)
         nobody = np.zeros(0, np.int64)

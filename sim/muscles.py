@@ -1,4 +1,4 @@
-"""Muscles: laying a rig's fibres and sphincters into a face and attaching the skin to them.
+"""Muscles: a rig's fibres and sphincters are laid into a face, and the skin is attached to them.
 
 Linear muscles attach the skin around each of their fibres (fibres.py). Sphincters draw skin on an
 elliptic ring to a centre, q = p* + (1 - c a)(p - p*); a centre in front of the lips makes them
@@ -45,7 +45,7 @@ class Attachment(NamedTuple):
 
     weight: Floats64  # (n,)
     arc: Floats64  # (n,) place along the line, 0..1
-    steady: Floats64  # (n, 3) mm x weight of displacement at full activation that is linear in it
+    steady: Floats64  # (n, 3) mm x weight: the displacement linear in the activation, at 1
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class PlacedMuscle:
 
     @property
     def weight(self) -> Floats64:
-        """Strongest attachment of each vertex, shape (V,)."""
+        """Weight of the strongest attachment of each vertex, shape (V,)."""
         strongest: Floats64 = np.max([line.skin.weight for line in self.lines], axis=0)
         return strongest
 
@@ -108,7 +108,7 @@ def place_muscles(
 
 
 def _laid_lines(rig: Rig, surface: SkinSurface, landmarks: Floats64) -> Iterator[Floats64]:
-    """The lines of all muscles, on the skin as far as they wrap around it; in rig order.
+    """The lines of all muscles in rig order, bent to the skin as far as each wraps around it.
 
     The skin near all of them is looked up at once.
     """
@@ -127,7 +127,7 @@ def _laid_lines(rig: Rig, surface: SkinSurface, landmarks: Floats64) -> Iterator
 
 
 def sides_of(muscle: Muscle) -> tuple[tuple[str, Side], ...]:
-    """Control names of a muscle and the side each is on."""
+    """Control names of a muscle, each with its side."""
     if not muscle.pair:
         return ((muscle.name, Side.LEFT),)
     return ((f"{muscle.name}_left", Side.LEFT), (f"{muscle.name}_right", Side.RIGHT))
@@ -247,7 +247,7 @@ def _hold_in_ring(
 def _ring_pull(
     muscle: RingMuscle, landmarks: Floats64, side: Side, places: AttachedPoints
 ) -> Floats64:
-    """Where to a sphincter draws places at full activation [mm], shape (n, 3)."""
+    """Displacement of places by a sphincter at full activation [mm], shape (n, 3)."""
     x = places.positions
     centre = muscle.centre.on(landmarks, side)
     pull = np.array(muscle.contraction) * (centre - x)
@@ -259,7 +259,8 @@ def _ring_pull(
     pull += (x - centre) @ (turn.T - np.eye(3))
     seam = landmarks[[62, 66], 1].mean()
     mouth_round = 1.08  # half widths of the mouth at which flare and parting end
-    # On an ellipse through the mouth's corners, or an open mouth has straight edges.
+    # The flare has the form of an ellipse through the mouth's corners, or an open mouth has
+    # straight edges.
     corner = mouth_round * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
     place = x[:, 0] / corner
     across = np.sqrt(np.maximum(1.0 - place**2, 0.0))
@@ -271,10 +272,10 @@ def _ring_pull(
 
 
 def _round_mouth(muscle: RingMuscle, x: Floats64, landmarks: Floats64) -> Floats64:
-    """How far a sphincter lifts places off the mouth line, so that a round opens in it [mm], (n,).
+    """Height by which a sphincter lifts places off the mouth line, for a round opening [mm], (n,).
 
-    The opening is seen from the front, between two parabolas. Beside it the lips touch, so a funnel
-    is narrower than the mouth.
+    Seen from the front, the opening lies between two parabolas. Outside it the lips touch, so a
+    funnel is narrower than the mouth.
     """
     half_width, height = muscle.opening
     seam = landmarks[[62, 66], 1].mean()
@@ -298,7 +299,7 @@ def _outline(muscle: RingMuscle, side: Side, half_deg: float, count: int) -> Flo
 
 
 def _ring_line(muscle: RingMuscle, landmarks: Floats64, side: Side) -> Floats64:
-    """The line along a sphincter's ellipse as far as it reaches, shape (FIBRE_POINTS, 3)."""
+    """The line along the part of the ellipse that a sphincter covers, shape (FIBRE_POINTS, 3)."""
     _, half, fade = muscle.arc_deg
     outline = _outline(muscle, side, min(half + fade, 180.0), FIBRE_POINTS)
     return _middle(muscle, landmarks, side) + outline
@@ -308,7 +309,7 @@ def _ring_vertices(
     muscle: RingMuscle, x: Floats64, landmarks: Floats64, weight: Floats64, side: Side
 ) -> Integers32:
     """Skin vertices nearest to the ellipse of a sphincter, in order, for drawing it."""
-    ring_points = 25  # corners of the line drawn for a sphincter
+    ring_points = 25  # corners of the line that is drawn for a sphincter
     outline = _outline(muscle, side, muscle.arc_deg[1], ring_points)[:, :2]
     middle = _middle(muscle, landmarks, side)
     attached = np.flatnonzero(weight >= 0.1 * weight.max())

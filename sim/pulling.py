@@ -1,23 +1,24 @@
-"""Pull to pose: which muscles hold the skin where a finger draws it to, an inverse problem.
+"""Pull to pose: find the muscles that hold the skin where a finger draws it, an inverse problem.
 
-The skin under the finger shall lie at its targets when the finger has gone, with few controls at
-work and the rest of the face left alone. Over the controls u, within their limits, minimise
+The skin under the finger shall stay at its targets when the finger has gone. Few controls shall
+work, and the rest of the face shall stay. Minimise, over the controls u within their limits,
 
     sum_i s_i |A (t_i - p_i)|^2 + REST_WEIGHT sum_j a_j |p_j - p_j(0)|^2
         + d^2 sum_c (PRICE |u_c - u_c(0)| + EFFORT (u_c - u_c(0))^2)
 
-i runs over the vertices under the finger, with shares s that add up to 1 and targets t, drawn by d
-on average; j over all others, with areas a against that under the finger. A weakens
-distances along the line of sight, which a mouse does not set. Prices keep controls moderate. They
-are few: the one that mends most is taken first, then the one that mends most beside it, by slopes
-at the start. So targets alone decide which, not the way of the finger: the pose that is seen while
-it moves is the pose that stays. Targets farther than the strongest control reaches that way are
-brought in to there: prices are in proportion to d, and beyond that no control would be worth them.
+i runs over the vertices under the finger, with targets t and shares s that add up to 1; d is the
+mean distance to the targets. j runs over all other vertices, with areas a relative to that under
+the finger. A weakens distances along the line of sight, which a mouse does not set. Prices keep
+controls moderate. Few controls are used: first the one that reduces the sum most, then the one that
+reduces it most together with the first, and so on, by slopes at the start. So targets alone decide
+on controls, not the path of the finger: the pose during the motion is the pose that stays. A target
+beyond the reach of the strongest control in this direction is brought back to that reach: prices
+grow with d, and farther out no control would be worth its price.
 
-Prices, and skin that is to stay, keep the skin from coming all the way to the mouse. So all changes
-grow by one factor at the end, until the finger's middle is as near to the mouse as this mixture
-brings it, or until a control is at its limit. One factor keeps the mixture: a smile that is drawn
-too far is a smile.
+Prices, and the skin that shall stay, keep the skin from reaching the mouse. So all changes grow by
+one factor at the end, until the finger's middle is as near to the mouse as this mixture can bring
+it, or until a control is at its limit. One factor keeps the mixture: a smile that is drawn too far
+remains a smile.
 
 Solved by Gauss and Newton. p is a clone of the face, at rest; its slopes are measured on a second
 clone, by moving one control a little and letting the skin come to rest. A clone's muscles have no
@@ -40,14 +41,14 @@ import numpy.typing as npt
 from ..geometry.arrays import Flags, Floats64
 from .face import Simulation
 
-STEP = 1.0 / 60.0  # [s] of a clone
+STEP = 1.0 / 60.0  # [s] of a clone's steps
 Names = tuple[str, ...]
 
 
 class Pull:
-    """A finger on the skin, and the controls that move the skin as it does."""
+    """A finger on the skin, and the controls that move the skin like this finger."""
 
-    MOST_CONTROLS = 3  # that are used
+    MOST_CONTROLS = 3  # controls that are used
     ROUND_TOLERANCE = 0.01  # a change that counts as none, between rounds
 
     mends: bool  # whether the answer comes nearer to the aims by more than a trace
@@ -63,9 +64,9 @@ class Pull:
     ) -> None:
         """Begin at the present state of a face, which does not change.
 
-        vertices, firmness: of the finger, shapes (n,), as for `Touch.drag`. candidates:
-        controls that may be used, in one tuple those that go together, as both sides of a muscle
-        do. sight: direction in which the finger is seen, shape (3,).
+        vertices, firmness: of the finger, shapes (n,), as for `Touch.drag`. candidates: controls
+        that may be used; a tuple holds those that move together, such as both sides of a muscle.
+        sight: direction in which the finger is seen, shape (3,).
         """
         self._base = face.clone()
         self._probe = face.clone()
@@ -90,7 +91,7 @@ class Pull:
         self.mends = False
 
     def _look(self) -> bool:
-        """Before the first answer, find the controls that matter, and slopes; whether any does."""
+        """Find the controls that matter, and slopes; False if none matters."""
         if self._given:
             self.candidates = self._near(self._given)
             self._given = ()
@@ -106,7 +107,8 @@ class Pull:
             here = np.sqrt(squares)
             motions = np.linalg.norm(self._slope, axis=2)
             largest = motions.max(axis=1, initial=0.0)
-            # Share of a control's largest motion of skin: with less at the finger it is not used.
+            # Share of a control's largest motion of skin: a control that moves the finger's skin
+            # less is not used.
             least_motion = 0.1
             is_meant = here > least_motion * largest
             self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
@@ -132,11 +134,11 @@ class Pull:
         return float(np.linalg.norm(self._left(self.targets, there)))
 
     def _left(self, targets: Floats64, positions: Floats64) -> Floats64:
-        """From vertices (V, 3) to targets (n, 3), in the finger's middle, as seen, shape (3,)."""
+        """Vector from vertices (V, 3) to targets (n, 3) in the finger's middle, as seen, (3,)."""
         return np.asarray(self._middle @ (targets - positions[self._vertices]) @ self._seen)
 
     def solve(self) -> None:
-        """Find the answer for these targets; the way of the finger does not matter."""
+        """Find the answer for these targets; the path of the finger does not matter."""
         if not self._look():
             return
         self._base.copy_from(self._home)
@@ -155,7 +157,7 @@ class Pull:
                 break
             self._measure(np.flatnonzero(self._value != self._start))
             needed = self._more(needed)
-        least_gain = 0.25  # of the squared distances: an answer that mends less is no answer
+        least_gain = 0.25  # of the squared distances: an answer must reduce them by at least this
         self.mends = self._off(self._base.positions) < (1.0 - least_gain) * self._drawn
         if self.mends:
             self._stretch()
@@ -166,9 +168,9 @@ class Pull:
         _rest(self._base, {name: each for each, names in values for name in names})
 
     def _stretch(self) -> None:
-        """Let all changes grow by one factor, to where the finger's middle is nearest the mouse."""
+        """Let all changes grow by one factor until the finger's middle is nearest to the mouse."""
         drawn = self._left(self.targets, self._from)
-        most_rounds = 6  # skin does not follow in proportion
+        most_rounds = 6  # the skin's motion is not proportional
         for _ in range(most_rounds):
             went = drawn - self._left(self.targets, self._base.positions)
             changed = self._value - self._start
@@ -182,7 +184,7 @@ class Pull:
             self._take_values()
 
     def _aim(self) -> None:
-        """Where the finger draws to, no farther than the strongest control reaches."""
+        """Targets of the finger, but no farther than the strongest control reaches."""
         drawn = self.targets - self._from[self._vertices]
         seen = (self._share[:, None] * drawn) @ self._seen
         along = ((self._first[:, self._vertices] @ self._seen) * seen).sum(axis=(1, 2))
@@ -201,7 +203,7 @@ class Pull:
             self._probe.step(STEP)
             moved.append(self._square((self._probe.positions - self._from)[self._vertices]))
         most_candidates = 16  # controls that are looked at: those that move the finger's skin most
-        # Of two that are alike none stays away.
+        # Two equal controls are both in.
         least = 0.99 * sorted([0.0, *moved])[-most_candidates:][0]
         return [c for c, far in zip(candidates, moved, strict=True) if far > least]
 
@@ -210,11 +212,11 @@ class Pull:
         return float(self._share @ ((by @ self._seen) ** 2).sum(axis=1))
 
     def _off(self, positions: Floats64) -> float:
-        """Mean square of how far vertices (V, 3) under the finger are from their aims."""
+        """Mean square distance of vertices (V, 3) under the finger from their aims."""
         return self._square(self._aims - positions[self._vertices])
 
     def _towards(self, names: Names, share: float) -> dict[str, float]:
-        """Controls moved by a share of their range, the other way where there is no room."""
+        """Values of controls moved by a share of their range, up or, without room, down."""
         low, high = self._base.controls.limits[names[0]]
         value = self._base.controls.values[names[0]]
         step = share * (high - low)
@@ -222,7 +224,7 @@ class Pull:
         return dict.fromkeys(names, moved)
 
     def _measure(self, which: npt.ArrayLike) -> None:
-        """The slopes of the skin in some controls, by number, here."""
+        """Slopes of the skin in some controls, by their numbers, at the present values."""
         probe_share = 0.25  # of a control's range, to measure its slope
         for n in np.asarray(which, np.int64):
             moved = self._towards(self.candidates[n], probe_share)
@@ -232,16 +234,18 @@ class Pull:
             self._slope[n] = (self._probe.positions - self._base.positions) / by
 
     def _more(self, needed: Flags) -> Flags:
-        """These controls and the one that mends most beside them, by slopes here."""
+        """The needed controls and the one that improves most together with them, by slopes here."""
         if needed.sum() >= self.MOST_CONTROLS:
             return needed
         system = self._system()
-        # Share of the squared distances: a control that mends less beside others is not used.
+        # Share of the squared distances: a control that improves less together with others is not
+        # used.
         least_worth = 0.025
         worth = least_worth * self._drawn
         costs = np.array([system.cost(needed | one) for one in np.eye(len(needed), dtype=bool)])
         best = needed | (np.arange(len(costs)) == costs.argmin())
-        # Share of that: whose worth differs by less come together, as both sides of a muscle.
+        # Share of that: controls whose gains differ by less are used together, such as both sides
+        # of a muscle.
         alike_share = 0.2
         alike = needed | (costs <= costs.min() + alike_share * worth)
         if alike.sum() > best.sum() and system.cost(alike) < costs.min() - worth:
@@ -250,7 +254,7 @@ class Pull:
         return best if is_worth_it else needed
 
     def _system(self) -> _Lasso:
-        """The problem as it looks from here."""
+        """The linear problem at the present values."""
         now = self._base.positions
         count = len(self._value)
         root = np.sqrt(self._share)[:, None]
@@ -263,7 +267,7 @@ class Pull:
         square_price = 0.034  # the same, as the square of its share: two equal controls share it
         effort = square_price * self._drawn
         changed = self._value - self._start
-        price = 0.0041  # of a control at its limit, against skin that stays behind altogether
+        price = 0.0041  # of a control at its limit, against skin that does not move at all
         return _Lasso(
             under @ under.T + others @ slope.T + effort * np.eye(count),
             under @ off + others @ (self._from - now).ravel() - effort * changed,
@@ -290,9 +294,9 @@ class _Lasso(NamedTuple):
     high: Floats64  # (C,)
 
     def least(self, usable: Flags) -> Floats64:
-        """One control after the other goes to its minimum, until none moves any more, (C,).
+        """Move one control after another to its minimum, until none moves any more, (C,).
 
-        usable: the others go back to where they were, shape (C,).
+        usable: all other controls return to their first values, shape (C,).
         """
         total = self.changed.copy()
         downhill = self.right.copy()

@@ -55,7 +55,7 @@ Mix = tuple[tuple[int, float], ...]  # numbers of landmarks, and the weight of e
 
 
 def _mix(weights: dict[str, float]) -> Mix:
-    """A table landmark number = weight, as pairs."""
+    """Pairs of a table with rows "landmark number = weight"."""
     if not weights:
         raise ValueError("is empty, must be a table landmark number = weight")
     return tuple((int(number), weight) for number, weight in weights.items())
@@ -69,14 +69,14 @@ Weights = Annotated[Mix, MadeFrom(dict[Landmark, Annotated[float, Within(-5.0, 5
 
 @dataclass(frozen=True)
 class _PointTable(Record):
-    """{landmark = 54} or {landmarks = {45 = 0.6, 14 = 0.4}}, with an offset or without."""
+    """{landmark = 54} or {landmarks = {45 = 0.6, 14 = 0.4}}, with or without an offset."""
 
     landmark: Annotated[int, Within(0, LANDMARK_COUNT - 1)] | None = None
     landmarks: Weights | None = None
     offset: Annotated[Triple, Within(-200.0, 200.0)] = (0.0, 0.0, 0.0)
 
     def point(self) -> LandmarkPoint:
-        """The point of it; raises ValueError for none, two, or a mix that is not whole."""
+        """The point of this table; ValueError for none, two, or weights that do not sum to 1."""
         if (self.landmark is None) == (self.landmarks is None):
             raise ValueError("give exactly one of 'landmark' and 'landmarks'")
         mix = self.landmarks or ((self.landmark or 0, 1.0),)
@@ -106,7 +106,7 @@ class Tissue(Record):
     modiolus_shear: Annotated[float, Within(0.0, 50.0)] = 0.0  # the same, against turning
     passive: Annotated[float, Within(0.0, 1.0)] = 0.2  # share of a muscle's stiffness when relaxed
     lip_seal: Annotated[float, Within(0.0, 1000.0)] = 40.0  # springs that hold closed lips together
-    drive_power: Annotated[float, Within(0.3, 1.5)] = 1.0  # pull = activation to this power
+    drive_power: Annotated[float, Within(0.3, 1.5)] = 1.0  # pull = activation raised to this power
     stiffness_scale: Annotated[float, Within(1.0, 1e5)] = 600.0  # 1/s2
     damping: Annotated[float, Within(0.0, 1000.0)] = 8.0  # 1/s, everywhere
     # of critical, for tissue and muscle springs
@@ -139,22 +139,22 @@ class Eyes(Record):
     lid_plateau: Annotated[float, Within(0.0, 20.0)] = 2.0  # mm from the margin that move as one
     # of the tarsal plate on the eyeball
     lid_stiffness: Annotated[float, Within(0.0, 1000.0)] = 120.0
-    # share of the way the lower lid comes up
+    # share of the way that the lower lid comes up
     blink_meeting: Annotated[float, Within(0.0, 0.5)] = 0.12
     blink_slide: Annotated[Pair, Within(-5.0, 5.0)] = (0.0, 0.0)  # mm to the nose
     raise_slide: Annotated[float, Within(-10.0, 10.0)] = 0.0  # the same, for each rad of raising
     lids_follow_sideways: Annotated[float, Within(0.0, 1.0)] = 0.0  # share of the horizontal gaze
-    # mm from the upper margin: the skin that
+    # mm from the upper margin: skin nearer than
     fold_plateau: Annotated[float, Within(0.0, 30.0)] = 2.0
-    # goes with it in full and at all, if open
+    # these moves with it in full, and at all
     fold_reach: Annotated[float, Within(2.0, 40.0)] = 8.0
-    # of the skin beyond the lid, while it moves
+    # of the skin beyond the lid, while the lid moves
     fold_stiffness: Annotated[float, Within(0.0, 1000.0)] = 0.0
 
 
 @dataclass(frozen=True)
 class HeadJoint(Record):
-    """The head turns as a whole about the joint between skull and spine."""
+    """The joint between skull and spine, about which the head turns as a whole."""
 
     pitch_deg: Annotated[float, Within(0.0, 90.0)] = 30.0  # at head_pitch = 1, up
     yaw_deg: Annotated[float, Within(0.0, 90.0)] = 45.0  # at head_yaw = 1, to the subject's left
@@ -170,7 +170,7 @@ class Fibre(Record):
     origin: Point
     insertion: Point
     weight: Annotated[float, Within(0.0, 3.0)] = 1.0  # how firmly skin around it is attached
-    gain: Annotated[float, Within(0.0, 6.0)] = 1.0  # of its pull against the other fibres
+    gain: Annotated[float, Within(0.0, 6.0)] = 1.0  # of its pull relative to the other fibres
     width_factor: Annotated[float, Within(0.1, 4.0)] = 1.0  # x the muscle's width
     convergence: Annotated[float, Within(-2.0, 2.0)] = 0.0  # skin drawn towards the fibre line
     lift: Annotated[float, Within(-20.0, 20.0)] = 0.0  # mm outward all along; below 0 a crease
@@ -185,8 +185,8 @@ class Muscle(Record):
     group: str  # title under which a panel lists it
     stiffness: Annotated[float, Within(0.0, 500.0)] = 30.0  # of its hold on the skin, per area
     pair: Flag = True  # one on each side, or one in the middle
-    halves: Flag = False  # a pair with a control for both, too
-    crosses: Flag = False  # a pair, each also on the other side
+    halves: Flag = False  # a pair that also has a control for both
+    crosses: Flag = False  # a pair whose muscles also reach the other side
     drive: Annotated[float, Within(0.5, 2.0)] = 1.0  # x drive_power of the tissue
     tone: Flag = True  # holds the skin when relaxed, too
     bone: Annotated[str, OneOf(("cranium", "mandible"))] = "cranium"  # where the origin is fixed
@@ -205,10 +205,10 @@ class LinearMuscle(Muscle):
     beyond: Annotated[float, Within(1.0, 60.0)] = 10.0  # mm past the insertion
     # share of its length lost at full activation
     contraction: Annotated[float, Within(0.0, 0.95)] = 0.3
-    fixed_at: Annotated[float, Within(0.0, 0.5)] = 0.0  # where it stays: 0 bone, more slides there
+    fixed_at: Annotated[float, Within(0.0, 0.5)] = 0.0  # the place that stays: 0 for a bone
     wrap: Annotated[float, Within(0.0, 1.5)] = 0.7  # 0 straight .. 1 bent to follow the skin
     bulge: Annotated[float, Within(0.0, 20.0)] = 0.0  # mm of thickening at full activation
-    bulge_at: Annotated[float, Within(0.0, 1.0)] = 0.5  # where along the fibre
+    bulge_at: Annotated[float, Within(0.0, 1.0)] = 0.5  # place of the bulge along the fibre
     fibres: Annotated[tuple[Fibre, ...], called("fibre")] = ()
 
 
@@ -225,7 +225,7 @@ class RingMuscle(Muscle):
     bulge: Annotated[float, Within(0.0, 40.0)] = 0.0  # mm outward along the skin's normal
     # mm up for the upper, down for the lower lip
     flare: Annotated[float, Within(-30.0, 30.0)] = 0.0
-    # about the centre: skin above it goes forward, skin before it to the side
+    # about the centre: skin above it goes forward, skin in front of it to the side
     turn_deg: Annotated[Pair, Within(-90.0, 90.0)] = (0.0, 0.0)
     # mm, half width and height of a round opening between the lips; both 0: none
     opening: Annotated[Pair, Within(0.0, 30.0)] = (0.0, 0.0)
@@ -244,7 +244,7 @@ KINDS: dict[str, type[Muscle]] = {"linear": LinearMuscle, "ring": RingMuscle, "l
 
 
 def _muscles(tables: dict[str, Muscle]) -> tuple[Muscle, ...]:
-    """Muscles with their names, if all of them can be, and lie on each other."""
+    """Muscles with their names; ValueError if one is impossible, or cannot lie on another."""
     for name, muscle in tables.items():
         if not name.isidentifier() or name != name.lower():
             raise ValueError(f"'{name}': a name is lower case letters, digits and underscores")
@@ -261,7 +261,7 @@ def _muscles(tables: dict[str, Muscle]) -> tuple[Muscle, ...]:
 
 
 def _check_what_carries(muscle: Muscle, muscles: Mapping[str, Muscle]) -> None:
-    """Refuse a muscle on one that is not there, on or under a lid, or at last on itself."""
+    """Refuse a muscle that lies on a missing one, a lid, or through others on itself."""
     where = f"'{muscle.name}', 'lies_on'"
     if muscle.lies_on and isinstance(muscle, LidMuscle):
         raise ValueError(f"{where}: a lid lies on the eyeball; omit the key")
@@ -274,7 +274,7 @@ def _check_what_carries(muscle: Muscle, muscles: Mapping[str, Muscle]) -> None:
 
 
 def _refuse_circle(muscles: Mapping[str, Muscle], way: tuple[str, ...]) -> None:
-    """Go down from the last muscle of a way and refuse to meet its first one again."""
+    """Go down from the last muscle of `way`, and refuse a return to its first one."""
     for name in muscles[way[-1]].lies_on:
         if name == way[0]:
             circle = " on ".join((*way, name))
@@ -300,5 +300,5 @@ class Rig(Record):
 
 
 def read_rig(document: Mapping[str, Any]) -> Rig:
-    """Read a rig from the parsed rig file; ValueError names the muscle and key that is wrong."""
+    """Read a rig from the parsed rig file; ValueError names the wrong muscle and key."""
     return read(Rig, document, "rig")

@@ -1,4 +1,4 @@
-"""The skin as the kernels of a substep take it, and the values that hold for one tick.
+"""The skin as the kernels of a substep need it, and the values that hold for one tick.
 
 Source: Kähler et al. 2001, section 3: point masses at the vertices, joined by springs.
 """

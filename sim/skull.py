@@ -1,13 +1,13 @@
-"""Bones and eyeballs: where they are at rest, and how jaw and gaze values move them.
+"""Bones and eyeballs: their places at rest, and their motion by jaw and gaze values.
 
-Skin is simulated in coordinates of the cranium; head pose moves the result as a whole about the
-joint with the spine. The mandible turns about the axis through both condyles and glides with
-them; skin hangs on both by a weight. Eyeballs turn in place. These are rigid degrees of freedom
-beside the muscles: no spring moves a bone. Their poses now are in bones.py.
+Skin is simulated in coordinates of the cranium; the pose of the head moves the result as a whole
+about the joint with the spine. The mandible turns about the axis through both condyles and glides
+with them; skin hangs on cranium and mandible by a weight. Eyeballs turn in place. These are rigid
+degrees of freedom beside the muscles: no spring moves a bone. bones.py has their present poses.
 
-Source: Kähler et al. 2001, section 3 (skull and rotating jaw under the skin).
-Differs from it: the condyles also glide (a real jaw opens by turning and sliding), and the jaw
-moves forward and sideways, to a side by turning about the condyle of that side.
+Source: Kähler et al. 2001, section 3 (skull and rotating jaw under the skin). Differs from it: the
+condyles also glide (a real jaw opens by turning and sliding), and the jaw also moves forward and
+sideways; for a move to the side it turns about the condyle of that side.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class RigidMotion(NamedTuple):
 
     @classmethod
     def of(cls, rotation: Floats64, shift: Floats64) -> RigidMotion:
-        """A motion whose arrays cannot be written: several faces may share it."""
+        """A motion with read-only arrays, because several faces may share it."""
         return cls(read_only(rotation), read_only(shift))
 
     @classmethod
@@ -55,7 +55,7 @@ class RigidMotion(NamedTuple):
         return points @ self.rotation.T + self.shift - points
 
     def after(self, first: RigidMotion) -> RigidMotion:
-        """This motion done after another."""
+        """The motion `first`, followed by this one."""
         rotation = self.rotation @ first.rotation
         shift = self.rotation @ first.shift + self.shift
         return RigidMotion.of(rotation, shift)
@@ -90,7 +90,7 @@ class Skull:
     head: HeadJoint
 
     def head_motion(self, pitch: float, yaw: float, roll: float) -> RigidMotion:
-        """The whole head for head_pitch (up), head_yaw (left), head_roll (to the left shoulder)."""
+        """Motion of the head by head_pitch (up), head_yaw (left), head_roll (to the left)."""
         if pitch == yaw == roll == 0.0:
             return REST
         head = self.head
@@ -102,7 +102,7 @@ class Skull:
         return RigidMotion.of(*turn_head(self.condyles, head.joint, angles))
 
     def mandible_motion(self, opening: float, forward: float, sideways: float) -> RigidMotion:
-        """The mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""
+        """Motion of the mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""
         ways = self.jaw.opening_glide, self.jaw.forward_glide, self.jaw.sideways_glide
         angles = math.radians(self.jaw.opening_deg), math.radians(self.jaw.sideways_deg)
         # Share of the way forward: nobody draws the jaw back by more than two millimetres.
@@ -111,15 +111,15 @@ class Skull:
         return RigidMotion.of(*move_mandible(self.condyles, ways, angles, values))
 
     def eye_motion(self, eyeball: Eyeball, horizontal: float, vertical: float) -> RigidMotion:
-        """An eyeball looking to the subject's left (+1) and up (+1)."""
+        """Motion of an eyeball that looks to the subject's left (+1) and up (+1)."""
         most = math.radians(self.eyes.gaze_deg)
         yaw = rotation(UP, most * horizontal)
         pitch = rotation(LATERAL, -most * vertical)
         return RigidMotion.about(eyeball.centre, yaw @ pitch)
 
 
-# In every tick the mandible and the head are placed anew: numpy takes ten times as long for so few
-# numbers as these kernels do.
+# Every tick places mandible and head anew: numpy takes ten times as long as these kernels for so
+# few numbers.
 
 
 @njit
@@ -158,7 +158,7 @@ def times(a: Floats64, b: Floats64) -> Floats64:
 
 @njit
 def turned(turn: Floats64, point: Floats64) -> Floats64:
-    """A point (3,) turned."""
+    """A point (3,), turned by a rotation (3, 3)."""
     to = np.zeros(3)
     for i in range(3):
         for k in range(3):
@@ -168,7 +168,7 @@ def turned(turn: Floats64, point: Floats64) -> Floats64:
 
 @njit
 def turn_head(condyles: Floats64, joint: Triple, angles: Triple) -> tuple[Floats64, Floats64]:
-    """Rotation and shift of the head; `joint`: off the middle of the condyles; see head_motion."""
+    """Rotation and shift of the head, see head_motion; `joint`: from the condyles' middle."""
     turn = times(rotation(UP, angles[0]), rotation(LATERAL, angles[1]))
     forward = (0.0, 0.0, 1.0)
     turn = times(turn, rotation(forward, angles[2]))
@@ -194,7 +194,7 @@ def move_mandible(
     opened = rotation(left - right, angles[0] * values[0])
     pivot = (right + left) / 2.0
     shift = pivot - turned(opened, pivot)
-    # To the left the left condyle stays where it is and turns, the right one comes forward.
+    # For a move to the left, the left condyle stays and turns, and the right one comes forward.
     aside = rotation(UP, angles[1] * values[2])
     pivot = left if values[2] > 0.0 else right
     turn = times(aside, opened)
@@ -206,7 +206,7 @@ def move_mandible(
 
 @njit
 def in_head(pose: RigidMotion, axes: Floats64, origin: Floats64, scale: float) -> Floats64:
-    """A motion of the standard space in head coordinates, as a (4, 4) matrix."""
+    """A motion in the standard space as a (4, 4) matrix in head coordinates."""
     there = times(times(axes.T, pose.rotation), axes)
     to = origin + scale * turned(axes.T, pose.shift) - turned(there, origin)
     matrix = np.eye(4)
@@ -218,9 +218,9 @@ def in_head(pose: RigidMotion, axes: Floats64, origin: Floats64, scale: float) -
 
 
 def eyeballs_from_landmarks(landmarks: Floats64) -> tuple[Eyeball, ...]:
-    """Eyeballs guessed from the eye corners of a head that brings none, landmarks (68, 3) [mm]."""
+    """Eyeballs guessed from the eye corners, for a head without its own, landmarks (68, 3) [mm]."""
     eyeballs = []
-    eye_radius = 12.5  # mm in the standard space, where a head brings no eyes (adult eyeball: 12)
+    eye_radius = 12.5  # mm in the standard space, for a head without eyes (adult eyeball: 12)
     eye_setback = 5.5  # mm from the line of the eye corners back to the centre (fitted on scans)
     for side in (Side.RIGHT, Side.LEFT):
         outer, _, _, inner, _, _ = EYE_LANDMARKS[side]
@@ -250,9 +250,9 @@ def mandible_weight_from_landmarks(
             vertices.append(int(nearest[landmark]))
             values.append(seed)
     x, y, z = surface.positions.T
-    neck_below_chin = 45.0  # mm below the chin landmark the skin no longer belongs to the mandible
+    neck_below_chin = 45.0  # mm below the chin landmark where the mandible's skin ends
     fixed = (y < landmarks[8, 1] - neck_below_chin) | (y > landmarks[29, 1])
-    behind_ears = 20.0  # mm behind the ear landmarks likewise
+    behind_ears = 20.0  # the same, mm behind the ear landmarks
     fixed |= z < min(landmarks[0, 2], landmarks[16, 2]) - behind_ears
     half_mouth = 0.9 * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
     middle = landmarks[list(UPPER_LIP)].mean(axis=0)
@@ -263,6 +263,6 @@ def mandible_weight_from_landmarks(
     of_fixed = np.zeros(fixed.sum())
     seeds = np.concatenate([vertices, np.flatnonzero(fixed), np.flatnonzero(lips)])
     wanted = np.concatenate([values, of_fixed, of_lips])
-    seed_hold = 3.0  # seeds are advice, not nails: a soft hold gives a smooth border
+    seed_hold = 3.0  # soft: seeds that were held firmly would give a rough border
     weight = surface.harmonic(seeds.astype(np.int64), wanted, hold=seed_hold)
     return np.clip(weight, 0.0, 1.0)

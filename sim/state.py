@@ -18,12 +18,12 @@ from .surface import SkinSurface
 
 
 class State(NamedTuple):
-    """Positions and velocities, where the springs pull to, and work space; per vertex, or edge."""
+    """Positions, velocities, targets of the springs, and work space; by vertex or edge."""
 
     x: Floats64  # (V, 3) positions
     v: Floats64  # (V, 3) velocities
     carried: Floats64  # (V, 3) rest carried by bones and lids: far ends of the tissue springs
-    normals: Floats64  # (V, 3) tissue directions carried likewise
+    normals: Floats64  # (V, 3) tissue directions, carried likewise
     hold: Floats64  # (V,) stiffness of muscles and lids
     pull: Floats64  # (V, 3) force of active muscles
     offset: Floats64  # (V, 3) x - carried
@@ -31,7 +31,7 @@ class State(NamedTuple):
     decay: Floats64  # (V,) share of the velocity that damping leaves in a substep
     gain: Floats64  # (V,) velocity gained per force in a substep
     work: Floats64  # (V, 3) work space; its content does not outlive a kernel
-    tension: Floats64  # (E,) of each edge spring, per its length
+    tension: Floats64  # (E,) of each edge spring, divided by its length
     lines: LineMotion  # of the muscles
 
     @classmethod

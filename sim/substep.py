@@ -11,10 +11,10 @@ A frame is cut into ticks, a tick into substeps:
     substep   at most 1/300 s: forces, velocity, position, contact
 
 A frame of any length is divided exactly, so there is no remainder to carry and no jitter at odd
-frame rates. Masses are raised where the longest substep would be unstable (tissue.py), hence
-every length up to it is stable too. Damping is implicit and per vertex: near critical for the
-springs that hold the vertex, because one constant leaves overshoot wherever a muscle stiffens the
-skin.
+frame rates. Masses are raised where the longest substep would be unstable (tissue.py), hence every
+length up to it is stable too. Damping is implicit and differs by vertex: it is near critical for
+the springs that hold the vertex, because one constant would leave overshoot where a muscle stiffens
+the skin.
 
 Source: Kähler et al. 2001, section 3 (mass-spring skin); semi-implicit Euler instead of Verlet;
 step, mass scaling and damping were measured here.
@@ -36,25 +36,25 @@ from .teeth import Teeth
 from .tissue import EdgeSprings, TissueSprings
 
 LONGEST_FRAME = 1.0 / 20.0  # s, the longest `dt` a caller may ask for
-# s: skin is 24 % heavier in sum than its own mass; 14 % at 1/360, a fifth dearer
+# s: all skin is 24 % heavier than its own mass; 1/360 s gives 14 % and costs a fifth more
 LONGEST_SUBSTEP = 1.0 / 300.0
-ROUNDING = 0.02  # parts: 1/60 s given as 0.0167 is still one tick, not two
+ROUNDING = 0.02  # parts: a caller's 0.0167 for 1/60 s is still one tick, not two
 SEAL_AXES = (0.5, 1.0, 0.5)  # the seal's stiffness sideways, up and down, forward (last fitted)
 
 
 def ticks_in(dt: float) -> int:
-    """Into how many ticks a frame of `dt` [s] is divided."""
-    longest_tick = 1.0 / 60.0  # s: half as long is no more exact than the middle of this
+    """Number of ticks in a frame of `dt` [s]."""
+    longest_tick = 1.0 / 60.0  # s: half of it is no more exact, because a tick uses its middle
     return parts(dt, longest_tick)
 
 
 def substeps_in(tick: float) -> int:
-    """Into how many substeps a tick [s] is divided."""
+    """Number of substeps in a tick [s]."""
     return parts(tick, LONGEST_SUBSTEP)
 
 
 def parts(whole: float, longest: float) -> int:
-    """Into how many equal parts, none longer than `longest`, a time [s] is divided."""
+    """Number of equal parts of a time [s], none longer than `longest`."""
     return max(1, math.ceil(whole / longest - ROUNDING))
 
 
@@ -77,7 +77,7 @@ def advance(state: State, skin: SkinModel, tick: Tick) -> None:
 
 @njit
 def damp(state: State, skin: SkinModel, h: float) -> None:
-    """Prepare the decay of velocities by damping, and their gain by a force, for this tick."""
+    """Prepare the decay of velocities by damping, and their gain per force, for this tick."""
     mass = skin.mass
     tissue = skin.tissue
     for i in range(len(mass)):
@@ -89,7 +89,7 @@ def damp(state: State, skin: SkinModel, h: float) -> None:
 
 @njit
 def tissue_forces(state: State, springs: TissueSprings) -> None:
-    """Set `state.force` to the pull of bone and of muscles, and `state.offset` on the way."""
+    """Set `state.offset`, and set `state.force` to the pull of bone and of muscles."""
     x = state.x
     carried = state.carried
     normals = state.normals
@@ -120,9 +120,8 @@ def tissue_forces(state: State, springs: TissueSprings) -> None:
 def edge_forces(state: State, springs: EdgeSprings) -> None:
     """Add the pull of all edges to `state.force`; `state.offset` must be up to date.
 
-    In three passes: the roots and quotients of the second are taken several at a time by the
-    processor as long as nothing is scattered between them, and the third loads one end of each
-    edge once for all edges that begin there.
+    There are three passes. The second scatters nothing, so the processor takes several roots and
+    quotients at a time. The third loads each vertex once for all edges that begin there.
     """
     x = state.x
     offset = state.offset
@@ -190,12 +189,12 @@ def accelerate(state: State) -> None:
 
 @njit
 def hold_lips(state: State, skin: SkinModel, tick: Tick) -> None:
-    """Change velocities by the seal's pull over a substep, as if it had already acted.
+    """Change velocities by the seal's pull over a substep, taken at its end (implicit Euler).
 
-    An implicit spring on the distance c of a pair, growing at speed s, with inverse mass w:
-    s' = (s - h k w c) / (1 + h^2 k w), stable for any stiffness k.
-    A vertex in several pairs takes part in each with its share of its mass (mass splitting, Tonge
-    et al. 2012), so a weak seal pulls with its whole force, however many pairs there are.
+    An implicit spring on the distance c of a pair, growing at speed s, with inverse mass w: s' = (s
+    - h k w c) / (1 + h^2 k w), stable for any stiffness k. A vertex in several pairs splits its
+    mass among them (mass splitting, Tonge et al. 2012), so a weak seal pulls with its whole force,
+    however many pairs there are.
     """
     rest = skin.rest
     mass = skin.mass
@@ -238,7 +237,7 @@ def move(state: State, h: float) -> None:
     """Second half: positions from the new velocities."""
     x = state.x
     v = state.v
-    # In mm/s per axis; a face never reaches it, a vertex thrown by the caller may.
+    # In mm/s per axis: a face never reaches it, but a vertex that a caller kicks may.
     largest_speed = 5000.0
     for i in range(len(x)):
         for k in range(3):
@@ -256,7 +255,7 @@ def keep_lips_apart(state: State, skin: SkinModel, overlap: float) -> None:
     v = state.v
     change = state.work  # of each vertex, columns: height, speed upward
     crossed = False
-    slide_fade = 3.0  # mm over which it then does
+    slide_fade = 3.0  # mm over which the lower lip then passes the upper one
     for p in range(len(lips.vertex)):
         i = lips.vertex[p]
         a = lips.beside[p, 0]
@@ -296,15 +295,15 @@ def keep_lips_apart(state: State, skin: SkinModel, overlap: float) -> None:
 def keep_out_of_teeth(state: State, teeth: Teeth, mandible: RigidMotion) -> None:
     """Project skin out of the dental arches, away from their axes, and stop its approach.
 
-    The lower arch is where the mandible is.
+    The lower arch moves with the mandible.
     """
     x = state.x
     v = state.v
     turn = mandible.rotation
     shift = mandible.shift
     arch = teeth.arch
-    tooth_fade = 3.0  # mm above and below the teeth over which they cease to be felt
-    least_share = 0.1  # of an arch: nearer to its axis the way out is uncertain
+    tooth_fade = 3.0  # mm above and below the teeth over which their contact fades
+    least_share = 0.1  # of an arch: the way out is uncertain nearer to its axis
     for c in range(len(teeth.vertex)):
         i = teeth.vertex[c]
         width = arch[c, 0]
@@ -372,7 +371,7 @@ def keep_out_of_eyeballs(state: State, eyes: EyeContact) -> None:
 
 @njit
 def stop_approach(v: Floats64, i: int, out: tuple[float, float, float]) -> None:
-    """Remove from the velocity of a vertex its part against the way out."""
+    """Remove the part of a vertex's velocity that points against the way out."""
     dx, dy, dz = out
     squared = dx * dx + dy * dy + dz * dz
     approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / max(squared, 1e-18)

@@ -1,5 +1,4 @@
-"""The skin as a triangle mesh: edges, areas, smoothed normals, distances along it and smooth fields
-on it.
+"""The skin as a triangle mesh: edges, areas, smoothed normals, distances along it, smooth fields.
 
 Everything here is computed once when a simulation is built; nothing runs per frame. Coordinates
 are the standard space of coordinates.py in millimetres.
@@ -46,7 +45,7 @@ class SkinSurface:
 
     @cached_property
     def tree(self) -> scipy.spatial.cKDTree:
-        """For finding the vertices near a point."""
+        """Search tree that finds the vertices near a point."""
         return scipy.spatial.cKDTree(self.positions)
 
     def nearest(self, points: Floats64) -> Integers32:
@@ -63,7 +62,7 @@ class SkinSurface:
     def way_through(self, vertices: npt.ArrayLike, hindrance: Floats64) -> Integers32:
         """Numbers of the vertices on the shortest way along edges from each vertex to the next.
 
-        hindrance: of each vertex, shape (V,). An edge costs its length times 1 + the mean
+        hindrance: a number for each vertex, shape (V,). An edge costs its length times 1 + the mean
         hindrance of its ends.
         """
         stops = np.asarray(vertices, dtype=np.int64)
@@ -82,7 +81,7 @@ class SkinSurface:
         return np.array(way, dtype=np.int32)
 
     def smoothed(self, field: Floats64, extent: float) -> Floats64:
-        """A field (V,) without details smaller than about sqrt(`extent`) [mm2]."""
+        """A field (V,) without details smaller than about sqrt(`extent`); `extent` is in mm2."""
         return _smooth(field, extent, self.areas, self.laplacian)
 
     def harmonic(

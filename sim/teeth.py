@@ -1,9 +1,9 @@
-"""Teeth as something hard behind lips and cheeks: one elliptic arch on each jaw.
+"""Teeth as hard bodies behind lips and cheeks: one elliptic arch on each jaw.
 
-An arch is half an elliptic cylinder that stands on its bone: around the middle of the molars,
-half as wide as they are, as deep as the incisors are in front of them. Skin near it is kept out
-along the way from its axis; the upper arch stays with the cranium, the lower moves with the jaw.
-Towards the free edges of the teeth the arch fades, so that a lip can slip off.
+An arch is half an elliptic cylinder that stands on its bone. Its axis goes through the middle of
+the molars. Its half width is theirs, and its depth is the distance of the incisors in front of
+them. Skin inside is moved out, away from the axis. The upper arch stays with the cranium, the lower
+moves with the jaw. Towards the free edges of the teeth the arch fades, so that a lip can slip off.
 
 Source: own; contact by projection as in contact.py. Anatomy: dental arches are close to half
 ellipses.
@@ -27,11 +27,11 @@ class Teeth(NamedTuple):
 
     vertex: Integers32  # (C,)
     lower: Flags  # (C,) moves with the mandible
-    arch: Floats64  # (C, 5) mm: half width, depth, z of the axis, lowest and highest tooth
-    least: Floats64  # (C,) how near to the axis it may come, 1 = the arch
+    arch: Floats64  # (C, 5) mm: half width, depth, z of the axis, lowest and highest y of its teeth
+    least: Floats64  # (C,) least distance from the axis, 1 = the arch
 
     def deepest(self, x: Floats64, mandible: RigidMotion) -> float:
-        """Greatest depth of skin at `x` (V, 3) in the teeth, less that at rest [mm]."""
+        """Greatest depth of skin at `x` (V, 3) in the teeth, minus that at rest [mm]."""
         if not len(self.vertex):
             return 0.0
         points = x[self.vertex]
@@ -80,13 +80,13 @@ def watch_teeth(parts: Any, surface: SkinSurface, space: FaceSpace) -> Teeth:
 
 
 def _arch(teeth: Floats64) -> Floats64:
-    """Half width, depth, z of the axis, lowest and highest y of some teeth (n, 3) [mm]."""
+    """Half width, depth, z of the axis, lowest and highest y of the arch of teeth (n, 3) [mm]."""
     half_width = np.abs(teeth[:, 0]).max()
     back = teeth[np.abs(teeth[:, 0]) > 0.9 * half_width, 2].mean()
     depth = teeth[:, 2].max() - back
     low = teeth[:, 1].min()
     high = teeth[:, 1].max()
-    lip_thickness = 0.5  # mm that stay between the skin's inner side and a tooth
+    lip_thickness = 0.5  # mm that stay between skin and a tooth
     return np.array([half_width + lip_thickness, depth + lip_thickness, back, low, high])
 
 

@@ -1,8 +1,8 @@
 """Skin and tissue: the springs from each vertex to the bone and to its neighbours, and its mass.
 
-Kähler ties each skin vertex to a bone or muscle point by a spring and adds its mirror image
-outside the skin, so that skin slides sideways but neither sinks in nor lifts off. With anchor
-depth d, stiffness k and pre-tension share p each, the pair pulls like
+Kähler ties each skin vertex to a bone or muscle point by a spring and adds its mirror image outside
+the skin, so that skin slides sideways but neither sinks in nor lifts off. If each spring has the
+anchor depth d, the stiffness k and the pre-tension share p, the pair pulls like
 
     force = -A [ kt (I - n n^T) + kn n n^T ] (x - r),      kn = 2 k,  kt = 2 k p
 
@@ -13,14 +13,14 @@ square root. n turns with the bone.
 The skin itself is a membrane. Every edge is a spring with the rest length of the undeformed mesh.
 Its stiffness follows from the adjacent triangle areas (Van Gelder), so the membrane does not depend
 on the triangulation; beyond a strain it stiffens (biphasic, as skin does). A second, linear term
-lets neighbours move alike: edge springs alone resist no shear on a valence-4 grid and leave single
+makes neighbours move alike: edge springs alone resist no shear on a valence-4 grid and leave single
 vertices behind.
 
 Source: Kähler et al. 2001, section 3.2 (edges are springs, counter springs); Van Gelder 1998; Lee,
-Terzopoulos, Waters 1995 for layered tissue and biphasic stiffness.
-Differs from them: linearised; the far end r is the bone-carried rest position, muscles act as
-springs of their own (muscles.py). The shear term: measured against scans it, not the membrane,
-gives skin its smooth field of motion.
+Terzopoulos, Waters 1995 for layered tissue and biphasic stiffness. Differs from them: the pair is
+linearised; the far end r is the rest position carried by bones; muscles act as springs of their own
+(muscles.py). The shear term is our own: measured against scans, it gives skin its smooth field of
+motion, and the membrane does not.
 """
 
 from __future__ import annotations
@@ -50,14 +50,14 @@ class TissueSprings(NamedTuple):
     def under(cls, surface: SkinSurface, tissue: Tissue, septum: Floats64) -> TissueSprings:
         """Uniform tissue under a whole surface, except the nose.
 
-        septum: from the base of the nose to its tip, points (K, 3) [mm]; none without landmarks.
-        There skin lies on cartilage that stands on the bone, and lifts little with the lip.
+        septum: points from the base of the nose to its tip (K, 3) [mm]; none without landmarks.
+        Skin there lies on cartilage that stands on the bone, and rises little with the lip.
         """
         scale = tissue.stiffness_scale * surface.areas
         firm = np.zeros(surface.vertex_count)
         if len(septum):
             away = polyline_distance(surface.positions, septum)
-            half_width = 5.0  # mm, of the columella: wings and lip are as free as other skin
+            half_width = 5.0  # mm of the columella: wings and lip are as free as other skin
             near = np.maximum(0.0, 1.0 - (away / half_width) ** 2)
             firm = tissue.septum * near**2
         return cls(
@@ -72,7 +72,7 @@ class EdgeSprings(NamedTuple):
     """All edges of the skin as springs."""
 
     edges: Unsigned32  # (E, 2); unsigned saves the kernel a test per access
-    rows: Unsigned32  # (V + 1,) edges that begin at vertex i: rows[i] up to rows[i + 1]
+    rows: Unsigned32  # (V + 1,) edges that begin at vertex i have rows[i] up to rows[i + 1]
     rest_length: Floats64  # (E,) mm
     stiffness: Floats64  # (E,) of the membrane
     shear: Floats64  # (E,)
@@ -83,8 +83,8 @@ class EdgeSprings(NamedTuple):
     def along(cls, surface: SkinSurface, tissue: Tissue, knots: Floats64) -> EdgeSprings:
         """Springs along all edges of a surface.
 
-        knots: points (K, 3) [mm] around which skin is firm, the mouth corners: there many muscles
-        are knotted together (the modiolus), and no fold may turn inside out. The knot resists
+        knots: points (K, 3) [mm] around which skin is firm, the mouth corners. Many muscles are
+        knotted together there (the modiolus), and no fold may turn inside out. The knot resists
         stretch more than turning, or a round mouth has pointed corners.
         """
         stiffness = tissue.membrane * tissue.stiffness_scale * surface.edge_stiffness
@@ -102,7 +102,7 @@ class EdgeSprings(NamedTuple):
         )  # fmt: skip
 
     def row_bound(self, vertex_count: int) -> Floats64:
-        """Gershgorin bound of the springs' stiffness per vertex, stiff slope, shape (V,)."""
+        """Gershgorin bound of the springs' stiffness by vertex, stiff slope, shape (V,)."""
         most = 2.0 * (self.stiffness * self.stiffening + self.shear)
         bound = np.zeros(vertex_count)
         for end in range(2):
@@ -111,7 +111,7 @@ class EdgeSprings(NamedTuple):
 
 
 def masses_for_step(areas: Floats64, stiffness: Floats64, step: float) -> Floats64:
-    """Mass of each vertex, shape (V,): its skin's, raised where the fixed step would be unstable.
+    """Mass of each vertex, shape (V,): its skin's, raised where the step would be unstable.
 
     stiffness: bound on each row of the stiffness matrix (Gershgorin), shape (V,). An explicit step
     h is stable for h^2 K < 4 m; small triangles would force a tiny step on all, so they get
@@ -120,7 +120,7 @@ def masses_for_step(areas: Floats64, stiffness: Floats64, step: float) -> Floats
     # Share of the square of the largest stable step; the rest is margin for geometry.
     stable_step_share = 0.5
     needed = stiffness * step**2 / (4.0 * stable_step_share)
-    areal_mass = 1.0  # g/cm2: skin and fat about 1 cm thick; only ratios to stiffness matter
+    areal_mass = 1.0  # g/cm2: skin and fat of about 1 cm; only ratios to stiffness matter
     return np.maximum(areas * areal_mass, needed)
 
 

@@ -1,15 +1,15 @@
 """The tongue: a spine in the middle plane that bends, and flesh around it.
 
-The tongue hangs on the mandible, so everything here is in the mandible's place at rest. At rest the
-spine is the middle line of the part called "tongue". Two controls bend it:
+The tongue hangs on the mandible, so all coordinates here are those of the mandible at rest. At rest
+the spine is the middle line of the part called "tongue". Two controls bend it:
 
     tongue_out   the spine slides along a path over the lower incisors, over the lower lip and down
                  in front of it; the root comes forward, and the tongue gets longer and thinner
     tongue_up    the tip rises towards the palate, right behind the upper incisors
 
-The path lies over the lower lip where it is now, and the tongue is as thin as the room between
-teeth and lips makes it. Through a shut mouth it does not come at all. Each vertex keeps its place
-along the spine and turns with it.
+The path lies over the present lower lip, and the room between teeth and lips sets how thick the
+tongue is there. It does not come through a shut mouth. Each vertex keeps its place along the spine
+and turns with it.
 
 Source: own; a tongue keeps its volume (Kier, Smith 1985, "Tongues, tentacles and trunks").
 """
@@ -29,14 +29,14 @@ from .coordinates import FaceSpace
 from .landmarks import smoothstep
 from .skull import RigidMotion
 
-SAMPLES = 65  # points of the spine
+SAMPLES = 65  # number of points of the spine
 
 
 @dataclass(frozen=True)
 class Tongue:
     """A tongue at rest, in the standard space, seen from the mandible."""
 
-    PATH_SETBACK = 10.0  # mm behind the lower incisors' edges, where the path over them begins
+    PATH_SETBACK = 10.0  # mm behind the lower incisors' edges: here the path over them begins
 
     rest: Floats64  # (T, 3)
     along: Floats64  # (T,) place along the spine: 0 the tip .. 1 the root
@@ -45,42 +45,42 @@ class Tongue:
     half: Floats64  # (SAMPLES,) half of the height
     lower_edge: Floats64  # (3,) of the lower incisors
     upper_edge: Floats64  # (3,) of the upper incisors, seen from the cranium
-    lips: Integers64  # vertex numbers of LIPS
+    lips: Integers64  # vertex numbers of the landmarks LIPS
 
     def bent(self, out: float, up: float, x: Floats64, mandible: RigidMotion) -> Floats64:
         """The vertices for tongue_out and tongue_up, 0..1, shape (T, 3).
 
-        x: the skin now, shape (V, 3), and where the mandible is.
+        x: the skin now, shape (V, 3); mandible: its present motion.
         """
         lips = (x[self.lips] - mandible.shift) @ mandible.rotation
         upper_edge = (self.upper_edge - mandible.shift) @ mandible.rotation
         free_share, thickness = self._passage(lips, upper_edge)
         out *= free_share
-        # Of tongue_out, by which the tip has risen from behind the incisors onto the path.
+        # Part of tongue_out in which the tip rises from behind the incisors onto the path.
         rise_share = 0.25
         risen = float(smoothstep(np.array(out / rise_share)))
         path = self._on_path(out, lips, thickness)
         spine = self.spine + risen * (path - self.spine)
-        # In mm forward and up from the upper incisors' edges: where a risen tip is.
+        # Place of a risen tip, in mm forward and up from the upper incisors' edges.
         palate = (-6.0, 5.0)
         tip_up = upper_edge[[2, 1]] + palate - self.spine[0]
         highest_rise = 24.0  # mm that the tip rises
         tip_up *= min(1.0, highest_rise / float(np.linalg.norm(tip_up)))
         place = np.linspace(0.0, 1.0, SAMPLES)
-        front_share = 0.75  # of the spine that rises with the tip
+        front_share = 0.75  # of the spine, that rises with the tip
         falloff = np.maximum(1.0 - place / front_share, 0.0)[:, None] ** 2
         spine += up * (1.0 - risen) * falloff * tip_up
-        ahead = spine[:, 0] - self.lower_edge[2]  # of the lower teeth
-        # Flat where it passes between the teeth.
+        ahead = spine[:, 0] - self.lower_edge[2]  # mm in front of the lower teeth
+        # The tongue is flat where it passes between the teeth.
         between = (ahead + 2.0 * self.PATH_SETBACK) / (1.5 * self.PATH_SETBACK)
         flat = risen * smoothstep(between)
         flat_height = np.minimum(0.5 * thickness / self.half, 1.0)
         height = 1.0 + flat * (flat_height - 1.0)
-        least_width_share = 0.7  # of its width and height
+        least_width_share = 0.7  # of its width and height, at least
         shortening = np.sqrt(_length(self.spine) / _length(spine))
         slender = np.clip(shortening, least_width_share, 1.0)
         turn = _direction(spine) - _direction(self.spine)
-        sunk_share = 0.25  # of the way to where it lies on the lip
+        sunk_share = 0.25  # of the way from the rest to its place on the lip
         # The thin tip hangs lower than the middle of the thick rest.
         sunk = sunk_share * risen * np.maximum(0.5 * thickness - self.half, 0.0)
         # The lower lip is lowest in its middle: the tongue lies in it.
@@ -97,7 +97,7 @@ class Tongue:
         off = self.off * here(height) * slender
         off += here(hollow) * beside**2
         off -= here(sunk)
-        # Flat, it shows the groove in its middle, which runs out before the tip.
+        # A flat tongue shows the groove in its middle, which ends before the tip.
         groove_depth = 1.6  # mm at most
         groove_width = 2.6  # mm
         groove = groove_depth * risen * smoothstep((self.along - 0.03) / 0.2)
@@ -113,8 +113,9 @@ class Tongue:
         ceiling = min(lips[0, 1], upper_edge[1])
         floor = max(lips[1, 1], self.lower_edge[1])
         room = ceiling - floor
-        least_room = 1.0  # mm between teeth and lips: with less the tongue stays in
-        # In mm between teeth and lips: with more the tongue comes out as far as it is set.
+        least_room = 1.0  # mm between teeth and lips: the tongue stays in where there is less
+        # In mm between teeth and lips: with more room the tongue comes out as far as its control
+        # says.
         free_room = 3.5
         free_share = (room - least_room) / (free_room - least_room)
         filled_share = 0.8  # of the room between teeth and lips: thickness of the tongue there
@@ -127,13 +128,13 @@ class Tongue:
         _, middle, low, *_ = lips
         clearance = 0.6  # mm above teeth and lip
         above = 0.5 * thickness + clearance
-        lip_front = 4.2  # mm that the lip's most forward skin is in front of its landmarks
+        lip_front = 4.2  # mm from the lip's landmarks to its most forward skin
         front = max(middle[2], low[2]) + lip_front
         over_lip = max(middle[1], self.lower_edge[1]) + above
         root_forward = 10.0  # mm that the root comes forward
         body_rise = 5.0, 4.0  # mm that its middle comes forward and up
-        overhang = 4.0  # mm that the tip is in front of the lip at the end
-        tip_drop = 9.0  # mm that the tip is below the edge of the lip at the end
+        overhang = 4.0  # mm from the lip forward to the tip at the end
+        tip_drop = 9.0  # mm from the edge of the lip down to the tip at the end
         path = np.array([
             self.spine[-1] + (root_forward, 0.0),
             self.spine[SAMPLES // 2] + body_rise,
@@ -143,7 +144,7 @@ class Tongue:
         ])  # fmt: skip
         lengths = arc_lengths(path)
         tip = lengths[2] + out * (lengths[-1] - lengths[2])
-        # Its root is drawn long, its tip keeps its shape.
+        # The root is stretched, and the tip keeps its shape.
         place = np.linspace(0.0, 1.0, SAMPLES)
         rest = _length(self.spine)
         way = tip - rest * place - (tip - rest) * place**2
@@ -152,7 +153,7 @@ class Tongue:
 
 
 def place_tongue(parts: Any, space: FaceSpace, landmarks: Integers64 | None) -> Tongue | None:
-    """The tongue among a head's parts; None without one that could bend, teeth or landmarks.
+    """The tongue among a head's parts; None without teeth, landmarks, or a tongue that could bend.
 
     parts: objects with `name` and `vertices`; landmarks: vertex numbers, shape (68,).
     """
@@ -167,13 +168,13 @@ def place_tongue(parts: Any, space: FaceSpace, landmarks: Integers64 | None) -> 
     rest, lower, upper = (space.to_standard(found[name]) for name in names)
     tip = rest[:, 2].max()
     root = rest[:, 2].min()
-    slice_count = 24  # in which its thickness is measured
+    slice_count = 24  # slices in which its thickness is measured
     least_length = 5.0  # mm: a shorter tongue cannot bend
     if len(rest) < slice_count or tip - root < least_length:
         return None
     along = (tip - rest[:, 2]) / (tip - root)
     place = np.linspace(0.0, 1.0, SAMPLES)
-    degree = 4  # of the polynomial that is the spine at rest
+    degree = 4  # of the polynomial that gives the spine at rest
     middle = np.polynomial.Polynomial.fit(along, rest[:, 1], degree)
     off = rest[:, 1] - middle(along)
     slices = np.array_split(np.argsort(along), slice_count)
@@ -181,7 +182,7 @@ def place_tongue(parts: Any, space: FaceSpace, landmarks: Integers64 | None) -> 
     halves = [np.ptp(off[numbers]) / 2 for numbers in slices]
     half = np.interp(place, middles, halves)
     spine = np.stack([tip - place * (tip - root), middle(place)], axis=1)
-    # Landmarks: upper; middle, lower edge and both sides of the lower lip.
+    # Landmarks of the upper lip, and of the lower lip's middle, lower edge and both sides.
     lips = (62, 66, 57, 65, 67)
     return Tongue(
         rest, along, spine, off, np.maximum(half, 0.1),
@@ -191,7 +192,7 @@ def place_tongue(parts: Any, space: FaceSpace, landmarks: Integers64 | None) -> 
 
 def _edge(teeth: Floats64, *, up: float) -> Floats64:
     """The edge of the incisors of one jaw, in the middle, shape (3,)."""
-    incisor_width = 5.0  # mm beside the middle: the incisors' edges
+    incisor_width = 5.0  # mm to each side of the middle that hold the incisors' edges
     incisors = teeth[np.abs(teeth[:, 0]) < incisor_width]
     among = incisors if len(incisors) else teeth
     edge: Floats64 = among[(up * among[:, 1]).argmax()] * (0.0, 1.0, 1.0)
@@ -199,7 +200,7 @@ def _edge(teeth: Floats64, *, up: float) -> Floats64:
 
 
 def _direction(spine: Floats64) -> Floats64:
-    """Angle [rad] by which the spine points up, towards its tip, at each of its points."""
+    """Angle [rad] of the spine's direction to its tip, above forward, at each of its points."""
     forward, up = -np.gradient(spine, axis=0).T
     return np.unwrap(np.arctan2(up, forward))
 

@@ -16,7 +16,7 @@ class Touch:
     """Blows and pulls on the skin of one simulation."""
 
     def __init__(self, model: FaceModel, state: State, positions: Floats64, bones: Bones) -> None:
-        """positions: of the skin now [head units], shape (V, 3)."""
+        """positions: the skin now [head units], shape (V, 3)."""
         self._model = model
         self._state = state
         self._positions = positions
@@ -38,7 +38,7 @@ class Touch:
 
         vertices: their numbers, shape (n,), none twice. targets: where each is drawn to [head
         units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
-        shape (n,). Raises ValueError if they do not fit together.
+        shape (n,). Raises ValueError if these arguments do not fit together.
         """
         wanted = "different vertex numbers, shape (n,)"
         count = len(self._positions)
@@ -54,7 +54,7 @@ class Touch:
         away = self._in_standard_space(points - self._positions[numbers])
         self._vertices = numbers
         self._to = self._state.x[numbers] + away
-        # In rad/s of the firmest pull: outdoes the skin, stable at the longest substep.
+        # In rad/s, of the firmest pull: stronger than the skin, and stable at the longest substep.
         finger_rate = 350.0
         self._stiffness = share * self._model.skin.mass[numbers] * finger_rate**2
 
@@ -77,6 +77,6 @@ class Touch:
             state.pull[self._vertices] += self._stiffness[:, None] * drawn
 
     def _in_standard_space(self, vectors: Floats64) -> Floats64:
-        """Vectors (n, 3) of the head, wherever that is turned now."""
+        """Vectors (n, 3) of the head as it is turned now, in the standard space [mm]."""
         standard = self._model.space.vectors_to_standard(vectors)
         return np.asarray(standard @ self._bones.head.rotation)
