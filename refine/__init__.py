@@ -1,36 +1,36 @@
 """Dynamic refinement of animated triangle meshes: arrays in, crack-free triangles out, each frame.
 
 After Kähler, Haber and Seidel, "Dynamically refining animated triangle meshes for rendering", The
-Visual Computer 2003. It needs numpy and numba, and jit.py and geometry/ beside it.
+Visual Computer 2003. It needs numpy and numba, and the neighbours jit.py and geometry/.
 
     refiner = refine.create("kahler", faces, rest_positions)   # once per mesh
     mesh = refiner.refine(positions)                           # every frame
     draw(mesh.positions, mesh.normals, mesh.triangles)
 
-Refiners by name: `none` hands the mesh through, `kahler` is the paper's, `loop` subdivides the
+Refiners by name: `none` returns the mesh itself, `kahler` is the paper's, `loop` subdivides the
 whole mesh for comparison. `refine(positions, out=stream)` writes straight into lent arrays.
-`Shortening` measures how far the skin is. `Embedding` carries a fine mesh with a coarse one.
-`check` and `check_embedding` are for tests: they name the relation that is broken.
+`Shortening` measures how far the skin is compressed. `Embedding` carries a fine mesh with a coarse
+one. `check` and `check_embedding` are for tests: they name the broken relation.
 
-`kahler` follows the paper by default. Its options: `scheme` says where points go, `criterion` which
-edges are split, `splits` that they are the same in every frame, `blend` that nothing pops,
-`coherent` that no triangulation turns, `attributes` what rides along, `crease_angle` what stays
-sharp. Schemes, criteria and refiners of somebody else join by name: `schemes.register`,
-`criteria.register`, `refiners.register`, or an entry point; `Scheme`, `Criterion` and `BaseRefiner`
-are to derive from.
+`kahler` follows the paper by default. Its options: `scheme` places points, `criterion` chooses the
+split edges, `splits` fixes them for all frames, `blend` keeps points from popping, `coherent` keeps
+triangulations from turning, `attributes` are further values at vertices, `crease_angle` keeps edges
+sharp. Schemes, criteria and refiners of other authors join by name: `schemes.register`,
+`criteria.register`, `refiners.register`, or an entry point. They derive from `Scheme`, `Criterion`
+and `BaseRefiner`.
 
-One room for each subject; each may import from those above it, and from jit.py, which compiles it
-all, and geometry/, which lie beside this folder:
+There is one room for each subject. Each may import from the rooms above it, and from jit.py (the
+compiler) and geometry/, which lie beside this folder:
 
     mesh/       the bound mesh: connectivity, seams, normals
     border/     input and output of every refiner; the protocol is plugin.py
     kahler/     the paper: refiner.py is a frame, then sections 4.1 to 4.4, one file each
     beyond/     its options (options.py), other criteria and schemes, blending
     others.py   refiners to compare with
-    strain.py   how far the skin is stretched
+    strain.py how far the skin is shortened
     embedding/  a fine mesh that follows the smooth surface of a coarse one
     hosts.py    meshes as other programs keep them
-    port.py     tables and rules, for those who write the method anew
+    port.py tables and rules, for authors who port the method
 
 Read border/plugin.py first, then kahler/. docs/refinement.md shows it with pictures.
 """

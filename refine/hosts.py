@@ -1,4 +1,4 @@
-"""Meshes as other programs keep them: vertices doubled along seams, any data at them."""
+"""Meshes of other programs, which have vertices doubled along seams, and any data there."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,7 +15,7 @@ from .mesh.seams import weld as weld_vertices
 from .mesh.validation import checked_mesh
 
 SMOOTH = {"scheme": "cubic", "criterion": "displacement+rest"}
-"""Rounds places that are coarse at rest or bend: the look of the application's window."""
+"""Options that round places which are coarse at rest, or bend: the application's usual look."""
 
 
 class WeldedRefiner:
@@ -25,9 +25,9 @@ class WeldedRefiner:
         mesh = refiner.refine(moved, values={"heat": heat})      # every frame
         draw(mesh.positions, mesh.triangles, mesh.attributes["heat"])
 
-    Such a mesh has a vertex twice where two sides of it look different. These are welded for
-    refinement, so that no crack opens between them, and part again in the refined mesh. By
-    default it refines as the window does, `scheme="cubic", criterion="displacement+rest"`, so
+    Such a mesh has a vertex twice where its two sides look different. Doubled vertices are welded
+    for refinement, so that no crack opens between them, and part again in the refined mesh. The
+    default is the refinement of the window, `scheme="cubic", criterion="displacement+rest"`, so
     that a mesh that did not move gets smoother, too.
     """
 
@@ -44,12 +44,12 @@ class WeldedRefiner:
         """Bind to `points` at rest, shape (V, 3), and `triangles`, shape (F, 3).
 
         `weld`: whether vertices at one place are one; False for surfaces that touch at rest and
-        part later, as lips do. `weld_tolerance`: how far apart they may lie, in sizes of the mesh;
-        None for 1e-9, or the last bits of the points' type where that is more. `seams`: whether
-        welded vertices part again in the output, which they need only if they carry data.
-        `options`: those of `create_kahler`, but for texture coordinates and attributes, which
-        frames bring as values. With `splits`, of the welded `edges`, all frames have the same
-        triangles. Raises ValueError as `create` does.
+        part later, such as lips. `weld_tolerance`: their largest distance, in sizes of the mesh;
+        None for 1e-9, or the last bits of the points' type if these are more. `seams`: whether
+        welded vertices part again in the output, which is needed only if they carry data.
+        `options`: those of `create_kahler` except texture coordinates and attributes, which frames
+        bring as values. With `splits`, of the welded `edges`, all frames have the same triangles.
+        Raises ValueError as `create` does.
         """
         rest, given = checked_mesh(points, triangles, ("points", "triangles"))
         self.triangles = read_only(given)
@@ -62,7 +62,7 @@ class WeldedRefiner:
             self._faces = faces.astype(np.int64)
         self._parts = seams and len(self._kept) < len(rest)
         self._used = np.unique(self.triangles)  # in the order of values of corners
-        # The number of a doubled vertex stands for its texture coordinate.
+        # The number of a doubled vertex takes the place of a texture coordinate.
         numbers = {"uv": np.zeros((len(rest), 2)), "face_uv": self.triangles}
         chosen = {**SMOOTH, **options}
         if options.get("splits") is not None and "criterion" not in options:
@@ -93,9 +93,9 @@ class WeldedRefiner:
     ) -> RefinedMesh:
         """Turn a frame of all points, shape (V, 3), into triangles, as `Refiner.refine` does.
 
-        `values`: of the points in this frame, by name, shape (V, ...), of any type. They are the
-        attributes of the refined mesh, as `carry` hands them on. Raises ValueError for another
-        number of points or values, or points that are not finite.
+        `values`: values of the points in this frame, by name, shape (V, ...), of any type. They
+        become attributes of the refined mesh, by `carry`. Raises ValueError for another number of
+        points or values, or points that are not finite.
         """
         frame = np.asarray(points)
         if frame.shape != (self.point_count, 3):
@@ -113,7 +113,7 @@ class WeldedRefiner:
         return self._mesh
 
     def carry(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
-        """Values of the input's points, shape (V, ...), at those of the last frame, (N, ...).
+        """Carry values of the input's points, shape (V, ...), to those of the last frame, (N, ...).
 
         They are linear along edges, and each side of a seam has its own. Types stay: integers
         are rounded to the nearest, and values of other kinds come from the nearest point.
@@ -132,21 +132,21 @@ class WeldedRefiner:
         return carried
 
     def _find_origins(self) -> tuple[Integers64, Floats64]:
-        """The input's points that each point of the frame lies between, (N, 3), and its weights."""
+        """The three input points around each point of the frame, and their weights, (N, 3) each."""
         if self._mesh is None:
             raise ValueError("nothing is refined yet; call refine(points) before carry(values)")
         vertices, weights = self._refiner.origins()
         rows = self._kept[vertices]
-        if self._parts:  # each side of a seam has its own of the doubled vertices
+        if self._parts:  # each side of a seam has its own doubled vertex
             own = self._refiner.origins_of_values().vertices
             rows = np.where(own >= 0, self._used[own], rows)
         wide = weights.astype(np.float64)
-        return rows, wide / wide.sum(axis=1, keepdims=True)  # as single they add up to 1.00000003
+        return rows, wide / wide.sum(axis=1, keepdims=True)  # float32 sums are 1.00000003
 
 
 def _mixed(table: npt.NDArray[Any], rows: Integers64, weights: Floats64) -> npt.NDArray[Any]:
     """Means of rows of a table, (M, 3), with weights of the same shape; numbers of any type."""
-    if table.dtype.kind == "c":  # as pairs: infinity times a complex share is no number
+    if table.dtype.kind == "c":  # as pairs: infinity times a complex share is NaN
         pairs = np.ascontiguousarray(table)[..., None].view(table.real.dtype)
         return np.ascontiguousarray(_mixed(pairs, rows, weights)).view(table.dtype)[..., 0]
     corners = table[rows]
@@ -155,7 +155,7 @@ def _mixed(table: npt.NDArray[Any], rows: Integers64, weights: Floats64) -> npt.
     if table.dtype.kind in "iu" and table.dtype.itemsize == 8:
         return _mixed_wide(corners, shares, has_part)
     parts = np.zeros(corners.shape, dtype=np.result_type(table.dtype, np.float64))
-    np.multiply(corners, shares, where=has_part, out=parts)  # infinity has no part that is zero
+    np.multiply(corners, shares, where=has_part, out=parts)  # infinity times zero would be NaN
     mixed = parts.sum(axis=1)
     if table.dtype.kind == "f":  # values equal at all corners stay so to the last bit
         first = np.where(has_part, corners, np.inf).min(axis=1)
@@ -170,7 +170,7 @@ def _mixed_wide(
 ) -> npt.NDArray[np.integer]:
     """The same for integers of 64 bits, shape (M, 3, ...), which doubles do not hold.
 
-    Doubles hold how far they lie above the least of them. Halves are rounded to the even number, as
+    Doubles hold their differences from the least of them. Halves are rounded to the even number, as
     `numpy.rint` does.
     """
     largest = np.iinfo(corners.dtype).max

@@ -1,23 +1,23 @@
-"""Refiners to compare with: the mesh as it is, and Loop subdivision of all of it.
+"""Refiners to compare with: the unchanged mesh, and Loop subdivision of the whole mesh.
 
 *None* splits nothing: it returns the mesh itself in the form of a refined mesh.
 
 Kähler, Haber, Seidel 2003, compare with the static mesh in every figure and in Table 1. Positions,
-normals and texture coordinates are those that `kahler` returns where no edge is split, to the last
-bit, so that switching between the two shows nothing but refinement.
+normals and texture coordinates are, to the last bit, those of `kahler` where no edge is split, so
+that a switch between the two shows only refinement.
 
 *Loop* subdivides the whole mesh, level by level: the adaptive refiner is compared with it.
 
 Its rules are those of Loop 1987 with Warren's vertex weights (Warren 2001). Kähler, Haber, Seidel
 2003, section 4.2, take their rules from this scheme. Every edge is split, every vertex is smoothed,
 borders follow their own curve. The connectivity of each level is built at binding; a frame only
-moves points, with the very passes of `kahler`.
+moves points, by the passes of `kahler`.
 
 Normals and texture coordinates of new points are interpolated along the edge and not recomputed
 from the subdivided surface, as in `kahler`, so that the two can be compared in shading and in time.
 
-Differs from `kahler` where that splits all edges twice: a triangle becomes sixteen, not ten, with
-three points in its interior, and the second level smooths all vertices of the first.
+Differs from `kahler` with all edges split twice: a triangle becomes sixteen, not ten, with three
+points in its interior, and the second level smooths all vertices of the first.
 """
 
 from dataclasses import dataclass
@@ -44,9 +44,9 @@ from .mesh.connectivity import Connectivity, connect
 from .mesh.creases import sharpened
 
 CHILD_TRIANGLES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
-"""Of a triangle with corners 0 1 2 and middles 3 4 5 of its edges: the triangles it becomes."""
+"""Four children of a triangle with corners 0 1 2 and middles 3 4 5 of its edges."""
 LEVELS = Option("how often all edges are split", 1, 4, name="levels", kind="integer")
-"""At most four, chosen: it makes 256 triangles of each, half a million of a face."""
+"""Most levels, chosen: four levels make 256 triangles of each, half a million of a face."""
 
 
 class Level:
@@ -57,7 +57,7 @@ class Level:
         self.points = points
         self.normals = normals
         self._scheme = LoopScheme()
-        positions = np.zeros((0, 3))  # which no pass of this reads
+        positions = np.zeros((0, 3))  # no pass of this reads them
         self._scheme.bind(connectivity, positions, normals)
         frame = buffers_for(connectivity, positions, points, normals)
         self._frame = split_everywhere(frame, connectivity.vertex_count)
@@ -108,7 +108,7 @@ class Loop(BaseRefiner):
 
     @property
     def triangle_capacity(self) -> int:
-        """Triangles of the finest level: 4 for each, 16, 64 or 256."""
+        """Triangles of the finest level: 4, 16, 64 or 256 for each."""
         return len(self._triangles)
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
@@ -131,7 +131,7 @@ class Loop(BaseRefiner):
         return vertex_count, triangle_count
 
     def follow_values(self) -> None:
-        """Take values of every level, each halfway along the edges of the level before."""
+        """Take values of every level, from middles of the edges of the level before."""
         assert self._values is not None
         values = self._values.values
         for mesh in self._split:
@@ -153,7 +153,7 @@ class Loop(BaseRefiner):
 
 @dataclass(frozen=True)
 class _Refined:
-    """A subdivided mesh in terms of the mesh it came from."""
+    """A subdivided mesh, with its places on the input mesh."""
 
     connectivity: Connectivity
     values: Floats32 | None
@@ -175,7 +175,7 @@ class _Refined:
         )
 
     def subdivided(self) -> "_Refined":
-        """Split every edge: each triangle becomes four, one that names a vertex twice stays."""
+        """Split every edge: each triangle becomes four; one that names a vertex twice stays."""
         mesh = self.connectivity
         whole = np.flatnonzero(mesh.is_degenerate)
         split = np.flatnonzero(~mesh.is_degenerate)
@@ -214,13 +214,13 @@ class _Refined:
 
 
 def _with_middles(values: Floats32, mesh: Connectivity) -> Floats32:
-    """Values of a mesh, (A, k), and after them those in the middle of each attribute edge."""
+    """Values of a mesh, (A, k), followed by those in the middle of each attribute edge."""
     middles = values[mesh.attribute_edge_uv].mean(axis=1, dtype=np.float32)
     return np.concatenate([values, middles])
 
 
 def _children(corners: npt.NDArray[Any], middles: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Four triangles for each, three at its corners and one of its middle points.
+    """Four triangles for each triangle: three at its corners, and one of its middle points.
 
     `corners`: of any kind, shape (F, 3, ..); `middles`: of the edges. Shape (4 F, 3, ..).
     """
@@ -229,7 +229,7 @@ def _children(corners: npt.NDArray[Any], middles: npt.NDArray[Any]) -> npt.NDArr
 
 
 class PassThrough(BaseRefiner):
-    """Hands the mesh through with normals; the refiner named `none`."""
+    """Passes the mesh on with normals; the refiner named `none`."""
 
     def __init__(
         self, faces: npt.ArrayLike, rest_positions: npt.ArrayLike, **values: Unpack[Values]

@@ -1,8 +1,8 @@
-"""Tables and rules of the method, for those who write it anew: on a graphics card, in another
-language, or in a criterion that looks at borders.
+"""Tables and rules of the method, for authors who port it: to a graphics card, to another language,
+or to a criterion that treats borders.
 
-Kähler, Haber, Seidel 2003, sections 4.1 to 4.4. All of it is found once per mesh, and none of it is
-needed to use a refiner. `refine_gl` is made of `risorius.refine` and this module.
+Kähler, Haber, Seidel 2003, sections 4.1 to 4.4. All of this is found once per mesh, and a user of a
+refiner needs none of it. `refine_gl` uses only `risorius.refine` and this module.
 """
 
 from .beyond.blending import FANS, RAMP_WIDTH

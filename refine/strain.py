@@ -1,13 +1,13 @@
-"""How far the skin is shortened, from rest and deformed positions alone.
+"""Shortening of the skin, from rest and deformed positions alone.
 
-*Shortening*: how much shorter the skin is than at rest along given directions, which wrinkles
-follow. They stay where they are, so the directions are given at rest, d at each vertex, and only
-the amount is measured:
+*Shortening* is the relative loss of length since rest along given directions; wrinkles follow it.
+Wrinkles keep their places, so the directions are given at rest, d at each vertex, and only the
+amount is measured:
 
     shortening = 1 - |F d|                 F: from rest to now, in the plane of a triangle
 
-Written with the barycentric coordinates b of d, which add up to 0, |F d|^2 needs nothing but the
-squared lengths l of the triangle's edges,
+With the barycentric coordinates b of d, which add up to 0, |F d|^2 needs only the squared lengths l
+of the triangle's edges,
 
     |F d|^2 = - b0 b1 l01^2 - b1 b2 l12^2 - b2 b0 l20^2
 
@@ -30,7 +30,7 @@ LEAST_FLATNESS = 1e-6
 
 
 class Shortening:
-    """Measures deformed positions of one mesh along directions that are known at rest.
+    """Measures the skin of one mesh along directions that are known at rest.
 
     shortening = refine.Shortening(faces, rest_positions, directions)
     amounts = shortening.measure(positions)
@@ -41,10 +41,10 @@ class Shortening:
     ) -> None:
         """Learn the mesh at rest: `faces`, (F, 3), `rest_positions`, (V, 3), `directions`.
 
-        `directions`: k for each vertex, of any length, shape (V, k, 3); what of one stands on the
-        skin is left out, and one that is zero measures nothing. Triangles without area and
-        vertices without triangles are fine and have no strain. Raises ValueError for arrays of
-        other shapes, indices out of range, and numbers that are not finite.
+        `directions`: k for each vertex, of any length, shape (V, k, 3). Their parts normal to the
+        skin are left out; a zero direction has no shortening. Triangles without area and vertices
+        without triangles are allowed and have no strain. Raises ValueError for arrays of other
+        shapes, indices out of range, and numbers that are not finite.
         """
         rest, triangles = checked_mesh(rest_positions, faces)
         self._is_used = used_vertices(triangles, len(rest))
@@ -66,9 +66,9 @@ class Shortening:
     def measure(self, positions: npt.NDArray[np.floating]) -> Floats32:
         """Loss of length of each vertex along its directions, up to 1, shape (V, k).
 
-        0 = none, below 0 a gain. `positions`: shape (V, 3), any float type. The result
-        is overwritten by the next call.
-        Raises ValueError for another shape and for positions that are not finite.
+        0 means no loss, below 0 a gain. `positions`: shape (V, 3), any float type. The result is
+        overwritten by the next call. Raises ValueError for another shape and for positions that are
+        not finite.
         """
         take_positions_like_rest(positions, self._is_used, self._positions, self._points)
         _shorten(self._positions, self._faces, self._rest, self._weights, self._lost)
@@ -76,7 +76,7 @@ class Shortening:
 
 
 def _weights(rest: Floats64, faces: Integers64, directions: Floats64) -> Floats32:
-    """Of each triangle's squared edge lengths at its corners, shape (F, 3, k, 3)."""
+    """Weights of each triangle's squared edge lengths at its corners, shape (F, 3, k, 3)."""
     a, b, c = (rest[faces[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
     area = np.linalg.norm(normal, axis=1)
@@ -92,7 +92,7 @@ def _weights(rest: Floats64, faces: Integers64, directions: Floats64) -> Floats3
     lengths = np.stack(
         [((b - a) ** 2).sum(1), ((c - b) ** 2).sum(1), ((a - c) ** 2).sum(1)], axis=1
     )
-    in_plane = np.einsum("tcsi,ti->tcs", sides, lengths)  # |d|^2, without what stands on the skin
+    in_plane = np.einsum("tcsi,ti->tcs", sides, lengths)  # |d|^2, without d's normal part
     whole = (directions[faces] ** 2).sum(axis=3)
     is_visible = is_proper[:, None, None] & (in_plane > 0.05 * whole) & (whole > 0.0)
     weight = np.where(is_visible, area[:, None, None], 0.0)

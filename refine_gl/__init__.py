@@ -2,14 +2,14 @@
 
 Kähler, Haber, Seidel, "Dynamically refining animated triangle meshes for rendering", The Visual
 Computer 2003. Positions go up in every frame, six passes of compute shaders turn them into
-triangles where they are drawn from, and nothing comes back unless it is read.
+triangles in the memory that is drawn, and nothing comes back unless a caller reads it.
 
     refiner = refine.create("kahler-gl", faces, rest_positions)
     mesh = refiner.refine(positions)          # arrays are fetched when they are read
 
-It joins as a plug-in of anybody's would, by an entry point of the group `risorius.refiners`, and
-needs `risorius.refine`, numpy and moderngl. OpenGL 4.3 or newer runs it, software too; where there
-is none, the log says so once, and the processor does the same by the rules of `kahler`.
+It joins like any plug-in, by an entry point of the group `risorius.refiners`, and needs
+`risorius.refine`, numpy and moderngl. OpenGL 4.3 or newer runs it, in software too. Where there is
+none, the log says so once, and the processor does the same by `kahler`.
 
     tables.py     arrays that are handed over once per mesh
     shaders/      the passes; common.glsl is part of each

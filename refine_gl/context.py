@@ -1,8 +1,9 @@
-"""OpenGL where no caller brings any: a context of this process, in a thread of its own.
+"""OpenGL for callers that bring none: a context of this process, in a thread of its own.
 
-A context is current in one thread, and a thread has one that is current. So ours gets its own, and
-a context that a caller has current stays so, be it of EGL, GLX or a window library. Calls are
-handed over and waited for, which takes tens of microseconds; frames that are read back take longer.
+A context is current in one thread, and a thread has one current context. So ours gets its own
+thread, and a caller's current context stays current, whether from EGL, GLX or a window library. To
+pass a call to the thread and wait takes tens of microseconds; frames that are read back take
+longer.
 """
 
 import functools
@@ -16,11 +17,11 @@ import moderngl
 
 Result = TypeVar("Result")
 LEAST_VERSION = 430
-"""Of OpenGL, times 100: the first with compute shaders."""
+"""Version of OpenGL, times 100: the first with compute shaders."""
 
 
 class GpuError(RuntimeError):
-    """OpenGL cannot refine: it is missing, too old, or has too little room; says which."""
+    """OpenGL cannot refine: the message says if it is missing, too old, or too small."""
 
 
 class OwnContext:
@@ -31,7 +32,7 @@ class OwnContext:
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="kahler-gl")
         try:
             self.gl: moderngl.Context = self.run(_open)
-        except Exception as error:  # glcontext raises nothing better
+        except Exception as error:  # glcontext raises no class of its own
             self._thread.shutdown()
             reason = " ".join(str(error).split())
             raise GpuError(f"no OpenGL 4.3 without a window ({reason})") from None
@@ -57,9 +58,9 @@ def _open() -> moderngl.Context:
 
 @functools.cache
 def own_context() -> OwnContext:
-    """The one of this process; raises GpuError if there can be none."""
+    """The context of this process; raises GpuError if there can be none."""
     return OwnContext()
 
 
-if hasattr(os, "register_at_fork"):  # threads do not live on in a child
+if hasattr(os, "register_at_fork"):  # a forked child has no threads
     os.register_at_fork(after_in_child=own_context.cache_clear)

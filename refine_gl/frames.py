@@ -11,7 +11,7 @@ The paper's rule takes six:
 
 Cubic edges and the normals of their surface have others before and after `mark` (rules.py). Prefix
 sums number points and subtriangles in the order of `refine.Kahler`. A barrier follows each pass.
-Nobody here learns how much came of it: the draw command holds that.
+The processor does not learn the numbers of results: the draw command holds them.
 """
 
 from importlib.resources import files
@@ -27,7 +27,7 @@ from .rules import THREADS, Rules
 from .tables import Tables, groups_of
 
 MOST_GROUPS = 65535
-"""Of a dispatch, that OpenGL promises."""
+"""Most groups of a dispatch that OpenGL promises."""
 VECTOR_BYTES = 16  # bytes
 NUMBER_BYTES = 4  # bytes
 
@@ -38,9 +38,9 @@ class Frames:
     def __init__(
         self, gl: moderngl.Context, tables: Tables, rules: Rules, rest_positions: Floats64
     ) -> None:
-        """Hand the mesh over, and look at it at rest: positions of shape (V, 3).
+        """Upload the mesh, and measure it at rest: positions of shape (V, 3).
 
-        Raises GpuError as `programs_of`.
+        Raises GpuError as `programs_of` does.
         """
         self._programs = programs_of(gl, tables, rules)
         self.gl = gl
@@ -64,7 +64,7 @@ class Frames:
     def run(self, positions: Floats64, metric: Floats32 | None, stream: GpuStream) -> None:
         """Refine a frame into the buffers of a stream.
 
-        `positions`: shape (V, 3); `metric`: measured by the processor, shape (E,).
+        `positions`: shape (V, 3); `metric`: that of the processor, shape (E,).
         """
         self._frame += 1
         self._bind()
@@ -81,7 +81,7 @@ class Frames:
             self._dispatch(name)
 
     def write_values(self, of_wedges: Floats32, of_edge_ends: Floats32) -> None:
-        """Hand over texture coordinates and attributes in place of those of binding.
+        """Upload texture coordinates and attributes in place of the bound ones.
 
         `of_wedges`: shape (W, k); `of_edge_ends`: at both ends of attribute edges, shape (R, 2, k).
         """
@@ -91,7 +91,7 @@ class Frames:
                 self._mesh.write(np.ascontiguousarray(values, np.float32), offset=offset)
 
     def fetch(self, name: str, count: int, size: int = NUMBER_BYTES) -> Unsigned32:
-        """The first numbers, or vectors, that passes have handed on under a name, as numbers.
+        """The first numbers, or vectors, that passes have written under a name, as numbers.
 
         This waits for the frame.
         """
@@ -100,13 +100,13 @@ class Frames:
         return np.frombuffer(buffer.read(size * count, offset=start) if count else b"", np.uint32)
 
     def _bind(self) -> None:
-        """Take the places that shaders look at; others use them, too."""
+        """Bind our buffers to the places that shaders read; other programs may use them, too."""
         self._sizes.bind_to_uniform_block(0)
         for binding, buffer in enumerate((self._mesh, self._positions, self._fields, self._work)):
             buffer.bind_to_storage_buffer(binding)
 
     def _hand_over(self, positions: Floats64, metric: Floats32 | None) -> None:
-        """Upload positions, in double precision; the driver may still read those before."""
+        """Upload positions in double precision; the driver may still read the former ones."""
         if len(positions):
             self._positions.orphan()
             self._positions.write(positions)
@@ -123,7 +123,7 @@ class Frames:
 
 
 def groups_of_pass(name: str, sizes: dict[str, int]) -> int:
-    """How many groups of threads a pass takes: one at least."""
+    """Number of groups of threads of a pass, at least one."""
     return max([1, *(groups_of(sizes[count]) for count in THREADS[name])])
 
 
@@ -132,7 +132,7 @@ def programs_of(
 ) -> dict[str, moderngl.ComputeShader]:
     """The programs of all passes.
 
-    Raises GpuError if OpenGL is too old, a shader is refused, or buffers are too small.
+    Raises GpuError if OpenGL is too old, the driver refuses a shader, or buffers are too small.
     """
     if gl.version_code < LEAST_VERSION:
         raise GpuError(f"OpenGL 4.3 is needed, and this context has {gl.version_code / 100:.1f}")
@@ -154,7 +154,7 @@ def programs_of(
 
 
 def _buffer(gl: moderngl.Context, size: int) -> moderngl.Buffer:
-    """A buffer of zeros; OpenGL has none without room."""
+    """A buffer of zeros, of one vector at least: OpenGL has no empty buffers."""
     return gl.buffer(bytes(max(size, VECTOR_BYTES)), dynamic=True)
 
 
@@ -173,14 +173,14 @@ def shader_text(name: str) -> str:
 def _compile(gl: moderngl.Context, tables: Tables, name: str) -> moderngl.ComputeShader:
     """The program of a pass; all meshes of a context share it."""
     if gl.extra is None:
-        gl.extra = {}  # shared by all users of a context
+        gl.extra = {}  # all users of a context share it
     known: dict[str, moderngl.ComputeShader] = gl.extra.setdefault(__name__, {})
     texts = [f"#line 1\n{shader_text(each)}" for each in ("common", name)]
     source = "\n".join(["#version 430 core", tables.head, *texts])
     if source not in known:
         try:
             known[source] = gl.compute_shader(source)
-        except Exception as error:  # moderngl raises nothing better
+        except Exception as error:  # moderngl raises no class of its own
             lines = [line for line in str(error).splitlines() if "error" in line.lower()]
             complaint = " ".join((lines or [str(error)])[-1].split())
             raise GpuError(f"the driver refuses {name}.glsl: {complaint}") from None

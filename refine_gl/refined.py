@@ -11,16 +11,16 @@ from risorius.geometry.arrays import Floats32, Integers32, Integers64, Unsigned3
 from risorius.refine import GpuStream, RefinedMesh
 
 COMMAND_WORDS = 7
-"""Of a command buffer: DrawElementsIndirectCommand (5), numbers of vertices and of triangles."""
+"""Words of a command buffer: DrawElementsIndirectCommand (5), numbers of vertices and triangles."""
 
 Run = Callable[..., Any]
-"""Calls a function with arguments where the context of a stream is current."""
+"""Calls a function with arguments while the context of a stream is current."""
 Columns = tuple[Floats32 | None, Mapping[str, Floats32]]
 """Texture coordinates and attributes in the rows of a frame."""
 
 
 class GpuBuffers:
-    """A stream for results that are not drawn: the buffers of `refine.GpuStream`, made here."""
+    """A stream for results that are not drawn; its buffers are like a `refine.GpuStream`'s."""
 
     def __init__(
         self, gl: moderngl.Context, columns: int, vertex_capacity: int, triangle_capacity: int
@@ -56,17 +56,17 @@ class GpuMesh:
 
     @property
     def vertex_count(self) -> int:
-        """How many vertices there are: 28 bytes are fetched."""
+        """Number of vertices; 28 bytes are fetched."""
         return int(self._counts[0])
 
     @property
     def triangle_count(self) -> int:
-        """How many triangles."""
+        """Number of triangles."""
         return int(self._counts[1])
 
     @cached_property
     def vertices(self) -> Floats32:
-        """Rows x y z, nx ny nz[, u v][, attributes], shape (N, columns); others are views of it."""
+        """Rows x y z, nx ny nz[, u v][, attributes], shape (N, columns); viewed by other arrays."""
         words = self._fetched("vertex_buffer", self._columns * self.vertex_count)
         return words.view(np.float32).reshape(-1, self._columns)
 
@@ -87,7 +87,7 @@ class GpuMesh:
 
     @cached_property
     def source(self) -> Integers32:
-        """Input triangle that each is part of, shape (M,)."""
+        """Input triangle that each triangle is part of, shape (M,)."""
         return self._fetched("source_buffer", self.triangle_count).view(np.int32)
 
     @property
@@ -106,7 +106,7 @@ class GpuMesh:
         return RefinedMesh, (*arrays, dict(self.attributes))
 
     def _fetched(self, name: str, count: int) -> Unsigned32:
-        """The first numbers of a buffer, in memory of their own that may be written."""
+        """The first numbers of a buffer, in writable memory of their own."""
         words = np.empty(count, np.uint32)
         if count:
             self._run(getattr(self._stream, name).read_into, words, words.nbytes)

@@ -1,8 +1,8 @@
 """The refiner `kahler-gl`: the paper's, frame by frame on the graphics card.
 
 Kähler, Haber, Seidel 2003, sections 4.1 to 4.4, as `refine.Kahler` does them; frames.py has the
-passes. Handed a stream that lives on the card (`refine.GpuStream`) it writes there, in the caller's
-context, and fetches nothing. Handed arrays, or nothing, it uses a context of its own.
+passes. Given a stream on the card (`refine.GpuStream`), it writes there, in the caller's context,
+and fetches nothing. Given arrays, or no stream, it uses a context of its own.
 """
 
 import functools
@@ -63,13 +63,14 @@ def create_kahler_gl(
 
     - `threshold_once`, `threshold_twice`: drop of the normals' dot product above which an edge is
       split once or twice, for the paper's criterion, "normal".
-    - `criterion`: "normal", "rest", "displacement", several as "normal+rest"; others, named or as
-      objects, are measured by the processor in every frame.
+    - `criterion`: "normal", "rest", "displacement", or several, such as "normal+rest"; the
+      processor measures others, by name or as objects, in every frame.
     - `splits`: 0, 1 or 2 for every edge, shape (E,), in place of a criterion: all frames have the
       same vertices and triangles.
     - `scheme`: "loop", the paper's, with its normals, or "cubic", with those of its own surface.
     - `blend`: whether points grow out of their edges, so that nothing pops. None, the default,
-      chooses True for "cubic", unless it is `coherent`, and False for "loop", which has no other.
+      chooses True for "cubic", unless it is `coherent`, and False for "loop", where True is
+      refused.
     - `coherent`: whether triangulations continue those of the frame before (section 4.4).
     - `values`: `uv`, `face_uv`, `attributes` and `crease_angle`, as `refine.create` takes them.
       Cubic edges with creases are refined by the processor.
@@ -95,7 +96,7 @@ def create_kahler_gl(
 
 @functools.cache
 def warn_once(text: str) -> None:
-    """Write a warning into the log, the first time alone."""
+    """Write a warning into the log, only the first time."""
     log.warning(text)
 
 
@@ -111,7 +112,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         settings: Settings,
         **values: Unpack[Values],
     ) -> None:
-        """Bind to a mesh; see `create_kahler_gl`. `own`: OpenGL for frames that bring none.
+        """Bind to a mesh; see `create_kahler_gl`. `own`: OpenGL for frames without any.
 
         Raises GpuError if the driver refuses a shader, or a mesh of this size.
         """
@@ -125,9 +126,9 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         own.run(programs_of, own.gl, self._tables, self._rules)
         self._own_context = own
         self._own_buffers: GpuBuffers | None = None
-        self._frames: Frames | None = None  # of the context of the last frame
+        self._frames: Frames | None = None  # those of the last frame's context
         self._run: Run = operator.call
-        self._has_new_values = False  # that the card has not
+        self._has_new_values = False  # values that the card does not have yet
         self._fetched_splits: Unsigned8 | None = self.edge_splits
 
     @property
@@ -166,7 +167,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         if not self._rules.blends or self._frames is None:
             return origins
         counts = np.append(splits, 0)[mesh.triangle_edges].sum(axis=1)
-        centres = np.flatnonzero(counts > 1)  # where the fan has a middle
+        centres = np.flatnonzero(counts > 1)  # where the fan has a point in the middle
         vectors = self._run(self._frames.fetch, "centres", len(mesh.faces), VECTOR_BYTES)
         weights = vectors.view(np.float32).reshape(-1, 4)[centres, :3]
         return origins.followed_by(mesh.faces[centres], weights)
@@ -182,7 +183,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         if out is not None:
             return super().refine(positions, out, view, values)
         self.take(positions, view, values)
-        return cast(RefinedMesh, self._refine_own(view))  # it has all members of one
+        return cast(RefinedMesh, self._refine_own(view))  # it has all members of a RefinedMesh
 
     def refine_on_card(
         self,
@@ -201,7 +202,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         self._has_new_values = True
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
-        """Refine in a context of our own, and copy the frame into arrays that were lent."""
+        """Refine in a context of our own, and copy the frame into lent arrays."""
         mesh = self._refine_own(view)
         vertex_count = mesh.vertex_count
         triangle_count = mesh.triangle_count
@@ -213,14 +214,14 @@ class KahlerGl(BaseRefiner, GpuRefiner):
 
     def _refine_own(self, view: View | None) -> GpuMesh:
         own = self._own_context
-        own.run(own.gl.gc)  # objects without references
+        own.run(own.gl.gc)  # frees objects without references
         if self._own_buffers is None:
             room = self.vertex_columns, self.vertex_capacity, self.triangle_capacity
             self._own_buffers = own.run(GpuBuffers, own.gl, *room)
         return self._refine_in(self._own_buffers, own.run, view)
 
     def _refine_in(self, stream: GpuStream, run: Run, view: View | None) -> GpuMesh:
-        """Refine into the buffers of a stream; a context that is new gets the mesh first."""
+        """Refine into the buffers of a stream; a new context gets the mesh first."""
         if self._frames is None or self._frames.gl is not stream.context:
             self._frames = run(
                 Frames, stream.context, self._tables, self._rules, self.rest_positions
@@ -233,7 +234,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
             run(self._frames.write_values, self._wedge_values, ends)
             self._has_new_values = False
         self._fetched_splits = None
-        measured = None  # by the processor
+        measured = None  # metric from the processor
         if self._rules.others is not None:
             self.find_normals()
             measured = self._rules.measure_others(self.positions, self.normals, view)

@@ -1,8 +1,8 @@
 """The settings of `kahler-gl`, and the passes, switches and numbers of its shaders.
 
-Two schemes: `loop`, the paper's, and `cubic` with the normals of its own surface, which
-films and the window show. Criteria `normal`, `rest` and `displacement` are decided on the card;
-others are measured by the processor, four bytes an edge, and handed over in every frame.
+Two schemes: `loop`, the paper's, and `cubic` with the normals of its own surface, which films and
+the window show. The card decides the criteria `normal`, `rest` and `displacement`. The processor
+measures others, and uploads four bytes an edge in every frame.
 """
 
 from collections.abc import Mapping
@@ -80,7 +80,7 @@ class Rules:
             if bound is not None:
                 bound.bind(mesh, rest_positions, rest_normals)
         self.still = np.full(len(mesh.edges), -np.inf, np.float32)
-        """The metric of the criteria that do not change, shape (E,)."""
+        """The metric of the constant criteria, shape (E,)."""
         metric = np.zeros_like(self.still)
         for each in still:
             each.measure(rest_positions, rest_normals, metric)
@@ -106,7 +106,7 @@ class Rules:
 
     @property
     def switches(self) -> list[str]:
-        """The defines that shaders are compiled with."""
+        """The defines for compiled shaders."""
         chosen = {
             "CURVED": self.scheme == "cubic",
             "BLENDED": self.blends,
@@ -119,7 +119,7 @@ class Rules:
 
     @property
     def limits(self) -> dict[str, float]:
-        """Numbers that are not whole, as shaders name them."""
+        """Numbers that are not whole, by their names in shaders."""
         by = self._displacement
         unit = port.mean_length(self._mesh, self._rest)
         limits = _limits("drop", None if self._drop is None else self._drop.thresholds)
@@ -136,7 +136,7 @@ class Rules:
         return limits | {"turning": 0.0 if by is None else float(np.float32(by.turning))}
 
     def arrays(self) -> Arrays:
-        """The arrays of scheme, criteria and table, handed over once per mesh."""
+        """The arrays of scheme, criteria and table, uploaded once per mesh."""
         patterns = self._patterns
         corners = self._patterns.subtriangles.astype(np.uint32)
         found: dict[str, npt.NDArray[np.generic]] = {
@@ -149,7 +149,7 @@ class Rules:
         return {**found, **(self._ring() if self.scheme == "loop" else self._curves())}
 
     def fields(self) -> dict[str, int]:
-        """Vectors that passes hand on, by name, and how many."""
+        """Vectors that passes share: name -> count."""
         mesh = self._mesh
         vertices = mesh.vertex_count
         edges = len(mesh.edges)
@@ -163,7 +163,7 @@ class Rules:
         return fields
 
     def undefined_edges(self) -> npt.NDArray[np.bool_]:
-        """Edges that have no direction to compare with at rest: the paper's criterion splits none.
+        """Edges without a direction to compare with at rest; the paper's criterion splits none.
 
         Shape (E,).
         """
@@ -216,14 +216,14 @@ class Rules:
 
 
 def _parts(decides: Criterion) -> list[Criterion]:
-    """A criterion, or those that a maximum is of."""
+    """A criterion, or the criteria of a maximum."""
     if type(decides) is not Maximum:
         return [decides]
     return [part for each in decides.parts for part in _parts(each)]
 
 
 def _limits(name: str, thresholds: Thresholds | None, unit: np.float32 = ONE) -> dict[str, float]:
-    """Of a criterion that the card measures, in the unit of its measure; zeros for none."""
+    """Limits of a criterion that the card measures, in the unit of its measure; zeros for none."""
     limits = dict.fromkeys(("once", "twice", "width", "most"), 0.0)
     if thresholds is not None:
         numbers = *thresholds.limits, thresholds.width

@@ -1,8 +1,8 @@
-"""The arrays that shaders get once per mesh: indices and weights, one behind the other.
+"""The arrays that shaders get once per mesh: indices and weights, one after another.
 
 A storage buffer is one array, and OpenGL 4.3 promises a pass no more than eight of them. So all
-arrays of one kind lie in one buffer, and a shader reads `faces(k)`, a macro that adds where `faces`
-begins. These places, and the lengths of all arrays, are the numbers of a uniform block.
+arrays lie in one buffer, and a shader reads `faces(k)`, a macro that adds the place where `faces`
+begins. A uniform block has these places and the lengths of all arrays.
 """
 
 from typing import NamedTuple
@@ -15,24 +15,24 @@ from risorius.refine import Connectivity, port
 from .rules import Arrays, Rules
 
 GROUP = 256
-"""Threads of a group, which sum in common: OpenGL 4.3 promises 1024, 4 a triangle of its scan."""
+"""Threads of a group, which sum together: OpenGL 4.3 promises 1024."""
 
 
 class Tables(NamedTuple):
     """One mesh as shaders see it."""
 
     words: Unsigned32
-    """All its arrays, floats by their bits, one behind the other."""
+    """All its arrays, one after another; floats are stored by their bits."""
     sizes: dict[str, int]
-    """Counts, and as `NAME_at` where arrays begin: numbers of the uniform block."""
+    """Numbers of the uniform block: counts, and the first place of each array as `NAME_at`."""
     limits: dict[str, float]
     """Its other numbers, which may be infinite."""
     head: str
     """The first lines of shaders: switches, the uniform block, a macro for each array."""
     field_count: int
-    """Vectors that passes hand on."""
+    """Number of vectors that passes share."""
     work_count: int
-    """Numbers that they hand on."""
+    """Number of numbers that passes share."""
 
 
 def tables_of(mesh: Connectivity, values: Floats32, rules: Rules) -> Tables:
@@ -72,12 +72,12 @@ def tables_of(mesh: Connectivity, values: Floats32, rules: Rules) -> Tables:
 
 
 def groups_of(threads: int) -> int:
-    """How many groups this many threads take."""
+    """Number of groups for this many threads."""
     return -(-threads // GROUP)
 
 
 def _counts(mesh: Connectivity, value_count: int, arrays: Arrays, rules: Rules) -> dict[str, int]:
-    """The number of elements of each kind; of rows and subtriangles, at most."""
+    """The number of elements of each kind; for rows and subtriangles the largest number."""
     rows = len(mesh.wedge_vertices) + 3 * len(mesh.attribute_edges)
     return {
         "vertex_count": mesh.vertex_count,
@@ -96,7 +96,7 @@ def _counts(mesh: Connectivity, value_count: int, arrays: Arrays, rules: Rules) 
 
 
 def _work(mesh: Connectivity, sizes: dict[str, int]) -> dict[str, int]:
-    """Numbers that passes hand on, by name, and how many; some passes have no use for some."""
+    """Numbers that passes share: name -> count; not every pass uses all."""
     edges = len(mesh.edges)
     faces = len(mesh.faces)
     return {
@@ -117,7 +117,7 @@ def _work(mesh: Connectivity, sizes: dict[str, int]) -> dict[str, int]:
 def _arrays(mesh: Connectivity, values: Floats32) -> Arrays:
     """The connectivity, the corners around each vertex in the order of triangles, and values.
 
-    Those are texture coordinates and attributes, of wedges and at both ends of attribute edges.
+    Values are texture coordinates and attributes, of wedges and at both ends of attribute edges.
     """
     corners = mesh.faces.ravel()
     sums = np.cumsum(np.bincount(corners, minlength=mesh.vertex_count))

@@ -1,8 +1,8 @@
 r"""No popping: the refined surface as a continuous function of the positions.
 
-Kähler, Haber, Seidel 2003, put a new point where it belongs in the very frame in which its edge
-passes a threshold. Here it begins on the straight edge and moves out while the metric of its edge
-goes on to rise. Two things must be continuous for that:
+Kähler, Haber, Seidel 2003, put a new point at its full place in the very frame in which its edge
+passes a threshold. Here the point begins on the straight edge, and moves out while the metric of
+its edge rises further. Two things must be continuous:
 
 *Points.* A criterion measures the refinement metric of an edge: above 0 it is split once, above 1
 twice.
@@ -10,9 +10,10 @@ twice.
     weight once    metric / RAMP_WIDTH        from 0 to 1: m is between the straight edge
     weight twice   (metric - 1) / RAMP_WIDTH  and its full place; the same for the quarters
 
-*Triangles.* Where two edges of a triangle are split, a quadrangle is left that has two diagonals.
-If one of its splits goes away the diagonal from the other one must stand, whichever it is, so it
-has to turn somewhere in between, and the surface jumps. A point C in the middle has no diagonals:
+*Triangles.* Where two edges of a triangle are split, a quadrangle remains, which has two diagonals.
+If one split goes away, the diagonal from the other one must be there. This holds for both splits,
+so the diagonal must turn in between, and the surface jumps. A point C in the middle needs no
+diagonal:
 
               2             one edge     C = 2/3 m + 1/3 corner 2: on the line m-2, which is there
              /|\                         without C, so that nothing moves when it appears;
@@ -23,18 +24,18 @@ has to turn somewhere in between, and the surface jumps. A point C in the middle
         0-----m-----1                    patch (the sixth part of its six inner points; Vlachos et
                                          al. 2001, "Curved PN triangles", give the same).
 
-Here m is the middle of a split edge, and its displacement is how far m stands out of the edge.
-While edges grow, g1 >= g2 >= g3, C is a mean of the three, and of the first rule for all edges at
-once:
+Here m is the middle of a split edge, and its displacement is the vector from the edge to m. While
+edges grow, with weights g1 >= g2 >= g3, C is a mean of the three rules, and of the first rule for
+all edges at once:
 
     1 - g1  of all at once,   g1 - g2  of one edge,   g2 - g3  of two,   g3  of three
 
 It costs one more point and two more subtriangles for triangles with two or more splits.
 
-So while blending, another table takes the place of the paper's: a triangle with more than one split
-is a fan around that point, because then a new split cuts one triangle of the fan and never turns a
-diagonal. The paper's patterns have to turn one somewhere: between 110 and 010, for one, the
-diagonal from corner 2 becomes the one from corner 0, and their quadrangle is not flat.
+So blending replaces the paper's table: a triangle with more than one split is a fan around C. A new
+split then cuts one triangle of the fan and never turns a diagonal. The paper's patterns must turn
+one: between 110 and 010, for example, the diagonal from corner 2 becomes the diagonal from corner
+0, and their quadrangle is not flat.
 
 Differs from the paper: "We don't generate any new vertices in the interior" (section 3).
 """
@@ -77,14 +78,15 @@ from ..mesh.vectors import (
 )
 
 RAMP_WIDTH = np.float32(0.25)
-"""Metric over which a point grows, in what lies between the two thresholds. Chosen: points that are
-only half grown cost as much as whole ones."""
+"""Range of the metric in which a point grows; 1 is the distance of both thresholds. Chosen: a half
+grown point costs as much as a whole one.
+"""
 TWO_THIRDS = np.float32(2 / 3)
 FOUR_NINTHS = np.float32(4 / 9)
 
 
 def fan(splits: tuple[int, int, int]) -> list[Triangle]:
-    """Cut a triangle into a fan around its middle; one with a single split as the paper does."""
+    """Cut a triangle into a fan around its middle, or, for a single split, as the paper does."""
     if sum(splits) <= 1:
         return subdivide(splits)
     points = outline(splits)
@@ -109,7 +111,7 @@ class Blended(Cutting):
         return frame.configurations
 
     def mark(self, criterion: Criterion, frame: FrameBuffers, splits: Unsigned8) -> None:
-        """Decide how far the points of every edge have grown, and so how often it is split."""
+        """Decide how far the points of every edge have grown, and thus on its splits."""
         metric = self._metric
         criterion.measure(frame.positions, frame.normals, metric)
         if weigh_geomorphs(metric, splits, frame.geomorph_once, frame.geomorph_twice) > 0:
@@ -168,16 +170,16 @@ def number_centres(
 
 @njit
 def beyond(own: np.float32, other: np.float32, third: np.float32) -> tuple[np.float32, np.float32]:
-    """How far the weight of an edge is above both others; and, as one of two, above the least."""
+    """Excess of an edge's weight above both others; and, as one of two edges, above the least."""
     rival = max(other, third)
     return max(own - rival, ZERO), min(own, rival) - min(own, other, third)
 
 
 @njit
 def centre_shares(x: np.float32, y: np.float32, z: np.float32) -> tuple[Vector, Vector]:
-    """Shares of the corners in the middle of a triangle, and of the displacements of its edges.
+    """Shares of corners, and of displacements of edges, in a point in the middle of a triangle.
 
-    x, y, z: geomorph weights of the edges, which say how much of each rule above counts.
+    x, y, z: geomorph weights of the edges, which give the weight of each rule above.
     """
     all_three = min(x, y, z)
     none = ONE - max(x, y, z)
@@ -207,7 +209,7 @@ def displaced(
     middle: np.uint32,
     column: int,
 ) -> Vector:
-    """A point moved by a share of the distance from the mean of two rows to the row `middle`."""
+    """A point, moved by a share of the vector from the mean of two rows to the row `middle`."""
     straight = plus(row_of(rows, ends[0], column), row_of(rows, ends[1], column))
     out = less(row_of(rows, middle, column), HALF, straight)
     return plus(centre, times(share_of_edge, out))

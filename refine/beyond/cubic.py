@@ -9,24 +9,24 @@ d = b - a, and heights h_a = d . n_a, h_b = d . n_b over these planes:
     near b      (a + 3 b) / 4     -  (3 h_a n_a - 9 h_b n_b) / 64
 
 Differs from PN triangles: the normals are weighted by the geometric mean of a triangle's angle and
-its area at rest. Angle alone is truest on smooth surfaces, area alone where decimation has left
-folds of small triangles; between them both lose little. And a mean over the triangles around shows
-what bends less than it does; so where heights are taken, not where light falls, normals go a little
-further from those of their neighbours than they are: n - 0.15 x mean of the neighbours, normalised.
-On a plane and a sphere of equal triangles that changes nothing. An edge on a border is cubic in the
-border curve itself, because a surface's normal says nothing about where it ends. Beside a corner of
-the border only the far end has a tangent, and the curve is a parabola: a chord for the tangent at
-the corner, too, would leave it flatter than skin is.
+its area at rest. The angle alone is best on smooth surfaces, the area alone where decimation has
+left folds of small triangles; the mean loses little on both. A mean over the surrounding triangles
+also shows a bend too small. So for heights, but not for light, a normal is moved a little away from
+those of its neighbours: n - 0.15 x mean of the neighbours, normalised. This changes nothing on a
+plane, or on a sphere of equal triangles. An edge on a border is cubic in the border curve itself,
+because the normals of a surface do not give its outline. Beside a corner of the border only the far
+end has a tangent, and the curve is a parabola: a chord as the tangent at the corner would make the
+curve flatter than skin.
 
-How far the points of an edge stand out of the straight edge is its *displacement*. Those of split
-edges are put there as far as their geomorph weights say (blending.py):
+The *displacement* of a point is its vector from the straight edge. Points of split edges are moved
+by it as far as their geomorph weights allow (blending.py):
 
                  .  m  .                 m      =  (a + b) / 2          +  displacement
               n           n              n at a =  (3 a + b) / 4        +  displacement
             a---------------b            grown   =  mix of (a + m) / 2 and n
 
-The normal at m is the mean of those at a and b, and at n that of its neighbours, as in the paper
-(section 4.4); surface_normals.py has others.
+The normal at m is the mean of those at a and b; the normal at n is the mean of those of its
+neighbours, as in the paper (section 4.4). surface_normals.py has other normals.
 """
 
 from typing import NamedTuple
@@ -72,13 +72,16 @@ MIDDLE = 1
 NEAR_END = 2
 """Points of an edge in an array of displacements, shape (E, 3, 3): edge, point, x y z."""
 FULLNESS = np.float32(1.2)
-"""How much more than the cubic inner edges are displaced. Triangles between curves are flat, so the
-best fit stands out a little; measured on ellipsoids, a torus, heads, flat between 1.1 and 1.25."""
+"""Factor on the cubic displacement of inner edges. Triangles between curves are flat, so the best
+fit stands out a little; measured on ellipsoids, a torus and heads, where 1.1 to 1.25 are almost
+equally good.
+"""
 STEEPENING_SHARE = np.float32(0.15)
-"""Share of the mean normal around that is taken off a normal. A first step of undoing the mean that
-vertex normals are; a second, or more of it, finds the noise of decimated meshes. Measured on two
-faces and their decimations: half a point of 35 % better on scans, level on smooth heads, and half a
-point worse on the roughest and on a torus."""
+"""Share of the neighbours' mean normal that is subtracted from a normal. A vertex normal is a mean,
+and this is a first step to undo it; a second step, or a larger one, amplifies the noise of
+decimated meshes. Measured on two faces and their decimations: half a point of 35 % better on scans,
+equal on smooth heads, and half a point worse on the roughest and on a torus.
+"""
 EIGHTH = np.float32(1 / 8)
 """Share of the end tangents in the middle of a cubic."""
 NEAR_WEIGHT = np.float32(9 / 64)
@@ -89,18 +92,18 @@ SLIVER_SINE = 1e-9
 
 
 class Tangents(NamedTuple):
-    """Data of the tangents at the ends of cubic edges; compiled code takes it as it is."""
+    """Data of the tangents at the ends of cubic edges; compiled code takes this tuple as it is."""
 
     normals: Floats32
-    """Unit normals, each corner weighted as at rest, of the S sectors of vertices: shape (S, 3)."""
+    """Unit normals of the S sectors of vertices, each corner weighted as at rest, shape (S, 3)."""
     steeper: Floats32
-    """Unit normals that go further from those of their neighbours, shape (S, 3)."""
+    """Unit normals, moved away from those of their neighbours, shape (S, 3)."""
     off: Floats32
-    """How much of each neighbour's normal is taken off, shape (S,)."""
+    """Share of each neighbour's normal that is subtracted, shape (S,)."""
     ends: Unsigned32
-    """Sectors at both ends of every edge, shape (E, 2); of those on borders no matter."""
+    """Sectors at both ends of every edge, shape (E, 2); not used for edges on borders."""
     beyond: Unsigned32
-    """The vertices before and after every border edge, shape (E, 2); of others no matter."""
+    """The vertices before and after every border edge, shape (E, 2); not used for others."""
 
 
 class CubicScheme(Scheme):
@@ -132,7 +135,7 @@ class CubicScheme(Scheme):
             ends=sectors.edges[: len(mesh.edges)],
             beyond=follow_borders(mesh, rest_positions),
         )
-        # What light falls on is one surface on both sides of a crease, as in the input.
+        # For light, both sides of a crease are one surface, as in the input.
         self._normals = sector_normals
         self._whole_fans: Fans | None = None
         if mesh.is_sharp.any():
@@ -140,11 +143,11 @@ class CubicScheme(Scheme):
             self._whole_fans = fans_of(mesh)
 
     def prepare(self, frame: FrameBuffers) -> None:
-        """Find normals of vertices and displacements of all edges, middles as if split once."""
+        """Find normals of vertices, and displacements of all edges as if each were split once."""
         self._displace(frame.positions)
 
     def place(self, frame: FrameBuffers) -> None:
-        """Write vertices as they are, and the points of split edges on their curves."""
+        """Write unchanged vertices, and the points of split edges on their curves."""
         self.place_positions(frame)
         count = len(frame.points) + int(frame.counts[ONCE])
         share(place_mean_normals, count, self._around.points, frame, self._normals)
@@ -155,9 +158,10 @@ class CubicScheme(Scheme):
         share(place_on_curves, count, self._around.points, frame, self._rows)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
-        """Write how far the middle of every edge stands out if it is split once, shape (E,).
+        """Write the distance of the middle of every edge from it after one split, shape (E,).
 
-        A mean of normals turns nothing: `turns`, shape (E,), become zero.
+        The normal in the middle is the mean of the ends' normals, so `turns`, shape (E,), become
+        zero.
         """
         displacement_sizes(self._displacements, displacements)
         turns[:] = ZERO
@@ -253,7 +257,7 @@ def steepen_normals(
     steeper: Floats32,
     off: Floats32,
 ) -> None:
-    """Write unit normals less those of their neighbours, `off` of each, shape (V, 3)."""
+    """Write unit normals minus `off` of those of their neighbours, normalised, shape (V, 3)."""
     assert normals.shape[1] == steeper.shape[1] == WIDTH
     for k in range(first, last):
         v = np.uint32(k)
@@ -274,7 +278,7 @@ def length_of(d: Vector) -> np.float32:
 def write_cubic(displacements: Floats32, first: np.uint32, turn_a: Vector, turn_b: Vector) -> None:
     """Write the displacements of an edge, three rows from row `first` on.
 
-    `turn_a`, `turn_b`: how much the tangents at both ends turn away from the straight edge.
+    `turn_a`, `turn_b`: vectors from the straight edge to the tangents at both ends.
     """
     near_a = less(times(NEAR_WEIGHT, turn_a), FAR_WEIGHT, turn_b)
     near_b = less(times(FAR_WEIGHT, turn_a), NEAR_WEIGHT, turn_b)
@@ -338,7 +342,7 @@ def displacement_sizes(displacements: Floats32, sizes: Floats32) -> None:
 def place_on_curves(
     first: int, last: int, ends: Unsigned32, frame: FrameBuffers, displacements: Floats32
 ) -> None:
-    """Write positions: vertices as they are, and the one or three points of every split edge.
+    """Write positions of unchanged vertices, and of the one or three points of split edges.
 
     The loop is over vertices, and then over split edges. `ends`: of edges, in the first two columns
     of (E, 4); `displacements`: three rows for each edge, shape (3 E, 3).
@@ -377,7 +381,7 @@ def place_on_curves(
 def place_mean_normals(
     first: int, last: int, ends: Unsigned32, frame: FrameBuffers, normals: Floats32
 ) -> None:
-    """Write normals: of vertices, shape (V, 3), and between them; loop and `ends` as above."""
+    """Write normals of vertices, shape (V, 3), and between them; loop and `ends` as above."""
     rows = frame.rows
     vertex_count = frame.points.shape[0]
     for v in range(first, min(last, vertex_count)):

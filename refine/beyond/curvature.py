@@ -1,16 +1,16 @@
-"""The criterion `rest`: edges curved at rest, for meshes that are too coarse for their own form.
+"""The criterion `rest`: edges that are curved at rest, for meshes too coarse for their form.
 
-The paper's criterion counts bending since rest, so an outline that is a polygon at rest stays one.
-This one sees it.
+The paper's criterion counts bending since rest, so an outline that is a polygon at rest remains
+one. This criterion splits such edges.
 
     measure = height of the arc x cube root of (length / usual length)
 
 The height of the arc over an edge (Taubin 1995) is k L^2 / 8, with the curvature k the mean of
 2 n_a . d / L^2 and, from the other side, -2 n_b . d / L^2.
 
-The root lets long edges, whose corners are seen most, go before short ones: where a mesh is fine
-already, as at lips that touch, smoothing would only open gaps. (A limit of length instead tore the
-rims of ears, where long and short edges meet.)
+The root prefers long edges, whose corners are most visible, to short ones. Where a mesh is already
+fine, such as at touching lips, smoothing would only open gaps. (A limit of length tore the rims of
+ears, where long and short edges meet.)
 """
 
 import numpy as np
@@ -25,24 +25,24 @@ from .blending import RAMP_WIDTH
 from .measuring import Measuring, Once, Twice
 
 USUAL_LENGTH = 1.0 / 40.0
-"""Length of the edge whose measure is its height, in sizes of the mesh: about that of a face."""
+"""Length of an edge whose measure is the height of its arc, in sizes of the mesh."""
 
 
 class RestCurvature(Measuring):
-    """The height of the arc over an edge at rest, and a little its length; decided on once.
+    """The height of the arc over an edge at rest, and a little its length; measured once.
 
-    The same edges are split in every frame, wherever the eye is, so nothing can pop.
+    The same edges are split in every frame, from any viewpoint, so no point can pop.
     """
 
     uses_normals = False
     is_constant = True
 
     def __init__(self, once: Once = 0.00077, twice: Twice = 0.0053, levels: Levels = 2) -> None:
-        """`once`, `twice`: measures in sizes of the mesh, so a fine mesh is left as it is.
+        """`once`, `twice`: measures in sizes of the mesh, so a fine mesh stays unchanged.
 
-        Chosen by eye on a head of 2030 triangles, 720 pixels high: of its outline, lower limits
-        show no more. Splits must reach everything that is round: beside one that was drawn
-        inward a vertex without splits sticks out. `levels`: the most splits of an edge.
+        Chosen by eye on a head of 2030 triangles, 720 pixels high: lower limits do not improve its
+        outline. Splits must reach all round places: a vertex without splits sticks out beside one
+        that was drawn inward. `levels`: the most splits of an edge.
         """
         super().__init__(once, twice, "heights in sizes of the mesh", levels)
 
@@ -67,7 +67,7 @@ class RestCurvature(Measuring):
         asked = (measures > once).astype(np.uint8) + (measures > twice)
         splits = np.zeros(len(edges), dtype=np.uint8)
         np.maximum.at(splits, edge_of, asked)
-        # Metrics at which a blended point has grown: there is nothing that it could grow with.
+        # Metrics at which a blended point is fully grown: a constant metric cannot make it grow.
         self._decided = np.array([-np.inf, RAMP_WIDTH, 1.0 + RAMP_WIDTH], np.float32)[splits]
 
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
@@ -85,9 +85,9 @@ def _normals_of_sectors(sectors: Sectors, faces: Unsigned32, positions: Floats64
 
 
 def _diagonal(positions: Floats64) -> float:
-    """Of the box around the ends of edges, shape (E, 2, 3); 1 if it has no size.
+    """Diagonal of the box around the ends of edges, shape (E, 2, 3); 1 if it has no size.
 
-    Points that no triangle uses do not count: where they lie says nothing of the mesh.
+    Points that no triangle uses do not count: they are no part of the mesh.
     """
     sides = np.ptp(positions, axis=(0, 1)) if len(positions) else np.zeros(3)
     size = float(np.linalg.norm(sides))

@@ -5,9 +5,9 @@ one could do even better than smoothing: detail information can be stored locall
 generated split vertices on the surface, as has been exercised in multiresolution editing."
 
 At binding, the points that all edges would get from the scheme `cubic` are compared with the
-closest points of the finer mesh that look the same way, both at rest. Points stand out of the
-straight edge FULLNESS times as far as these, because triangles between them are flat, as those of
-the cubic do. The rest is stored along three directions that move with the surface:
+closest points of the finer mesh that look the same way, both at rest. Points are displaced FULLNESS
+times as far as these closest points, as those of the cubic are, because triangles between them are
+flat. The rest is stored along three directions that move with the surface:
 
           n                                     stored:  how the finer surface lies beside the
           |                                              point, along n, t and n x t
@@ -16,9 +16,8 @@ the cubic do. The rest is stored along three directions that move with the surfa
         n x t                                       there to the normal of the end at its quarters
 
 In a frame the same directions are found in the deformed mesh and the detail is added to the cubic.
-They change without a jump as long as normals and edges do. A quarter has to turn with the vertex
-near it: with one direction n for all of an edge, stars stood around the vertices where the mesh was
-folded.
+They change without a jump as long as normals and edges do. A quarter must turn with the vertex near
+it: one direction n for a whole edge makes stars around vertices where the mesh is folded.
 
 Vertices stay where they are (they lie on the finer mesh if they are taken from it). Normals are not
 the finer mesh's but those of the refined surface (surface_normals.py), which has its shape.
@@ -41,8 +40,9 @@ FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
 
 WRONG_SIDE_DISTANCE = 10.0
-"""How much farther away, in edge lengths, a surface seems that looks the other way: lips that touch
-at rest do not take each other's points."""
+"""Added distance, in edge lengths, of a surface that faces the other way: lips that touch at rest
+must not take each other's points.
+"""
 
 
 class DetailScheme(CubicScheme):
@@ -51,7 +51,7 @@ class DetailScheme(CubicScheme):
     def __init__(self, finer: FinerMesh | None = None) -> None:
         """`finer`: positions at rest, in the place of the coarse mesh, and triangles.
 
-        Raises ValueError without one, as the name `detail` alone has none.
+        Raises ValueError without a finer mesh: the name `detail` alone has none.
         """
         if not isinstance(finer, tuple) or len(finer) != 2:
             raise ValueError(
@@ -72,9 +72,9 @@ class DetailScheme(CubicScheme):
         edge_count = len(connectivity.edges)
         self._every_edge = np.arange(edge_count, dtype=np.uint32)
         self._axes = np.zeros((edge_count, 3, 3, 3), dtype=np.float32)
-        rest = rest_positions.copy()  # of the kind that frames have, which kernels know
+        rest = rest_positions.copy()  # of the type of frames, for which kernels are compiled
         self._displace(rest)
-        normals = self._normals  # at rest: all directions follow those that the cubic has
+        normals = self._normals  # at rest: all directions follow the cubic's normals
         middle_axes(self._around, rest, normals, self._axes)
         quarter_axes(self._around, rest, normals, self._every_edge, self._axes)
 
@@ -113,7 +113,7 @@ class DetailScheme(CubicScheme):
 def add_offsets(
     edges: Unsigned32, point: int, offsets: Floats32, axes: Floats32, displacements: Floats32
 ) -> None:
-    """Add the stored offsets of one point of some edges, shape (N,), to displacements, (E, 3, 3).
+    """Add stored offsets to the displacements, (E, 3, 3), of one point of some edges, (N,).
 
     `offsets`: shape (E, 3, 3), edge, point, direction; `axes`: shape (E, 3, 3, 3).
     """
@@ -127,7 +127,7 @@ def add_offsets(
 def write_axes(up: Vector, towards: Vector, axes: Floats32) -> None:
     """Write three orthogonal directions of length one as rows of `axes`, shape (3, 3).
 
-    The first is `up`, the second is `towards` made normal to it.
+    The first is `up`; the second is `towards`, made normal to `up`.
     """
     up = unit(up)
     towards = unit(less(towards, dot(up, towards), up))
@@ -140,9 +140,9 @@ def write_axes(up: Vector, towards: Vector, axes: Floats32) -> None:
 def middle_axes(
     around: Surroundings, positions: Floats64, normals: Floats32, axes: Floats32
 ) -> None:
-    """Write the directions of the middles of all edges: upright on the edge, along it, across.
+    """Write the directions at the middles of all edges: upright on the edge, along it, across it.
 
-    Upright is the mean of the normals at both ends, made normal to the edge. `normals`: of
+    The upright one is the mean of the normals at both ends, made normal to the edge. `normals`: of
     vertices, shape (V, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
     """
     for e in range(axes.shape[0]):
@@ -158,10 +158,10 @@ def middle_axes(
 def quarter_axes(
     around: Surroundings, positions: Floats64, normals: Floats32, edges: Unsigned32, axes: Floats32
 ) -> None:
-    """Write the directions of the quarters of some edges, shape (N,), from those of their middles.
+    """Write the directions at the quarters of some edges, shape (N,), from those at the middles.
 
-    Up is half way from the middle's to the normal at the end: a point near a vertex turns with it,
-    not with the edge.
+    The upright one is half way between the middle's and the normal at the end: a point near a
+    vertex turns with the vertex, not with the edge.
     """
     for e in edges:
         a = around.points[e, 0]

@@ -1,13 +1,14 @@
-"""The criterion `displacement`: how far a split moves the middle of an edge and turns its normal.
+"""The criterion `displacement`: distance and turn of an edge's middle that a split would make.
 
-Where the straight edge is far from where the scheme would have it, the unsplit mesh is wrong; and
-where the normal in its middle is not between those at its ends, so is its shading. For schemes that
-measure both (`Scheme.measure`): those with curved edges, and all with `normals="refined"`.
+Where the straight edge is far from the scheme's curve, the unsplit mesh is wrong. Where the normal
+in the middle differs from the mean of those at the ends, the shading is wrong. The criterion needs
+a scheme that measures both (`Scheme.measure`): one with curved edges, or any with
+`normals="refined"`.
 
     size of an edge     hypot(displacement, turning x angle x length)      a distance
 
-A border is an outline from wherever it is seen, and no light falls on its turns. There the turn of
-the border itself counts: an arc that stands out by s turns by 8 s / length between its ends.
+A border is an outline from every viewpoint, and no shading shows its turns. So the turn of the
+border itself counts there: an arc of height s turns by 8 s / length between its ends.
 """
 
 from typing import Annotated
@@ -24,11 +25,12 @@ from .blending import RAMP_WIDTH
 from .measuring import Measuring, Once, Twice, mean_length
 
 GROWTH_SHARE = 0.6
-"""Share of the first threshold in which a blended point grows. Chosen: a point that is half grown
-costs as much as a whole one; with less than this surfaces jump farther than their input moves."""
+"""Share of the first threshold in which a blended point grows. Chosen: a half grown point costs as
+much as a whole one; with a smaller share, surfaces jump farther than their input moves.
+"""
 
 BORDER_WEIGHT = np.float32(8.0)
-"""How many times the size of an edge on a border counts."""
+"""Factor on the size of an edge on a border."""
 
 
 Turning = Annotated[
@@ -37,7 +39,7 @@ Turning = Annotated[
 
 
 class Displacement(Measuring):
-    """How far a split would move the middle of an edge and turn the normal there.
+    """Distance and turn of the normal that a split would give the middle of an edge.
 
     Places that are coarse at rest count as well, unlike in the paper.
     """
@@ -54,14 +56,14 @@ class Displacement(Measuring):
     ) -> None:
         """`once`, `twice`: distances in mean edge lengths of the mesh at rest.
 
-        `turning`: weight of a turn of the normal by a radian, in lengths of the edge; 0 looks at
-        distances only. `levels`: the most splits of an edge.
+        `turning`: weight of a turn of the normal by a radian, in lengths of the edge; at 0 only
+        distances count. `levels`: the most splits of an edge.
         """
         super().__init__(once, twice, "distances in mean edge lengths", levels)
         self.turning = turning
 
     def set_scheme(self, scheme: Scheme) -> None:
-        """Take the scheme of the refiner; raises ValueError for one that does not measure."""
+        """Take the scheme of the refiner; raises ValueError for a scheme that does not measure."""
         if not scheme.measures:
             raise ValueError(
                 'criterion "displacement" needs a scheme that measures how far it moves edges; '
@@ -106,7 +108,7 @@ def weigh_borders(sizes: Floats32, borders: Unsigned32) -> None:
 
 @njit
 def advance_metric(metric: Floats32, soon: np.float32, ramp: np.float32) -> None:
-    """Scale the metrics, shape (E,), so that `soon` becomes `ramp`, at which points have grown."""
+    """Scale the metrics, shape (E,), so that `soon` becomes `ramp`: there points are grown."""
     if soon >= ramp:
         return
     for e in range(metric.shape[0]):

@@ -1,4 +1,4 @@
-r"""The base of all criteria beside the paper's: they measure, and compare with two thresholds.
+r"""The base of all criteria but the paper's: each compares a measure with two thresholds.
 
 Kähler, Haber, Seidel 2003, section 4.1 ("More complex criteria can be used as well, such as
 measuring discrete curvature on the mesh [19]") and section 6 ("refining the mesh along silhouette
@@ -29,7 +29,7 @@ from ..mesh.vectors import ONE
 from .blending import RAMP_WIDTH
 
 SILHOUETTE_BAND = 0.3
-"""Cosine between normal and line of sight at which an edge is no silhouette: 17 degrees away."""
+"""Cosine between normal and line of sight where the silhouette ends, 17 degrees away."""
 
 
 Once = Annotated[float, Option("an edge splits once where its measure is above this", least=0.0)]
@@ -50,7 +50,7 @@ class Measuring(Criterion):
 
 
 class Maximum(Criterion):
-    """Several criteria: each edge is split as often as the one that demands most."""
+    """Several criteria: the one that asks for most splits of an edge decides on this edge."""
 
     def __init__(self, criteria: Sequence[Criterion]) -> None:
         if not criteria:
@@ -96,8 +96,8 @@ class Maximum(Criterion):
 class Silhouette(Measuring):
     """Edges along which the surface turns away from the eye.
 
-    The turn of an edge is limited to the one that splits it twice on the outline itself: else, on
-    coarse meshes, points would pop out after a small motion of the eye.
+    The turn of an edge counts only up to the turn that splits it twice on the outline itself.
+    Otherwise points on coarse meshes would pop out after a small motion of the eye.
     """
 
     def __init__(self, once: Once = 0.005, twice: Twice = 0.03, levels: Levels = 2) -> None:
@@ -108,7 +108,7 @@ class Silhouette(Measuring):
         super().__init__(once, twice, "1 - the cosine between two normals", levels)
 
     def set_view(self, view: View | None) -> None:
-        """Take the view of this frame; raises ValueError if there is none, or no place for it."""
+        """Take the view of this frame; raises ValueError without a view, or a proper eye in it."""
         if view is None:
             raise ValueError(
                 f"{type(self).__name__} needs the place of the eye; pass "
@@ -138,7 +138,7 @@ def turns_at_silhouette(
     most: np.float32,
     turns: Floats32,
 ) -> None:
-    """Write 1 - the cosine of the normals of every edge, faded out away from the silhouette.
+    """Write 1 - the cosine of the end normals of every edge, faded out off the silhouette.
 
     Values above `most` count as `most`.
     """

@@ -1,7 +1,7 @@
 """The refiner named `kahler`: its options in words, and their objects.
 
-By default it is the paper's to the letter (`refine.Kahler`). Options put other criteria and schemes
-in place, by name or as objects, and blend new points in (`Blended`).
+By default it is exactly the paper's (`refine.Kahler`). Options choose other criteria and schemes,
+by name or as objects, and blend new points in (`Blended`).
 """
 
 from collections.abc import Sequence
@@ -62,12 +62,12 @@ def create_kahler(
 
     - `threshold_once`, `threshold_twice`: drop of the normals' dot product above which an edge is
       split once or twice, for the paper's criterion, "normal".
-    - `criterion`: "normal", "rest", "silhouette", "displacement", another
-      name of `refine.criteria`, an object, or a list of them, of which the one counts that asks for
-      most; "normal+rest" is such a list.
+    - `criterion`: "normal", "rest", "silhouette", "displacement", another name of
+      `refine.criteria`, an object, or a list of these; the one that asks for most splits counts.
+      "normal+rest" is such a list.
     - `splits`: 0, 1 or 2 for every edge, shape (E,), in place of a criterion: all frames have the
       same vertices and triangles (`splits_of_clip`).
-    - `scheme`: "loop", the paper's, "cubic", another name of `refine.schemes`, or an object, as
+    - `scheme`: "loop", the paper's, "cubic", another name of `refine.schemes`, or an object such as
       `DetailScheme((finer_positions, finer_faces))`.
     - `blend`: whether points grow out of their edges, so that nothing pops. None, the default,
       chooses True for the schemes that interpolate, and False for the paper's.
@@ -108,7 +108,7 @@ def scheme_of(chosen: str | Scheme) -> Scheme:
 
 
 def with_normals(chosen: Scheme, normals: str | None) -> Scheme:
-    """Return the scheme; if `normals` wants it, with the normals of its own surface."""
+    """Return the scheme, with the normals of its own surface if `normals` asks for them."""
     if normals not in (None, "linear", "refined"):
         raise ValueError(f'normals must be "linear" or "refined", got {normals!r}')
     is_refined = chosen.interpolates if normals is None else normals == "refined"

@@ -2,10 +2,10 @@ r"""Normals of the refined surface itself: `normals="refined"`.
 
 Kähler, Haber, Seidel 2003, interpolate the normal of a new point from those at the ends of its edge
 (section 4.4). Then smooth shading cannot show the form that a split found: only outlines and
-highlights change. This scheme takes the surface that all splits together would make, everywhere:
+highlights change. This scheme uses the surface that a split of every edge would make:
 
               c                m    middles of all edges, where the scheme puts them
-             / \               C    middle of a triangle: its corners' mean, and 0.511 of how far
+             / \ C middle of a triangle: its corners' mean, and 0.511 of the
           m /   \ m                 each m stands out of its edge
            /  C  \
           a---m---b            normal at m    (b - a) x (C - C'), with C' beyond the edge;
@@ -14,11 +14,11 @@ highlights change. This scheme takes the surface that all splits together would 
              \ /                              (C - a) x (m_ac - m_ab)
               d
 
-Both are sums of the cross products of the small triangles around the point, put together. They do
-not depend on the splits of this frame, so no normal jumps when an edge is split. Normals at m are
-worked out where an edge is split; on all edges where the criterion measures them. A new point
-begins with the mean of the normals at the ends of its edge, and turns to its own while it goes the
-first third of its way (blending.py). At a quarter it is the mean of its neighbours'.
+Both are sums of the cross products of the small triangles around the point. They do not depend on
+the splits of this frame, so no normal jumps when an edge is split. Normals at m are computed on
+split edges, or on all edges where the criterion measures them. A new point begins with the mean of
+the normals at the ends of its edge, and turns to its own while it goes the first third of its way
+(blending.py). At a quarter it is the mean of its neighbours'.
 
 Differs from the paper, whose rule is `normals="linear"`.
 """
@@ -45,17 +45,18 @@ from ..mesh.vectors import (
 from .whole_surface import WholeSurface, between_rows
 
 NORMAL_HASTE = np.float32(3.0)
-"""How much sooner than the place of a new point its normal has gone all the way. Chosen: a turn of
-shading is seen less than a jump of the surface, and half of it is half a triangle wasted."""
+"""Factor by which the normal of a new point is faster than its place. Chosen: a turn of shading is
+less visible than a jump of the surface, and a half turned normal wastes half a triangle.
+"""
 
 
 class RefinedNormals(Scheme):
-    """A scheme, with the normals of the surface that it makes."""
+    """A scheme with the normals of the surface that it makes."""
 
     measures = True
 
     def __init__(self, scheme: Scheme) -> None:
-        """`scheme`: says where points go."""
+        """`scheme`: places the points."""
         self.parts = (scheme,)
         self.interpolates = scheme.interpolates
         self.uses_normals = scheme.uses_normals
@@ -92,10 +93,10 @@ class RefinedNormals(Scheme):
         share(turn_centres, frame.centre_count, *triangles, frame, self._surface.rows)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
-        """Write how far middles would stand out, and turn the normal, of every edge, (E,) each.
+        """Write the distance of every edge's middle from it, and the turn of its normal, (E,) each.
 
-        The normal of a vertex on a crease is between those of its sides, and a
-        split would not mend the turn of edges that end there.
+        The normal of a vertex on a crease is a mean of its sides, so a split would not correct the
+        turn of edges that end there.
         """
         self._surface.measure(displacements, turns)
         turns[self._at_creases] = ZERO
@@ -141,9 +142,9 @@ def turn_centres(
     frame: FrameBuffers,
     rows: Floats32,
 ) -> None:
-    """Turn the normals of points in the middle of triangles as the least grown edge allows.
+    """Turn the normals of points in the middle of triangles, as far as the least grown edge allows.
 
-    To the normal of the hexagon around, whose corners are in `rows`, shape (V + E, 6).
+    They turn to the normal of the hexagon around, whose corners are in `rows`, shape (V + E, 6).
     """
     vertices = frame.rows
     vertex_count = frame.points.shape[0]

@@ -1,7 +1,7 @@
 """The surface of a frame where every edge is split once, and its normals (surface_normals.py).
 
-Loops over the whole mesh write sums, and bring them to length one in a loop of its own, where the
-compiler takes many vectors at a time (mesh/normals.py): all edges are measured in 0.42 of the time.
+Loops over the whole mesh write sums. A separate loop normalises them, so the compiler takes many
+vectors at a time (mesh/normals.py): measuring all edges takes 0.42 of the time.
 """
 
 import numpy as np
@@ -34,17 +34,21 @@ from ..mesh.vectors import (
 )
 
 CENTRE_SHARE = np.float32(0.511)
-"""How far the middle of a triangle follows the displacements of its edges: 4/9 (blending.py), and
-15 % more: curves between these points stand out farther. So normals are nearer to a dense head."""
+"""Share of the edges' displacements in the middle of a triangle: 4/9 (blending.py) plus 15 %,
+because curves between these points stand out farther. This brings normals nearer to those of a
+dense head.
+"""
 MEAN_NORMAL_SHARE = np.float32(0.02)
 """Share of the mean of the ends' normals, in squared lengths of the edge, that is added to a normal
-in the middle. Chosen: where an edge is folded until nothing is left across it, this decides. More
-looks softer in deep folds and is farther from dense faces: 0.3 costs five points of thirty."""
+in the middle. Chosen: this decides where an edge is folded until no width is left across it. More
+is softer in deep folds, but farther from dense faces: 0.3 costs five points of thirty.
+"""
 
 OfEdges = tuple[Unsigned32, Unsigned32, Flags, Floats32, Floats32, Floats32]
 """What kernels of all edges read: `around.points`, `edge_sides`, `around.is_interior` (mesh/), rows
 of vertices and middles, shape (V + E, 6), centres of triangles, (F, 3), normals, (V + E, 3). It is
-a plain tuple, which is sooner handed over than a named one."""
+a plain tuple, which is passed faster than a named one.
+"""
 
 
 class WholeSurface:
@@ -66,15 +70,18 @@ class WholeSurface:
         self._corners = np.zeros((3 * len(mesh.faces), 3), dtype=np.float32)
         self._has_all_edges = False
         self.rows = rows
-        """Of the vertices, then of the middles of all edges, shape (V + E, 6): positions first, as
-        seen from the first vertex in use, so that a mesh far from the origin loses nothing."""
+        """Rows of the vertices, then of the middles of all edges, shape (V + E, 6). Positions are
+        relative to the first vertex in use, so that a mesh far from the origin keeps its precision.
+        """
         self.normals = np.zeros((vertex_count + edge_count, 3), dtype=np.float32)
-        """Unit normals there, shape (V + E, 3); in middles after `find_normals_of_edges` alone."""
+        """Unit normals there, shape (V + E, 3); those of middles only after
+        `find_normals_of_edges`.
+        """
         around = mesh.around.points, mesh.edge_sides, mesh.around.is_interior
         self._of_edges: OfEdges = (*around, rows, self._centres, self.normals)
 
     def split(self, frame: FrameBuffers) -> FrameBuffers:
-        """The mesh of `frame`, as seen from its first vertex, every edge split once; unplaced."""
+        """The mesh of `frame`, from its first vertex, every edge split once, points unplaced."""
         if frame.normals is not self._frame.normals:
             self._frame = self._frame._replace(normals=frame.normals)
         positions = frame.positions
@@ -84,7 +91,7 @@ class WholeSurface:
         return self._frame
 
     def find_normals(self) -> None:
-        """Work the normals of vertices out, when the rows have been placed."""
+        """Compute the normals of vertices, after the rows have been placed."""
         mesh = self._mesh
         triangles = mesh.faces, mesh.triangle_edges
         of_triangles = self._centres, self._corners
@@ -95,18 +102,18 @@ class WholeSurface:
         self._has_all_edges = False
 
     def find_normals_of_edges(self, edges: Unsigned32) -> None:
-        """Work the normals in the middles of these out, numbers of shape (N,), unless all have."""
+        """Compute the normals in the middles of `edges`, (N,), unless all edges have theirs."""
         if self._has_all_edges:
             return
         share(surface_normals_of_edges, len(edges), edges, self._of_edges)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
-        """Write how far middles stand out of their edges, and their normals turn; shape (E,) each.
+        """Write the distances of middles from their edges, and turns of their normals, (E,) each.
 
-        Against the straight edge, and against the mean of the normals at its ends [rad], times the
-        length of the edge. All middles have their normals then.
+        A turn is the angle to the mean of the normals at the ends [rad], times the length of the
+        edge. All middles have their normals afterwards.
         """
-        means = self._corners  # which have done their work, and are more than edges
+        means = self._corners  # no longer needed, and large enough
         share(measure_edges, len(turns), self._of_edges, means, displacements, turns)
         self._has_all_edges = True
 
@@ -115,7 +122,7 @@ class WholeSurface:
 def see_from(
     first: int, last: int, positions: Floats64, origin: int, near: Floats64, points: Floats32
 ) -> None:
-    """Write positions less that of one vertex, shape (V, 3), in double and in single precision."""
+    """Write positions relative to one vertex, shape (V, 3), in double and in single precision."""
     for v in range(first, last):
         away = difference(positions, origin, v)
         write_row(near, v, away)
@@ -141,8 +148,9 @@ def cross_corners(
 ) -> None:
     """Write the points in the middle of triangles with three split edges, shape (F, 3).
 
-    Also what each triangle adds to the normals at its corners, shape (3 F, 3); zero where it names
-    a vertex twice. `rows`, `middles`: of vertices and of all edges, shape (V + E, 6) and (E, 6).
+    Also write what each triangle adds to the normals at its corners, shape (3 F, 3); zero where it
+    names a vertex twice. `rows`, `middles`: of vertices and of all edges, shape (V + E, 6) and (E,
+    6).
     """
     assert (
         faces.shape[1] == triangle_edges.shape[1] == centres.shape[1] == corners.shape[1] == WIDTH
@@ -161,7 +169,7 @@ def cross_corners(
         ab = row_of(middles, np.uint32(triangle_edges[t, 0]))
         bc = row_of(middles, np.uint32(triangle_edges[t, 1]))
         ca = row_of(middles, np.uint32(triangle_edges[t, 2]))
-        # The sum of displacements is the sum of the middles less that of the corners.
+        # The sum of displacements is the sum of the middles minus that of the corners.
         three = plus(plus(a, b), c)
         out = less(plus(plus(ab, bc), ca), ONE, three)
         centre = plus(times(THIRD, three), times(CENTRE_SHARE, out))
@@ -182,7 +190,7 @@ def sum_corners(
 ) -> None:
     """Write unit normals of vertices, the first of `normals`, shape (V + E, 3).
 
-    `starts`, `around`: the corners at each vertex (mesh/fans.py). `corners`: what they add, shape
+    `starts`, `around`: the corners at each vertex (mesh/fans.py). `corners`: their summands, shape
     (3 F, 3).
     """
     assert corners.shape[1] == normals.shape[1] == WIDTH
@@ -206,16 +214,16 @@ def across_middle(
     is_interior: Flags,
     centres: Floats32,
 ) -> Vector:
-    """A vector of any length that is normal to the surface in the middle of edge e.
+    """A vector of any length, normal to the surface in the middle of edge e.
 
-    mean: of the normals at its ends; along: from end to end; middle: where it is split.
+    mean: that of the normals at its ends; along: vector from end to end; middle: its split point.
     `edge_sides`, `is_interior`: of edges; `centres`: of triangles, shape (F, 3).
     """
     side = edge_sides[e, 0] >> SIDE_BITS
     beyond = edge_sides[e, 1] >> SIDE_BITS
     has_two = beyond < centres.shape[0]
     if has_two and not is_interior[e]:
-        return mean  # sheets that meet have no normal in common
+        return mean  # sheets that meet share no normal
     far = row_of(centres, beyond) if has_two else middle
     across = less(row_of(centres, side), ONE, far)
     steady = times(MEAN_NORMAL_SHARE * dot(along, along), mean)
@@ -226,7 +234,7 @@ def across_middle(
 def surface_normals_of_edges(first: int, last: int, edges: Unsigned32, of_edges: OfEdges) -> None:
     """Write unit normals of the middles of edges; the vertices have theirs.
 
-    `edges`: those that want theirs, shape (N,).
+    `edges`: the edges that need theirs, shape (N,).
     """
     points, edge_sides, is_interior, rows, centres, normals = of_edges
     vertex_count = normals.shape[0] - points.shape[0]
@@ -251,10 +259,10 @@ def measure_edges(
     displacements: Floats32,
     turns: Floats32,
 ) -> None:
-    """Write unit normals of the middles of edges in a row, and measure the edges.
+    """Write unit normals of the middles of consecutive edges, and measure the edges.
 
-    The distance of each middle from its edge, and the turn of its normal x length, (E,) each.
-    `means`: scratch, at least (E, 3).
+    Measures are the distance of each middle from its edge, and the turn of its normal x length,
+    (E,) each. `means`: scratch, at least (E, 3).
     """
     points, edge_sides, is_interior, rows, centres, normals = of_edges
     assert centres.shape[1] == normals.shape[1] == means.shape[1] == WIDTH
@@ -293,7 +301,8 @@ def finish_measures(
     """
     assert normals.shape[1] == means.shape[1] == WIDTH
     for k in range(turns.shape[0]):
-        # The chord of the angle: within a hundredth of it up to half a radian.
+        # The chord of the angle, which differs from it by less than a hundredth up to half a
+        # radian.
         apart = less(row_of(normals, k), ONE, row_of(means, k))
         turns[k] = np.sqrt(dot(apart, apart) * turns[k])
         displacements[k] = np.sqrt(displacements[k])

@@ -1,8 +1,8 @@
-"""The base of all built-in refiners: the mesh, lent arrays and positions, checked at one place.
+"""The base of all built-in refiners; it checks the mesh, lent arrays and positions.
 
-A refiner derives from `BaseRefiner`, says how large its output can get, and writes one method,
-`fill`. A refiner of another package may derive from it, too, or follow the protocol (plugin.py)
-alone.
+A refiner derives from `BaseRefiner`, states the largest size of its output, and has one method,
+`fill`. A refiner of another package may derive from it, too, or only follow the protocol
+(plugin.py).
 
 Source: the plug-in of Kähler, Haber, Seidel 2003, Fig. 1.
 """
@@ -30,15 +30,16 @@ from .stream import OwnStream, StreamArrays, check_lent
 
 
 class BaseRefiner(Refiner):
-    """A refiner to derive from: binds a mesh, checks its input, and fills lent arrays.
+    """Base class of refiners: it binds a mesh, checks its input, and fills lent arrays.
 
-    A subclass has `vertex_capacity`, `triangle_capacity` and `fill`, and extends `origins` by the
-    points that it makes. `fill` is called once in every frame, when the positions have been
-    checked. It calls `reserve` for rows, `find_normals` if it wants them, and `write_wedges`.
+    A subclass has `vertex_capacity`, `triangle_capacity` and `fill`, and extends `origins` by its
+    own points. `fill` is called once in every frame, when the positions have been checked. It calls
+    `reserve` for rows, `find_normals` if it needs normals, and `write_wedges`.
 
     The first W rows are the wedges of the mesh: row v is vertex v, copies of vertices on texture
     seams follow, and `connectivity.corners` has the rows of each triangle. So a point that is a mix
-    of a triangle's corners is the same mix of these rows, texture coordinates and attributes too.
+    of a triangle's corners is the same mix of these rows, including texture coordinates and
+    attributes.
     """
 
     connectivity: Connectivity
@@ -46,13 +47,13 @@ class BaseRefiner(Refiner):
     rest_positions: Floats64
     """Undeformed vertex positions, shape (V, 3); read only."""
     positions: Floats64
-    """Those of this frame, a copy: a simulation may run on meanwhile."""
+    """Positions of this frame, a copy: a simulation may go on meanwhile."""
     points: Floats32
     """The same in single precision."""
     normals: Floats32
     """Vertex normals of this frame after `find_normals`, shape (V, 3)."""
     edge_splits: Unsigned8
-    """What `splits` shows, for `fill` to write; 0 at first."""
+    """The numbers that `splits` shows and `fill` writes; 0 at first."""
 
     def __init__(
         self,
@@ -64,7 +65,7 @@ class BaseRefiner(Refiner):
         attributes: Mapping[str, AttributeLike] | None = None,
         crease_angle: float | None = None,
     ) -> None:
-        """Check and connect (see `registry.create`); a subclass hands the `refine.Values` on."""
+        """Check and connect (see `registry.create`); a subclass passes the `refine.Values` on."""
         positions, triangles = checked_mesh(rest_positions, faces)
         self._values = checked_corner_values(
             triangles, len(positions), uv=uv, face_uv=face_uv, attributes=attributes
@@ -95,7 +96,7 @@ class BaseRefiner(Refiner):
         """
 
     def reserve(self, stream: Stream, vertex_count: int, triangle_count: int) -> StreamArrays:
-        """Enlarge the refiner's own stream to this size; return the checked arrays of a stream."""
+        """Enlarge the refiner's own stream to this size; return the checked arrays of `stream`."""
         own = self._own_stream
         if stream is own:
             own.reserve(vertex_count, triangle_count)
@@ -117,19 +118,19 @@ class BaseRefiner(Refiner):
             write_wedges(self.connectivity, self._wedge_values, rows)
 
     def follow_values(self) -> None:
-        """Take over values that a frame brings; a subclass that keeps values of its own extends it.
+        """Take over the values of a frame; a subclass that keeps its own values extends it.
 
-        It is called before `fill` where they differ from those of the frame before.
+        It is called before `fill` if the values differ from those of the frame before.
         """
         assert self._values is not None
         spread_over_wedges(self._values.values, self._mesh.wedge_uv, self._wedge_values)
 
     def origins(self) -> Origins:
-        """Return where the wedges lie on the input mesh; a subclass adds its points to them."""
+        """Return the places of the wedges on the input mesh; a subclass adds its own points."""
         return Origins.at(self.connectivity.wedge_vertices)
 
     def __reduce__(self) -> str:
-        """Raise TypeError: its arrays look into each other, which no copy would do."""
+        """Raise TypeError: arrays of a refiner share memory, which a copy would lose."""
         raise TypeError(
             "a refiner cannot be copied, pickled or sent to another process; make one there with "
             "refine.create from the same faces and rest positions"
@@ -193,7 +194,7 @@ class BaseRefiner(Refiner):
         view: View | None,
         values: FrameValuesLike | None = None,
     ) -> None:
-        """Check the positions and values of a frame, and copy them.
+        """Check and copy the positions and values of a frame.
 
         Positions go into `positions` and `points`. Raises ValueError as `refine` does.
         """
@@ -213,7 +214,7 @@ class BaseRefiner(Refiner):
             self.follow_values()
 
     def _own(self, *things: object) -> None:
-        """Raise ValueError if one of these, which learn one mesh, serves another refiner."""
+        """Raise ValueError if one of these, which serve one mesh, has another refiner."""
         for thing in things:
             if _owners.get(id(thing), self) is not self:
                 raise ValueError(
@@ -223,7 +224,7 @@ class BaseRefiner(Refiner):
             _owners[id(thing)] = self
 
     def _accept(self, stream: Stream, vertex_count: int, triangle_count: int) -> None:
-        """Raise ValueError unless the arrays can take this much; seen ones are hardly looked at."""
+        """Raise ValueError unless the arrays have room for this; known ones are checked briefly."""
         try:
             vertices = stream.vertices
             triangles = stream.triangles
@@ -249,7 +250,7 @@ class BaseRefiner(Refiner):
 
     @cached_property
     def _own_stream(self) -> OwnStream:
-        """The stream of frames that are lent none."""
+        """The stream for frames without a lent one."""
         return OwnStream(self.vertex_columns, self.vertex_capacity, self.triangle_capacity)
 
     def values_in(self, vertices: Floats32) -> tuple[Floats32 | None, Mapping[str, Floats32]]:

@@ -1,22 +1,21 @@
-"""A checker to call: is this refined mesh what section 4 of the paper promises?
+"""A checker for refined meshes: it compares one with the promises of the paper's section 4.
 
-It goes from counts to references to geometry, uses nothing of the way a mesh was made except the
-refiner's own account of where its vertices come from (`origins`), and names the first relation that
-is broken. It accepts any number of levels, and points anywhere on edges or inside triangles. For
-tests, and for authors of refiners; far too slow for every frame.
+It goes from counts to references to geometry, and names the first broken relation. From the refiner
+it uses only `origins`, the places of its vertices on the input. It accepts any number of levels,
+and points anywhere on edges or inside triangles. It is for tests and for authors of refiners, and
+far too slow for every frame.
 
 The relations (Kähler, Haber, Seidel 2003, sections 3 and 4.3, Fig. 7 for the cracks):
   - every input triangle is covered exactly, by subtriangles of its own orientation, in the plane of
     its barycentric coordinates: no fold, no sliver with three points on one edge;
   - equal places have equal positions and normals, on both sides of a texture seam too;
   - a sub-edge inside an input triangle has two subtriangles, in opposite directions;
-  - a sub-edge on an input edge has the sides that this edge has in the input: so no T-junction, and
-    no border where there was none;
+  - a sub-edge on an input edge has the sides of this edge in the input: so there is no T-junction,
+    and no new border;
   - an edge that was split s times has 2^s sub-edges;
   - no criterion measures NaN, if the refiner reports it (`Kahler.complaint`);
-  - a vertex at which no edge was split is where the input has it, to the last bit of a float32.
-A triangle of the input that names a vertex twice is exempt from these relations; the output has it
-once.
+  - a vertex without a split edge has its input position, to the last bit of a float32.
+An input triangle that names a vertex twice is exempt from these relations; the output has it once.
 """
 
 from typing import NamedTuple
@@ -29,19 +28,19 @@ from ..mesh.validation import LARGEST_COORDINATE
 from .plugin import Origins, RefinedMesh, Refiner
 
 PARTS = 2**9 * 3**2 * 5 * 7
-"""Places are rounded to a lattice of so many parts along an edge, so that equal ones are equal.
+"""Parts of an edge; places are rounded to this lattice, so that equal ones compare equal.
 
 Nine levels of halving are whole parts, and so are thirds, fifths, sevenths and ninths of most of
-them: these may come with what weights in single precision lose. Other places are kept apart where
-they are a part or more away from each other, and have to come with the same weights from all sides.
+them; these may have rounding errors of single precision. Other places count as different if they
+are a part or more apart, so they must have the same weights on all sides.
 """
 
 
 class _Places(NamedTuple):
-    """Where output vertices lie on the input mesh, the same for equal places."""
+    """Places of output vertices on the input mesh; equal places have equal numbers."""
 
     vertices: Integers64
-    """Input vertices in rising order, shape (N, 3); -1 where one has no part."""
+    """Input vertices in rising order, shape (N, 3); -1 for a vertex without a part."""
     parts: Integers64
     """Their parts, which add up to `PARTS`, shape (N, 3)."""
 
@@ -53,8 +52,8 @@ class BrokenMeshError(ValueError):
 def check(refiner: Refiner, mesh: RefinedMesh, positions: npt.NDArray[np.floating]) -> None:
     """Raise BrokenMeshError, naming the relation, unless `mesh` is a proper refinement.
 
-    `mesh`: what `refiner.refine(positions)` returned, still of its last frame; `positions`: the
-    deformed vertex positions, shape (V, 3). Returns nothing and changes nothing.
+    `mesh`: the result of `refiner.refine(positions)`, which must be its last frame; `positions`:
+    the deformed vertex positions, shape (V, 3). Returns nothing and changes nothing.
     """
     complain = getattr(refiner, "complaint", None)
     complaint = complain() if callable(complain) else None
@@ -110,7 +109,7 @@ def _check_arrays(mesh: RefinedMesh, origins: Origins, vertex_count: int, face_c
 
 
 def _input_faces(refiner: Refiner) -> Integers64:
-    """Vertices of the input triangles, found again from their edges: corner i is on i - 1 and i.
+    """Vertices of the input triangles, from their edges: corner i is on edges i - 1 and i.
 
     -1 for triangles without edges.
     """
@@ -140,8 +139,9 @@ def _rounded(origins: Origins) -> _Places:
 
 
 def _number_places(places: _Places, mesh: RefinedMesh) -> Integers64:
-    """Number equal places on the input mesh alike, shape (N,)."""
-    # A point inside a triangle is one of this triangle, even if another has the same corners.
+    """Give equal places on the input mesh the same number, shape (N,)."""
+    # A point inside a triangle belongs to this triangle alone, even if another has the same
+    # corners.
     is_inside = (places.parts > 0).all(axis=1)
     source = np.full(len(mesh.positions), -1, dtype=np.int64)
     source[mesh.triangles] = mesh.source[:, None]
@@ -248,7 +248,7 @@ def _check_sub_edges(
 
 
 def _sides_of_edges(refiner: Refiner) -> tuple[Integers64, Integers64]:
-    """How many input triangles run along and against each edge."""
+    """Numbers of input triangles that run along, and against, each edge."""
     faces = _input_faces(refiner)
     proper = faces[:, 0] >= 0
     triangle_edges = refiner.triangle_edges[proper]
@@ -269,7 +269,7 @@ def _check_unmoved(
     given = positions[vertex].astype(np.float64)
     is_number = np.asarray(
         (abs(given) < LARGEST_COORDINATE).all(axis=1)
-    )  # what nothing uses need not be
+    )  # unused vertices may be NaN
     wanted = np.where(is_number[:, None], given, 0.0).astype(np.float32)
     same = (mesh.positions[rows] == wanted).all(axis=1)
     _require_all(

@@ -1,7 +1,7 @@
-"""Texture coordinates and attributes: what corners of triangles have beside a place.
+"""Texture coordinates and attributes: the values of triangle corners besides positions.
 
-Checked and joined into one table, one row for each different corner. What passes is copied, so that
-later changes to the caller's arrays cannot reach a frame.
+They are checked and joined into one table, with one row for each different corner. They are copied,
+so that later changes to the caller's arrays cannot reach a frame.
 """
 
 from collections.abc import Mapping
@@ -31,7 +31,7 @@ class Values(TypedDict, total=False):
     attributes: Mapping[str, AttributeLike] | None
     """Other values of vertices or corners, by name."""
     crease_angle: float | None
-    """Edges stay sharp where triangles at rest turn by more than this [degrees]; None: none do."""
+    """Edges whose triangles turn by more than this at rest [degrees] stay sharp; None: no edges."""
 
 
 @dataclass(frozen=True)
@@ -43,13 +43,13 @@ class CornerValues:
     corners: Integers64 | None
     """Row of every corner, shape (F, 3); None if vertex v has row v."""
     columns: Mapping[str, slice]
-    """Where the attributes are among the k columns."""
+    """Columns of each attribute among the k columns."""
     has_uv: bool
     """Whether the first two columns are texture coordinates."""
     own_rows: Mapping[str, Integers64 | None]
-    """Of each attribute: the row of its own array that a row here has, (A,); None: the same."""
+    """For each attribute: the row of its own array for each row here, (A,); None: the same row."""
     own_lengths: Mapping[str, int]
-    """Of each attribute: the number of rows of its own array."""
+    """For each attribute: the number of rows of its own array."""
 
 
 def checked_corner_values(

@@ -1,9 +1,9 @@
-"""Values that change from frame to frame: attributes that a frame brings anew.
+"""Values that change from frame to frame: a frame may bring new numbers for attributes.
 
 Kähler, Haber, Seidel 2003, section 4.4, carry texture coordinates through splits linearly along
-edges. So do we with attributes (corner_values.py). Most stay as they were bound; heat, strain or
-the depth of wrinkles are other ones in each frame. They are bound like the rest, which gives them
-their columns and rows, and a frame writes other numbers there.
+edges. We treat attributes in the same way (corner_values.py). Most stay as they were bound; heat,
+strain or the depth of wrinkles change in each frame. Those are bound like the others, which gives
+them their columns and rows, and a frame writes new numbers there.
 """
 
 from collections.abc import Mapping
@@ -16,14 +16,14 @@ from ..mesh.validation import as_array
 from .corner_values import CornerValues
 
 FrameValuesLike = Mapping[str, npt.ArrayLike]
-"""Values of a frame by the names of attributes, each of the shape that was bound."""
+"""Values of a frame by the names of attributes, each in its bound shape."""
 
 
 class FrameValues:
-    """The values of the frame, in the table that was bound."""
+    """The values of the frame, in the bound table."""
 
     def __init__(self, bound: CornerValues) -> None:
-        """`bound`: its table is written in every frame that brings values."""
+        """`bound`: the table that every frame with values rewrites."""
         self._bound = bound
         self._at_binding = bound.values.copy()
         self._are_given = False
@@ -31,7 +31,7 @@ class FrameValues:
     def take(self, given: FrameValuesLike | None) -> bool:
         """Write the values of a frame into the table; return whether the table has changed.
 
-        Attributes that a frame does not bring have those of binding. Raises ValueError for a name
+        Attributes that a frame does not bring have their bound values. Raises ValueError for a name
         that was not bound, another shape, and numbers that are not finite in single precision.
         """
         if not given and not self._are_given:

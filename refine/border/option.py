@@ -1,12 +1,12 @@
 """Options of refiners and criteria, as their factories declare them.
 
-An option is a keyword of the factory: its name, type and default stand in the signature. What a
-signature cannot say, its range and its help, stands beside the type:
+An option is a keyword of the factory: its name, type and default stand in the signature. Range and
+help, which a signature cannot state, are an annotation of the type:
 
     def __init__(self, *, reach: Annotated[float, Option("how far it looks", least=0.0)] = 1.0):
 
-From the one record come the checks of `create`, the options of the command line, and the sliders of
-a window.
+This one record gives the checks of `create`, the options of the command line, and the sliders of a
+window.
 """
 
 import inspect
@@ -24,7 +24,7 @@ _KINDS: Mapping[type, Kind] = MappingProxyType(
     {bool: "switch", int: "integer", float: "number", str: "word"}
 )
 LEFT_OPEN = "automatic"
-"""The word for a choice that is left open, None."""
+"""The word for None, an open choice."""
 
 
 @dataclass(frozen=True)
@@ -38,12 +38,12 @@ class Option:
     most: float | None = None
     """The largest."""
     name: str = ""
-    """As it is passed; taken from the signature, like all that follows."""
+    """Name of the keyword; taken from the signature, like all fields below."""
     default: Any = None
     kind: Kind = "object"
-    """Of its value; an object, for one an array, has no slider and no words."""
+    """Kind of its value; an object, such as an array, has no slider and no words."""
     choices: Mapping[str, Any] = field(default_factory=dict)
-    """The values that a choice has, by words."""
+    """The values of a choice, by their words."""
 
     @property
     def wanted(self) -> str:
@@ -79,22 +79,22 @@ class Option:
         return bool(is_above and (self.most is None or number <= self.most))
 
     def check(self, value: object) -> None:
-        """Raise ValueError for a value that it does not allow."""
+        """Raise ValueError for a value that is not allowed."""
         if not self.allows(value):
             seen = value if isinstance(value, str) else reprlib.repr(value)
             raise ValueError(f"option {self.name} was {seen}, must be {self.wanted}")
 
 
 def signature_of(factory: Callable[..., Any]) -> inspect.Signature:
-    """The signature of a factory, with its types looked up where that can be done."""
+    """The signature of a factory, with its types looked up where possible."""
     try:
         return inspect.signature(factory, eval_str=True)
-    except (NameError, AttributeError, SyntaxError, TypeError):  # of imports for type checkers only
+    except (NameError, AttributeError, SyntaxError, TypeError):  # imported for type checkers only
         return inspect.signature(factory)
 
 
 def options_of(signature: inspect.Signature, first: int = 0) -> Iterator[Option]:
-    """The options of a factory: all from the place `first` on that can be passed by name."""
+    """The options of a factory: all arguments from the place `first` on that have a keyword."""
     for parameter in list(signature.parameters.values())[first:]:
         if parameter.kind in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD):
             yield _option_of(parameter)

@@ -1,9 +1,9 @@
 """The border of the plug-in: the protocol of refiners, their input and their output.
 
 Kähler, Haber, Seidel 2003, Fig. 1 and section 3: refinement sits between the deformed mesh and the
-rendering engine, reads the one and feeds the other, and keeps nothing of its own between frames.
-So a refiner is bound once to the connectivity and the undeformed positions of a mesh, and then
-turns positions into triangles, frame by frame:
+rendering engine. It reads the mesh, feeds the engine, and keeps no geometry between frames. So a
+refiner is bound once to the connectivity and the undeformed positions of a mesh, and then turns
+positions into triangles, frame by frame:
 
     refiner = refine.create("kahler", faces, rest_positions)
     mesh = refiner.refine(positions)          # draw mesh.positions, mesh.normals, mesh.triangles
@@ -51,39 +51,39 @@ class RefinedMesh(NamedTuple):
         return len(self.triangles)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Copy and pickle as arrays of its own: to keep a frame, or send it to another process."""
+        """Copy and pickle the arrays, to keep a frame or to send it to another process."""
         return RefinedMesh, (*self[:-1], dict(self.attributes))
 
 
 class View(NamedTuple):
-    """Where the mesh is looked at from, for criteria that depend on it."""
+    """The viewpoint of a frame, for criteria that depend on it."""
 
     eye: npt.ArrayLike
     """Position of the eye [unit of the input], shape (3,)."""
 
 
 class Origins(NamedTuple):
-    """Where every output vertex lies in the undeformed parameter domain of the input mesh.
+    """Place of every output vertex on the undeformed input mesh.
 
     Output vertex n is the mix of input vertices `vertices[n]` with `weights[n]`, before smoothing.
-    It carries any other attribute over: `(colours[o.vertices] * o.weights[..., None]).sum(1)`.
+    Any other attribute follows: `(colours[o.vertices] * o.weights[..., None]).sum(1)`.
     """
 
     vertices: npt.NDArray[np.int32]
     """Input vertices, shape (N, 3)."""
     weights: npt.NDArray[np.float32]
-    """Their barycentric weights, shape (N, 3): any that are not negative and add up to one."""
+    """Their barycentric weights, shape (N, 3), which are not negative and add up to one."""
 
     @classmethod
     def at(cls, vertices: npt.ArrayLike) -> "Origins":
-        """Return those of output vertices that lie at one input vertex each, shape (N,)."""
+        """Return the origins of output vertices that lie at one input vertex each, shape (N,)."""
         corners = np.stack([np.asarray(vertices, dtype=np.int32)] * 3, axis=1)
         weights = np.zeros(corners.shape, dtype=np.float32)
         weights[:, 0] = 1.0
         return cls(corners, weights)
 
     def followed_by(self, vertices: npt.ArrayLike, weights: npt.ArrayLike) -> "Origins":
-        """Return these, and after them those of more output vertices, each of shape (K, 3)."""
+        """Return these origins, followed by those of K more output vertices, shape (K, 3) each."""
         return Origins(
             np.concatenate([self.vertices, np.asarray(vertices, dtype=np.int32)]),
             np.concatenate([self.weights, np.asarray(weights, dtype=np.float32)]),
@@ -93,10 +93,10 @@ class Origins(NamedTuple):
 class Stream(Protocol):
     """Arrays lent by the caller, which the refiner fills from the top.
 
-    They have room for `vertex_capacity` and `triangle_capacity`. Each frame may bring others.
-    They may be views of mapped memory: of a file, of another process, of a buffer of the GPU.
-    The built-in refiners read again rows that they wrote in the same frame, so the memory should
-    be fast to read, too.
+    They have room for `vertex_capacity` and `triangle_capacity`. Each frame may bring other arrays.
+    They may be views of mapped memory: of a file, of another process, or of a GPU buffer. The
+    built-in refiners read rows again that they wrote in the same frame, so the memory should also
+    be fast to read.
     """
 
     @property
@@ -115,14 +115,14 @@ class Stream(Protocol):
 class GpuStream(Protocol):
     """A stream that lives on the graphics card, for refiners that write there (`refine_gl/`).
 
-    Its buffers are those of an OpenGL context that is current where the refiner is called, as
-    moderngl has them, with room for `vertex_capacity` and `triangle_capacity`. Rows, triangles and
-    sources lie in them as in the arrays of a `Stream`; nobody on this side learns how many.
+    Its moderngl buffers belong to an OpenGL context that is current when the refiner is called, and
+    have room for `vertex_capacity` and `triangle_capacity`. Rows, triangles and sources lie in them
+    as in the arrays of a `Stream`; the processor does not learn their number.
     """
 
     @property
     def context(self) -> Any:
-        """The context; a refiner hands its mesh over where it meets a new one."""
+        """The context; a refiner uploads its mesh when it meets a new context."""
 
     @property
     def vertex_buffer(self) -> Any:
@@ -134,12 +134,13 @@ class GpuStream(Protocol):
 
     @property
     def source_buffer(self) -> Any:
-        """The input triangle of each, 4 bytes."""
+        """The input triangle of each triangle, 4 bytes."""
 
     @property
     def command_buffer(self) -> Any:
         """Seven numbers of 4 bytes: a DrawElementsIndirectCommand (OpenGL 4.0) that draws the frame
-        as one instance, then how many vertices and how many triangles that is."""
+        as one instance, then its numbers of vertices and triangles.
+        """
 
 
 @runtime_checkable
@@ -180,14 +181,14 @@ class Refiner(Protocol):
         view: View | None = None,
         values: Mapping[str, npt.ArrayLike] | None = None,
     ) -> RefinedMesh:
-        """Turn deformed `positions`, shape (V, 3), any float type, into triangles; never writes it.
+        """Turn deformed `positions`, shape (V, 3), any float type, into triangles.
 
-        The result views the arrays of `out`, or of the refiner's own stream without it. `view`:
-        for criteria that depend on the eye. `values`: attributes of this frame by name, in place
-        of those that were bound, of the same shape each, (V, k) for values of vertices. One frame
-        at a time: threads take a refiner each. A process must not be forked while one of its
-        threads compiles: numba's lock stays shut in the child. (After a first frame before the fork
-        there is nothing to compile.)
+        `positions` are never written. The result is a view of the arrays of `out`, or, without it,
+        of the refiner's own stream. `view`: for criteria that depend on the eye. `values`:
+        attributes of this frame by name, in place of the bound ones and each of the same shape, (V,
+        k) for values of vertices. A refiner makes one frame at a time, so each thread needs its own
+        refiner. Do not fork a process while one of its threads compiles: numba's lock stays shut in
+        the child. (After a first frame before the fork there is nothing to compile.)
         """
 
     @abstractmethod
@@ -206,4 +207,4 @@ class GpuRefiner(Refiner):
         view: View | None = None,
         values: Mapping[str, npt.ArrayLike] | None = None,
     ) -> RefinedMesh:
-        """`refine` into a stream, whose context is current; arrays are fetched when read."""
+        """Refine into a stream, whose context is current; arrays are fetched when they are read."""

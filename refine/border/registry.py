@@ -1,8 +1,8 @@
 """Registries of names: refiners here, schemes and criteria of `kahler` in the same way.
 
-The package registers its own in the same way as others do. Installed packages announce theirs by
-entry points, in a group for each kind. An entry point is looked up when a name is not registered
-or when names are listed; it is imported when its name is used.
+This package registers its own factories in the same way as others do. Installed packages announce
+theirs by entry points, in a group for each kind. An entry point is looked up when a name is not
+registered or when names are listed; it is imported when its name is used.
 """
 
 import functools
@@ -25,7 +25,7 @@ class Registry(Generic[Product]):
     """Factories of one kind of object, by name."""
 
     def __init__(self, kind: str, group: str) -> None:
-        """`kind`: the product of the factories, for errors; `group`: of entry points."""
+        """`kind`: the product of the factories, for errors; `group`: the name of entry points."""
         self.kind = kind
         self._group = group
         self._factories: dict[str, Callable[..., Product]] = {}
@@ -33,7 +33,7 @@ class Registry(Generic[Product]):
     def register(self, name: str, factory: Callable[..., Product]) -> None:
         """Make `factory` known as `name`; raises ValueError if the name is empty or taken.
 
-        It goes before an entry point of this name.
+        It has precedence over an entry point of this name.
         """
         if not (isinstance(name, str) and name) or "+" in name:
             raise ValueError(f"the name of a {self.kind} must be a word without +, got {name!r}")
@@ -46,7 +46,7 @@ class Registry(Generic[Product]):
         self._factories[name] = factory
 
     def available(self) -> tuple[str, ...]:
-        """Names that are known, in the order of registration; then those of installed packages."""
+        """Known names in the order of registration; then those of installed packages."""
         return tuple(dict.fromkeys([*self._factories, *self.installed()]))
 
     def installed(self) -> "Mapping[str, EntryPoint]":
@@ -104,18 +104,17 @@ def create(
     face_uv: npt.ArrayLike | None = None,
     **options: Any,
 ) -> Refiner:
-    """Bind the refiner `name` to a mesh; nothing that is passed is kept or changed.
+    """Bind the refiner `name` to a mesh; no argument is kept or changed.
 
-    `faces`: vertices of each triangle, shape (F, 3), any integer type.
-    `rest_positions`: undeformed vertex positions [any unit], shape (V, 3), any float type.
-    `uv`: texture coordinates, shape (U, 2); `face_uv`: the one of each corner, shape (F, 3), or
-    None if vertex v has coordinate v (then U = V).
-    `options`: those of the method; see `create_kahler` and `Loop`. The built-in ones all
-    take `attributes`: by name, values of each vertex, shape (V, k), or a pair of values, shape
-    (A, k), and the row of each corner, shape (F, 3), for values that differ along seams. They take
-    `crease_angle` [degrees], too: edges at which two triangles turn by more at rest stay sharp.
-    Raises ValueError for an unknown name or option, for arrays that do not fit together, and for a
-    refiner of an installed package that cannot be imported.
+    `faces`: vertices of each triangle, shape (F, 3), any integer type. `rest_positions`: undeformed
+    vertex positions [any unit], shape (V, 3), any float type. `uv`: texture coordinates, shape (U,
+    2); `face_uv`: the row in `uv` of each corner, shape (F, 3), or None if vertex v has coordinate
+    v (then U = V). `options`: those of the method; see `create_kahler` and `Loop`. All built-in
+    refiners take `attributes`, by name: values of each vertex, shape (V, k), or, for values that
+    differ along seams, a pair of values, shape (A, k), and the row of each corner, shape (F, 3).
+    They also take `crease_angle` [degrees]: edges at which two triangles turn by more at rest stay
+    sharp. Raises ValueError for an unknown name or option, for arrays that do not fit together, and
+    for a refiner of an installed package that cannot be imported.
     """
     factory = refiners.find(name)
     _check_options(refiners.kind, name, factory, options)
@@ -128,7 +127,7 @@ def parameters(name: str) -> tuple[Option, ...]:
 
 
 def takes_attributes(name: str) -> bool:
-    """Whether a refiner takes `attributes`, as all that hand on `Values` do."""
+    """Whether a refiner takes `attributes`, as all refiners with `**values: Values` do."""
     signature = signature_of(refiners.find(name))
     values = (_names_of_values(each) for each in signature.parameters.values())
     declared = (option.name for option in _options_of_refiner(signature))
@@ -136,13 +135,13 @@ def takes_attributes(name: str) -> bool:
 
 
 def _options_of_refiner(signature: inspect.Signature) -> tuple[Option, ...]:
-    """All but the mesh, which comes first, and its texture coordinates."""
+    """All arguments but the mesh, which comes first, and its texture coordinates."""
     options = options_of(signature, first=2)
     return tuple(option for option in options if option.name not in ("uv", "face_uv"))
 
 
 def _names_of_values(parameter: inspect.Parameter) -> set[str]:
-    """The names that `**values: Unpack[Values]` stands for."""
+    """The names behind `**values: Unpack[Values]`."""
     is_unpacked = get_origin(parameter.annotation) is Unpack
     if parameter.kind is not parameter.VAR_KEYWORD or not is_unpacked:
         return set()
@@ -176,6 +175,6 @@ def _check_options(
 @functools.cache
 def entry_points_of(group: str) -> "Mapping[str, EntryPoint]":
     """The entry points of a group, by name; they are looked up once."""
-    from importlib.metadata import entry_points  # takes as long to import as all of this package
+    from importlib.metadata import entry_points  # its import takes as long as all of this package
 
     return {point.name: point for point in entry_points(group=group)}

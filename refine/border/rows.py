@@ -18,7 +18,7 @@ GEOMETRY_COLUMNS = 6
 def copy_along_seams(wedge_vertices: Unsigned32, first: int, rows: Floats32) -> None:
     """Copy position and normal of vertices on texture seams to their other sides.
 
-    `wedge_vertices`: the vertex of every wedge, shape (W,), of which copies begin with `first`.
+    `wedge_vertices`: the vertex of every wedge, shape (W,); copies begin at `first`.
     """
     for w in range(first, wedge_vertices.shape[0]):
         for i in range(GEOMETRY_COLUMNS):
@@ -27,7 +27,7 @@ def copy_along_seams(wedge_vertices: Unsigned32, first: int, rows: Floats32) -> 
 
 @njit
 def spread_over_wedges(values: Floats32, wedge_uv: Integers32, spread: Floats32) -> None:
-    """Write `wedge_values` of other values into `spread`, shape (W, k); zeros stay.
+    """Write `wedge_values` of other values into `spread`, shape (W, k); zeros remain.
 
     `values`: shape (A, k); `wedge_uv`: the row of it that a wedge has, -1 for none, shape (W,).
     """
@@ -42,13 +42,13 @@ def spread_over_wedges(values: Floats32, wedge_uv: Integers32, spread: Floats32)
 def wedge_values(mesh: Connectivity, values: Floats32) -> Floats32:
     """Texture coordinates and attributes of wedges, 0 where none is given, shape (W, k).
 
-    `values`: shape (A, k); the mesh says which row of it a wedge has.
+    `values`: shape (A, k); the mesh has the row of each wedge.
     """
     zeros = np.zeros((1, values.shape[1]), np.float32)
     return np.concatenate([values, zeros])[mesh.wedge_uv]  # -1 is the last row
 
 
 def write_wedges(mesh: Connectivity, values: Floats32, rows: Floats32) -> None:
-    """Write what follows a vertex: its copies along seams, and the values of `wedge_values`."""
+    """Write the copies of vertices along seams, and the values of `wedge_values`."""
     copy_along_seams(mesh.wedge_vertices, mesh.vertex_count, rows)
     rows[: len(values), GEOMETRY_COLUMNS:] = values

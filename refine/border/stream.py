@@ -1,4 +1,4 @@
-"""Arrays that frames are written into: those a caller lends, and a refiner's own."""
+"""Arrays for frames: those that a caller lends, and a refiner's own."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ import numpy as np
 from ...geometry.arrays import Floats32, Integers32, Unsigned32
 
 GROWTH_FACTOR = 1.25
-"""How much more than it needs a stream of one's own takes when it has to grow."""
+"""Factor beyond the present need when an own stream must grow."""
 
 
 class StreamArrays(NamedTuple):
@@ -18,7 +18,7 @@ class StreamArrays(NamedTuple):
     triangles: Unsigned32
     """Their corners, shape (.., 3)."""
     source: Integers32
-    """Input triangle that each is part of, shape (..,)."""
+    """Input triangle that each triangle is part of, shape (..,)."""
 
 
 class OwnStream:
@@ -34,7 +34,7 @@ class OwnStream:
     def with_triangles(
         cls, columns: int, vertex_count: int, triangles: Unsigned32, source: Integers32
     ) -> "OwnStream":
-        """A stream of frames that all have these triangles, and this many vertices."""
+        """A stream for frames that all have these triangles, and this number of vertices."""
         stream = cls(columns, vertex_count, len(triangles))
         stream.vertices = np.zeros((vertex_count, columns), dtype=np.float32)
         stream.triangles = triangles

@@ -1,6 +1,6 @@
-"""A checker to call: does a fine mesh follow a coarse one as an embedding promises?
+"""A checker for embeddings: a fine mesh must follow a coarse one as promised.
 
-For tests, and for authors of carriers of their own, beside `check` of refiners.
+It is for tests, and for authors of other carriers, as `check` is for refiners.
 """
 
 from typing import Protocol
@@ -13,14 +13,14 @@ from ..border.checker import BrokenMeshError
 from .embedding import EmbeddedPoints, checked_vectors
 
 SAME_SHARE = 1e-6
-"""How far points may be off, in sizes of the fine mesh and its way."""
+"""Tolerance of points, in sizes of the fine mesh and its way."""
 
 
 class Carrier(Protocol):
-    """An `Embedding`, or anything that carries points as it does."""
+    """An `Embedding`, or any object that carries points in the same way."""
 
     def evaluate(self, positions: Floats64, /) -> EmbeddedPoints:
-        """Where the points are when the coarse mesh is at `positions`, shape (V, 3)."""
+        """The points when the coarse mesh is at `positions`, shape (V, 3)."""
 
 
 def check_embedding(
@@ -28,9 +28,9 @@ def check_embedding(
 ) -> None:
     """Raise BrokenMeshError, naming the relation, unless fine points follow as promised.
 
-    Where the coarse mesh is at rest they are where they were, and rigid motions carry them along,
-    both to 1e-6 of the size. `rest_positions`, shape (V, 3), and `points`, shape (N, 3): those that
-    were bound. Returns nothing. Raises ValueError for points that are no such numbers.
+    With the coarse mesh at rest they keep their places, and rigid motions carry them along, both to
+    1e-6 of the size. `rest_positions`, shape (V, 3), and `points`, shape (N, 3): the bound ones.
+    Returns nothing. Raises ValueError for points of another shape or not finite.
     """
     rest = np.asarray(rest_positions, dtype=np.float64)
     fine = checked_vectors("points", points, None)

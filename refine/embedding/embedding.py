@@ -2,8 +2,8 @@
 
 Each fine vertex is bound once to a place on the surface at rest (places.py), with its offset from
 there. In a frame the offset turns with the surface: by the mean of the rotations of the patch's
-corners (patches.py), weighted as the place is. All of that is continuous over the edges of the
-coarse mesh, and nothing is refined.
+corners (patches.py), weighted as the place is. All of this is continuous over the edges of the
+coarse mesh, and no triangle is split.
 """
 
 from typing import NamedTuple
@@ -38,7 +38,7 @@ class EmbeddedPoints(NamedTuple):
     positions: Floats64
     """Shape (N, 3)."""
     normals: Floats32 | None
-    """Those that were given, turned with the surface, of length one, shape (N, 3), or None."""
+    """Unit normals of `points`, turned with the surface, shape (N, 3); None if none were bound."""
 
 
 class Embedding:
@@ -47,9 +47,9 @@ class Embedding:
         embedding = refine.Embedding(faces, rest_positions, points)    # once
         fine = embedding.evaluate(positions).positions                 # every frame
 
-    The coarse mesh is not refined for it and may be any triangles: with borders, edges of three
-    triangles, or several pieces. Where it is as it was at rest, fine vertices are where they were,
-    to rounding; a rigid motion carries them along exactly.
+    The coarse mesh is not refined and may have any triangles: borders, edges of three triangles,
+    several pieces. At its rest positions fine vertices are at theirs, to rounding; a rigid motion
+    carries them along exactly.
 
     triangles: coarse triangle that each fine vertex is bound to, shape (N,), read only.
     weights: its barycentric coordinates there, shape (N, 3), read only.
@@ -72,25 +72,25 @@ class Embedding:
     ) -> None:
         """Bind `points` at rest, shape (N, 3), to `faces`, (F, 3), of `rest_positions`, (V, 3).
 
-        `normals`: which way the fine surface looks, of any length, shape (N, 3), zero for any way.
-        A triangle that looks the other way counts as ten mean edges farther away, so that lips that
-        touch do not take each other's vertices. `labels`, integers of shape (N,), `face_labels`,
-        (F,): a fine vertex is bound to triangles of its own label alone. `crease_angle`: edges that
-        are sharper at rest [degrees] stay sharp. `stretch_offsets`: whether offsets grow as the
-        surface around them does, and not only turn.
-        `groups`, integers of shape (N,): fine vertices of one number share the place of the first
-        of them, so a hair keeps its shape and goes with its root. `places`: triangles, shape (P,),
-        and barycentric coordinates there, (P, 3), which are taken in place of a search: one for
-        each group, numbered from 0 on, or for each fine vertex where there are no groups.
-        Raises ValueError for arrays that do not fit together, points that are not finite, and
-        labels or places that no triangle with an area has.
+        `normals`: directions in which the fine surface faces, of any length, shape (N, 3), zero for
+        any direction. A triangle that faces the other way counts as ten mean edges farther away, so
+        that touching lips do not take each other's vertices. `labels`, integers of shape (N,),
+        `face_labels`, (F,): a fine vertex is bound to triangles of its own label alone.
+        `crease_angle`: edges that are sharper at rest [degrees] stay sharp. `stretch_offsets`:
+        whether offsets also grow with the surface around them; else they only turn. `groups`,
+        integers of shape (N,): fine vertices of one number share the place of the first of them, so
+        a hair keeps its shape and goes with its root. `places`: triangles, shape (P,), and
+        barycentric coordinates there, (P, 3), instead of a search: one for each group, numbered
+        from 0 on, or, without groups, for each fine vertex. Raises ValueError for arrays that do
+        not fit together, points that are not finite, and labels or places without a triangle that
+        has an area.
         """
         rest, triangles = checked_mesh(rest_positions, faces)
         fine = checked_vectors("points", points, None)
         ways = None if normals is None else checked_vectors("normals", normals, len(fine))
         self._is_used = used_vertices(triangles, len(rest))
         self._positions = rest.copy()
-        self._points = rest.astype(np.float32)  # of no use here, but finite in one pass
+        self._points = rest.astype(np.float32)  # not used; checks all values
         self._faces = triangles
         self._stretch = 1.0 if stretch_offsets else 0.0
         mesh = with_creases(connect_writable(triangles, len(rest)), rest, crease_angle)
@@ -120,10 +120,10 @@ class Embedding:
     def evaluate(
         self, positions: npt.NDArray[np.floating], *, with_normals: bool = True
     ) -> EmbeddedPoints:
-        """Where the fine mesh is when the coarse one is at `positions`, shape (V, 3).
+        """The fine mesh when the coarse one is at `positions`, shape (V, 3).
 
-        `with_normals`: whether those that were given are turned, too, which takes as long again.
-        Raises ValueError for another shape and for positions that are not finite.
+        `with_normals`: whether bound normals are turned, too, which doubles the time. Raises
+        ValueError for another shape and for positions that are not finite.
         """
         take_positions_like_rest(positions, self._is_used, self._positions, self._points)
         self._surface.move(self._positions)
@@ -137,7 +137,7 @@ class Embedding:
         return EmbeddedPoints(moved, turned)
 
     def carry(self, values: npt.ArrayLike) -> Floats64:
-        """Values at coarse vertices, shape (V,) or (V, k), at the fine ones: (N,) or (N, k).
+        """Carry values from coarse vertices, shape (V,) or (V, k), to fine ones: (N,) or (N, k).
 
         They are linear in each triangle. Raises ValueError for another number of values.
         """
@@ -158,7 +158,7 @@ class Embedding:
 
 
 def checked_vectors(name: str, given: npt.ArrayLike, count: int | None) -> Floats64:
-    """A copy of finite vectors, shape (count, 3), or of any number where that is None."""
+    """A copy of finite vectors, shape (count, 3); any number of vectors if `count` is None."""
     rows = "N" if count is None else str(count)
     array = as_array(name, given, f"numbers of shape ({rows}, 3)")
     is_shaped = array.ndim == 2 and array.shape[1] == 3 and count in (None, len(array))
@@ -179,7 +179,7 @@ def checked_vectors(name: str, given: npt.ArrayLike, count: int | None) -> Float
 def _of_first(
     groups: Integers64 | None, triangles: Integers64, weights: Floats64
 ) -> tuple[Integers64, Floats64]:
-    """Places, of which each group has that of its first vertex."""
+    """Places of fine vertices; all vertices of a group have that of its first vertex."""
     if groups is None:
         return triangles, weights
     _, first, number = np.unique(groups, return_index=True, return_inverse=True)
@@ -194,7 +194,7 @@ def _given_places(
     is_proper: npt.NDArray[np.bool_],
     count: int,
 ) -> tuple[Integers64, Floats64]:
-    """The places that were given, one for each of `count` fine vertices, checked."""
+    """The given places, one for each of `count` fine vertices, checked."""
     if labels is not None:
         raise ValueError("places say where points are bound; leave labels out")
     number = np.arange(count) if groups is None else groups
@@ -223,7 +223,7 @@ def _groups(
     count: int,
     is_proper: npt.NDArray[np.bool_],
 ) -> tuple[list[tuple[Integers64, Integers64]], Integers64]:
-    """Fine points with the triangles that they may lie on; label of each triangle, -1 for none."""
+    """Groups of fine points and allowed triangles; and the label of each triangle, -1 for none."""
     if (labels is None) != (face_labels is None):
         raise ValueError("labels and face_labels go together: give both or none of them")
     label_of = np.where(is_proper, 0, -1).astype(np.int64)
@@ -259,9 +259,9 @@ def _checked_labels(name: str, given: npt.ArrayLike, count: int) -> Integers64:
 def turned_at(
     rows: Floats64, t: int, u: float, v: float, w: float, vector: Vector
 ) -> tuple[Vector, float]:
-    """A vector as the place on patch t turns it, and the stretch there.
+    """A vector, turned with the place on patch t, and the stretch there.
 
-    The mean of the corners' quaternions need not have length one; zero is no turn.
+    The mean of the corners' quaternions may have any length; zero means no turn.
     """
     row = rows[t]
     at = (u, v, w)
@@ -292,9 +292,9 @@ def place_points(
     stretched: float,
     moved: Floats64,
 ) -> None:
-    """Write fine points, shape (N, 3): places on patches `numbers`, and their turned offsets.
+    """Write fine points, shape (N, 3): places on patches `numbers` plus turned offsets.
 
-    `stretched`: share of the surface's stretch that offsets have.
+    `stretched`: share of the surface's stretch in the offsets.
     """
     for k in range(first, last):
         t = numbers[k]
@@ -315,7 +315,7 @@ def turn_vectors(
     vectors: Floats32,
     turned: Floats32,
 ) -> None:
-    """Write vectors at fine points as the surface turns them, shape (N, 3)."""
+    """Write vectors at fine points, turned with the surface, shape (N, 3)."""
     for k in range(first, last):
         u, v, w = row_of(weights, k)
         result, _ = turned_at(rows, numbers[k], u, v, w, row_of(vectors, k))

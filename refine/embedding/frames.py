@@ -1,11 +1,11 @@
-r"""How a coarse surface turns at its vertices.
+r"""Turns of a coarse surface at its vertices.
 
-The *axes* of a vertex are its normal, and two directions that lay across it at rest, as the
-triangles around carry them along. A *frame* is the rotation of the axes since rest: the one nearest
-to what the plane across the normal went through (its polar decomposition), so no edge is preferred.
-Rotations are unit quaternions, because those can be mixed.
+The *axes* of a vertex are its normal and two directions across it at rest, which the surrounding
+triangles carry along. A *frame* is the rotation of the axes since rest: the one nearest to the
+deformation of the plane across the normal (its polar decomposition), so no edge is preferred.
+Rotations are unit quaternions, because quaternions can be mixed.
 
-Where a vertex has several sectors (mesh/creases.py) each has axes of its own.
+Where a vertex has several sectors (mesh/creases.py), each sector has its own axes.
 """
 
 from typing import NamedTuple
@@ -22,30 +22,31 @@ from ..mesh.creases import corner_sectors
 from ..mesh.vectors import Vector, cross, difference, dot, less, plus, times, write_row
 
 FRAME_NUMBERS = 5
-"""Numbers of a frame: a quaternion and how far the surface is stretched."""
+"""Count of the numbers of a frame: a quaternion and the stretch of the surface."""
 AXES_NUMBERS = 16
-"""Numbers of the axes of a sector."""
+"""Count of the numbers of a sector's axes."""
 LEAST_SIDE = 0.1
-"""Share of the areas around a vertex that must be left of their sum for it to have a side."""
+"""Least length of the summed cross products of a vertex with a side, in sums of their lengths."""
 
 
 class Fans(NamedTuple):
     """The surroundings of S sectors, K corners in all, for compiled code."""
 
     starts: Unsigned32
-    """Corners of sector s are from `starts[s]` to `starts[s + 1]` in what follows, (S + 1,)."""
+    """Sector s has the corners `starts[s]` up to `starts[s + 1]` in the arrays below, (S + 1,)."""
     corners: Unsigned32
-    """Vertices of their triangles, that of the sector first, shape (K, 3)."""
+    """Vertices of each corner's triangle, the sector's own vertex first, shape (K, 3)."""
     shares: Floats64
-    """What a triangle adds to the axes, shape (K, 5): the weight of its cross product; then how
-    much of its first and second edge, for each of two directions that lie in the surface."""
+    """Summands of a triangle in the axes, shape (K, 5): the weight of its cross product; then
+    shares of its first and second edge, for each of two directions in the surface.
+    """
 
 
 def sound_sectors(mesh: Connectivity, rest: Floats64) -> Integers64:
-    """Sector of each corner, shape (F, 3): parted at borders and creases, and where it has no side.
+    """Sector of each corner, shape (F, 3); borders and creases part sectors.
 
-    Where the normals of a sector cancel each other, as on a sheet with two faces that lie on one
-    another, each corner is one of its own.
+    Where the normals of a sector cancel each other, such as on a sheet whose two faces lie on one
+    another, each corner is a sector of its own.
     """
     joined, count = corner_sectors(mesh, ~mesh.around.is_interior)
     sectors = joined.astype(np.int64)
@@ -67,7 +68,7 @@ def sound_sectors(mesh: Connectivity, rest: Floats64) -> Integers64:
 def fans_of_sectors(
     mesh: Connectivity, rest: Floats64, corner_sector: Integers64, used: Integers64
 ) -> Fans:
-    """The fans of the sectors `used`; `corner_sector`: of each corner, shape (F, 3)."""
+    """The fans of the sectors `used`; `corner_sector`: sector of each corner, shape (F, 3)."""
     around = np.flatnonzero(np.isin(corner_sector, used))  # corners, 3 x triangle + i
     number = np.searchsorted(used, corner_sector.ravel()[around])
     order = np.argsort(number, kind="stable")
@@ -84,7 +85,7 @@ def fans_of_sectors(
 
 
 def _shares(rest: Floats64, fans: Unsigned32, sector: Integers64, weights: Floats64) -> Floats64:
-    """`Fans.shares`; `sector`: of each corner, (K,); `weights`: of cross products, (K,)."""
+    """`Fans.shares`; `sector`: that of each corner, (K,); `weights`: of cross products, (K,)."""
     first = rest[fans[:, 1]] - rest[fans[:, 0]]
     second = rest[fans[:, 2]] - rest[fans[:, 0]]
     crosses = np.cross(first, second)
@@ -99,7 +100,7 @@ def _shares(rest: Floats64, fans: Unsigned32, sector: Integers64, weights: Float
     totals = _sums(sector, np.where(is_proper, areas, 0.0)[:, None], count)[:, 0]
     share_of = np.where(is_proper, areas / np.maximum(totals[sector], 1e-300), 0.0)
     squared = np.where(is_proper, areas, 1.0) ** 2
-    # A direction d lies in the triangle as x first + y second; x and y by the dual of its edges.
+    # A direction d in the triangle is x first + y second; the dual of its edges gives x and y.
     dual_of_first = np.cross(second, crosses) / squared[:, None]
     dual_of_second = np.cross(crosses, first) / squared[:, None]
     shares = [weights]
@@ -128,8 +129,9 @@ def unit_of(v: Vector) -> Vector:
 def find_axes(first: int, last: int, positions: Floats64, fans: Fans, axes: Floats64) -> None:
     """Write the axes of sectors, shape (S, 16).
 
-    Rows normal, across, beside of length one; the stretch; and where the two directions that lie in
-    the surface at rest are, of any length. All zero where triangles have no normal or direction.
+    Unit rows normal, across and beside; the stretch; and the present vectors, of any length, of the
+    two directions that lie in the surface at rest. All are zero where triangles have no normal or
+    direction.
     """
     for s in range(first, last):
         normal = across = beside = 0.0, 0.0, 0.0
@@ -157,9 +159,9 @@ def find_axes(first: int, last: int, positions: Floats64, fans: Fans, axes: Floa
 
 @njit
 def find_frames(first: int, last: int, rest: Floats64, axes: Floats64, frames: Floats64) -> None:
-    """Write frames of sectors, (S, 5): how far `axes`, (S, 16), have turned since `rest`.
+    """Write frames of sectors, (S, 5): the turn of `axes`, (S, 16), since `rest`.
 
-    A quaternion is zero where a frame is none, now or at rest: then it counts for nothing.
+    A quaternion is zero where there are no axes, now or at rest; then it does not count.
     """
     turn = np.zeros((3, 3))
     for s in range(first, last):
@@ -179,7 +181,7 @@ def find_frames(first: int, last: int, rest: Floats64, axes: Floats64, frames: F
 def write_quaternion(turn: Floats64, quaternion: Floats64) -> None:
     """Write the quaternion w, x, y, z of a rotation, a matrix (3, 3).
 
-    From its largest number, as Shepperd does (1978, "Quaternion from rotation matrix").
+    It begins with the largest number, as Shepperd does (1978, "Quaternion from rotation matrix").
     """
     trace = turn[0, 0] + turn[1, 1] + turn[2, 2]
     largest = 3

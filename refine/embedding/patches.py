@@ -1,4 +1,4 @@
-r"""The smooth surface of a coarse mesh: one cubic patch over each triangle, and how it has turned.
+r"""The smooth surface of a coarse mesh: one cubic patch over each triangle, and its turn.
 
 Curved PN triangles (Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN triangles"), whose border
 curves are those of the scheme `cubic` (beyond/cubic.py): across the normals of vertices inside, and
@@ -10,14 +10,13 @@ along the border curve on borders and creases. Two patches share the curve betwe
       /    m     \       m              mean of the corners, and 3/2 of how far the other six
     a ---ab---ba--- b                   stand out of the flat triangle, on average
 
-At rest the tangent is d = b - a less what of it is upright at a. In a frame the tangents at rest
-are carried along as the triangles around carry the plane at a: so a point keeps its place on the
-surface where that is stretched unevenly, and every affine map of the plane is exact. Where carried
-tangents differ from those of the mesh as it is now by more than half, which in a fold would make
-loops, they go so far and no farther.
+At rest the tangent is d = b - a without its part along the normal at a. In a frame the surrounding
+triangles carry the tangents along with the plane at a. So a point keeps its place on a surface that
+is stretched unevenly, and every affine map of the plane is exact. A carried tangent may differ from
+that of the present mesh by half at most; beyond that a fold would make loops.
 
-Differs from the refined mesh: nothing here is flat, so curves are displaced as far as the cubic is,
-and normals are those of vertices, not steeper ones.
+Differs from the refined mesh: there are no flat triangles, so curves have the displacement of the
+cubic itself, and normals are those of vertices, not steeper ones.
 """
 
 from typing import NamedTuple
@@ -45,12 +44,13 @@ c towards a and b; and the middle."""
 FRAMES = 3 * POINTS
 """First column of the frames of a patch's corners: a quaternion and a stretch for each."""
 WIDTH = FRAMES + 3 * FRAME_NUMBERS
-"""Numbers of a patch."""
+"""Count of the numbers of a patch."""
 MOST_CARRIED = 0.5
-"""How far a carried tangent may be from that of the mesh as it is now, in lengths of the latter.
-Chosen: at one and more a curve may turn back."""
+"""Largest distance of a carried tangent from that of the present mesh, in lengths of the latter.
+Chosen: from one on a curve may turn back.
+"""
 NO_VERTEX = np.uint32(2**32 - 1)
-"""Where an edge is inside, and no border runs on."""
+"""Number for no vertex: an edge inside the mesh has no border that runs on."""
 
 
 class Patches(NamedTuple):
@@ -62,16 +62,18 @@ class Patches(NamedTuple):
     corners: Unsigned32
     """Vertices of each patch, shape (T, 3)."""
     sectors: Unsigned32
-    """Sectors that its corners belong to, shape (T, 3)."""
+    """Sectors of its corners, shape (T, 3)."""
     near: Unsigned32
     """Directed edges from each corner to the next one and to the one before, shape (T, 6)."""
     ways: Unsigned32
-    """Of directed edges: the vertices a and b from which and to which they run; the vertices before
-    a and after b on a border, a and b themselves where it has a corner there, or NO_VERTEX inside;
-    the sector at a; shape (D, 5)."""
+    """For directed edges, shape (D, 5): their vertices a and b; on a border the vertices before a
+    and after b, or, at a corner, a and b themselves; inside the mesh NO_VERTEX; and the sector at
+    a.
+    """
     slopes: Floats64
-    """How much of both directions of the sector their tangent at rest is, shape (D, 2); on a
-    border, the edge's share of the chord across a, and across b."""
+    """Coordinates of the tangent at rest in both directions of the sector, shape (D, 2); on a
+    border, the edge's shares of the chords across a and across b.
+    """
     rest: Floats64
     """Axes of sectors at rest, shape (S, 16), as `find_axes` writes them."""
 
@@ -130,7 +132,7 @@ def _directed_edges(
         for k, side in enumerate((i, (i + 2) % 3)):
             edges = mesh.triangle_edges[triangles, side]
             names[:, 2 * i + k] = 2 * edges + (mesh.edges[edges, 0] != faces[:, i])
-    # A triangle that names a vertex twice has no edges, and nothing is ever bound to it.
+    # A triangle that names a vertex twice has no edges, and no point is ever bound to it.
     used, first, near = np.unique(np.maximum(names, 0), return_index=True, return_inverse=True)
     edge = used >> 1
     end = used & 1
@@ -164,7 +166,7 @@ def find_slopes(first: int, last: int, rest: Floats64, patches: Patches) -> None
 
 @njit
 def share_of_chord(positions: Floats64, before: np.uint32, a: np.uint32, b: np.uint32) -> float:
-    """The part of a border's length from the vertex before a to b that is the edge from a to b."""
+    """Length of the edge from a to b, as a share of the border from the vertex before a to b."""
     length = distance(positions, a, b)
     whole = length + distance(positions, before, a)
     return length / whole if whole > 0.0 else 0.0
@@ -176,7 +178,7 @@ def border_tangent(
 ) -> Vector:
     """The tangent of a border curve at a, along the edge to b, by shares of chords across both.
 
-    Beside a corner the curve is a parabola, as that of `cubic` is.
+    Beside a corner the curve is a parabola, as in `cubic`.
     """
     a = way[0]
     b = way[1]

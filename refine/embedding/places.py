@@ -1,12 +1,12 @@
-"""Where a fine mesh lies on the smooth surface of a coarse one, at rest.
+"""Places of a fine mesh on the smooth surface of a coarse one, at rest.
 
-The nearest place on the flat triangles begins. From there a point slides over the surface until it
-stands upright on it: x = p + h n, with p on the cubic patch and n the mean of the vertex normals
-there, by Newton's method, from patch to patch through the edges inside. Vertex normals have no jump
-at an edge, so places that are neighbours on the fine mesh are neighbours on the surface (Panozzo,
-Baran, Diamanti, Sorkine-Hornung 2013, "Weighted averages on surfaces", who call it Phong
-projection). What no place is upright below, such as a point beyond a border, keeps the best place
-found; its offset is the rest.
+The search begins with the nearest place on the flat triangles. From there the place slides over the
+surface until the point stands upright above it: x = p + h n, with p on the cubic patch and n the
+mean of the vertex normals there, by Newton's method, from patch to patch through the edges inside.
+Vertex normals have no jump at an edge, so places that are neighbours on the fine mesh are
+neighbours on the surface (Panozzo, Baran, Diamanti, Sorkine-Hornung 2013, "Weighted averages on
+surfaces", who call it Phong projection). A point that stands upright above no place, such as one
+beyond a border, keeps the best place that was found; its offset is the remaining vector.
 """
 
 import numpy as np
@@ -22,18 +22,19 @@ from .frames import unit_of
 from .patches import SmoothSurface, place_on
 
 WRONG_SIDE = 10.0
-"""How much farther away, in mean edge lengths, a triangle seems that looks the other way."""
+"""Added distance, in mean edge lengths, of a triangle that faces the other way."""
 STEPS = 16
-"""Of Newton's method; four are enough on most surfaces."""
+"""Most steps of Newton's method; four are enough on most surfaces."""
 FARTHEST = 1.25
-"""How much farther a place may be than the one that was begun with. Chosen: an upright place is
-rarely the nearest one, but one much farther away belongs to another part of the surface."""
+"""Largest distance of a place, relative to the first one. Chosen: an upright place is rarely the
+nearest one, but a place much farther away belongs to another part of the surface.
+"""
 ROUNDING = 1e-14
-"""A step in barycentric coordinates, or the square of an angle's sine, that counts for nothing."""
+"""A step in barycentric coordinates, or the square of an angle's sine, that counts as zero."""
 INSIDE, STUCK = 3, 4
-"""What a step came to, if not to the edge opposite of corner 0, 1 or 2 and beyond it."""
+"""Results of a step that does not cross the edge opposite of corner 0, 1 or 2."""
 UPRIGHT = 1e-12
-"""What may stand aside, in distances from the surface."""
+"""Largest sideways part of an upright distance, in distances from the surface."""
 
 
 def nearest_places(
@@ -45,7 +46,7 @@ def nearest_places(
 ) -> tuple[Integers64, Floats64]:
     """The nearest places on flat triangles: their numbers, shape (N,), and coordinates, (N, 3).
 
-    `groups`: points, and the triangles that these may lie on.
+    `groups`: points, each with its allowed triangles.
     """
     triangles = np.zeros(len(points), dtype=np.int64)
     weights = np.zeros((len(points), 3))
@@ -70,7 +71,7 @@ def has_area(rest: Floats64, faces: Integers64, sliver: float) -> Flags:
 def across_edges(mesh: Connectivity, label: Integers64) -> Integers64:
     """The side beyond each side of triangles, 4 x triangle + i, shape (F, 3); -1 for none.
 
-    Only through edges inside, between triangles of one label, shape (F,); -1 for no label.
+    Only edges inside the mesh count, between triangles with one `label`, shape (F,); -1: no label.
     """
     across = np.full(mesh.faces.shape, -1, dtype=np.int64)
     edges = np.flatnonzero(mesh.around.is_interior)
@@ -148,9 +149,9 @@ def linearise(
     place: Floats64,
     columns: Floats64,
 ) -> tuple[float, Vector]:
-    """Distance from a place on patch t, and what of the way there lies aside of its normal.
+    """Distance of a point from a place on patch t, and the part of the way there across the normal.
 
-    `columns`: how that shrinks as each barycentric coordinate grows, rows of (3, 3), written.
+    `columns`: decrease of this part with each barycentric coordinate, rows of (3, 3), written.
     """
     u, v, w = place[0], place[1], place[2]
     away = less(point, 1.0, place_on(rows, t, u, v, w))
@@ -172,7 +173,7 @@ def linearise(
 
 @njit
 def slope(rows: Floats64, t: int, u: float, v: float, w: float, i: int) -> Vector:
-    """How a place on patch t moves as its coordinate i grows and the others stay."""
+    """Derivative of a place on patch t by its coordinate i, with the others fixed."""
     at = (u, v, w)
     j = (i + 1) % 3
     k = (i + 2) % 3
@@ -186,9 +187,9 @@ def slope(rows: Floats64, t: int, u: float, v: float, w: float, i: int) -> Vecto
 
 @njit
 def advance(aside: Vector, columns: Floats64, across: Integers64, t: int, place: Floats64) -> int:
-    """Move a place on patch t by one step of Newton's method, to its edge at most.
+    """Move a place on patch t by one step of Newton's method, up to the patch's edge.
 
-    Returns the corner opposite of the edge that is to be crossed, INSIDE, or STUCK.
+    Returns INSIDE, STUCK, or the corner opposite of the edge that must be crossed.
     """
     step = newton_step(aside, columns)
     for m in range(3):
@@ -214,7 +215,7 @@ def advance(aside: Vector, columns: Floats64, across: Integers64, t: int, place:
 
 @njit
 def newton_step(aside: Vector, columns: Floats64) -> Vector:
-    """The step in barycentric coordinates that takes `aside` away, by least squares."""
+    """The step in barycentric coordinates that makes `aside` smallest, by least squares."""
     first = less(row_of(columns, 1), 1.0, row_of(columns, 0))
     second = less(row_of(columns, 2), 1.0, row_of(columns, 0))
     a = dot(first, first)
@@ -233,7 +234,7 @@ def newton_step(aside: Vector, columns: Floats64) -> Vector:
 
 @njit
 def step_along(aside: Vector, columns: Floats64, i: int, j: int) -> Vector:
-    """The step along the edge from corner i to corner j that takes most of `aside` away."""
+    """The step along the edge from corner i to corner j that makes `aside` smallest."""
     way = less(row_of(columns, j), 1.0, row_of(columns, i))
     squared = dot(way, way)
     size = dot(way, aside) / squared if squared > 0.0 else 0.0
@@ -246,7 +247,7 @@ def step_along(aside: Vector, columns: Floats64, i: int, j: int) -> Vector:
 
 @njit
 def cross_edge(across: Integers64, t: int, hit: int, place: Floats64) -> int:
-    """Carry a place on the edge opposite of corner `hit` of patch t to the patch beyond it."""
+    """Carry a place across the edge opposite of corner `hit` of patch t to the next patch."""
     side = (hit + 1) % 3
     beyond = across[t, side]
     j = beyond & 3

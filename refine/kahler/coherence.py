@@ -1,8 +1,8 @@
 r"""Time-coherent splitting: the 271 sequences of splits, and how a triangle moves between them.
 
-Kähler, Haber, Seidel 2003, section 4.4. The 27-entry table (table.py) knows how often each edge
-is split, not in which order, so a new split may turn diagonals that were there before, and a flat
-shaded triangle flickers. Here a triangle is split in the order in which its edges were:
+Kähler, Haber, Seidel 2003, section 4.4. The 27-entry table (table.py) knows how often each edge is
+split, but not in which order. So a new split may turn existing diagonals, and a flat shaded
+triangle flickers. Here a triangle is split in the order in which its edges were split:
 
             2                   2                   2         the first split of an edge joins its
            / \                 /|\                 /|\        middle to the corner opposite; every
@@ -12,25 +12,25 @@ shaded triangle flickers. Here a triangle is split in the order in which its edg
 
     sequence ()             (0,)                (0, 1)
 
-A split only ever cuts subtriangles in two. So the triangulation of a sequence holds every inner
-line of the triangulation of each sequence that it continues: no line ever turns.
+A split only cuts subtriangles in two. So the triangulation of a sequence holds all inner lines of
+each sequence that it continues: no line ever turns.
 
-Each edge can be split up to twice: 271 sequences from () to those of length six, and the number of
-its sequence is all that a triangle keeps from one frame to the next. `transitions` lead from
-sequence and wanted splits to the next sequence:
+Each edge can be split up to twice, which gives 271 sequences, from () to those of length six.
+Between frames a triangle keeps only the number of its sequence. `transitions` lead from a sequence
+and the wanted splits to the next sequence:
 
-  - Splits taken back leave the sequence from its end. One that is taken back while a later one
-    stays is removed out of order: the rest is as if it had never been, and lines may
-    turn. That cannot be avoided (the paper says so); it is counted.
-  - Splits that come in one frame have no order among them. They are put in the order that gives the
-    shortest inner lines in an equilateral triangle, and of equals the one that comes first by edge
-    number.
+  - Splits that are taken back leave the sequence at its end. A split that is taken back while a
+    later one stays is removed out of order: the sequence continues as if this split had never been,
+    and lines may turn. This cannot be avoided (the paper says so); it is counted.
+  - Splits that come in one frame have no order among them. They get the order with the shortest
+    inner lines in an equilateral triangle; among equal orders, the first by edge numbers.
 
-Differs from the paper: it keeps the history with the mesh, we keep one number for each triangle.
-Entries for all edges split have no middle triangle as the table's have: no order of splits gives
-one. The tables are built when a refiner first asks for them, in a tenth of a second.
+Differs from the paper: it keeps the history with the mesh, and we keep one number for each
+triangle. Entries with all edges split have no middle triangle, unlike those of the table: no order
+of splits gives one. The tables are built in a tenth of a second, when a refiner first asks for
+them.
 
-Neighbours may have come to their splits in different orders: they share the points along their
+Neighbours may have had their splits in different orders; they still share the points along their
 edge, so no crack can open.
 """
 
@@ -66,16 +66,16 @@ Sequence = tuple[int, ...]
 
 @dataclass(frozen=True)
 class SequenceTables:
-    """Everything there is to know about the 271 sequences, as read-only arrays."""
+    """All data of the 271 sequences, as read-only arrays."""
 
     sequences: tuple[Sequence, ...]
     """Edges in the order of their splits; number 0 is (), shorter ones come first."""
     patterns: Patterns
     """Subtriangles of each sequence."""
     transitions: Unsigned16
-    """Next sequence for each sequence and each configuration wanted, shape (271, 27)."""
+    """Next sequence for each sequence and each wanted configuration, shape (271, 27)."""
     removals: Unsigned8
-    """How many splits this takes back out of order, shape (271, 27)."""
+    """Number of splits that this step takes back out of order, shape (271, 27)."""
 
 
 @cache
@@ -128,7 +128,7 @@ def split_in_order(sequence: Sequence) -> list[Triangle]:
 
 
 def _halved(triangles: list[Triangle], start: int, end: int, point: int) -> list[Triangle]:
-    """Cut the one subtriangle with the side start-end in two, at a point on this side."""
+    """Cut the subtriangle with the side start-end in two, at a point on this side."""
     result: list[Triangle] = []
     for triangle in triangles:
         if start in triangle and end in triangle:
@@ -159,7 +159,7 @@ def splits_in(sequence: Sequence) -> tuple[int, int, int]:
 def _taken_back(sequence: Sequence, wanted: tuple[int, int, int]) -> tuple[Sequence, int]:
     """Leave out the last splits of edges that have too many.
 
-    Returns the sequence left, and how many splits were followed by one that stays.
+    Returns the remaining sequence, and the number of removed splits that a remaining one follows.
     """
     surplus = [max(0, has - want) for has, want in zip(splits_in(sequence), wanted, strict=True)]
     left: list[int] = []
@@ -176,7 +176,7 @@ def _taken_back(sequence: Sequence, wanted: tuple[int, int, int]) -> tuple[Seque
 def _best_continuations(
     sequences: tuple[Sequence, ...],
 ) -> dict[tuple[Sequence, tuple[int, int, int]], Sequence]:
-    """Of all ways to get from a sequence to a configuration, the one with the shortest lines."""
+    """Among all ways from a sequence to a configuration, the one with the shortest lines."""
     best: dict[tuple[Sequence, tuple[int, int, int]], tuple[float, Sequence]] = {}
     for sequence in sequences:
         candidate = (round(_length_of_inner_lines(sequence), 9), sequence)
@@ -187,7 +187,7 @@ def _best_continuations(
 
 
 def _length_of_inner_lines(sequence: Sequence) -> float:
-    """Twice the length of all lines inside an equilateral triangle, and a constant border."""
+    """Twice the length of all lines inside an equilateral triangle, plus its constant border."""
     corners = POINTS[np.array(split_in_order(sequence))]
     u, v, w = np.moveaxis(corners - np.roll(corners, 1, axis=1), 2, 0)
     return float(np.sqrt(-(u * v + v * w + w * u)).sum())
@@ -201,7 +201,7 @@ class Coherent(Cutting):
     def __init__(self) -> None:
         """Take the tables; the triangles come with `bind`."""
         tables = sequence_tables()
-        # Copies: compiled code takes an array faster that it may write.
+        # Copies: compiled code takes writable arrays faster.
         self._steps = tables.transitions.copy(), tables.removals.copy()
         self.patterns = tables.patterns
         """A row for each sequence."""
@@ -216,16 +216,16 @@ class Coherent(Cutting):
 
     @property
     def states(self) -> Unsigned16:
-        """The sequence of each triangle, (F,), read only: all that lives from frame to frame.
+        """The sequence of each triangle, (F,), read only: the only state between frames.
 
-        May be set to those of another refiner of the same mesh, which goes on from there. Raises
-        ValueError for other shapes and for numbers of no sequence.
+        It may be set to that of another refiner of the same mesh, to go on from there. Raises
+        ValueError for other shapes and for numbers without a sequence.
         """
         return self._shown
 
     @states.setter
     def states(self, states: npt.ArrayLike) -> None:
-        """Go on from these; raises ValueError as above."""
+        """Go on from these sequences; raises ValueError as above."""
         given = np.asarray(states)
         is_right = given.shape == self._states.shape and given.dtype.kind in "iu"
         if not is_right or ((given < 0) | (given >= SEQUENCE_COUNT)).any():
@@ -238,7 +238,7 @@ class Coherent(Cutting):
     def number(
         self, frame: FrameBuffers, vertex_count: int, triangle_count: int
     ) -> tuple[int, int]:
-        """Move every triangle from its sequence to the next one; the numbers stay."""
+        """Move every triangle from its sequence to the next one; numbers of points stay."""
         removed = follow_splits(frame.configurations, *self._steps, self._states)
         self.removals_out_of_order += removed
         return vertex_count, triangle_count
@@ -257,7 +257,7 @@ def follow_splits(
     """
     removed = 0
     for t in range(states.shape[0]):
-        if configurations[t] == 0:  # most triangles: they forget their sequence
+        if configurations[t] == 0:  # most triangles: their sequence is ()
             states[t] = 0
             continue
         removed += int(removals[states[t], configurations[t]])

@@ -9,10 +9,10 @@ its triangles were made for.
 
 Rounding. Rest and current values come from the same kernel, so an undeformed mesh drops by exactly
 0. Edge vectors are taken in double precision (normals.py), so a mesh far from the origin loses
-nothing. A rigid motion leaves rounding only, and drops up to `DROP_ROUNDING` never
-split an edge. Measured on two heads of 2030 triangles in millimetres: 8e-7 for float64 positions
-wherever they are; float32 positions lose bits before they arrive here, 8e-6 around the origin, 9e-5
-one metre away, still far below the default thresholds.
+nothing. A rigid motion leaves rounding only, and drops up to `DROP_ROUNDING` never split an edge.
+Measured on two heads of 2030 triangles in millimetres: 8e-7 for float64 positions at any place.
+float32 positions lose bits before they arrive here: 8e-6 around the origin, 9e-5 one metre away,
+which is still far below the default thresholds.
 """
 
 import reprlib
@@ -31,21 +31,21 @@ from ..mesh.vectors import ONE, WIDTH, add_to_row, cross, difference, dot, row_o
 from .scheme import Scheme
 
 THRESHOLD_ONCE = 0.02
-"""Default drop above which an edge is split once: a flat place bent by 11 degrees along an edge.
+"""Default drop above which an edge is split once: a flat place, bent by 11 degrees along it.
 
 Chosen with `THRESHOLD_TWICE` to get the 1.5 times of Table 1: scanned full expressions (smile with
 open jaw; sneer with smile and lowered brows) on a face of 2029 triangles gave 1.56 and 1.57 times.
 """
 THRESHOLD_TWICE = 0.08
-"""Default drop above which an edge is split twice: a flat place bent by 23 degrees."""
+"""Default drop above which an edge is split twice: a flat place, bent by 23 degrees."""
 DROP_ROUNDING = 1e-5
 """Drops up to this size are rounding (measured, see above)."""
 LEAST_WIDTH = 1e-6
-"""Least distance of two thresholds; where they are equal there is nothing to blend over."""
+"""Least distance of two thresholds: equal ones leave no range to blend over."""
 LARGEST_LIMIT = 1e30
-"""Largest threshold but infinity: single precision holds all measures."""
+"""Largest finite threshold: single precision holds all measures."""
 UNDEFINED_NORMAL = 1e-6
-"""A normal shorter than this fraction of the lengths that made it is rounding, not a direction."""
+"""A normal shorter than this share of its summands' lengths is rounding, not a direction."""
 
 
 INFINITE = np.float32(np.inf)
@@ -62,22 +62,23 @@ DropTwice = Annotated[float, Option("the same for splitting twice", least=0.0)]
 
 
 class Criterion:
-    """Decides on splits: what every criterion derives from, the paper's as well as your own.
+    """Base class of all criteria, the paper's and your own: it decides on splits.
 
-    It writes `measure`, from which `mark` follows; one may write `mark` as well, to be faster. All
-    other methods do nothing unless they are written. A refiner calls `set_scheme` and `bind` once,
-    then in every frame `set_view` and `mark`, or `measure` where it blends.
+    A subclass has `measure`, which `mark` uses; a `mark` of its own may be faster. All other
+    methods do nothing by default. A refiner calls `set_scheme` and `bind` once, then in every frame
+    `set_view`, and `mark` or, if it blends, `measure`.
     """
 
     parts: tuple["Criterion", ...] = ()
-    """Criteria that this one asks. Each of them, too, serves one refiner only."""
+    """Criteria that this one asks; each of them serves one refiner only, too."""
     uses_normals = True
-    """Whether it reads the normals that it is handed, which are not found where nobody does."""
+    """Whether it reads normals; they are computed only if a part of the refiner reads them."""
     is_constant = False
-    """Whether every frame gets the same splits. A refiner asks once then, at its first frame, and
-    keeps its vertices and triangles in number and order."""
+    """Whether every frame gets the same splits. A refiner then asks once, at its first frame, and
+    keeps its vertices and triangles in number and order.
+    """
     _metric: Floats32 = np.zeros(0, dtype=np.float32)
-    """What `mark` follows from, shape (E,)."""
+    """Metric of each edge for `mark`, shape (E,)."""
 
     def set_scheme(self, scheme: Scheme) -> None:
         """Take the scheme, which places the new points."""
@@ -101,7 +102,7 @@ class Criterion:
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the refinement metric of every edge, shape (E,): above 0 one split, above 1 two.
 
-        It must be a continuous function of the positions for blending to be one.
+        Blending is continuous only if it is a continuous function of the positions.
         """
         raise NotImplementedError(f"{type(self).__name__} must have a method measure")
 
@@ -114,7 +115,7 @@ class Criterion:
         )
 
     def find_complaint(self, positions: Floats64, normals: Floats32, edge_count: int) -> str | None:
-        """Measure a frame again, each of its parts alone; return the first complaint of one."""
+        """Measure a frame again, part by part; return the first complaint of a part."""
         for part in self.parts:
             complaint = part.find_complaint(positions, normals, edge_count)
             if complaint is not None:
@@ -125,7 +126,7 @@ class Criterion:
 
 
 criteria: Registry[Criterion] = Registry("criterion", "risorius.criteria")
-"""Criteria by name; a factory is called without arguments, once for each refiner that asks."""
+"""Criteria by name; a factory is called without arguments, once for each refiner."""
 
 
 class Thresholds:
@@ -142,7 +143,7 @@ class Thresholds:
         if levels not in (0, 1, 2):
             raise ValueError(f"levels must be 0, 1 or 2 splits of an edge, got {levels!r}")
         self.levels = levels
-        """The most splits of an edge; may be set at any time."""
+        """The most splits of an edge; it may be set at any time."""
         are_numbers = all(isinstance(n, Real) and not isinstance(n, bool) for n in (once, twice))
         is_right = are_numbers and 0.0 <= once <= twice
         if not is_right or any(LARGEST_LIMIT < limit < np.inf for limit in (once, twice)):
@@ -152,9 +153,9 @@ class Thresholds:
                 f"switches a level off), got {reprlib.repr(once)} and {reprlib.repr(twice)}"
             )
         self.once = np.float32(max(float(once), least))
-        """Above this an edge is split; may be set at any time."""
+        """Above this an edge is split; it may be set at any time."""
         self.twice = np.float32(max(float(twice), least))
-        """Above this an edge is split twice; may be set at any time."""
+        """Above this an edge is split twice; it may be set at any time."""
 
     @property
     def limits(self) -> tuple[np.float32, np.float32]:
@@ -171,11 +172,11 @@ class Thresholds:
 
     @property
     def most(self) -> np.float32:
-        """The metric that cannot be exceeded: 1 where the second level is switched off."""
+        """The greatest metric: 1 where the second level is switched off."""
         return np.float32(1.0 if np.isinf(self.limits[1]) else np.inf)
 
     def scale(self, measures: Floats32, unit: np.float32 = ONE) -> None:
-        """Turn measures of edges, shape (E,), into metrics; `unit`: of the thresholds."""
+        """Turn measures of edges, shape (E,), into metrics; `unit`: the thresholds' unit."""
         scale_metric(measures, self.limits[0] * unit, self.width * unit, self.most)
 
 
@@ -192,17 +193,18 @@ class NormalDrop(Criterion):
         self.thresholds = Thresholds(
             threshold_once, threshold_twice, meaning, least=DROP_ROUNDING, levels=levels
         )
-        """Drops above which an edge is split once and twice; may be replaced at any time."""
+        """Drops above which an edge is split once and twice; they may be replaced at any time."""
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Store the dot product of every edge of the undeformed mesh."""
-        self._edges = connectivity.edges.astype(np.uint32)  # what may be written is taken faster
+        self._edges = connectivity.edges.astype(np.uint32)  # writable arrays are taken faster
         self._rest_dots = np.empty(len(self._edges), dtype=np.float32)
         edge_dots(rest_normals, self._edges, self._rest_dots)
         self._dots = np.empty_like(self._rest_dots)
-        # No direction to compare with at rest (all triangles around are slivers): never split.
+        # All triangles around are slivers at rest: there is no direction to compare with, so no
+        # split.
         undefined = np.empty(len(rest_positions), dtype=np.bool_)
         find_undefined_normals(connectivity.faces, rest_positions, undefined)
         if undefined.any():
@@ -243,7 +245,7 @@ def mark_drops(
     """Write 0, 1 or 2 into `splits`, shape (E,), by the drop of the dot product (as above).
 
     `edges`: end points, shape (E, 2); `once`, `twice`: the thresholds; `dots`: scratch, shape (E,).
-    The numbers to compare lie in a row, so that many edges are compared at once.
+    The numbers to compare are consecutive in memory, so that many edges are compared at once.
     """
     edge_dots(normals, edges, dots)
     for e in range(edges.shape[0]):
@@ -270,7 +272,7 @@ def scale_metric(metric: Floats32, once: np.float32, width: np.float32, most: np
 
 @njit
 def find_undefined_normals(faces: Unsigned32, positions: Floats64, undefined: Flags) -> None:
-    """Flag the vertices, shape (V,), whose normal is nothing but rounding."""
+    """Flag the vertices, shape (V,), whose normal is only rounding."""
     sums = np.zeros((positions.shape[0], 4))
     for t in range(faces.shape[0]):
         a = faces[t, 0]

@@ -1,7 +1,7 @@
-"""How triangles are cut where their edges are split: by the paper's table, or in another way.
+"""Ways to cut triangles with split edges: the paper's table, and others.
 
-Kähler, Haber, Seidel 2003, section 4.3. `Cutting` is the paper's. Others derive from it: one cuts
-in the order of the splits (coherence.py), one lets points grow (beyond/blending.py).
+Kähler, Haber, Seidel 2003, section 4.3. `Cutting` is the paper's. Others derive from it:
+coherence.py cuts in the order of the splits, beyond/blending.py lets points grow.
 """
 
 from ...geometry.arrays import Unsigned8, Unsigned16
@@ -13,14 +13,14 @@ from .table import CONFIGURATIONS, Patterns
 
 
 class Cutting:
-    """The paper's way: every point is where it belongs, and the table has 27 patterns.
+    """The paper's way: every point has its full place, and the table has 27 patterns.
 
     A refiner calls `bind` once, then in every frame `mark`, `number` and `place`. One object serves
     one refiner.
     """
 
     patterns: Patterns = CONFIGURATIONS
-    """The table in which triangles are looked up."""
+    """Table in which triangles are looked up."""
     has_centres = False
     """Whether triangles may have a point in the middle."""
     has_memory = False
@@ -40,11 +40,11 @@ class Cutting:
     def number(
         self, frame: FrameBuffers, vertex_count: int, triangle_count: int
     ) -> tuple[int, int]:
-        """Follow the splits of a frame, when points on edges are numbered.
+        """Follow the splits of a frame, after the points on edges have been numbered.
 
         Returns the numbers of all vertices and of all triangles.
         """
         return vertex_count, triangle_count
 
     def place(self, scheme: Scheme, frame: FrameBuffers) -> None:
-        """Write the points that lie on no edge, when all others have been written."""
+        """Write the points that lie on no edge, after all others have been written."""

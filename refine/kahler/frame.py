@@ -1,13 +1,12 @@
-"""The arrays that the passes of a frame hand on to each other.
+"""The arrays that the passes of a frame share.
 
-Kähler, Haber, Seidel 2003, section 4. A frame has two halves: first it is decided which edges are
-split (`splits`, and how far their points have grown), then points are placed and triangles written
-into `rows`. The arrays stay the same from frame to frame, but for `rows`, which the caller may
-lend.
+Kähler, Haber, Seidel 2003, section 4. A frame has two halves: first it decides which edges are
+split (`splits`, and how far their points have grown), then it places points into `rows` and writes
+triangles. The arrays stay the same from frame to frame, except `rows`, which the caller may lend.
 
-Compiled code takes the `FrameBuffers` as they are, or the arrays that it reads: an array alone
-costs a twentieth of a microsecond, in a named tuple twice as much. So passes of the paper's frame,
-which is done in 40 microseconds, take arrays, or plain tuples (`frame[:]`), which cost as much.
+Compiled code takes the whole `FrameBuffers`, or only the arrays that it reads. To pass an array
+alone costs a twentieth of a microsecond, and in a named tuple twice as much. The paper's frame
+takes 40 microseconds, so its passes take arrays, or plain tuples (`frame[:]`), which cost the same.
 """
 
 from typing import NamedTuple
@@ -18,8 +17,9 @@ from ...geometry.arrays import Floats32, Floats64, Integers64, Unsigned8, Unsign
 from ..mesh.connectivity import Connectivity
 
 ROWS, ONCE, TWICE, TRIANGLES, CENTRES = range(5)
-"""Places in `FrameBuffers.counts`: output rows but centres, edges split, edges split twice,
-subtriangles, triangles with a point in the middle."""
+"""Places in `FrameBuffers.counts`: output rows without centres, split edges, edges split twice,
+subtriangles, triangles with a point in the middle.
+"""
 
 
 class FrameBuffers(NamedTuple):
@@ -28,37 +28,38 @@ class FrameBuffers(NamedTuple):
     positions: Floats64
     """Deformed vertex positions, shape (V, 3)."""
     points: Floats32
-    """The same in single precision, which is enough for all but differences."""
+    """Positions in single precision, which is enough for all but differences."""
     normals: Floats32
     """Their unit normals, shape (V, 3)."""
     splits: Unsigned8
-    """Splits of attribute edges, edges first, shape (R + 1,); the last is where no edge is."""
+    """Splits of attribute edges, edges first, shape (R + 1,); the last entry is for no edge."""
     geomorph_once: Floats32
-    """How far the middle point of an edge is from the straight edge to its place, shape (E,).
+    """Share of its way from the straight edge that the middle point of an edge has gone, (E,).
 
-    Ones, but for frames that are blended (beyond/blending.py); no meaning where no point is.
+    All are 1 unless frames are blended (beyond/blending.py); there is no meaning without a point.
     """
     geomorph_twice: Floats32
-    """How far its quarter points are."""
+    """The same for its quarter points."""
     first_points: Unsigned32
     """Output row of the first point of every split attribute edge, shape (R + 1,).
 
-    There is one point on an edge split once, its middle; one split twice has a quarter point, the
-    middle and another quarter point, from its first end to its second.
+    An edge split once has one point, its middle. An edge split twice has, from its first end to its
+    second, a quarter point, the middle and another quarter point.
     """
     split_once: Unsigned32
-    """The edges that are split; the first `counts[ONCE]` count."""
+    """The edges that are split; the first `counts[ONCE]` are valid."""
     split_twice: Unsigned32
-    """The edges that are split twice; the first `counts[TWICE]` count."""
+    """The edges that are split twice; the first `counts[TWICE]` are valid."""
     configurations: Unsigned16
     """s0 + 3 s1 + 9 s2 of each triangle's edges, shape (F + 1,); the last one has no meaning."""
     centre_triangles: Unsigned32
     """The triangles with a point in the middle, which only blending has; the first
-    `counts[CENTRES]` count. Shape (F + 1,)."""
+    `counts[CENTRES]` are valid. Shape (F + 1,).
+    """
     centre_weights: Floats32
-    """Where in its triangle each of these points is: weights of the corners, shape (F + 1, 3)."""
+    """Place of each of these points in its triangle: weights of the corners, shape (F + 1, 3)."""
     counts: Integers64
-    """How many there are of what, shape (5,): see ROWS, ONCE, TWICE, TRIANGLES, CENTRES."""
+    """Counts, shape (5,): see ROWS, ONCE, TWICE, TRIANGLES, CENTRES."""
     rows: Floats32
     """The output: x y z, nx ny nz, attributes; row v is vertex v."""
 
@@ -69,19 +70,19 @@ class FrameBuffers(NamedTuple):
 
     @property
     def twice_split_edges(self) -> Unsigned32:
-        """Those of them that are split twice."""
+        """The edges that are split twice in this frame."""
         return self.split_twice[: self.counts[TWICE]]
 
     @property
     def centre_count(self) -> int:
-        """How many triangles have a point in the middle."""
+        """Number of triangles with a point in the middle."""
         return int(self.counts[CENTRES])
 
 
 def buffers_for(
     mesh: Connectivity, positions: Floats64, points: Floats32, normals: Floats32
 ) -> FrameBuffers:
-    """Make the buffers of a mesh, but for `rows`, of which there are none yet."""
+    """Make the buffers of a mesh, with no `rows` yet."""
     edge_count = len(mesh.edges)
     face_count = len(mesh.faces)
     attribute_edge_count = len(mesh.attribute_edges)
@@ -89,7 +90,8 @@ def buffers_for(
         positions=positions,
         points=points,
         normals=normals,
-        # One more than attribute edges: triangles without edges refer to it and find zero splits.
+        # One more than attribute edges: triangles without edges refer to the last and find zero
+        # splits.
         splits=np.zeros(attribute_edge_count + 1, dtype=np.uint8),
         geomorph_once=np.ones(edge_count, dtype=np.float32),
         geomorph_twice=np.ones(edge_count, dtype=np.float32),
@@ -105,7 +107,7 @@ def buffers_for(
 
 
 def split_everywhere(frame: FrameBuffers, vertex_count: int) -> FrameBuffers:
-    """Fill buffers in so that every edge is split once: points follow vertices in its order."""
+    """Fill buffers so that every edge is split once: points follow vertices in edge order."""
     edge_count = len(frame.geomorph_once)
     every_edge = np.arange(edge_count, dtype=np.uint32)
     frame.splits[:edge_count] = 1

@@ -1,9 +1,9 @@
-"""Splits of edges that are given, and stay: one connectivity for all frames of a clip.
+"""Given splits of edges, the same in all frames: one connectivity for a clip.
 
 Kähler, Haber, Seidel 2003, section 4.1, decide on splits in every frame, so vertices and triangles
 of the output change. Many file formats, and programs that keep data at vertices, need the same ones
-in every frame. The splits of a clip are the most that any frame of it needs at each edge
-(`splits_of_clip`): still adaptive, and nowhere coarser than a frame.
+in every frame. The splits of a clip are, at each edge, the most that any of its frames needs
+(`splits_of_clip`): still adaptive, and nowhere coarser than a frame by itself.
 
 With a criterion that never changes, `Criterion.is_constant`, a refiner decides, numbers points and
 looks triangles up once (`Kahler`). A frame only places points.
@@ -55,7 +55,7 @@ class GivenSplits(Criterion):
             )
 
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
-        """Write a metric by which points have grown as far as they can, shape (E,)."""
+        """Write a metric at which points are fully grown, shape (E,)."""
         np.copyto(metric, self._splits)
         metric[self._splits == 0] = -np.inf
 
@@ -78,7 +78,7 @@ class SplitsEdges(Protocol):
 def splits_of_clip(
     refiner: SplitsEdges, frames: Iterable[npt.NDArray[np.floating]], view: View | None = None
 ) -> Unsigned8:
-    """Refine all frames; return the most splits that any of them has at each edge, shape (E,).
+    """Refine all frames; return the most splits that any frame has at each edge, shape (E,).
 
         changing = refine.create("kahler", faces, rest)
         splits = refine.splits_of_clip(changing, frames)

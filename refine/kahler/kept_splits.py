@@ -1,9 +1,9 @@
-"""Loop's rules where every frame has the same splits, whose points have grown as far as they can.
+"""Loop's rules where every frame has the same splits, with fully grown points.
 
 Kähler, Haber, Seidel 2003, section 4.2. Moved vertices and the first level are then fixed sums of
 the vertices of a frame, a sparse matrix. Its rows have four entries for a point on an edge and nine
-for a vertex, so they need no lists of lengths. Indices and weights are worked out once; those of
-vertices that stay are 1 and 0. The bits are those of smoothing.py.
+for a vertex, so no list of lengths is needed. Indices and weights are computed once; vertices that
+stay have weights 1 and 0. The results have the bits of smoothing.py.
 """
 
 from typing import NamedTuple
@@ -45,13 +45,13 @@ class KeptRows(NamedTuple):
     corners: Unsigned32
     """Ends of a split edge and the corners opposite, shape (N, 4); edges inside the mesh first."""
     rows: Unsigned32
-    """Where in the output the middle is, shape (N,)."""
+    """Output row of each middle, shape (N,)."""
     edges: Unsigned32
-    """The edges, shape (N,)."""
+    """The split edges, shape (N,)."""
 
 
 def kept_rows(frame: FrameBuffers, around: Surroundings, rings: Rings) -> tuple[KeptRows, int]:
-    """Work out indices and weights for the splits of `frame`, and count edges inside the mesh."""
+    """Compute indices and weights for the splits of `frame`, and count edges inside the mesh."""
     vertex_count = len(frame.points)
     split_edges = frame.split_edges
     inside_first = np.argsort(~around.is_interior[split_edges], kind="stable")
@@ -83,7 +83,7 @@ def copy_frame(first: int, last: int, frame: FrameBuffers, kept: KeptRows) -> No
 
 @njit(lanes=True)
 def place_kept_vertices(first: int, last: int, kept: KeptRows, rows: Floats32) -> None:
-    """Write vertices, all as if they had eight others around them at most (Fig. 3)."""
+    """Write all vertices as if they had at most eight others around them (Fig. 3)."""
     points = kept.points
     normals = kept.normals
     near = kept.near

@@ -2,14 +2,14 @@
 
 Kähler, Haber, Seidel 2003, section 4.3. The output begins with one row per wedge, so that vertex v
 of the input is row v. The points of an attribute edge follow in a block, in the direction of its
-edge: the middle point, or quarter, middle, quarter. Points in the middle of triangles, which only
-blending has (beyond/blending.py), come last.
+edge: the middle point, or quarter, middle, quarter. Points in the middle of triangles come last;
+only blending has them (beyond/blending.py).
 
 Attributes (texture coordinates, colours) of new points are
 interpolated linearly along their edge, with the values of their own side of a seam (section 4.4,
 first paragraph).
 
-Everything here goes from the edges that are split, not from the triangles: most are not.
+All loops here go over split edges, not over triangles: most triangles are not split.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SIDE_BITS = np.uint32(2)
 SIDE_MASK = np.uint32(3)
 """A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
 PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
-"""Of the splits of a triangle's three edges in the number of its configuration."""
+"""Place values of the splits of a triangle's three edges in the number of its configuration."""
 
 
 @njit
@@ -50,15 +50,16 @@ def number_points(
     """List the split edges, give new points their rows, and triangles their configuration.
 
     The arrays from `splits` on are those of `FrameBuffers`. `split_once` gets every split edge,
-    `split_twice` those split twice. The entries of `first_points` for edges that are not split have
-    no meaning. `counts` gets all but centres. Returns the numbers of output rows and triangles, and
-    the most splits of an edge.
+    `split_twice` those split twice. The entries of `first_points` for edges without a split have no
+    meaning. `counts` gets all counts but that of centres. Returns the numbers of output rows and
+    triangles, and the most splits of an edge.
     """
     edge_count = edge_sides.shape[0]
     face_count = configurations.shape[0] - 1
     once_count = twice_count = most = 0
     for e in range(edge_count):
-        # Written always and counted when split: no branch that a processor could guess wrong.
+        # The edge is always written, and counted if it is split: no branch that a processor could
+        # mispredict.
         split_once[once_count] = e
         once_count += splits[e] > 0
     configurations[:] = 0

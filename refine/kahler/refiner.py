@@ -1,4 +1,4 @@
-"""The paper's refiner: split the edges that bend, smooth around them, look the triangles up.
+"""The paper's refiner: it splits edges that bend, smooths around them, and looks triangles up.
 
 Kähler, Haber, Seidel 2003, sections 4.1 to 4.4. One frame is `Kahler.fill`:
 
@@ -9,7 +9,7 @@ Kähler, Haber, Seidel 2003, sections 4.1 to 4.4. One frame is `Kahler.fill`:
     look up     subtriangles of each triangle              (4.3, table.py, look_up.py)
 
 Where the criterion never changes, marking, numbering and looking up are done once (`Topology`): all
-frames have the same triangles, and a frame is normals and places.
+frames have the same triangles, and a frame only finds normals and places points.
 
 Differs from the paper: normals of new points are interpolated linearly and then normalised; the
 deformed mesh is copied once, as a shield against a simulation that runs on meanwhile.
@@ -43,13 +43,13 @@ from .table import MOST_SPLITS, POINTS_OF_EDGE
 
 
 class Topology(NamedTuple):
-    """The triangles of all frames, where every frame has the same."""
+    """The triangles of all frames, if every frame has the same."""
 
     vertex_count: int
     triangles: Unsigned32
     """Shape (M, 3), read only."""
     source: Integers32
-    """Input triangle that each is part of, shape (M,), read only."""
+    """Input triangle that each triangle is part of, shape (M,), read only."""
 
 
 class Kahler(BaseRefiner):
@@ -84,7 +84,7 @@ class Kahler(BaseRefiner):
             frame.splits,
             frame.first_points,
             self.cutting.bind(self.connectivity, frame),
-            patterns.counts.copy(),  # compiled code takes an array faster that it may write
+            patterns.counts.copy(),  # compiled code takes writable arrays faster
             patterns.subtriangles.copy(),
         )
         self._of_numbering = (
@@ -111,7 +111,7 @@ class Kahler(BaseRefiner):
     def vertex_capacity(self) -> int:
         """Most output vertices: every wedge, three points on every attribute edge, and centres.
 
-        Exactly those of a frame where the criterion never changes.
+        If the criterion never changes, exactly those of a frame.
         """
         if self.topology is not None:
             return self.topology.vertex_count
@@ -123,7 +123,7 @@ class Kahler(BaseRefiner):
     def triangle_capacity(self) -> int:
         """Most output triangles: the longest row of the table for each.
 
-        Exactly those of a frame where the criterion never changes.
+        If the criterion never changes, exactly those of a frame.
         """
         if self.topology is not None:
             return len(self.topology.triangles)
@@ -167,9 +167,9 @@ class Kahler(BaseRefiner):
 
     @cached_property
     def topology(self) -> Topology | None:
-        """Vertices and triangles of all frames, where the criterion never changes; None elsewhere.
+        """Vertices and triangles of all frames if the criterion never changes, else None.
 
-        None, too, where a frame depends on those before it.
+        It is also None where a frame depends on those before it.
         """
         if not self._criterion.is_constant or self.cutting.has_memory:
             return None
@@ -183,7 +183,7 @@ class Kahler(BaseRefiner):
 
     @cached_property
     def _own_stream(self) -> OwnStream:
-        """The stream of frames that are lent none."""
+        """The stream for frames without a lent one."""
         if self.topology is not None:
             return OwnStream.with_triangles(self.vertex_columns, *self.topology)
         return super()._own_stream
@@ -194,7 +194,7 @@ class Kahler(BaseRefiner):
         self.cutting.mark(self._criterion, self._frame, self.edge_splits)
 
     def _number(self) -> tuple[int, int]:
-        """Give new points their rows and triangles their row of the table; count both.
+        """Give new points their rows, and triangles their row of the table; count both.
 
         Raises ValueError if a criterion asks for more than the table has.
         """
@@ -234,16 +234,16 @@ class Kahler(BaseRefiner):
         return self._origins_among(mesh.wedge_vertices, mesh.edges[mesh.attribute_edges])
 
     def origins_of_values(self) -> Origins:
-        """The same, by rows of the values that were bound at corners, in place of vertices.
+        """The same by rows of the values that were bound at corners, instead of vertices.
 
-        So each side of a seam has its own. -1 stands for the row of a vertex without triangles.
+        So each side of a seam has its own place. -1 is the row of a vertex without triangles.
         """
         return self._origins_among(self.connectivity.wedge_uv, self.connectivity.attribute_edge_uv)
 
     def _origins_among(
         self, of_wedges: npt.NDArray[np.integer], of_ends: npt.NDArray[np.integer]
     ) -> Origins:
-        """The origins where wedges, shape (W,), and ends of attribute edges, (R, 2), have these."""
+        """The origins for numbers of wedges, (W,), and of ends of attribute edges, (R, 2)."""
         frame = self._frame
         splits = self.edge_splits[self.connectivity.attribute_edges]
         origins = Origins.at(of_wedges).followed_by(*points_on_edges(of_ends, splits))
@@ -255,12 +255,12 @@ class Kahler(BaseRefiner):
 def points_on_edges(
     ends: npt.NDArray[np.integer], splits: Unsigned8
 ) -> tuple[npt.NDArray[np.integer], Floats64]:
-    """Where the new points on edges lie: ends and their weights, shape (N, 3) each.
+    """Places of the new points on edges: ends and their weights, shape (N, 3) each.
 
-    `ends`: of attribute edges, shape (R, 2); `splits`: of these edges, shape (R,).
+    `ends`: those of attribute edges, shape (R, 2); `splits`: those of these edges, shape (R,).
     """
     point_counts = np.array(POINTS_OF_EDGE)[splits]
-    # Place along the edge, in quarters, of the points of a block: x 2 x or 1 2 3.
+    # Places along the edge, in quarters, of the points of a block: x 2 x or 1 2 3.
     block_starts = np.cumsum(point_counts) - point_counts
     within = np.arange(point_counts.sum()) - np.repeat(block_starts, point_counts)
     place = np.where(np.repeat(point_counts, point_counts) == 1, 2, within + 1)

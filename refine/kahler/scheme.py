@@ -1,4 +1,4 @@
-"""Smoothing schemes: the class that all of them derive from, and their names.
+"""Smoothing schemes: their base class, and their names.
 
 Kähler, Haber, Seidel 2003, section 6: "the effects of other smoothing schemes" are of interest. The
 paper's own is in smoothing.py.
@@ -11,20 +11,20 @@ from .frame import FrameBuffers
 
 
 class Scheme:
-    """Places points: what every scheme derives from, the paper's as well as your own.
+    """Base class of all schemes, the paper's and your own: it places points.
 
-    It writes `place`; all other methods do nothing unless they are written. A refiner calls `bind`
-    once, then in every frame `prepare`, `place` and, where it blends, `place_centres`.
+    A subclass has `place`; all other methods do nothing by default. A refiner calls `bind` once,
+    then in every frame `prepare`, `place` and, if it blends, `place_centres`.
     """
 
     interpolates = False
     """Whether the original vertices stay where they are."""
     uses_normals = True
-    """Whether it reads the normals of frames, which are not found where nobody does."""
+    """Whether it reads normals of frames; they are computed only if a part reads them."""
     measures = False
     """Whether it has a `measure`, which the criterion `displacement` needs."""
     parts: tuple["Scheme", ...] = ()
-    """Schemes that this one asks. Each of them, too, serves one refiner only."""
+    """Schemes that this one asks; each of them serves one refiner only, too."""
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
@@ -37,8 +37,8 @@ class Scheme:
     def prepare(self, frame: FrameBuffers) -> None:
         """Look at the deformed mesh, before the criterion decides.
 
-        Keep differences of positions only: refined normals call `place` twice, first
-        for the mesh as seen from its first vertex with every edge split once.
+        Keep only differences of positions: refined normals call `place` twice, first for the mesh
+        relative to its first vertex, with every edge split once.
         """
 
     def place(self, frame: FrameBuffers) -> None:
@@ -46,11 +46,11 @@ class Scheme:
         raise NotImplementedError(f"{type(self).__name__} must have a method place")
 
     def place_positions(self, frame: FrameBuffers) -> None:
-        """Write positions only; calls `place` unless a subclass writes it."""
+        """Write positions only; by default this calls `place`."""
         self.place(frame)
 
     def place_centres(self, frame: FrameBuffers) -> None:
-        """Correct the points in the middle of triangles, when blending has written them."""
+        """Correct the points in the middle of triangles, after blending has written them."""
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far a split would move the middle of each edge and turn its normal, (E,) each.
@@ -62,4 +62,4 @@ class Scheme:
 
 
 schemes: Registry[Scheme] = Registry("scheme", "risorius.schemes")
-"""Schemes by name; a factory is called without arguments, once for each refiner that asks."""
+"""Schemes by name; a factory is called without arguments, once for each refiner."""

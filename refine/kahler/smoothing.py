@@ -30,12 +30,12 @@ m is the first-level point of the edge; p, q, r, s those of the neighbour edges 
 their midpoints where these are not split. a' and b' are the moved end points; their weights are in
 mesh/rings.py.
 
-The paper leaves open, and we decide: m, p, q, r, s enter the second level as the first level left
-them, so that the order of edges cannot matter.
+The paper leaves one question open; we decide that m, p, q, r, s enter the second level as the first
+level left them, so that the order of edges cannot matter.
 
-The *geomorph weight* is how much of its way from the straight edge a point has gone: 0 to 1, for
-each level of each edge; 1 everywhere unless the frame is blended (beyond/blending.py). A mix with
-weight 0 or 1 returns one of its two sides to the last bit.
+The *geomorph weight* is the share of its way from the straight edge that a point has gone: 0 to 1,
+for each level of each edge. It is 1 everywhere unless the frame is blended (beyond/blending.py). A
+mix with weight 0 or 1 returns one of its two sides to the last bit.
 
 Normals of new points are interpolated between their two neighbours on the edge and normalised
 (section 4.4, first paragraph).
@@ -97,7 +97,7 @@ class LoopScheme(Scheme):
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
-        """Work out the weights of every vertex."""
+        """Compute the weights of every vertex."""
         self._around = connectivity.around
         self._rings = vertex_rings(connectivity)
         self._vertex_geomorph = np.zeros(connectivity.vertex_count, dtype=np.float32)
@@ -106,7 +106,7 @@ class LoopScheme(Scheme):
         self._kept: KeptRows | None = None
 
     def keep(self, frame: FrameBuffers) -> None:
-        """Work out a matrix, if all points have grown as far as they can."""
+        """Compute a matrix, if all points are fully grown."""
         edges = frame.split_edges
         twice = frame.twice_split_edges
         once_grown = (frame.geomorph_once[edges] == ONE).all()
@@ -130,7 +130,7 @@ class LoopScheme(Scheme):
         place_by_loop(*self._tuples, self._vertex_geomorph, self._middles)
 
     def _place_shared(self, frame: FrameBuffers) -> None:
-        """Do the same in loops that threads share, to the same bits."""
+        """Do the same in loops that threads share, with the same bits."""
         around = self._around
         middles = self._middles
         geomorph = self._vertex_geomorph
@@ -184,7 +184,7 @@ def geomorph_vertices(
 def place_vertices(
     first: int, last: int, frame: FrameBuffers, rings: Rings, geomorph: Floats32
 ) -> None:
-    """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3).
+    """Write the original vertices; the vertex rule moves those at split edges (Fig. 3).
 
     `geomorph`: of each vertex, shape (V,).
     """
@@ -214,7 +214,7 @@ def place_middles(
 ) -> None:
     """Write the first-level point of every split edge (Fig. 3), and keep it in `middles`.
 
-    `middles`: points as they are when fully grown, shape (E, 3).
+    `middles`: fully grown points, shape (E, 3).
     """
     points = frame.points
     normals = frame.normals
@@ -245,7 +245,7 @@ def place_middles(
 def wing(
     points: Floats32, middles: Floats32, ends: tuple[int, int], e: np.uint32, geomorph: np.float32
 ) -> Vector:
-    """The first-level point of a neighbour edge, as far as it has grown out of its midpoint."""
+    """The first-level point of a neighbour edge, at its present growth from the midpoint."""
     start = row_of(points, ends[0])
     end = row_of(points, ends[1])
     straight = times(HALF, plus(start, end))
@@ -254,7 +254,7 @@ def wing(
 
 @njit
 def geomorph_of_split(splits: Unsigned8, geomorph: Floats32, e: np.uint32) -> np.float32:
-    """How far the middle of an edge has grown; 0 if it has none."""
+    """Growth of the middle of an edge; 0 if it has none."""
     return geomorph[e] if splits[e] > 0 else ZERO
 
 
@@ -323,9 +323,9 @@ def place_by_loop(
 ) -> None:
     """Write moved vertices, the first level and the second level of a frame.
 
-    All of it at once: four calls take longer than their work. The plain tuples are `FrameBuffers`,
-    `Surroundings` and `Rings`; `vertex_geomorph`, shape (V,), and `middles`, shape (E, 3), are
-    scratch.
+    This is one call, because four calls would take longer than their work. The plain tuples are
+    `FrameBuffers`, `Surroundings` and `Rings`; `vertex_geomorph`, shape (V,), and `middles`, shape
+    (E, 3), are scratch.
     """
     of_frame = FrameBuffers(*frame)
     of_edges = Surroundings(*around)

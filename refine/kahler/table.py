@@ -2,8 +2,8 @@ r"""The look-up table: subtriangles for each of the 27 split configurations of a
 
 Kähler, Haber, Seidel 2003, section 4.3 with Figs. 5 and 6. Edge i joins the corners i and i + 1 and
 has been split s_i = 0, 1 or 2 times; the entry is number s_0 + 3 s_1 + 9 s_2. The paper shows the
-numbering of points in a figure only; ours is: corners, then for each edge its middle point and its
-quarter points near the start and near the end of the edge.
+numbering of points only in a figure. Ours is: the corners, then for each edge its middle point, and
+its quarter points near the start and near the end of the edge.
 
                      2                         edge        0    1    2
                     / \                        middle      3    6    9
@@ -16,10 +16,10 @@ quarter points near the start and near the end of the edge.
              0---4----3----5---1
 
 Each entry is found by cutting the polygon of its points to pieces: the ear with the shortest
-diagonal first, in an equilateral triangle. That cuts off split corners the way Loop subdivision
-does, ends with its central triangle where all edges are split, and never puts three points of one
-edge into one subtriangle. Up to rotation there are eleven patterns; titles are s_0 s_1 s_2 and the
-number of subtriangles, dots are lines that no character fits:
+diagonal first, in an equilateral triangle. This cuts off split corners as Loop subdivision does,
+ends with its central triangle where all edges are split, and never puts three points of one edge
+into one subtriangle. Up to rotation there are eleven patterns. Titles are s_0 s_1 s_2 and the
+number of subtriangles; dots are lines at other angles:
 
           000: 1              100: 2              200: 4              110: 3
             *                   *                   *                   *
@@ -54,10 +54,10 @@ number of subtriangles, dots are lines that no character fits:
      /  |  \ /  |  \     /  |  \ /  |/ \     / \...\ /  |/ \
     *---*---*---*---*   *---*---*---*---*   *---*---*---*---*
 
-The other sixteen configurations are rotations of these. Equal cuts are decided at the near-start
-point in every corner, so the table does not depend on which corner of a triangle comes first.
-The table is built at import, in a few milliseconds, and every entry is verified: its subtriangles
-have positive area, cover the triangle exactly, use every point, and share inner edges in pairs.
+The other sixteen configurations are rotations of these. Among equal cuts the one at the near-start
+point is taken in every corner, so the table does not depend on the first corner of a triangle. The
+table is built at import, in a few milliseconds, and every entry is verified: its subtriangles have
+positive area, cover the triangle exactly, use every point, and share inner edges in pairs.
 """
 
 from typing import NamedTuple
@@ -69,7 +69,7 @@ from ...geometry.arrays import Integers64, Unsigned8
 CENTRE = 12
 """Number of a point in the middle of a triangle, which none of the paper's patterns has."""
 CONFIGURATION_COUNT = 27
-"""Of three edges split 0, 1 or 2 times."""
+"""Configurations of three edges that are split 0, 1 or 2 times."""
 MOST_SPLITS = 2
 """An edge is split at most twice (section 4)."""
 POINTS_OF_EDGE = (0, 1, 3)
@@ -115,7 +115,7 @@ def outline(splits: tuple[int, int, int]) -> list[int]:
 def subdivide(splits: tuple[int, int, int]) -> list[Triangle]:
     """Cut a triangle with the given splits into subtriangles of the 12 numbered points.
 
-    Rotating the splits rotates the result: which corner of a triangle comes first has no influence.
+    A rotation of the splits rotates the result: the first corner of a triangle has no influence.
     """
     rotations = [(splits[k], splits[(k + 1) % 3], splits[(k + 2) % 3]) for k in range(3)]
     turn = max(range(3), key=lambda k: rotations[k])
@@ -149,12 +149,12 @@ def _cut_ears(polygon: list[int]) -> list[Triangle]:
 
 
 def _is_near_end(point: int) -> bool:
-    """Break ties: of two equal cuts take the one at a near-start point, alike in all corners."""
+    """Break ties: take the one of two equal cuts that is at a near-start point, in all corners."""
     return point > 2 and point % 3 == 2
 
 
 def _on_one_edge(polygon: list[int], *, without: int) -> bool:
-    """Whether the points that are left without one of them lie on one edge of the triangle."""
+    """Whether the points of a polygon without one of them lie on one edge of the triangle."""
     left = [_PLACES[point] for point in polygon if point != without]
     return any(all(place[k] == 0 for place in left) for k in range(3))
 
@@ -197,7 +197,7 @@ class Patterns(NamedTuple):
     counts: Unsigned8
     """Subtriangles of each row, shape (K,)."""
     subtriangles: Unsigned8
-    """Their points, numbered as above, unused ones 0, shape (K, most, 3)."""
+    """Points of the subtriangles, numbered as above, shape (K, most, 3); unused ones are 0."""
 
     def of(self, row: int) -> Unsigned8:
         """Subtriangles of one row, shape (M, 3)."""

@@ -1,8 +1,9 @@
-"""Border curves: which vertices follow each other along the borders of a mesh, and where they end.
+"""Border curves: sequences of vertices along the borders of a mesh, and their ends.
 
-A border runs on through a vertex that has exactly two border edges, unless it has a *corner* there:
-the corner of a shut mouth, where the border of the upper lip turns back as that of the lower one,
-or of a table cloth. Corners are found on the mesh at rest and remain corners when it moves.
+A border runs on through a vertex with exactly two border edges, unless it has a *corner* there.
+Corners are those of a shut mouth, where the border of the upper lip turns back as that of the lower
+one, or those of a table cloth. Corners are found on the mesh at rest and remain corners when it
+moves.
 """
 
 import numpy as np
@@ -11,11 +12,12 @@ from ...geometry.arrays import Floats64, Unsigned32
 from .connectivity import Connectivity
 
 CORNER_COSINE = 0.5
-"""Cosine of 60 degrees: where a border turns by more it has a corner. Chosen: the holes of eyes and
+"""Cosine of 60 degrees: a border that turns by more has a corner. Chosen: the holes of eyes and
 mouth of the built-in head turn by up to 38 degrees along their sides, and by 62 and more at their
-corners; a hexagonal hole may still be round."""
+corners; a hexagonal hole may still be round.
+"""
 TURN_ROUNDING = 1e-9
-"""A turn that misses 60 degrees by less than this is none."""
+"""Cosines within this of CORNER_COSINE count as no corner."""
 
 
 def border_neighbours(mesh: Connectivity, rest_positions: Floats64) -> Unsigned32:

@@ -1,7 +1,7 @@
 r"""Edges of the bound mesh: found once, walked every frame.
 
-Every question the paper asks of its half-edge structure (section 3, after Campagna et al. 1998) is
-answered here once, as flat index arrays, because the connectivity never changes while it deforms:
+Flat index arrays hold all that the paper reads from its half-edge structure (section 3, after
+Campagna et al. 1998). They are built once, because the connectivity never changes:
 
               c
              / \          edge e runs from a to b in the direction of its first triangle (a, b, c);
@@ -13,15 +13,15 @@ answered here once, as flat index arrays, because the connectivity never changes
              \ /
               d
 
-An edge is *interior* when exactly two triangles run through it in opposite directions. Everything
-else (one side, three sides, two sides in the same direction) is a *border*: it is split by the
-boundary rules, which read the end points only, and so from all sides in the same way.
+An edge is *interior* when exactly two triangles run through it in opposite directions. Every other
+edge (one side, three sides, two sides in the same direction) is a *border*. Boundary rules split
+it; they read only the end points, so all sides agree.
 
-A *crease* is an edge inside the mesh that is kept sharp: it is a border, too (creases.py).
+A *crease* is an edge inside the mesh that stays sharp: it is a border, too (creases.py).
 
-seams.py describes wedges and attribute edges, by which texture seams part.
+seams.py describes wedges and attribute edges, the copies along texture seams.
 
-A triangle that names a vertex twice has no area and no edges: it is handed through as it is.
+A triangle that names a vertex twice has no area and no edges: it passes unchanged.
 """
 
 from typing import NamedTuple
@@ -35,11 +35,11 @@ from ...jit import njit
 from .seams import find_seams
 from .validation import as_indices
 
-MOST_VERTICES = 2**31  # whose numbers are 32 bit, as in the tables that the kernels fill
+MOST_VERTICES = 2**31  # numbers have 32 bits in the tables that the kernels fill
 
 
 class Surroundings(NamedTuple):
-    """The surroundings of each edge: all data of a mesh that place points on edges."""
+    """The surroundings of each edge: all mesh data that the placing of points on edges needs."""
 
     points: Unsigned32
     """a, b and the opposite corners c, d, shape (E, 4); c = d = a on a border."""
@@ -57,21 +57,21 @@ class Connectivity(NamedTuple):
     edges: Integers32
     """End points a, b of each edge, in the order of first use, shape (E, 2)."""
     around: Surroundings
-    """What lies around each edge."""
+    """The surroundings of each edge."""
     edge_sides: Unsigned32
-    """The first two sides of each edge, 4 x triangle + i, shape (E, 2); 4 F where there is none."""
+    """The first two sides of each edge, 4 x triangle + i, shape (E, 2); 4 F for no side."""
     more_sides: Unsigned32
-    """Edge and side beyond the first two, shape (X, 2): edges of three triangles."""
+    """Further sides of edges with three triangles or more: edge and side, shape (X, 2)."""
     triangle_edges: Integers32
     """Edges of each triangle, shape (F, 3); -1 for a triangle that names a vertex twice."""
     corners: Unsigned32
     """Wedge of each triangle corner, shape (F, 3); equals `faces` without texture seams."""
     triangle_attribute_edges: Unsigned32
-    """2 x attribute edge + (1 if the triangle runs against it), shape (F, 3); 2 R where is none."""
+    """2 x attribute edge + (1 if the triangle runs against it), shape (F, 3); 2 R for no edge."""
     wedge_vertices: Unsigned32
     """Vertex of each wedge, shape (W,)."""
     wedge_uv: Integers32
-    """Texture coordinate of each wedge, shape (W,); -1 where no corner gives the vertex one."""
+    """Texture coordinate of each wedge, shape (W,); -1 if no corner gives the vertex one."""
     attribute_edges: Unsigned32
     """Edge of each attribute edge, shape (R,)."""
     attribute_edge_uv: Integers32
@@ -87,7 +87,7 @@ class Connectivity(NamedTuple):
         return np.asarray(self.triangle_edges[:, 0] < 0)
 
     def read_only(self) -> "Connectivity":
-        """The same arrays, which cannot be written through what this returns."""
+        """The same arrays, as read-only views."""
         fields = self._asdict()
         for name, array in fields.items():
             if isinstance(array, np.ndarray):
@@ -118,9 +118,9 @@ def connect(
 def connect_writable(
     faces: npt.ArrayLike, vertex_count: int, face_uv: npt.ArrayLike | None = None
 ) -> Connectivity:
-    """Do as `connect`, for a refiner that keeps it to itself.
+    """Do the same as `connect`, with writable arrays, for a refiner that does not share them.
 
-    A writable array is passed to compiled code in less time.
+    Compiled code takes writable arrays faster.
     """
     if not isinstance(vertex_count, int | np.integer) or not 0 <= vertex_count < MOST_VERTICES:
         most = MOST_VERTICES - 1
@@ -155,11 +155,11 @@ def connect_writable(
 def find_edges(
     faces: Unsigned32, vertex_count: int
 ) -> tuple[Integers32, Integers32, Unsigned32, Integers32]:
-    """Number the edges in the order of their first use, which keeps neighbours near in memory.
+    """Number the edges in the order of their first use, so that neighbours are near in memory.
 
     Returns the edge of each half-edge, -1 for none, shape (3 F,); end points, shape (E, 2); the
-    first two sides, shape (E, 2); and the number of sides, shape (E,). Edges are found again in
-    lists that are chained by the sum of their end points: short ones, however large a valence is.
+    first two sides, shape (E, 2); and the number of sides, shape (E,). Edges with the same sum of
+    end points form a linked list, which is short even at a vertex of large valence.
     """
     half_edge_count = faces.size
     edge_of = np.full(half_edge_count, np.int32(-1))
@@ -238,7 +238,7 @@ def find_surroundings(
 
 
 def _more_sides(edge_of: Integers32, sides: Unsigned32, side_counts: Integers32) -> Unsigned32:
-    """Sides of edges of more than two triangles that `edge_sides` has no room for."""
+    """Sides of edges with more than two triangles that do not fit into `edge_sides`."""
     proper = np.flatnonzero(edge_of >= 0)
     crowded = proper[side_counts[edge_of[proper]] > 2]
     edges = edge_of[crowded]

@@ -3,8 +3,8 @@ r"""Creases: edges that stay sharp because the surface turns sharply there at re
     crease      an interior edge whose two triangles, at rest, look in directions that are farther
                 apart than the crease angle: 90 degrees along the edges of a cube, 0 in a plane
 
-It is treated as a border of both its sides (connectivity.py): by rules that read its two ends, or
-the curve that it is part of. So no crack can open, and no rule rounds it.
+It counts as a border of both its sides (connectivity.py): rules for it read only its two ends, or
+its curve. So no crack can open, and no rule rounds it.
 
 A vertex on a crease has several *sectors*, the triangles around it between one crease and the next:
 
@@ -27,17 +27,18 @@ from .connectivity import Connectivity
 
 
 class Sectors(NamedTuple):
-    """A mesh whose vertices are parted by sectors; without creases a sector is a vertex."""
+    """A mesh with vertices parted into sectors; without creases a sector is a vertex."""
 
     corners: Unsigned32
-    """Sector of each corner, shape (F, 3). Vertex v has sector v, and others after all V."""
+    """Sector of each corner, shape (F, 3). Vertex v has sector v; its others follow after all V."""
     edges: Unsigned32
-    """Sectors at both ends of every edge, on its first side; and after all E those of creases on
-    their second side, shape (E', 2)."""
+    """Sectors at both ends of every edge on its first side; after all E, those of creases on their
+    second side, shape (E', 2).
+    """
     edge_of: Unsigned32
-    """The edge that each of these is of, shape (E',)."""
+    """The edge of each of these rows, shape (E',)."""
     sector_count: int
-    """S, of all sectors."""
+    """S, the number of all sectors."""
 
 
 def with_creases(
@@ -75,7 +76,7 @@ def sharpened(mesh: Connectivity, is_sharp: Flags) -> Connectivity:
 def dihedral_angles(mesh: Connectivity, positions: Floats64) -> Floats64:
     """Angle between the normals of the two triangles at each interior edge [rad], shape (E,).
 
-    0 for all other edges, and beside triangles without an area.
+    It is 0 for all other edges, and beside triangles without an area.
     """
     corners = positions[mesh.faces]
     first_sides = corners[:, 1] - corners[:, 0]
@@ -112,8 +113,8 @@ def sectors_of(mesh: Connectivity) -> Sectors:
 def corner_sectors(mesh: Connectivity, is_parting: Flags) -> tuple[Unsigned32, int]:
     """The sector of each corner, shape (F, 3), and the number of sectors.
 
-    `is_parting`: edges that sectors end at, shape (E,). Vertex v has sector v, others come after
-    all V.
+    `is_parting`: edges at which sectors end, shape (E,). Vertex v has sector v; its other sectors
+    follow after all V.
     """
     on_crease = np.zeros(mesh.vertex_count, dtype=np.bool_)
     on_crease[mesh.edges[is_parting]] = True
@@ -158,9 +159,9 @@ def _joined_corners(
     is_sharp: Flags,
     on_crease: Flags,
 ) -> Integers32:
-    """A corner that stands for all of the same sector, for every corner, shape (3 F,).
+    """For every corner, the corner that represents its sector, shape (3 F,).
 
-    Corners at a vertex without creases are one sector, also where no edge joins them.
+    Corners at a vertex without creases are one sector, even if no edge joins them.
     """
     corner_count = faces.size
     above = np.empty(corner_count, np.int32)

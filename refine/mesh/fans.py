@@ -1,8 +1,8 @@
 """Triangles and edges around each vertex, sorted once, for loops shared by threads (threads.py).
 
 A loop over triangles that adds to their corners cannot be shared: two of them meet at a vertex. A
-loop over vertices can be shared. Each vertex adds its triangles in the order in which the loop over
-triangles would have come to them, and its edges likewise, so its sums have the same bits.
+loop over vertices can be shared. Each vertex adds its triangles in the order of the loop over
+triangles, and its edges likewise, so its sums have the same bits.
 """
 
 from typing import NamedTuple
@@ -18,17 +18,17 @@ class Fans(NamedTuple):
     """Triangles and edges around each vertex of a mesh with V vertices, F triangles, E edges."""
 
     corner_starts: Unsigned32
-    """Those of vertex v are `corners[corner_starts[v]:corner_starts[v + 1]]`, shape (V + 1,)."""
+    """Corners of vertex v are `corners[corner_starts[v]:corner_starts[v + 1]]`, shape (V + 1,)."""
     corners: Unsigned32
-    """Corners that lie there, 4 x triangle + i, triangles in their order, shape (3 F,)."""
+    """Corners at each vertex, 4 x triangle + i, triangles in their order, shape (3 F,)."""
     neighbour_starts: Unsigned32
     """The same for neighbours, shape (V + 1,)."""
     neighbours: Unsigned32
-    """The other ends of the edges there, edges in their order, shape (2 E,)."""
+    """The other ends of the edges at each vertex, edges in their order, shape (2 E,)."""
 
 
 def fans_of(mesh: Connectivity) -> Fans:
-    """Sort the corners of triangles and the ends of edges by the vertices that they lie at."""
+    """Sort the corners of triangles and the ends of edges by their vertices."""
     return fans_around(mesh.faces, mesh.edges, mesh.vertex_count)
 
 

@@ -1,8 +1,8 @@
 """Vectors in rows of four numbers, whose last is zero.
 
-A processor reads, adds and writes four single numbers at once, but three one by one. Kernels that
-are compiled with `njit(lanes=True)` take vectors from such rows. They read all that a result needs
-before they write it. The bits are those of three numbers.
+A processor reads, adds and writes four single-precision numbers at once, but three numbers one by
+one. Kernels compiled with `njit(lanes=True)` take vectors from such rows. They read all that a
+result needs before they write it. The results have the bits of computations with three numbers.
 """
 
 import numpy as np
@@ -48,7 +48,7 @@ def scaled(share: np.float32, v: Lanes) -> Lanes:
 
 @njit(lanes=True)
 def unit_of_held(v: Lanes, squared: np.float32) -> Lanes:
-    """Normalise a vector if single precision holds its square; others stay as they are."""
+    """Normalise a vector if single precision holds its square; other vectors stay."""
     return scaled(ONE / np.sqrt(squared if is_held(squared) else ONE), v)
 
 

@@ -1,10 +1,11 @@
-"""Vertex normals: what bends, and what light falls on.
+"""Vertex normals, which show bends and take the light.
 
-Weighted by area: the cross products of the incident triangles, summed and normalised. (Kähler,
-Haber, Seidel 2003, do not say; this needs no weights and lets large triangles decide.)
+They are weighted by area: the cross products of the incident triangles, summed and normalised.
+(Kähler, Haber, Seidel 2003, name no weights; this choice needs none and lets large triangles
+decide.)
 
-Edge vectors are taken in double precision before the rest is done in single, so a mesh far from the
-origin loses nothing. Normals at rest and in a frame come from the same code: see criterion.py.
+Edge vectors are taken in double precision, and all else in single, so a mesh far from the origin
+loses nothing. Normals at rest and in a frame come from the same code: see criterion.py.
 """
 
 import numpy as np
@@ -36,7 +37,7 @@ def cross_product(positions: Floats64, a: np.uint32, b: np.uint32, c: np.uint32)
 
 @njit
 def normalise(vectors: Floats32) -> None:
-    """Bring vectors, shape (V, 3), to length one; those that are zero stay zero.
+    """Bring vectors, shape (V, 3), to length one; zero vectors stay zero.
 
     The loop has no branch, so it takes several vectors at a time. A second loop takes the vectors
     whose squares single precision does not hold, one by one.
@@ -60,7 +61,8 @@ def normalise(vectors: Floats32) -> None:
 def vertex_normals(positions: Floats64, faces: Unsigned32, normals: Floats32) -> None:
     """Write the area-weighted unit normal of every vertex into `normals`, shape (V, 3).
 
-    Zero where a vertex has no triangle with an area. `faces`: vertices of triangles, shape (F, 3).
+    It is zero where a vertex has no triangle with an area. `faces`: vertices of triangles, shape
+    (F, 3).
     """
     assert positions.shape[1] == faces.shape[1] == normals.shape[1] == WIDTH
     normals[:] = ZERO

@@ -1,4 +1,4 @@
-r"""The rule for the vertices of the input: who surrounds them and how far they move.
+r"""The rule for the vertices of the input: their neighbours and their weights.
 
 Kähler, Haber, Seidel 2003, Fig. 3 right, with Warren's weights (Warren 2001) in place of Loop's:
 
@@ -8,8 +8,8 @@ Kähler, Haber, Seidel 2003, Fig. 3 right, with Warren's weights (Warren 2001) i
          /   \                                    own  = 3/4
       ring   ring         anywhere else           own  = 1
 
-The paper leaves open, and we decide: a vertex moves when any of its edges is split. A vertex with
-one border edge or with more than two (a corner where surfaces meet) stays in place.
+The paper leaves one question open; we decide that a vertex moves when any of its edges is split. A
+vertex with one border edge or with more than two (a corner where surfaces meet) stays in place.
 """
 
 from typing import NamedTuple
@@ -23,7 +23,7 @@ from .connectivity import Connectivity
 BORDER_OWN_WEIGHT = 3 / 4
 """Vertex on a border curve (Fig. 3, bottom right)."""
 NEAR_COUNT = 8
-"""Vertices of a ring that stand in a table."""
+"""Vertices of a ring that the table holds."""
 BORDER_RING_WEIGHT = 1 / 8
 """Its two neighbours on the curve (Fig. 3, bottom right)."""
 
@@ -31,26 +31,26 @@ BORDER_RING_WEIGHT = 1 / 8
 class Rings(NamedTuple):
     """Rings and weights of the vertex rule: own x itself + ring x (sum over its ring).
 
-    A ring is the neighbours along all edges, or along the border only for a vertex on a border
-    curve. Most have eight vertices or less and are filled up to eight with the vertex itself, which
-    its own weight makes up for: a loop of always eight is three times as fast. Compiled code takes
-    it as it is.
+    A ring has the neighbours along all edges, or, for a vertex on a border curve, along the border
+    only. Most rings have at most eight vertices. They are filled up to eight with the vertex
+    itself, and its own weight is smaller in return: a loop with exactly eight steps is three times
+    as fast. Compiled code takes this tuple as it is.
     """
 
     own: Floats32
-    """Weight of the vertex itself, less its weight in its own ring, shape (V,)."""
+    """Weight of the vertex itself, minus its weight in its own ring, shape (V,)."""
     ring: Floats32
     """Weight of every vertex in the ring, shape (V,); 0 where the vertex never moves."""
     near: Unsigned32
-    """The first eight of the ring, shape (V, 8)."""
+    """The first eight vertices of the ring, shape (V, 8)."""
     starts: Unsigned32
-    """The rest: `others[starts[v]:starts[v + 1]]`, shape (V + 1,)."""
+    """Places of the further ones: `others[starts[v]:starts[v + 1]]`, shape (V + 1,)."""
     others: Unsigned32
-    """Vertices that are further on in their rings than the eighth."""
+    """Vertices of the rings after the eighth."""
 
 
 def vertex_rings(connectivity: Connectivity) -> Rings:
-    """Work out Warren's weights for every vertex of a mesh (Fig. 3, right)."""
+    """Compute Warren's weights for every vertex of a mesh (Fig. 3, right)."""
     vertex_count = connectivity.vertex_count
     ends = connectivity.edges.astype(np.int64)
     is_border = ~connectivity.around.is_interior

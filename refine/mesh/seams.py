@@ -1,13 +1,13 @@
-r"""Texture seams: where corners of one vertex look different; and doubled vertices, joined.
+r"""Texture seams, where corners of one vertex look different; and a weld of doubled vertices.
 
-`faces` give the vertex of a corner, `face_uv` its texture coordinate. Geometry is worked out
-per vertex and edge; the output needs one row per
+`faces` give the vertex of a corner, `face_uv` its texture coordinate. Geometry is computed per
+vertex and edge; the output needs one row per
 
   *wedge*: a pair (vertex, texture coordinate). Wedges 0..V-1 are the vertices, seam copies follow;
   *attribute edge*: an edge with the texture coordinates of one side; 0..E-1 are the edges, then
                     copies.
-An attribute edge has its own output points, at the very positions of its edge, so that no seam
-can crack.
+An attribute edge has its own output points, at exactly the positions of its edge's points, so that
+no seam can crack.
 """
 
 import itertools
@@ -21,10 +21,11 @@ from ...geometry.arrays import Flags, Floats64, Integers32, Integers64, Unsigned
 from .validation import checked_mesh, size_of, used_vertices
 
 SAME_PLACE = 1e-9
-"""Vertices no farther apart than this, in sizes of the mesh, are doubled ones. A place computed
-twice, as by sin(0) and sin(2 pi), differs in its last bits."""
+"""Vertices no farther apart than this, in sizes of the mesh, are doubled ones: a place computed
+twice, for example by sin(0) and sin(2 pi), differs in its last bits.
+"""
 LAST_BITS = 2.0
-"""Steps of the type of the positions by which doubled vertices may differ."""
+"""Rounding steps of the positions' type by which doubled vertices may differ."""
 
 
 def find_seams(
@@ -35,7 +36,7 @@ def find_seams(
     vertex_count: int,
     face_uv: npt.NDArray[np.integer] | None,
 ) -> dict[str, npt.NDArray[Any]]:
-    """Wedges and attribute edges: those of the vertices and edges, and their copies along seams."""
+    """Wedges and attribute edges: vertices and edges, followed by their copies along seams."""
     edge_count = len(edges)
     none = np.uint32(2 * edge_count)
     is_proper = edge_of >= 0
@@ -74,9 +75,9 @@ def find_seams(
 
 
 def number_by_first_use(keys: Integers64) -> tuple[Integers64, Integers64]:
-    """Number equal keys alike, in the order in which they first appear.
+    """Give equal keys the same number, in the order in which they first appear.
 
-    Returns the number of every key, and for every number the place of its first use. The order
+    Returns the number of every key, and the place of the first use of every number. This order
     keeps neighbours in the mesh near each other in memory.
     """
     _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
@@ -91,17 +92,16 @@ def weld(
 ) -> tuple[Integers32, Integers32]:
     """Merge vertices at one place: for meshes whose vertices were doubled along seams.
 
-    `positions`: shape (V, 3); `faces`: shape (F, 3); `tolerance`: how far apart vertices may lie
-    that are one, in sizes of the mesh (longest sides of its box), 0 for those that are equal to the
-    last bit. None, the default, is `SAME_PLACE`, or the last bits of the type that positions come
-    in where that is more. Returns one vertex of each place, shape (K,), and the triangles in terms
-    of them, shape (F, 3). Bind the refiner to these triangles with `rest_positions[vertices]`, give
-    it the texture coordinates of the doubled vertices as `uv` and the original triangles as
-    `face_uv`, and hand it `positions[vertices]` in every frame. A vertex that no triangle uses
-    stays one of its own.
+    `positions`: shape (V, 3); `faces`: shape (F, 3); `tolerance`: largest distance of vertices that
+    become one, in sizes of the mesh (longest sides of its box); 0 joins only those that are equal
+    to the last bit. None, the default, is `SAME_PLACE`, or the last bits of the positions' type if
+    these are more. Returns one vertex of each place, shape (K,), and the triangles in terms of
+    them, shape (F, 3). Bind the refiner to these triangles with `rest_positions[vertices]`; pass
+    the texture coordinates of the doubled vertices as `uv`, the original triangles as `face_uv`,
+    and `positions[vertices]` in every frame. A vertex that no triangle uses stays separate.
 
-    It is a call of its own, never done unasked: closed lips touch at rest and must not be sewn up.
-    Raises ValueError for arrays that do not fit together, and for positions that are not finite.
+    It never happens without this call: closed lips touch at rest and must not be welded. Raises
+    ValueError for arrays that do not fit together, and for positions that are not finite.
     """
     points, corners = checked_mesh(positions, faces, ("positions", "faces"))
     used = np.flatnonzero(used_vertices(corners, len(points)))
@@ -121,10 +121,10 @@ def weld(
 
 
 def number_places(points: Floats64, distance: float) -> Integers64:
-    """Number points, shape (N, 3), so that those have one number that are one place.
+    """Number points, shape (N, 3), so that points at one place have one number.
 
-    They are one place if they are not farther apart than `distance`, or others lie between them
-    that are not.
+    Points are at one place if they are at most `distance` apart, or if a chain of such points joins
+    them.
     """
     places, numbers = np.unique(points, axis=0, return_inverse=True)
     pairs = _near_pairs(places, distance) if distance > 0.0 and len(places) > 0 else None
@@ -142,11 +142,11 @@ def number_places(points: Floats64, distance: float) -> Integers64:
 def _near_pairs(places: Floats64, distance: float) -> Integers64:
     """Pairs of different places not farther apart than `distance`, shape (P, 2).
 
-    Places are sorted into cubes, which are some times larger than the distance. One that lies so
-    near to the side of a cube is sorted into the next cube, too.
+    Places are sorted into cubes, some times larger than the distance. A place within this distance
+    of a cube's side is also sorted into the next cube.
     """
     lowest = places.min(axis=0)
-    side = max(4.0 * distance, 1e-6 * size_of(places))  # so that a number of 64 bits names a cube
+    side = max(4.0 * distance, 1e-6 * size_of(places))  # a number of 64 bits must name any cube
     cubes = [np.floor((places - lowest + away) / side) + 1 for away in (-distance, distance)]
     keys = []
     members = []
@@ -211,7 +211,7 @@ def _wedges(
 def _originals_first(
     number: Integers64, first: Integers64, owner: Integers64, owner_first: Integers64
 ) -> tuple[Integers64, Integers64]:
-    """Renumber copies so that copy k < len(owner_first) is the one its owner k was first seen as.
+    """Renumber copies so that copy k < len(owner_first) is the first one of its owner k.
 
     `owner`: edge (or vertex) of each copy; `owner_first`: first use of each owner, -1 for none.
     """

@@ -1,12 +1,12 @@
-"""Loops over large meshes, shared among threads; those over small ones stay where they are.
+"""Loops over large meshes, shared among threads; loops over small meshes stay in their thread.
 
-A kernel is called as kernel(first, last, ...). It writes what belongs to the items from first to
-last, and reads nothing that the loop writes elsewhere: so a frame has the same bits, however many
-threads there are and in which order they run.
+A kernel is called as kernel(first, last, ...). It writes the results of the items from first to
+last, and reads no result of other items. So a frame has the same bits for any number and order of
+threads.
 
-Parts of a loop are taken as threads come to them. Where a core is busy with other things the rest
-is done on the others, and nobody waits for a thread that has not begun. There are as many threads
-as numba would take: one for each core, or as many as NUMBA_NUM_THREADS says.
+Each free thread takes the next part of a loop. If a core is busy with other work, the other cores
+do its parts, and no thread waits for one that has not begun. There are as many threads as numba
+would take: one for each core, or the number in NUMBA_NUM_THREADS.
 """
 
 import os
@@ -15,20 +15,20 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 
 ITEMS_OF_PART = 1 << 15
-"""Items whose loop is worth waking a thread, which takes a tenth of a millisecond."""
+"""Items of a loop that are worth a thread's waking, which takes a tenth of a millisecond."""
 PARTS_OF_THREAD = 4
-"""Into how many parts the share of a thread is cut, so that a slow one holds nobody up for long."""
+"""Parts of a thread's share of the work, so that a slow thread delays the others only a little."""
 
 THREAD_COUNT = int(os.environ.get("NUMBA_NUM_THREADS") or 0) or (
     len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 )
-"""Threads that share a loop, the one that calls among them."""
+"""Number of threads that share a loop, including the calling one."""
 
 _pool: ThreadPoolExecutor | None = None
 
 
 def share(kernel: Callable[..., object], count: int, *arguments: object) -> None:
-    """Call kernel(first, last, *arguments) for parts that make up all of `count` items."""
+    """Call kernel(first, last, *arguments) for parts that together cover `count` items."""
     threads = threads_for(count)
     if threads == 1:
         kernel(0, count, *arguments)
@@ -50,7 +50,7 @@ def share(kernel: Callable[..., object], count: int, *arguments: object) -> None
 
 
 def beside(task: Callable[[], object], count: int) -> Callable[[], object]:
-    """Begin a task of `count` items in another thread, if it is worth one; return what ends it."""
+    """Begin a task of `count` items in another thread, if worth it; return a call that ends it."""
     if threads_for(count) == 1:
         return task
     other = _threads().submit(task)
@@ -58,8 +58,8 @@ def beside(task: Callable[[], object], count: int) -> Callable[[], object]:
 
 
 def threads_for(count: int) -> int:
-    """How many threads, this one among them, a loop over `count` items is worth."""
-    if count < 2 * ITEMS_OF_PART:  # of small meshes, whose frame this is a part of
+    """Number of threads, including this one, that a loop over `count` items is worth."""
+    if count < 2 * ITEMS_OF_PART:  # for small meshes this check is a part of the frame's time
         return 1
     return max(min(count // ITEMS_OF_PART, THREAD_COUNT), 1)
 
@@ -72,7 +72,7 @@ def _threads() -> ThreadPoolExecutor:
 
 
 def _forget_threads() -> None:
-    """In a process that was forked, which has none of them."""
+    """Forget the threads in a forked process, which has none of them."""
     global _pool
     _pool = None
 

@@ -1,7 +1,7 @@
 """Checks of given positions and triangles, with errors that name the remedy.
 
-All raise ValueError and name the argument, its value and the values allowed. Arrays that pass are
-copied, so that later changes to the caller's arrays cannot reach a frame.
+All raise ValueError, which names the argument, its value and the allowed values. Arrays that pass
+are copied, so that later changes to the caller's arrays cannot reach a frame.
 """
 
 from typing import Any
@@ -15,8 +15,10 @@ from ...jit import njit
 LARGEST_COORDINATE = 1e15
 """No coordinate may be larger: cross products of edges have to stay finite in single precision."""
 MESH_SIZES = 1e-6, 1e9
-"""Sizes of a mesh, longest side of its box, in which normals are more than rounding. Measured:
- grids with edges of a fortieth of that are refined as ever from 1e-7 to 1e9."""
+"""Range of a mesh's size, the longest side of its box, in which normals are more than rounding.
+Measured:
+ grids with edges of a fortieth of that are refined properly from 1e-7 to 1e9.
+"""
 
 _DOUBLE = np.dtype(np.float64)
 
@@ -28,8 +30,8 @@ def checked_mesh(
 ) -> tuple[Floats64, Integers64]:
     """Return positions, shape (V, 3), in double precision, and triangles, (F, 3), as copies.
 
-    Points that no triangle uses may lie anywhere, and need not be numbers: those that are none come
-    back where the first point lies that is used. `names`: of the two arguments, for errors.
+    Points that no triangle uses may have any place, and may be NaN: these get the place of the
+    first used point. `names`: those of the two arguments, for errors.
     """
     name = names[0]
     given = as_array(name, positions, "numbers of shape (V, 3)")
@@ -79,7 +81,7 @@ def as_array(name: str, given: npt.ArrayLike, wanted: str) -> npt.NDArray[Any]:
     """
     try:
         array = np.asarray(given)
-    except ValueError as error:  # numpy's own words for rows of unequal length
+    except ValueError as error:  # this is numpy's error for rows of unequal length
         raise ValueError(f"{name} must be {wanted}, but is no array: {error}") from None
     if np.ma.is_masked(given):
         raise ValueError(f"{name} must be {wanted}, but has masked entries; fill them first")
@@ -94,7 +96,7 @@ def checked_indices(name: str, indices: npt.ArrayLike, limit: int, target: str) 
 def as_indices(
     name: str, indices: npt.ArrayLike, limit: int, target: str
 ) -> npt.NDArray[np.integer]:
-    """Do the same without a copy, if it can be done without."""
+    """Do the same, without a copy where none is needed."""
     array = as_array(name, indices, "integers of shape (F, 3)")
     if array.shape in ((0,), (0, 3)):
         return np.zeros((0, 3), dtype=np.int64)
@@ -118,8 +120,9 @@ def take_positions(
     """Copy the positions of a frame, shape (V, 3), in double and in single precision.
 
     Raises ValueError unless all used positions are finite and below LARGEST_COORDINATE; `is_used`:
-    flags of these, shape (V,). Bad unused positions move to the first used one. Any array but a
-    plain one of doubles is copied first: compiled code takes one kind of array.
+    flags of used vertices, shape (V,). Bad unused positions move to the first used one. An array
+    other than a plain one of doubles is copied first, because kernels are compiled for one type of
+    array.
     """
     source: npt.NDArray[Any] = given
     if given.dtype is not _DOUBLE or not given.flags.carray:
@@ -142,7 +145,7 @@ def take_positions(
 def take_positions_like_rest(
     positions: npt.ArrayLike, is_used: Flags, own: Floats64, points: Floats32
 ) -> None:
-    """The same, after the user's array was compared with `own`, (V, 3), in shape and kind."""
+    """The same, with the user's array already compared with `own`, (V, 3), in shape and type."""
     given = np.asarray(positions)
     if given.shape != own.shape or given.dtype.kind != "f":
         raise ValueError(
@@ -156,12 +159,12 @@ def take_positions_like_rest(
 def copy_finite(given: Floats64, positions: Floats64, points: Floats32) -> int:
     """Copy positions, shape (V, 3), in double and single precision; count numbers too large.
 
-    That is NaN, or not below LARGEST_COORDINATE: 0 unless the mesh's motion is unstable.
+    Counted are NaN, and numbers not below LARGEST_COORDINATE: 0 unless the motion is unstable.
     """
     numbers = given.reshape(-1)
     copied = positions.reshape(-1)
     rounded = points.reshape(-1)
-    finite = 0  # counted, not left early: so the loop takes several at a time
+    finite = 0  # no early exit: so the loop takes several at a time
     for k in range(numbers.size):
         copied[k] = numbers[k]
         rounded[k] = numbers[k]

@@ -24,7 +24,7 @@ THREE_QUARTERS = np.float32(0.75)
 TINY = np.finfo(np.float32).tiny
 SHORT_SQUARE = np.float32(1e-30)
 LONG_SQUARE = np.float32(1e37)
-"""Squares of lengths between which single precision holds a length to the last bit."""
+"""Range of squared lengths in which single precision holds a length to the last bit."""
 
 
 @njit
@@ -59,8 +59,8 @@ def times(share: Any, v: Vector) -> Vector:
 
 @njit
 def mix(start: Vector, end: Vector, share: Any) -> Vector:
-    """A share of the way from one vector to another; to the last bit one of them at 0 and at 1."""
-    if share == ONE:  # points of frames that are not blended have gone all the way
+    """The vector at a share of the way from start to end; exactly one of them at 0 and at 1."""
+    if share == ONE:  # points of frames without blending have gone all the way
         return end
     return plus(times(ONE - share, start), times(share, end))
 
