@@ -43,7 +43,7 @@ class GpuMesh:
     def __init__(
         self, stream: GpuStream, run: Run, columns: int, parted: Callable[[Floats32], Columns]
     ) -> None:
-        """`columns`: of a row; `parted`: takes texture coordinates and attributes out of rows."""
+        """`columns`: number in a row; `parted`: cuts texture coordinates and attributes out."""
         self._stream = stream
         self._run = run
         self._columns = columns

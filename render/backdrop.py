@@ -12,15 +12,16 @@ from .style import Background, MapBackground
 
 _MAP_UNIT = 4  # texture unit while a map is painted
 
-# A viewport, its part that is painted, and the field of view [deg], which maps depend on.
+# A viewport, its painted part, and the field of view [deg], on which maps depend.
 _Area = tuple[Rectangle, Rectangle, float]
 
 
 class Backdrop:
-    """Paints backgrounds into the frame of a surface's target: once, and copied into every frame.
+    """Paints backgrounds into the frame of a surface's target: once, then as a copy per frame.
 
     On software OpenGL a copy of the whole frame costs a fiftieth of painting it (measured: 0.16 ms
-    against 8 ms at 1280 x 720), and a tenth of a copy of a part, which is no plain copying.
+    against 8 ms at 1280 x 720), and a tenth of a copy of a part, which the driver cannot copy as
+    one block.
     """
 
     def __init__(self, gl: moderngl.Context) -> None:
@@ -37,9 +38,9 @@ class Backdrop:
         views: Sequence[PlacedView],
         backgrounds: Sequence[Background | MapBackground | None],
     ) -> None:
-        """Paint a background behind each view, in a frame on which nothing was drawn yet.
+        """Paint a background behind each view, in a frame that is still empty.
 
-        None: nothing is there, not even black.
+        None: the background is transparent.
         """
         if self._store is None or self._store.size != target.size:
             self._store = self._gl.framebuffer([self._gl.renderbuffer(target.size, 4)])
@@ -52,7 +53,7 @@ class Backdrop:
         if self._stored != wanted:
             self._store.use()
             self._gl.scissor = None
-            self._store.clear(0.0, 0.0, 0.0, 1.0)  # around them, as an empty frame
+            self._store.clear(0.0, 0.0, 0.0, 1.0)  # around the viewports, as in an empty frame
             for area, background in wanted.items():
                 clip = area[1]
                 if min(clip[2:]) > 0:

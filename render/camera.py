@@ -1,4 +1,4 @@
-"""The camera, which turns about a point of the scene, as a portrait photographer walks round.
+"""The camera, which turns about a point of the scene like a portrait photographer.
 
 A `CameraView` is one camera that looks into a viewport; a `PlacedView` has its pixels and matrices.
 
@@ -20,11 +20,11 @@ from ..geometry.arrays import Floats64
 from .render_target import Rectangle, intersection, scaled
 
 FIELD_OF_VIEW = 25.0  # [degrees] a portrait lens: about 80 mm on 35 mm film, so noses stay small
-MARGIN = 0.06  # of the frame, left free on each side when framing; mouths open and brows rise
+MARGIN = 0.06  # of the frame, free on each side after framing; mouths open and brows rise
 _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float64)
-_STEEPEST = 89.0  # [degrees] to which one rises by steps; beyond 90 "up" would tip over
+_STEEPEST = 89.0  # [degrees] of the steepest view; beyond 90 "up" would tip over
 
-# Name -> yaw and pitch [degrees]: yaw walks toward the subject's left, pitch rises above.
+# Name -> yaw and pitch [degrees]: yaw moves toward the subject's left, pitch moves up.
 VIEWS: dict[str, tuple[float, float]] = {
     "front": (0.0, 0.0),
     "three-quarter": (35.0, 4.0),
@@ -42,7 +42,7 @@ class OrbitCamera:
 
     target: the point that it looks at and turns about, shape (3,), float64.
     distance: from the target to the eye.
-    yaw, pitch: where on the sphere the eye is [degrees]; 0, 0 = in front.
+    yaw, pitch: place of the eye on the sphere [degrees]; 0, 0 = in front.
     field_of_view: top to bottom [degrees].
     narrowest_aspect: a frame narrower than this (width / height) shows no less of the scene's
         width, but more of its height; framing sets it.
@@ -66,9 +66,9 @@ class OrbitCamera:
         view: str = "front",
         field_of_view: float = FIELD_OF_VIEW,
     ) -> "OrbitCamera":
-        """Return a camera that sees all of `vertices`, shape (n, 3), from a named view.
+        """Return a camera that sees all `vertices`, shape (n, 3), from a named view.
 
-        Raises ValueError for an unknown view, and for vertices that are none or not finite.
+        Raises ValueError for an unknown view, and for missing or infinite vertices.
         """
         if view not in VIEWS:
             raise ValueError(f"view is '{view}'; it must be one of {', '.join(VIEWS)}")
@@ -97,7 +97,7 @@ class OrbitCamera:
         return replace(self, target=self.target.copy(), scene_centre=self.scene_centre.copy())
 
     def orbit(self, yaw: float, pitch: float = 0.0) -> None:
-        """Walk round the target by `yaw`, rise by `pitch` [degrees]; stops short of the poles."""
+        """Move round the target by `yaw`, and up by `pitch` [degrees], but not over the poles."""
         self.yaw = math.remainder(self.yaw + yaw, 360.0)
         self.pitch = min(max(self.pitch + pitch, -_STEEPEST), _STEEPEST)
 
@@ -116,7 +116,7 @@ class OrbitCamera:
         self.distance = min(max(self.distance / factor, closest), farthest)
 
     def change_lens(self, field_of_view: float) -> None:
-        """Take another lens, from a place where the target is as large; [degrees] top to bottom."""
+        """Take another lens [degrees, top to bottom], and move so that the target keeps size."""
         if not 0.0 < field_of_view < 180.0:
             raise ValueError(f"field_of_view is {field_of_view}; it must be above 0, below 180")
         now = math.tan(math.radians(0.5 * self.field_of_view))
@@ -137,7 +137,7 @@ class OrbitCamera:
 
     @property
     def eye(self) -> Floats64:
-        """Where the camera stands, shape (3,), float64."""
+        """Place of the camera, shape (3,), float64."""
         return self.target + self.distance * self.axes()[2]
 
     def view_matrix(self) -> Matrix44:
@@ -168,7 +168,7 @@ class OrbitCamera:
     def _depth_range(self) -> tuple[float, float]:
         """Clipping planes just around the scene, for the best use of the depth buffer."""
         depth = float(np.dot(self.eye - self.scene_centre, self.axes()[2]))
-        reach = 3.2 * self.scene_radius  # shoulders stand out of the scene that is framed
+        reach = 3.2 * self.scene_radius  # shoulders lie outside the framed scene
         near = max(depth - reach, 0.01 * self.scene_radius)
         return near, max(depth + reach, 2.0 * near)
 
@@ -193,7 +193,7 @@ class OrbitCamera:
 
 @dataclass(frozen=True, eq=False)
 class CameraView:
-    """The state of a camera, when this is made, and the viewport that it looks into.
+    """A camera's state at the time of this object's creation, and the viewport that it looks into.
 
     viewport: x, y, width, height [pixels of the surface] from the lower left corner, whose aspect
         the picture takes on; None: all of the surface.
@@ -217,7 +217,7 @@ class PlacedView:
     """
 
     def __init__(self, view: CameraView, size: tuple[int, int], scale: float = 1.0) -> None:
-        """size: of the target [pixels]. scale: its pixels per pixel of the surface.
+        """size: that of the target [pixels]. scale: its pixels per pixel of the surface.
 
         Raises ValueError for a viewport without pixels.
         """
@@ -240,8 +240,8 @@ class PlacedView:
     def covered_pixels(self, corners: Floats64, padding: float = 2.0) -> Rectangle:
         """The pixels of the clip that the hull of `corners`, shape (n, 3), can touch.
 
-        The whole clip where a corner is not finite or lies behind the eye; a width or height of 0
-        where nothing is seen.
+        It is the whole clip if a corner is not finite or lies behind the eye; width or height are 0
+        if the hull is not visible.
         """
         matrix = self.world_to_clip
         with np.errstate(over="ignore", invalid="ignore"):
@@ -257,7 +257,7 @@ class PlacedView:
 
     @cached_property
     def depth_range(self) -> tuple[float, float]:
-        """Where the scene begins in depths of the target, 0..1, and 1 over how far it reaches."""
+        """First depth of the scene on the target, 0..1, and 1 / the extent of its depths."""
         camera = self.camera
         middle = float(np.dot(camera.eye - camera.scene_centre, camera.axes()[2]))
         reach = 1.3 * camera.scene_radius  # a face moves beyond its rest pose
@@ -265,7 +265,7 @@ class PlacedView:
         distances = np.maximum([middle - reach, middle + reach], least_distance)
         at_infinity = 1.0 - self.projection[2, 2]
         depths = np.clip(0.5 * (at_infinity + self.projection[3, 2] / distances), 0.0, 1.0)
-        least_reach = 1e-6  # for a camera that has the scene behind it
+        least_reach = 1e-6  # for a scene behind the camera
         return float(depths[0]), 1.0 / max(float(depths[1] - depths[0]), least_reach)
 
 
@@ -273,6 +273,6 @@ def box_corners(points: npt.NDArray[Any]) -> Floats64:
     """The corners of the box that holds all points (n, 3), shape (8, 3), float64."""
     low = points.min(axis=0).astype(np.float64)
     high = points.max(axis=0).astype(np.float64)
-    with np.errstate(over="ignore", invalid="ignore"):  # a simulation that blew up is drawn, too
+    with np.errstate(over="ignore", invalid="ignore"):  # an unstable simulation is drawn, too
         corners: Floats64 = low + _CORNERS * (high - low)
     return corners

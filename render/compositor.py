@@ -1,8 +1,8 @@
 """The picture of a scene in a window, under its panels.
 
-Software OpenGL pays for every sample, so a scene that moves may be drawn with fewer (`Detail`). Its
-edges are smoothed then (edges.py), and it is enlarged here. The scene's own pixels stay as they
-are: when only a panel changes, the scene is laid under it again without being drawn again.
+Software OpenGL pays for every sample, so a moving scene may be drawn with fewer (`Detail`). Then
+edges.py smooths its edges, and this module enlarges it. The scene's own pixels stay: when only a
+panel changes, they are copied under it again, not drawn again.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ _UNIT = 4  # texture unit while enlarging
 
 @dataclass(frozen=True)
 class Detail:
-    """How finely a window's scene is drawn.
+    """Fineness of a window's scene.
 
     samples: per pixel, 0 = none. scale: pixels of the scene per pixel of the window, 0..1.
     """
@@ -33,7 +33,7 @@ class Detail:
 
 
 class Compositor:
-    """A frame of the window's size, apart from the scene's target; panels are drawn on it."""
+    """A frame of the window's size, separate from the scene's target; panels are drawn on it."""
 
     def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
         self.size = size
@@ -51,7 +51,7 @@ class Compositor:
         area: Rectangle | None,
         target: moderngl.Framebuffer | None = None,
     ) -> None:
-        """Lay the scene into an area (None: all) of this frame or a `target`, which stays bound."""
+        """Copy the scene into an area (None: all) of this frame or of `target`, then bound."""
         gl = self._gl
         target = target or self.frame
         frame = scene.frame
@@ -62,7 +62,7 @@ class Compositor:
             frame = smoother.frame
             colour = smoother.colour
         target.use()
-        gl.viewport = (0, 0, *self.size)  # of the framebuffer that is bound
+        gl.viewport = (0, 0, *self.size)  # of the bound framebuffer
         gl.scissor = area
         if scene.size == self.size:
             gl.copy_framebuffer(target, frame)
@@ -84,7 +84,7 @@ class Compositor:
         return None if area is None else scaled(area, scene.size[0] / self.size[0])
 
     def lay(self, x: int, y: int, image: Any) -> None:
-        """Lay a label on the bound framebuffer; see `WindowSurface.labels`."""
+        """Draw a label on the bound framebuffer; see `WindowSurface.labels`."""
         gl = self._gl
         (height, width, _) = image.shape
         gl.texture((width, height), 4, image[::-1].tobytes()).use(_UNIT)
@@ -106,7 +106,7 @@ class Compositor:
             (left, top, right - left, height - top),
         ):
             if rectangle[2] > 0 and rectangle[3] > 0:
-                self._gl.scissor = rectangle  # it cuts the copy
+                self._gl.scissor = rectangle  # a scissor would cut the copy
                 self._gl.copy_framebuffer(target, self.frame)
         self._gl.scissor = None
 

@@ -1,6 +1,6 @@
-"""Coverage: the surface that each sample of a pixel sees; meshes and parts without light.
+"""Coverage: the surface that each sample of a pixel sees, from drawings without light.
 
-That takes a fifth of the time of shading them, and less where only some triangles are drawn.
+Such a drawing takes a fifth of the time of shading, and less if only some triangles are drawn.
 """
 
 from collections.abc import Sequence
@@ -17,12 +17,12 @@ from .render_target import Rectangle, RenderTarget
 from .stream import Share
 from .translucency import CUT_WIDTH, SUNK_DEPTH, set_cut
 
-Numbers = tuple[float, float, float]  # of a surface, see surface_number.glsl
+Numbers = tuple[float, float, float]  # numbers of a surface, see surface_number.glsl
 SKIN_NUMBERS = 190.0, 63.0, float(INNER_NUMBER)
 
 
 class Drawn(NamedTuple):
-    """The surfaces that were drawn in a view: as a frame has them.
+    """The surfaces of a frame that were drawn in a view.
 
     skin: None if it was not drawn yet. cut: of an opened skin, else None. has_triangles: whether
     each triangle of the skin is a surface of its own.
@@ -49,7 +49,7 @@ class Coverage:
     def draw(
         self, drawn: Drawn, view: PlacedView, area: Rectangle, tiles: EdgeTiles | None
     ) -> None:
-        """Draw surfaces within an area; with tiles only what can be seen in them."""
+        """Draw surfaces within an area, or only the parts that tiles can show."""
         gl = self._gl
         gl.scissor = None
         self._frame.clear(depth=1.0)
@@ -94,7 +94,7 @@ class Coverage:
         placed.buffers.draw(program)
 
     def _program(self, view: PlacedView, numbers: Numbers, *defines: str) -> moderngl.Program:
-        """The program of surfaces of a kind, ready for one of these numbers."""
+        """The program for a kind of surfaces, ready for one with these numbers."""
         if defines not in self._programs:
             self._programs[defines] = compile_program(self._gl, "coverage.glsl", *defines)
         program = self._programs[defines]
@@ -111,5 +111,5 @@ def part_numbers(placed: PlacedBuffers) -> Numbers:
 def set_numbers(program: moderngl.Program, numbers: Numbers, view: PlacedView) -> None:
     """Set the uniforms by which a program writes the number of the seen surface."""
     for name, value in (("numbers", numbers), ("depth_range", view.depth_range)):
-        if name in program:  # not where it draws strands, or no depths
+        if name in program:  # absent in programs for strands, or without depths
             program[name] = value

@@ -1,7 +1,7 @@
-"""Smooth edges of a scene that has one sample a pixel, in a pass of its own.
+"""Smooth edges of a scene with one sample a pixel, in a separate pass.
 
-A first pass finds the edges, a second smooths them. On software OpenGL that takes half of the time
-of one pass that does both everywhere: the second skips pixels by an early depth test.
+A first pass finds the edges, a second smooths them. On software OpenGL this takes half the time of
+a single pass: the second pass skips pixels without edges by an early depth test.
 """
 
 import moderngl

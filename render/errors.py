@@ -1,8 +1,8 @@
-"""The one error of this package, and the cures for the ways in which OpenGL fails to start.
+"""The only error class of this package, and remedies for each way in which OpenGL fails to start.
 
-moderngl and glcontext raise bare `Exception`s with terse texts, GLFW issues Python warnings and
-returns NULL. `diagnose` turns such a raw text into one line that a user can act on.
-Source of the texts: moderngl 5.13, glcontext 3.1 and GLFW 3.4 / 3.5 on Linux, provoked one by one.
+moderngl and glcontext raise plain `Exception`s with short texts; GLFW issues Python warnings and
+returns NULL. `diagnose` turns such a text into one line with a remedy. The texts are those of
+moderngl 5.13, glcontext 3.1 and GLFW 3.4 / 3.5 on Linux, provoked one by one.
 """
 
 import os
@@ -10,7 +10,7 @@ import re
 
 OFFSCREEN = "offscreen OpenGL"
 
-# raw text -> (why, cure); the first pattern found wins.
+# raw text -> (reason, remedy); the first matching pattern counts.
 _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
     (r"invalid literal", "a GLCONTEXT_ variable is not a whole number", "unset it"),
     (r"glfw'|GLFW3", "GLFW is not installed, or broken", "pip install '.[window]' in the checkout"),
@@ -33,7 +33,7 @@ _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
 
 
 class GLError(RuntimeError):
-    """OpenGL is missing, too old or refuses; one line names attempt, reason, raw text and cure."""
+    """OpenGL is missing, too old or refuses; one line has attempt, reason, raw text and remedy."""
 
 
 def diagnose(attempt: str, raw: object) -> GLError:

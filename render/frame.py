@@ -1,8 +1,8 @@
 """A picture as a value: a view, a style, a mesh, parts and lines; `Renderer.draw` draws it.
 
-A frame holds everything that its picture depends on. So it gives the same picture at any time,
-between any other frames. Its parts keep the shape that they had when the frame was made. Its mesh
-lies in the buffers of a stream, so a frame can be drawn until that stream is filled anew.
+A frame holds all that its picture depends on. So it gives the same picture at any time, between any
+other frames. Its parts keep the shape of the time when the frame was made. Its mesh lies in the
+buffers of a stream, so a frame can be drawn until the stream is filled again.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,19 +17,19 @@ from .stream import MeshBuffers, UploadedMesh
 from .style import Style
 from .texture import BumpMap, Texture
 
-Plane = tuple[float, float, float, float]  # (a, b, c, d): in front is a x + b y + c z + d > 0
+Plane = tuple[float, float, float, float]  # (a, b, c, d): a x + b y + c z + d > 0 lies in front
 
 
 class DrawnPart(Protocol):
-    """The attributes that are read of a part.
+    """The attributes of a part that are read.
 
     name: for messages. vertices, normals: shape (n, 3), float32. A part that is not rigid hands out
         other arrays of the same shape whenever its shape has changed.
     faces: counter-clockwise from the side that is seen, shape (m, 3), int32; the other side is not
         drawn. colours: sRGB 0..1, shape (n, 3), float32.
     bone: whose transform moves it. shine: 0 dull, 1 wet.
-    is_enclosed: whether it lies within another surface, where light from behind does not get.
-    strand_radius: half the thickness of the strands that it consists of; 0 where it is solid.
+    is_enclosed: whether it lies within another surface, where no light from behind arrives.
+    strand_radius: half the thickness of its strands; 0 for a solid part.
     striation: place of each vertex across and along fibres [mm], (n, 2), or None; of shells also
         the way from root to tip [mm], at 0.6 of which vertices lie, and how dense it is, (n, 6).
     """
@@ -58,12 +58,13 @@ class DrawnPart(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class PlacedPart:
-    """A part in the place and the shape that it has when this is made.
+    """A part, in its place and shape at the time of this object's creation.
 
     transform: from the part to the world, for column vectors, shape (4, 4).
-    lies_beneath: whether it belongs under the skin: whole skin hides it, even where it comes out.
+    lies_beneath: whether it belongs under the skin: skin that is not opened hides it, even where
+        the part comes out.
     throws_shadow: whether it throws a shadow on other parts and on the skin.
-    opening: through which light gets to it; None: light comes from all around.
+    opening: the one through which light reaches it; None: light comes from all around.
     vertices, normals, colours: those of the part.
     """
 
@@ -90,7 +91,7 @@ class PlacedPart:
         throws_shadow: bool = False,
         opening: Opening | None = None,
     ) -> Self:
-        """A part where its bone puts it, by the matrix of that bone; ValueError if it has none."""
+        """A part in the place that the matrix of its bone gives; ValueError without a matrix."""
         if part.bone not in transforms:
             raise ValueError(
                 f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
@@ -104,8 +105,8 @@ class SkinMaps:
     """The images on a skin.
 
     texture: the albedo of its front side, unless the style is not textured, and its fine shape.
-    bumps: furrows, as far as the style and the uploaded amounts let them show; per-pixel
-        shading alone has them.
+    bumps: furrows, as far as style and uploaded amounts show them; per-pixel shading alone has
+        them.
     """
 
     texture: Texture | None = None
@@ -113,12 +114,12 @@ class SkinMaps:
 
 
 NO_MAPS = SkinMaps()
-"""Of skin that is drawn in one colour, without a texture."""
+"""Maps of skin in one colour, without a texture."""
 
 
 @dataclass(frozen=True, eq=False)
 class Skin:
-    """The mesh of a frame: the last upload of a stream, and what lies on it.
+    """The mesh of a frame: the last upload of a stream, with its maps and colours.
 
     maps: they need a stream of 8 columns or more, ValueError else.
     fading: places around all of the mesh that fades as its columns 17 and 18 have it, (n, 3); None:
@@ -132,7 +133,7 @@ class Skin:
     fading: Floats64 | None = None
     values: Unsigned8 | None = None
     mesh: UploadedMesh = field(init=False)
-    """The upload that it shows."""
+    """The upload that this skin shows."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "mesh", self.stream.mesh)
@@ -142,7 +143,7 @@ class Skin:
             self.stream.check_fade()
 
     def check(self) -> None:
-        """Raise ValueError if the stream holds another mesh by now."""
+        """Raise ValueError if the stream now holds another mesh."""
         if self.stream.mesh is not self.mesh:
             raise ValueError(
                 "the stream of this frame was filled anew since the frame was made; make the frame "
@@ -150,7 +151,7 @@ class Skin:
             )
 
     def shown_maps(self, style: Style) -> dict[BumpMap, float]:
-        """The fine shape that tilts normals in a style, and how much of each map, 0 to 1."""
+        """The fine shape that tilts normals in a style, and the strength of each map, 0 to 1."""
         shown = {}
         if self.maps.bumps is not None and style.shows_bumps and self.stream.has_bumps:
             shown[self.maps.bumps] = style.bumps
@@ -162,9 +163,9 @@ class Skin:
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """All that is seen in one viewport.
+    """All that one viewport shows.
 
-    style: how it is drawn, with the background behind it and the opacity of the skin.
+    style: shading and colours, with the background and the opacity of the skin.
     cut: in front of it a translucent skin is opaque.
     overlays: lines over everything.
     """

@@ -1,8 +1,8 @@
 """The surface in each pixel of a picture, as numbers: its distance, its normal, its triangle.
 
-Drawn by the same matrices from the same buffers as the colours are, but with one sample in the
-middle of each pixel, so that no number is a mean of two things.
-Source: Saito and Takahashi 1990, "Comprehensible rendering of 3-D shapes" (the G-buffer).
+They are drawn from the buffers of the colours by the same matrices, but with one sample in the
+middle of each pixel, so that no number is a mean of two surfaces. Source: Saito and Takahashi 1990,
+"Comprehensible rendering of 3-D shapes" (the G-buffer).
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,19 +20,19 @@ from .texture import BumpMap
 
 
 class Geometry(NamedTuple):
-    """One picture, top row first; where nothing is drawn all numbers are 0, but `triangle` is -1.
+    """One picture, top row first; empty pixels have 0 in all numbers, but -1 in `triangle`.
 
     Axes are those of pictures: x right, y down, z away from the camera.
     """
 
     depth: Floats32
-    """How far away along the camera's axis, not along the ray [unit of the scene], (H, W)."""
+    """Distance along the camera's axis, not along the ray [unit of the scene], (H, W)."""
     normal: Floats32
-    """Interpolated unit normals of the side that is seen, shape (H, W, 3)."""
+    """Interpolated unit normals of the visible side, shape (H, W, 3)."""
     triangle: Integers32
     """Number among the triangles of the skin, then of each part without strands, (H, W)."""
     is_inside: Flags
-    """Whether a triangle of the skin is seen from its back, shape (H, W)."""
+    """Whether a pixel shows the back of a triangle of the skin, shape (H, W)."""
     uv: Floats32
     """Texture coordinates; 0 on parts and in streams without, shape (H, W, 2)."""
 
@@ -93,7 +93,7 @@ class GeometryBuffer:
         return Geometry(
             depth=np.ascontiguousarray(normal_depth[..., 3]),
             normal=np.ascontiguousarray(normal_depth[..., :3]),
-            triangle=number_side_uv[..., 0].astype(np.int32) - 1,  # exact up to 2^24 triangles
+            triangle=number_side_uv[..., 0].astype(np.int32) - 1,  # exact up to 2^24
             is_inside=number_side_uv[..., 1] < 0.0,
             uv=number_side_uv[..., 2:],
         )

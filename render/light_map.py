@@ -1,12 +1,12 @@
-"""Light from all around, as a map has it: a key that throws shadows, and smooth light of the rest.
+"""Light of a map from all around: a key that throws shadows, and the rest as smooth light.
 
-The brightest place of the map becomes the key: what it has more than its surroundings. All other
-light is kept as nine numbers for each colour, spherical harmonics up to the second order, which
-hold the light on a matte surface to a few per cent. Light hangs on the camera, as lamps do: the
-middle of the map lies behind the head, its left and right end behind the viewer.
+The brightest place of the map becomes the key, with its light beyond that of its surroundings. All
+other light is kept as nine numbers for each colour, spherical harmonics up to the second order,
+which hold the light on a matte surface to a few per cent. The light moves with the camera, as lamps
+do: the middle of the map lies behind the head, its left and right ends behind the viewer.
 
 Source: Ramamoorthi, Hanrahan 2001, "An efficient representation for irradiance environment maps",
-for the nine numbers. The choice of a key is our own.
+for the nine numbers. The choice of a key is ours.
 """
 
 from collections.abc import Mapping
@@ -24,20 +24,20 @@ from .style import Light, MapBackground
 class LightMap:
     """Linear light from all around, in any unit, shape (H, W, 3), W = 2 H.
 
-    Row 0 is above. Columns go from behind the viewer over the left to the middle, which lies behind
-    the head, and on over the right.
+    Row 0 is above. Columns run from behind the viewer over the left to the middle, which lies
+    behind the head, and then over the right back.
     """
 
     radiance: Floats64
 
     def light(self, turn: float = 0.0) -> Light:
-        """The light of the map, turned to the viewer's right by an angle [deg], well exposed."""
+        """The light of the map, turned to the viewer's right by an angle [deg], and exposed."""
         return self.exposed(turn)[0]
 
     def exposed(self, turn: float) -> tuple[Light, float]:
-        """The light of `light`, and the factor by which its radiance was multiplied."""
+        """The result of `light`, and the factor on the radiance."""
         rows, columns = self.radiance.shape[:2]
-        every = max(rows // 32, 1)  # 6 degrees are fine enough for light
+        every = max(rows // 32, 1)  # steps of 6 degrees are fine enough for light
         radiance = self.radiance[: rows // every * every, : columns // every * every]
         blocks = radiance.reshape(rows // every, every, columns // every, every, 3)
         radiance = blocks.mean(axis=(1, 3))
@@ -51,7 +51,7 @@ class LightMap:
         around = np.array(factors)[:, None] * moments
         front = np.maximum(away[:, 2], 0.0) * solid
         lit = _harmonics(away) @ around + np.maximum(away @ to_key, 0.0)[:, None] * key
-        usual_light = 0.72  # of the studio, in the mean over surfaces that face the viewer
+        usual_light = 0.72  # mean of the studio over surfaces that face the viewer
         scale = usual_light / max(float(front @ _luminance(lit) / front.sum()), 1e-9)
         return (
             Light(
@@ -66,9 +66,9 @@ class LightMap:
         )
 
     def background(self, turn: float = 0.0, exposure: float | None = None) -> MapBackground:
-        """The map behind a scene that it lights, out of focus and exposed as its light is.
+        """The map behind a scene that it lights, out of focus and with the exposure of its light.
 
-        turn: as of `light`. exposure: as `exposed` gives it; None: found anew.
+        turn: as in `light`. exposure: the factor of `exposed`; None: it is computed again.
         """
         if exposure is None:
             exposure = self.exposed(turn)[1]
@@ -83,7 +83,7 @@ class LightMap:
 
 
 def directions(rows: int, columns: int, turn: float = 0.0) -> Floats64:
-    """Where the texels of a map are, x right, y up, z to the viewer: unit vectors (H, W, 3)."""
+    """Directions of the texels of a map, x right, y up, z to the viewer: unit vectors (H, W, 3)."""
     elevation = np.pi * (0.5 - (np.arange(rows) + 0.5) / rows)[:, None]
     azimuth = 2.0 * np.pi * ((np.arange(columns) + 0.5) / columns - 0.5) + np.radians(turn)
     across = np.cos(elevation)
@@ -92,7 +92,7 @@ def directions(rows: int, columns: int, turn: float = 0.0) -> Floats64:
 
 
 def _solid_angles(rows: int, columns: int) -> Floats64:
-    """Of a texel in each row, shape (H,)."""
+    """Solid angle of a texel in each row, shape (H,)."""
     edges = np.sin(np.linspace(0.5 * np.pi, -0.5 * np.pi, rows + 1))
     return np.asarray(-np.diff(edges) * 2.0 * np.pi / columns)
 
@@ -100,13 +100,14 @@ def _solid_angles(rows: int, columns: int) -> Floats64:
 def _key_of(radiance: Floats64, away: Floats64, solid: Floats64) -> tuple[Floats64, Floats64]:
     """The direction of the key (3,), and its part of the light of each texel (n, 3).
 
-    Light from before the face is preferred: a sun behind it stays a part of the rest.
+    Light from in front of the face is preferred: a sun behind it belongs to the rest.
     """
     lightness = _luminance(radiance) * solid
-    tried = away[::7]  # fewer than all, for it costs the square
+    tried = away[::7]  # a part of all: the cost grows with the square
     square = np.maximum(tried @ away.T, 0.0) ** 2
     eighth = (square**2) ** 2
-    # The 40th power of the cosine is a lobe of some 15 degrees; squares are quicker than a power.
+    # The 40th power of the cosine is a lobe of some 15 degrees; repeated squares are faster than a
+    # power.
     gathered = (eighth**2) ** 2 * eighth @ lightness
     middle = tried[np.argmax(gathered * (0.6 + 0.4 * tried[:, 2]))]
     cosine = away @ middle
@@ -136,7 +137,7 @@ def _three(values: Floats64) -> tuple[float, float, float]:
 
 
 def _clouds() -> Floats64:
-    """An overcast sky (CIE 1955: thrice as bright above as at the horizon), brighter at the sun."""
+    """An overcast sky (CIE 1955: three times as bright above as at the horizon), and a sun."""
     away = directions(64, 128)
     height = away[..., 1]
     sky = (1.0 + 2.0 * np.maximum(height, 0.0)) / 3.0
@@ -182,7 +183,7 @@ def _gaussian(distances: npt.NDArray[np.int64], deviation: float) -> Floats64:
 
 
 def _spot(away: Floats64, *, azimuth: float, elevation: float, width: float) -> Floats64:
-    """1 at a place of a map, less around it: a Gaussian of some deviation [deg], (H, W)."""
+    """A Gaussian on a map, 1 at its place, with `width` as its deviation [deg], (H, W)."""
     across = np.radians(azimuth)
     up = np.radians(elevation)
     middle = [np.cos(up) * np.sin(across), np.sin(up), -np.cos(up) * np.cos(across)]
@@ -203,4 +204,4 @@ def _pane(
 LIGHT_MAPS: Mapping[str, LightMap] = MappingProxyType(
     {"clouds": LightMap(_clouds()), "room": LightMap(_room()), "street": LightMap(_street())}
 )
-"""Maps by name, made by program."""
+"""Maps by name, which this module computes."""

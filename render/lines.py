@@ -20,9 +20,9 @@ class Lines(NamedTuple):
     width: float = 1.6
     """[pixels at scale 1]"""
     hidden_opacity: float = 0.45
-    """0 to 1, behind something."""
+    """Opacity behind a surface, 0 to 1."""
     opacity: float = 1.0
-    """0 to 1, in front."""
+    """Opacity in front of all surfaces, 0 to 1."""
 
     def segments(self) -> tuple[Floats32, Unsigned32]:
         """Position and sRGB of all points, (n, 6), and the ends of each segment, (s, 2)."""

@@ -1,4 +1,4 @@
-"""How meshes and parts take light and colours: the uniforms of surface.glsl."""
+"""Light and colours of meshes and parts: the uniforms of surface.glsl."""
 
 from collections.abc import Iterable
 
@@ -41,7 +41,7 @@ def part_shader(
 ) -> list[str]:
     """The file and the defines of the program of parts of a kind, see `PartBuffers`.
 
-    opening: the `Opening.defines` of the one before them; empty where there is none.
+    opening: the `Opening.defines` of the opening in front of them; empty without one.
     is_around: whether light comes from all around, by nine coefficients.
     """
     around = ["AROUND"] * is_around
@@ -53,9 +53,9 @@ def part_shader(
 
 
 def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_scale: float) -> None:
-    """How a mesh of this style takes light, and its wireframe and colours by values."""
+    """Set how a mesh of this style takes light, its wireframe, and its colours by values."""
     set_light(program, style.light)
-    if "albedo" in program:  # not where a texture takes its place
+    if "albedo" in program:  # absent where a texture takes its place
         program["albedo"] = tuple(to_linear(style.albedo))
     program["inner_albedo"] = tuple(to_linear(style.inside))
     program["subsurface"] = style.scattering
@@ -70,9 +70,9 @@ def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_sca
 
 
 def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: PlacedView) -> None:
-    """From dull (broad and faint) to wet (small and bright) highlights.
+    """Set highlights of a part, from dull (broad and faint) to wet (small and bright).
 
-    `set_light` comes first; its light from behind does not reach enclosed parts, or fibres.
+    Call `set_light` before; its light from behind does not reach enclosed parts, or fibres.
     """
     kind = part.kind
     shine = part.shine
@@ -83,7 +83,7 @@ def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: P
     program["rim_light"] = (0.0, 0.0, 0.0) if is_rimless else light.rim
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
-    # A wet part is dark by itself, not for want of light; so is a part that is not enclosed.
+    # A wet part, or a part that is not enclosed, is dark by itself, not because light is missing.
     program["least_mirrored"] = shine * shine if part.is_enclosed else 1.0
     program["sharpness"] = 20.0 * 40.0**shine
     if kind == "STRANDS":  # half their thickness, and a pixel at distance 1
@@ -93,7 +93,7 @@ def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: P
 
 
 def set_light(program: moderngl.Program, light: Light) -> None:
-    """Where light comes from."""
+    """Set the directions and colours of lights."""
     program["to_key"] = light.to_key
     program["to_fill"] = light.to_fill
     program["key_light"] = light.key
@@ -109,9 +109,9 @@ def set_light(program: moderngl.Program, light: Light) -> None:
 def value_texture(
     gl: moderngl.Context, values: Unsigned8 | None, triangle_count: int
 ) -> moderngl.Texture:
-    """One small number per triangle, shape (M,), to be looked up by gl_PrimitiveID.
+    """A texture with one small number per triangle, (M,), which gl_PrimitiveID looks up.
 
-    Raises ValueError if there are none, or not as many.
+    Raises ValueError for no numbers, or another count.
     """
     if values is None:
         raise ValueError("the style colours by values, so the skin needs values, one per triangle")

@@ -15,7 +15,7 @@ from .programs import write_uniform
 
 @dataclass(frozen=True, eq=False)
 class Opening:
-    """An opening in a skin, and how a part lies in it.
+    """An opening in a skin, and the position of a part in it.
 
     rim: points of the world around it, clockwise seen from outside, its upper half first, shape
         (RIM_POINTS, 3).
@@ -30,12 +30,12 @@ class Opening:
 
     @property
     def defines(self) -> tuple[str, str]:
-        """How opening.glsl calls its kind, and the number of points of its rim."""
+        """The define of its kind in opening.glsl, and the number of points of its rim."""
         kind = "FILLED" if self.is_filled else "BEHIND"
         return kind, f"RIM_POINTS {self.RIM_POINTS}"
 
     def set_uniforms(self, program: moderngl.Program, view: PlacedView) -> None:
-        """Place it in the view."""
+        """Set the uniforms that place it in the view."""
         seen = np.column_stack([self.rim, np.ones(len(self.rim))]) @ view.world_to_view
         if self.is_filled:
             _set_lids(program, seen[:, :3])

@@ -1,4 +1,4 @@
-"""Coloured parts, moved by bones: uploaded once, or again where one changes its shape."""
+"""Coloured parts, moved by bones: uploaded once, and again when a part changes its shape."""
 
 import weakref
 from collections.abc import Callable, Iterable
@@ -17,22 +17,22 @@ from .frame import DrawnPart, PlacedPart
 from .translucency import blending
 
 OF_SHELLS = "in_strand", "in_way", "in_dense"
-# Striped parts: by the columns of their striation their kind, layout and attributes in OpenGL.
+# Striped parts: columns of their striation -> kind, layout and attributes in OpenGL.
 STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("SHELLS", " 2f 3f 1f", *OF_SHELLS)}
-LAYERS = 9  # of shells; with more a picture takes longer, with fewer one sees between
+LAYERS = 9  # of shells; more take longer, fewer show gaps
 FEWEST_LAYERS = 2  # shells
-LAYER_PIXELS = 10.0  # that a layer is there for, where they are thickest
-SHADING_DENSITY = 0.6  # of shells, from which on they throw a shadow
+LAYER_PIXELS = 10.0  # for each layer, where shells are thickest
+SHADING_DENSITY = 0.6  # of shells, from which they throw a shadow
 
 
 class PartBuffers:
-    """A part on the graphics card, and the arrays that were read of it.
+    """A part on the graphics card, and the arrays that it was read from.
 
     It keeps no part alive: `PartStore` releases it with its part.
     """
 
     def __init__(self, gl: moderngl.Context, part: DrawnPart) -> None:
-        """Reserve what the part takes; `upload` fills it."""
+        """Reserve buffers for the part; `upload` fills them."""
         self._gl = gl
         self.faces = part.faces
         self.shine = part.shine
@@ -66,7 +66,7 @@ class PartBuffers:
         self._arrays: dict[tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray] = {}
 
     def upload(self, placed: PlacedPart) -> None:
-        """Upload the vertices of its part, unless they are those that were uploaded last."""
+        """Upload the vertices of its part, unless they are the last uploaded ones."""
         vertices = placed.vertices
         if vertices is self._uploaded:
             return
@@ -78,14 +78,14 @@ class PartBuffers:
         self._uploaded = vertices
 
     def draw(self, program: moderngl.Program, *, layers: int = 1) -> None:
-        """Draw it; the program has in_position, and in_normal and in_colour if it wants them.
+        """Draw it; the program has in_position, and in_normal and in_colour if it needs them.
 
-        layers: how often, of shells.
+        layers: number of layers, for shells.
         """
         self._render(program, self._indices, len(self.faces), layers)
 
     def draw_shadow(self, program: moderngl.Program) -> None:
-        """Draw the faces that throw a shadow; the hem of shells throws none."""
+        """Draw the faces that throw a shadow; the thin hem of shells throws none."""
         if self._throwing_count:
             self._render(program, self._throwing, self._throwing_count, 1)
 
@@ -99,20 +99,20 @@ class PartBuffers:
                 [(self._vertices, *self._layout)],
                 index_buffer=indices,
                 index_element_size=4,
-                skip_errors=True,  # not every program has a use for colours
+                skip_errors=True,  # not every program uses colours
             )
         self._gl.enable(moderngl.CULL_FACE)
         self._arrays[program, indices].render(vertices=3 * count, instances=layers)
         self._gl.disable(moderngl.CULL_FACE)
 
     def layer_count(self, view: PlacedView) -> int:
-        """How many layers its shells have in a view."""
+        """Number of layers of its shells in a view."""
         _, _, width, height = view.viewport
         pixels = view.camera.focal(width / height, height) / view.camera.distance
         return int(np.clip(np.ceil(self._thick * pixels / LAYER_PIXELS), FEWEST_LAYERS, LAYERS))
 
     def draw_shells(self, program: moderngl.Program, view: PlacedView) -> None:
-        """Draw its layers from the inside out; the outer ones, which are thin, hide nothing."""
+        """Draw its layers from the inside out; the thin outer ones do not hide others."""
         layers = self.layer_count(view)
         inner = -(-layers // 2)
         program["layers"] = layers
@@ -123,7 +123,7 @@ class PartBuffers:
 
 
 def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
-    """How broad strands of three sides are at each vertex: 1, or at their tips 0, shape (n, 1).
+    """Relative breadth of three-sided strands at each vertex: 1, but 0 at tips, shape (n, 1).
 
     Three triangles meet at a tip, and three edges; at an open end there are four edges.
     """
@@ -139,7 +139,7 @@ def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
 class PlacedBuffers(NamedTuple):
     """A placed part, and the buffers that hold it.
 
-    number: of its surface, see surface_number.glsl; of the skin see coverage.py.
+    number: that of its surface, see surface_number.glsl; for the skin see coverage.py.
     """
 
     buffers: PartBuffers
@@ -147,7 +147,7 @@ class PlacedBuffers(NamedTuple):
     number: int
 
     def as_background(self) -> Self:
-        """The same, whose edges are smooth already."""
+        """The same part as a background, whose edges are already smooth."""
         return self._replace(number=0)
 
     @property
@@ -157,19 +157,19 @@ class PlacedBuffers(NamedTuple):
 
 
 class PartStore:
-    """The buffers of the parts that were drawn and still exist.
+    """The buffers of drawn parts that still exist.
 
-    A renderer may draw one person after the other: the buffers of a part on the graphics card go
-    when the last reference to that part goes.
+    A renderer may draw one person after another: the buffers of a part on the graphics card are
+    released with the last reference to the part.
     """
 
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
-        # By the id of the part, which another part may have as soon as this one is gone.
+        # By the id of the part; another part may get this id after this one is gone.
         self._known: dict[int, tuple[Callable[[], DrawnPart | None], PartBuffers]] = {}
 
     def uploaded(self, parts: Iterable[PlacedPart]) -> list[PlacedBuffers]:
-        """Each part, uploaded when it is first seen or has another shape than at last."""
+        """Each part, uploaded when it is new or has changed its shape."""
         self._forget_lost()
         return [
             PlacedBuffers(self._buffers_of(each), each, 2 + index % 187)
@@ -177,7 +177,7 @@ class PartStore:
         ]
 
     def _buffers_of(self, placed: PlacedPart) -> PartBuffers:
-        """The buffers of a part, which hold the shape that it has in its place."""
+        """The buffers of a part, with its present shape."""
         part = placed.part
         get_known, buffers = self._known.get(id(part), (None, None))
         if get_known is None or buffers is None or get_known() is not part:
@@ -187,15 +187,15 @@ class PartStore:
         return buffers
 
     def _forget_lost(self) -> None:
-        """Give up the buffers of parts that nobody holds any more."""
+        """Release the buffers of parts without references."""
         lost = [key for key, (get_part, _) in self._known.items() if get_part() is None]
         for key in lost:
             del self._known[key]
 
 
 def _reference_to(part: DrawnPart) -> Callable[[], DrawnPart | None]:
-    """Returns the part while somebody holds it; a part without weak references is kept."""
+    """A call that returns the part while it exists; without weak references it is kept."""
     try:
         return weakref.ref(part)
-    except TypeError:  # a named tuple, say
+    except TypeError:  # for example a named tuple
         return lambda: part

@@ -1,7 +1,7 @@
-"""The OpenGL of this machine, found without risk to the caller.
+"""The OpenGL of this machine, probed without risk to the caller.
 
-A broken driver may crash the process that loads it, so each try runs in a Python of its own, which
-writes one JSON object.
+A broken driver may crash the process that loads it, so each attempt runs in its own Python process,
+which writes one JSON object.
 """
 
 import json
@@ -20,7 +20,7 @@ class Finding:
 
     name: "offscreen" or "window".
     message: the GLError's text where it failed, "" if it works.
-    lends_gpu_streams: whether meshes can be refined where they are drawn.
+    lends_gpu_streams: whether meshes can be refined on the graphics card that draws them.
     """
 
     name: str
@@ -68,7 +68,7 @@ def _probe_in_process(name: str) -> Finding:
 
 
 def write_finding(name: str) -> None:
-    """Try one way to draw in this very process; the fields of a Finding to standard output."""
+    """Try one way to draw in this process; write the fields of a Finding to standard output."""
     from .surface import NEWEST_VERSION, Surface, open_offscreen
     from .window import open_window
 

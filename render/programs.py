@@ -1,4 +1,4 @@
-"""GLSL files -> compiled programs: one file per program, its stages chosen by a define.
+"""From GLSL files to compiled programs: one file per program, whose stages a define chooses.
 
 `#include "name.glsl"` is replaced by that file. Compile errors are raised as GLError with file,
 stage and defines. Everything is GLSL 330, so that OpenGL 3.3 core (and macOS's 4.1) can run it.
@@ -24,7 +24,7 @@ def shader_text(name: str) -> str:
     """The text of a GLSL file of this package, its includes filled in."""
     text = (SHADER_FOLDER / name).read_text(encoding="utf-8")
 
-    # Line numbers in the driver's messages are those of the file: an include counts as no line.
+    # Line numbers in the driver's messages are those of the file: included lines do not count.
     def fill(match: re.Match[str]) -> str:
         """The text of an include."""
         line = text.count("\n", 0, match.start()) + 2
@@ -36,7 +36,7 @@ def shader_text(name: str) -> str:
 def compile_program(
     gl: moderngl.Context, name: str, *defines: str, has_geometry_stage: bool = False
 ) -> moderngl.Program:
-    """Compile the GLSL file `name` with the given defines; GLError says file and stage."""
+    """Compile the GLSL file `name` with the given defines; GLError names file and stage."""
     body = shader_text(name)
     switches = "".join(f"#define {define}\n" for define in defines)
 
@@ -51,7 +51,7 @@ def compile_program(
             fragment_shader=stage("FRAGMENT"),
         )
     except Exception as error:
-        # Of moderngl's page of text the stage, and the driver's first complaint.
+        # The stage and the driver's first complaint, out of moderngl's page of text.
         at, complaint = (
             found[0].strip() if (found := re.search(pattern, str(error))) else "?"
             for pattern in (r"\w+(?=_shader)", r"(?i).*error[:( ].*")
@@ -63,7 +63,7 @@ def compile_program(
 
 
 def write_uniform(program: moderngl.Program, name: str, values: npt.NDArray[Any]) -> None:
-    """Set a matrix, or an array, of floats; matrices are for row vectors, as pyrr makes them."""
+    """Set a matrix or an array of floats; matrices are for row vectors, like those of pyrr."""
     uniform = program[name]
     assert isinstance(uniform, moderngl.Uniform)
     uniform.write(np.ascontiguousarray(values, np.float32).tobytes())

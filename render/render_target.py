@@ -1,6 +1,6 @@
-"""Where a scene is drawn: its colours, and which surface each pixel shows.
+"""Target of a scene's drawing: its colours, and the surface that each pixel shows.
 
-Each pixel is shaded once. Where it shows several surfaces, `sample_mixer.py` mixes their colours.
+Each pixel is shaded once. If it shows several surfaces, `sample_mixer.py` mixes their colours.
 """
 
 import math
@@ -15,7 +15,7 @@ Rectangle = tuple[int, int, int, int]  # x, y, width, height [pixels], from the 
 class RenderTarget:
     """Textures of `size` pixels.
 
-    samples: by how many samples of each pixel its edges are smoothed, 0 = not here.
+    samples: number of samples of each pixel that smooth its edges, 0 = edges stay.
     colour: the picture. surfaces: numbers and depths of surfaces, see surface_number.glsl.
     frame: a framebuffer with the colour, and a depth.
     """
@@ -40,7 +40,7 @@ class RenderTarget:
         self._both = gl.framebuffer(both, depth)
 
     def release(self) -> None:
-        """Give back everything to OpenGL; nothing can be drawn here any more."""
+        """Release everything to OpenGL; afterwards no drawing is possible."""
         # moderngl binds the last bound framebuffer again whenever it makes one.
         self._gl.detect_framebuffer(0).use()
         for each in (self.frame, self._numbered, self._both, self.colour, self.surfaces):
@@ -54,13 +54,13 @@ class RenderTarget:
         self.frame.clear(0.0, 0.0, 0.0, 1.0, depth=1.0)
 
     def forget_surfaces(self) -> None:
-        """Make all that was drawn so far background, whose edges are not smoothed any more."""
+        """Turn all drawings so far into background, whose edges are not smoothed again."""
         if self.samples:
             self._gl.scissor = None
             self._numbered.clear(green=1.0)  # no number, and the greatest depth
 
     def use_frame(self) -> None:
-        """Direct drawing to the frame, over all that was drawn so far."""
+        """Direct drawing to the frame, over all drawings so far."""
         self.use((0, 0, *self.size), None)
 
     def use(
@@ -87,7 +87,7 @@ def _texture(gl: moderngl.Context, size: tuple[int, int]) -> moderngl.Texture:
 
 
 def scaled(viewport: Rectangle, scale: float) -> Rectangle:
-    """The pixels of a viewport on a target of another scale; ValueError for one without any."""
+    """The pixels of a viewport on a target of another scale; ValueError for no pixels."""
     left, bottom, width, height = viewport
     if width < 1 or height < 1:
         raise ValueError(

@@ -1,8 +1,8 @@
 """Draws frames on a surface: meshes, rigid parts, lines and backgrounds.
 
 `Renderer.draw` takes a whole picture. Programs are compiled and buffers are made on first use, and
-kept; nothing else is left of a picture when the next one is drawn.
-Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the figures are shaded).
+kept. Nothing else of a picture remains when the next one is drawn. Source: Kähler et al. 2003, Fig.
+1 (the rendering stage) and section 5 (how the figures are shaded).
 """
 
 from collections.abc import Sequence
@@ -52,7 +52,7 @@ _ALBEDO_UNIT = 3
 
 
 class Renderer:
-    """Draws on one surface, and has the programs and buffers behind that."""
+    """Draws on one surface, and owns the programs and buffers for it."""
 
     def __init__(self, surface: Surface) -> None:
         surface.make_current()
@@ -77,15 +77,15 @@ class Renderer:
     ) -> GpuStream:
         """Lend buffers to a program that makes such a mesh on the graphics card (see GpuStream).
 
-        margin: how far its vertices are beyond those of the mesh that it is made of, at most.
+        margin: largest distance of its vertices from the box of the mesh that it is made from.
         """
         self.surface.make_current()
         return GpuStream(self._gl, vertex_capacity, triangle_capacity, columns, margin)
 
     def bump_map(self, texels: Image, steepest: float, channels: int = 4) -> BumpMap:
-        """The map of these texels (see BumpMap), which skins share: another call finds it.
+        """The map of these texels (see BumpMap); skins share it: another call returns the same one.
 
-        It goes with the last skin that has it. Texels must not change.
+        It is released with its last skin. Texels must not change.
         """
         known = self._bump_maps.get(id(texels))
         if known is None or known.steepest != steepest:
@@ -94,11 +94,11 @@ class Renderer:
         return known
 
     def draw(self, *frames: Frame) -> None:
-        """Draw a picture of frames, each in its viewport; where there is none it is black.
+        """Draw a picture of frames, each in its viewport; the rest is black.
 
         Raises ValueError for a viewport without pixels, for values that do not fit the triangles,
-        and for a frame whose stream was filled anew; raises GLError if memory is lacking. A window
-        shows it at `Surface.end`.
+        and for a frame whose stream was filled again; raises GLError if memory is short. A window
+        shows the picture at `Surface.end`.
         """
         try:
             self._draw_all(frames)
@@ -120,10 +120,10 @@ class Renderer:
         target.use_frame()
 
     def read(self, frame: Frame) -> Geometry:
-        """Numbers for each pixel of the surface, whose picture stays as it is.
+        """Numbers for each pixel of the surface; its picture does not change.
 
-        Skin and parts count as if they were opaque. Strands, thinner than a pixel, are left out:
-        pixels have the numbers of the surface behind them.
+        Skin and parts count as if they were opaque. Strands are thinner than a pixel and are left
+        out: pixels have the numbers of the surface behind them.
         """
         self.surface.make_current()
         size = self.surface.target.size
@@ -134,7 +134,7 @@ class Renderer:
         return self._geometry_buffer.draw(frame, parts, self._placed_view(frame))
 
     def _placed_view(self, frame: Frame) -> PlacedView:
-        """A frame's view on the target as it is now."""
+        """A frame's view on the present target."""
         if frame.skin is not None:
             frame.skin.check()
         return PlacedView(frame.view, self.surface.target.size, self.surface.scale)
@@ -190,7 +190,7 @@ class Renderer:
                 target.forget_surfaces()
 
     def _draw_under(self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers]) -> None:
-        """Draw solid parts that an opened skin will show; it lets the light through to them."""
+        """Draw solid parts that an opened skin will show; light passes through it to them."""
         shadow = self._shadow(frame, view, parts, with_skin=False)
         beneath = [each for each in parts if each.part.lies_beneath]
         others = [each for each in parts if not each.part.lies_beneath]
@@ -240,7 +240,7 @@ class Renderer:
     def _draw_sides(
         self, stream: MeshBuffers, drawn: Sequence[tuple[moderngl.Program, Share]]
     ) -> None:
-        """Draw back faces last: most are hidden then, and software does not shade them."""
+        """Draw back faces last: most are then hidden, and software does not shade them."""
         self._gl.enable(moderngl.CULL_FACE)
         for side in ("back", "front"):
             self._gl.cull_face = side
@@ -258,7 +258,7 @@ class Renderer:
         *,
         fades: bool,
     ) -> moderngl.Program:
-        """The program of a frame's skin, with all that it looks up."""
+        """The program of a frame's skin, with its textures."""
         assert frame.skin is not None
         style = frame.style
         texture = frame.skin.maps.texture if style.textured else None
@@ -321,7 +321,7 @@ class Renderer:
                 buffers.draw(program)
 
     def _draw_lines(self, lines: Lines, view: PlacedView) -> None:
-        """Draw polylines over the scene; where something hides them they shine through."""
+        """Draw polylines over the scene; they shine through surfaces that hide them."""
         program = self._program("lines.glsl")
         rows, segments = lines.segments()
         if not len(segments):
@@ -357,7 +357,7 @@ class Renderer:
         return self._programs[key]
 
     def _use_surfaces(self, view: PlacedView, corners: Floats64) -> bool:
-        """Set the drawing area to the hull of corners; False where the view does not see it."""
+        """Set the drawing area to the hull of corners; False if it is out of view."""
         covered = view.covered_pixels(corners)
         if is_seen := min(covered[2:]) > 0:
             self.surface.target.use(view.viewport, covered, has_numbers=True)
@@ -365,7 +365,7 @@ class Renderer:
 
 
 def _kind_of(placed: PlacedBuffers, style: Style) -> tuple[str, tuple[str, ...]]:
-    """The kind of a part, and of the opening through which light gets to it, if any counts."""
+    """The kind of a part, and of the opening through which light reaches it, if there is one."""
     kind = placed.buffers.kind
     opening = placed.part.opening
     if kind != "RIGID" or opening is None or not style.skin_maps:
@@ -374,7 +374,7 @@ def _kind_of(placed: PlacedBuffers, style: Style) -> tuple[str, tuple[str, ...]]
 
 
 def _shares(skin: Skin, style: Style) -> list[tuple[Share, dict[BumpMap, float]]]:
-    """The triangles that are drawn alike, and their maps; values go by the order of all."""
+    """Groups of triangles that are drawn alike, with their maps; values have the order of all."""
     maps = skin.shown_maps(style)
     smooth = {each: strength for each, strength in maps.items() if each is not skin.maps.bumps}
     if len(smooth) == len(maps) or style.colour_by is not ColourBy.NONE:

@@ -1,9 +1,9 @@
-"""Smooth edges of a picture whose pixels were shaded once, by samples of what they cover.
+"""Smooth edges of a picture whose pixels were shaded once, by samples of coverage.
 
-Surfaces are drawn a second time, without light: samples of each pixel find which of them they see.
-Where they see several, the colours of these are mixed. Shading takes most of the time of a picture,
-and several samples that are shaded together take twice as long, on software OpenGL.
-Source: Ragan-Kelley et al. 2011, "Decoupled sampling for graphics pipelines", for the idea.
+Surfaces are drawn a second time, without light: each sample of a pixel finds the surface that it
+sees. Where samples see several surfaces, their colours are mixed. On software OpenGL shading takes
+most of the time of a picture, and shading several samples takes twice as long. Source: Ragan-Kelley
+et al. 2011, "Decoupled sampling for graphics pipelines", for the idea.
 """
 
 from collections.abc import Sequence
@@ -47,7 +47,7 @@ class SampleMixer:
         return self._gl.vertex_array(program, [])
 
     def mix(self, drawn: Drawn, view: PlacedView, areas: Sequence[Rectangle]) -> None:
-        """Smooth the edges of surfaces that were drawn in a view, all of them within areas."""
+        """Smooth the edges of surfaces that were drawn in a view and lie within areas."""
         gl = self._gl
         area = _around(areas)
         bands = _bands(areas)
@@ -83,7 +83,7 @@ class SampleMixer:
         left, bottom, width, height = area
         program = shaded.program
         program["area"] = left, bottom, left + width - 1, bottom + height - 1
-        # A part of the width of a pixel, in depths that go over the depth range of the view.
+        # A part of a pixel's width, as a share of the view's depth range.
         focal = view.camera.focal(view.viewport[2] / view.viewport[3], view.viewport[3])
         share = 0.7 / focal
         least, scale = view.depth_range
@@ -99,7 +99,7 @@ class SampleMixer:
 
 
 def _around(areas: Sequence[Rectangle]) -> Rectangle:
-    """The smallest rectangle that holds all."""
+    """The smallest rectangle that holds all areas."""
     left = min(each[0] for each in areas)
     bottom = min(each[1] for each in areas)
     right = max(each[0] + each[2] for each in areas)

@@ -1,11 +1,10 @@
 """The shadow that a mesh and parts throw in the key light, on themselves and on parts.
 
-A depth map, taken from the key light, which hangs on the camera. Of both sides of a mesh: it is
-thin, and the mouth behind its lit side must be dark. It spans the whole
-scene and depends on nothing that moves, so shadows do not crawl with the face. Its texels are
-coarse on purpose: the look-up blends 4 x 4 of them, and that is how soft the shadow is.
-Source: Williams 1978, "Casting curved shadows on curved surfaces"; filtering of depth tests as in
-Reeves et al. 1987.
+A depth map, taken from the key light, which hangs on the camera. It has both sides of a mesh: a
+mesh is thin, and the mouth behind its lit side must be dark. It spans the whole scene and depends
+on no moving thing, so shadows do not flicker with the face. Its texels are coarse on purpose: the
+look-up blends 4 x 4 of them, which sets the softness of the shadow. Source: Williams 1978, "Casting
+curved shadows on curved surfaces"; filtering of depth tests as in Reeves et al. 1987.
 """
 
 from collections.abc import Sequence
@@ -24,7 +23,7 @@ RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade withi
 MAP_REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
 TEXEL = 2.0 * MAP_REACH / RESOLUTION  # of the scene's radius
 OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
-STEEP_HEIGHT = 0.999  # of a light's height, from which on it has no direction sideways
+STEEP_HEIGHT = 0.999  # of a light's height: above it there is no sideways direction
 
 
 # -1..1 -> 0..1 in x, y and z, for row vectors.
@@ -35,8 +34,8 @@ _TO_TEXTURE = np.array([[0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 0.5, 0], [0.5, 0.
 class Shadow:
     """The shadow in one picture.
 
-    depth: the map of what the light reaches first. view_to_light: view space -> the light's clip
-    space. radius: of the scene.
+    depth: the map of the first surfaces that the light reaches. view_to_light: view space -> the
+    light's clip space. radius: that of the scene.
     """
 
     depth: moderngl.Texture
@@ -47,7 +46,7 @@ class Shadow:
         """Bind the shadow to a program, through a texture unit."""
         write_uniform(program, "shadow_matrix", self.view_to_light @ _TO_TEXTURE)
         program["shadow_offset"] = OFFSET * self.radius
-        program["shadow_reach"] = 2.0 * TEXEL * self.radius  # of the look-up, to each side
+        program["shadow_reach"] = 2.0 * TEXEL * self.radius  # reach of the look-up to each side
         self.depth.use(unit)
         program["shadow_map"] = unit
 
@@ -85,7 +84,7 @@ class ShadowMap:
 
 
 def _view_to_light(view: PlacedView, basis: Floats64) -> Floats64:
-    """View space -> the light's clip space: all that throws and takes shadows fills it."""
+    """View space -> the light's clip space, which holds all that throws and takes shadows."""
     camera = view.camera
     centre = (np.append(camera.scene_centre, 1.0) @ view.world_to_view)[:3]
     matrix = np.eye(4)
@@ -95,7 +94,7 @@ def _view_to_light(view: PlacedView, basis: Floats64) -> Floats64:
 
 
 def _basis(toward: Floats64) -> Floats64:
-    """Rows: right, up, and away from the light, for a camera in the light."""
+    """Rows right, up, and away from the light, for a camera at the light."""
     toward = toward / np.linalg.norm(toward)
     above = (0.0, 0.0, 1.0) if abs(toward[1]) > STEEP_HEIGHT else (0.0, 1.0, 0.0)
     right = np.cross(above, toward)

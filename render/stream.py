@@ -1,9 +1,9 @@
-"""Triangles that change every frame: arrays lent to their maker, and the buffers behind.
+"""Triangles that change every frame: arrays that are lent to their maker, and their buffers.
 
-The borrower writes rows 0..N of `vertices` and 0..M of `triangles` (and of `source`) with any
-program it likes; `upload` hands exactly those rows to OpenGL. Nothing is allocated per frame. Or
-the buffers themselves are lent, to a program that runs on the graphics card.
-Source: Kähler et al. 2003, section 3: refined triangles go to the renderer and are forgotten.
+The borrower writes rows 0..N of `vertices` and 0..M of `triangles` (and of `source`) by any
+program; `upload` passes exactly those rows to OpenGL. Nothing is allocated per frame. Alternatively
+the buffers themselves are lent to a program that runs on the graphics card. Source: Kähler et al.
+2003, section 3: refined triangles go to the renderer and are forgotten.
 """
 
 from enum import Enum
@@ -18,7 +18,7 @@ from .camera import box_corners
 
 
 class Share(Enum):
-    """Which of the uploaded triangles are drawn."""
+    """The part of the uploaded triangles that is drawn."""
 
     ALL = "all"  # in their order
     BUMPED = "bumped"  # those with a corner where the bump map shows
@@ -52,19 +52,19 @@ LAYOUTS = {
     ),
 }  # of a vertex in OpenGL, by the columns of rows
 BUMPS = slice(8, 10)  # columns with the amounts of a bump map
-_Ranges = dict[Share, tuple[int, int]]  # first triangle and how many, in a buffer of indices
+_Ranges = dict[Share, tuple[int, int]]  # first triangle and count in a buffer of indices
 
 
 class UploadedMesh(Protocol):
-    """A mesh; if it lies on the graphics card, all of it is fetched when it is read."""
+    """A mesh; arrays of one on the graphics card are fetched when they are read."""
 
     @property
     def vertex_count(self) -> int:
-        """How many vertices it has."""
+        """Number of vertices."""
 
     @property
     def triangle_count(self) -> int:
-        """How many triangles."""
+        """Number of triangles."""
 
     @property
     def vertices(self) -> Floats32:
@@ -91,7 +91,7 @@ class _Uploaded(NamedTuple):
 
 
 class MeshBuffers:
-    """One mesh of at most this many vertices and triangles, rewritten every frame, to be drawn.
+    """Buffers to draw one mesh of limited size, rewritten every frame.
 
     columns: of its rows, 6 (position, normal), 8 (and texture u, v), 16 (and how much of a bump
         map shows, 0..1 in either slot of it, and the gradients of u and v along the surface) or 18
@@ -125,7 +125,7 @@ class MeshBuffers:
             reserve=NUMBER_BYTES * columns * vertex_capacity, dynamic=True
         )
         self.index_buffer = gl.buffer(reserve=3 * NUMBER_BYTES * triangle_capacity, dynamic=True)
-        # Made when they are first needed: triangles parted by bumps, and chosen.
+        # Made at the first need: triangles parted by bumps, and chosen triangles.
         self._more: dict[str, moderngl.Buffer] = {}
         self._ranges: _Ranges = {}
         self._vertex_arrays: dict[
@@ -134,23 +134,23 @@ class MeshBuffers:
 
     @property
     def vertex_count(self) -> int:
-        """How many vertices its last mesh has."""
+        """Number of vertices of the last mesh."""
         return self.mesh.vertex_count
 
     @property
     def triangle_count(self) -> int:
-        """How many triangles."""
+        """Number of triangles of the last mesh."""
         return self.mesh.triangle_count
 
     def _rewrite(self, name: str, triangles: Unsigned32) -> None:
-        """Hand over some of the triangles, shape (.., 3)."""
+        """Upload some of the triangles, shape (.., 3)."""
         if name not in self._more:
             room = 3 * NUMBER_BYTES * self._triangle_capacity
             self._more[name] = self.context.buffer(reserve=room, dynamic=True)
         _write_anew(self._more[name], np.ascontiguousarray(triangles))
 
     def _check_bumps(self, has_bumps: bool) -> None:
-        """Raise ValueError if amounts shall count that rows do not have."""
+        """Raise ValueError if amounts shall count, but rows have none."""
         if has_bumps and self.columns < BUMPS.stop:
             raise ValueError(
                 f"bumps on a stream of {self.columns} columns; their amounts are columns 9 and 10: "
@@ -158,7 +158,7 @@ class MeshBuffers:
             )
 
     def _part_bumps(self) -> None:
-        """Upload the triangles anew: first those that have bumps."""
+        """Upload the triangles again, those with bumps first."""
         parts = self.mesh.triangles
         amounts = self.mesh.vertices[:, BUMPS]
         is_shown = (amounts[:, 0] > 0.0) | (amounts[:, 1] > 0.0)
@@ -169,7 +169,7 @@ class MeshBuffers:
         self._rewrite("parted", np.concatenate([parts[is_bumped], parts[~is_bumped]]))
 
     def check_uv(self) -> None:
-        """Raise ValueError if rows have no texture coordinates, but a texture comes."""
+        """Raise ValueError if there is a texture, but rows have no texture coordinates."""
         if self.columns == 6:
             raise ValueError(
                 "a texture meets a stream of 6 columns; it needs texture coordinates: lend a "
@@ -191,7 +191,7 @@ class MeshBuffers:
         self._rewrite("chosen", chosen)
 
     def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
-        """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
+        """Draw uploaded triangles, with the attributes in_position, in_normal, in_uv as needed.
 
         `share`: BUMPED and SMOOTH need a mesh with bumps; the program then gets in_bumps, too.
         """
@@ -221,14 +221,14 @@ class MeshBuffers:
                 [(self.vertex_buffer, *LAYOUTS[self.columns])],
                 index_buffer=indices,
                 index_element_size=4,
-                skip_errors=True,  # flat shading has no use for normals, plain skin none for uv
+                skip_errors=True,  # flat shading uses no normals, plain skin no uv
             )
             self._vertex_arrays[program, indices] = array
         return array
 
 
 class Stream(MeshBuffers):
-    """Arrays of such a mesh, lent to its maker, and uploaded.
+    """Arrays of a mesh, lent to its maker, and uploaded.
 
     vertices: x y z, nx ny nz[, u v[, columns of bumps]], shape (vertex_capacity, columns),
         float32; the borrower writes.
@@ -246,9 +246,9 @@ class Stream(MeshBuffers):
         self.source: Integers32 = np.zeros(triangle_capacity, np.int32)
 
     def upload(self, vertex_count: int, triangle_count: int, *, has_bumps: bool = False) -> None:
-        """Hand the first `vertex_count` vertices and `triangle_count` triangles to OpenGL.
+        """Pass the first `vertex_count` vertices and `triangle_count` triangles to OpenGL.
 
-        has_bumps: whether the amounts in columns 9 and 10 count; else nothing of a bump map shows.
+        has_bumps: whether the amounts in columns 9 and 10 count; else no bump map shows.
         """
         self._check_bumps(has_bumps)
         if not 0 <= vertex_count <= len(self.vertices):
@@ -274,7 +274,7 @@ class Stream(MeshBuffers):
 
 
 def _write_anew(buffer: moderngl.Buffer, rows: npt.NDArray[np.generic]) -> None:
-    """Write rows into a fresh block of memory: the driver may still draw from the old one.
+    """Write rows into a new block of memory: the driver may still draw from the old one.
 
     Software clears the whole block, so it is no larger than the next power of two. A driver keeps
     blocks by size, and most frames have that size.
@@ -284,15 +284,16 @@ def _write_anew(buffer: moderngl.Buffer, rows: npt.NDArray[np.generic]) -> None:
 
 
 class GpuStream(MeshBuffers):
-    """Buffers of such a mesh, lent to a program on the graphics card that makes it there.
+    """Buffers of a mesh, lent to a program on the graphics card that makes the mesh there.
 
-    It is drawn by the command that this program writes, and the processor does not know the number
+    The command that this program writes draws the mesh, and the processor does not know the number
     of triangles. Bumps, colours by triangle, and software that leaves hidden triangles out need
-    rows or triangles here: they fetch them, and wait.
+    rows or triangles on the processor: they fetch them, and wait.
 
     vertex_buffer, index_buffer: rows and triangles, as in a `Stream`.
     source_buffer: the triangle that each comes from, int32.
-    command_buffer: a DrawElementsIndirectCommand, then how many vertices and triangles (7 uint32).
+    command_buffer: a DrawElementsIndirectCommand, then the numbers of vertices and triangles (7
+        uint32).
     """
 
     def __init__(
@@ -317,7 +318,8 @@ class GpuStream(MeshBuffers):
     ) -> None:
         """Draw the content of these buffers from now on.
 
-        mesh: fetches it. positions: of the mesh that it was made of, (V, 3), near its vertices.
+        mesh: an object that fetches the arrays.
+        positions: those of the mesh that it was made from, (V, 3), near its vertices.
         has_bumps: as `Stream.upload` takes it.
         """
         self._check_bumps(has_bumps)

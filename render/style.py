@@ -1,11 +1,11 @@
-"""How a frame is drawn: shading, colours, wireframe, background.
+"""The style of a frame: shading, colours, wireframe, background.
 
 Source: Kähler et al. 2003, section 5: flat and Gouraud shaded pictures, and triangles coloured by
 how far they were split. Per-pixel lighting, skin and backgrounds are additions.
 All colours are sRGB, 0..1; the shaders turn them into linear light.
 
-Light comes from a key, which throws shadows, a fill, a rim and a hemisphere of ambient. All of it
-hangs on the camera, as in a studio where the camera stands still and the head turns.
+Light comes from a key, which throws shadows, a fill, a rim and a hemisphere of ambient. All lights
+move with the camera, as in a studio where the camera stands still and the head turns.
 """
 
 from dataclasses import dataclass
@@ -30,11 +30,11 @@ class ColourBy(Enum):
 
     NONE = "none"  # the texture, or the albedo of the style
     SPLITS = "splits"  # how many splits the edges of its source triangle have: 0..6
-    SPLIT_WIRES = "split wires"  # the same, of its outline alone, which others do not have
+    SPLIT_WIRES = "split wires"  # the same, but on outlines; unsplit triangles have none
 
     @classmethod
     def of(cls, *, splits: bool, wires: bool) -> Self:
-        """The colours of two switches; colours by splits hide wires."""
+        """The colours for two switches; colours by splits hide wires."""
         if splits:
             return cls.SPLITS
         return cls.SPLIT_WIRES if wires else cls.NONE
@@ -43,13 +43,13 @@ class ColourBy(Enum):
 # Albedos, chosen by eye under this package's light.
 SKIN: Colour = (0.79, 0.625, 0.545)
 FLESH: Colour = (0.60, 0.27, 0.25)  # inside of lids and mouth
-INNER_SHARE = 0.75  # of a cold albedo, on its back side
-WARM_RATIO = 0.8  # from which on an albedo is that of skin
+INNER_SHARE = 0.75  # of a cold albedo, on the back side
+WARM_RATIO = 0.8  # from which an albedo counts as that of skin
 CLAY: Colour = (0.74, 0.74, 0.73)  # like the plain grey of the paper's pictures
 
 # Colour of a triangle whose edges have 1..6 splits in all; 0 keeps the albedo. Green to indigo,
-# ever darker: hues that skin does not have, in an order that survives greyscale and colour
-# blindness.
+# increasingly dark: hues that skin does not have, in an order that greyscale and colour blindness
+# preserve.
 SPLIT_PALETTE: tuple[Colour, ...] = (
     (0.76, 0.89, 0.62),
     (0.46, 0.79, 0.66),
@@ -70,9 +70,9 @@ class Background:
 
 @dataclass(frozen=True, eq=False)
 class MapBackground:
-    """A map of light that is seen behind a scene, of the form that `LightMap` has.
+    """A map of light behind a scene, in the form of `LightMap`.
 
-    It hangs on the camera, as its light does. turn: to the viewer's right [deg].
+    It moves with the camera, as its light does. turn: angle to the viewer's right [deg].
     """
 
     radiance: Floats64
@@ -90,11 +90,11 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class Light:
-    """The light of a scene; the default is the studio's, in which all else was chosen.
+    """The light of a scene; the default is the studio's, for which all other values were chosen.
 
     to_key, to_fill: unit vectors toward the lights, in view space (x right, y up, z to the viewer).
     key, fill, rim: linear light of each; sky, ground: of the ambient light from above and below.
-    around: nine coefficients in the place of sky and ground, as light_map.py makes them; or none.
+    around: nine coefficients instead of sky and ground, see light_map.py; or none.
     """
 
     to_key: Vector = (-0.5300, 0.6300, 0.5677)  # over the viewer's left shoulder
@@ -116,11 +116,11 @@ class Style:
     colour_by: ColourBy = ColourBy.NONE
     albedo: Colour = SKIN  # of the front side
     opacity: float = 1.0  # of the skin, over earlier drawings
-    textured: bool = True  # a texture, where there is one, takes the place of the albedo
+    textured: bool = True  # a texture, if there is one, replaces the albedo
     gloss: float = 0.5  # strength of the skin's highlight, 0..1
     shadows: bool = True  # of the key light
-    skin_maps: bool = True  # fine shape, and less light in folds, where the texture says so
-    bumps: float = 1.0  # how much of a bump map shows, where there is one; 0 = none
+    skin_maps: bool = True  # fine shape, and less light in folds, by the texture
+    bumps: float = 1.0  # strength of a bump map, if there is one; 0 = none
     light: Light = Light()
     background: Background | MapBackground | None = LIGHT  # None: transparent
     wire_colour: Colour = (0.07, 0.08, 0.12)
@@ -129,7 +129,7 @@ class Style:
 
     @property
     def scattering(self) -> float:
-        """How far light bleeds past the terminator, up to 1 for an albedo as warm as skin."""
+        """Spread of light past the border of shade, up to 1 for an albedo as warm as skin."""
         return max(self._warmth, 0.25)
 
     @property
@@ -144,12 +144,12 @@ class Style:
 
     @property
     def has_wires(self) -> bool:
-        """Whether outlines of triangles are drawn, of all or of those that are split."""
+        """Whether outlines of triangles are drawn: of all, or of split ones."""
         return self.wireframe or self.colour_by is ColourBy.SPLIT_WIRES
 
     @property
     def has_numbered_triangles(self) -> bool:
-        """Whether each triangle has a colour of its own, so that edges between them are seen."""
+        """Whether each triangle has its own colour, so that edges between triangles show."""
         return self.shading is Shading.FLAT or self.colour_by is ColourBy.SPLITS
 
     @property

@@ -1,8 +1,8 @@
 """The surface of drawings: an offscreen frame or a window, behind one interface.
 
-Both kinds draw the scene into a target of their own (`render_target.py`), which a window then lays
-under its panels (`compositor.py`). So `read` gives the picture of both, even while a window is
-hidden or covered, and a panel that is drawn after `resolve` is part of it.
+Both kinds draw the scene into their own target (`render_target.py`), which a window then copies
+under its panels (`compositor.py`). So `read` works for both, even while a window is hidden or
+covered, and its picture includes panels that were drawn after `resolve`.
     surface.begin();  ...draw...;  [surface.resolve(); ...draw a panel on top...;]  surface.end()
 """
 
@@ -26,10 +26,12 @@ OLDEST_VERSION = 330  # OpenGL, times 100: all drawing needs it
 class Surface:
     """The interface of both kinds; made by `open_offscreen` and `open_window`.
 
-    gl: the OpenGL context; objects without references are given back to it when a frame begins.
-    samples: per pixel, by which edges are smoothed, 0 = none. target: where the Renderer draws.
+    gl: the OpenGL context; when a frame begins, it gets objects without references back.
+    samples: number per pixel for smooth edges, 0 = none. target: the one in which the Renderer
+        draws.
     pixel_scale: pixels per unit of line width: 1, or 2 on a dense screen.
-    scale: pixels of the target per pixel of the surface; below 1 only in a window in a hurry.
+    scale: pixels of the target per pixel of the surface; below 1 only in a window that draws less
+        finely.
     """
 
     _current: ClassVar["Surface | None"] = None
@@ -64,10 +66,10 @@ class Surface:
         self.target.start()
 
     def _collect(self) -> None:
-        """Give objects without references back to OpenGL, while its context is current."""
+        """Return objects without references to OpenGL, while its context is current."""
         while self.gl.objects:
             lost = self.gl.objects.popleft()
-            if not isinstance(lost, moderngl.InvalidObject):  # released by its owner
+            if not isinstance(lost, moderngl.InvalidObject):  # already released
                 lost.release()
 
     def resolve(self) -> None:
@@ -76,24 +78,24 @@ class Surface:
         self.target.use_frame()
 
     def end(self) -> None:
-        """Finish the frame; a window shows it."""
+        """Finish the frame, which a window then shows."""
         self.resolve()
 
     def read(self) -> Image:
-        """Return the frame as it is seen, top row first, shape (H, W, 3), uint8, a new array."""
+        """Return the visible frame, top row first, shape (H, W, 3), uint8, a new array."""
         return self.read_scene()
 
     def read_scene(self, components: int = 3) -> Image:
-        """Return the scene without panels, as finely as it was drawn: like `read`.
+        """Return the scene without panels, at the resolution of its target, like `read`.
 
-        components: 4 for an alpha channel, with which colours are multiplied; it is below 255 where
+        components: 4 adds an alpha channel, and colours are multiplied by it; it is below 255 where
         the style has no background.
         """
         self.make_current()
         return image_of(self.target.read(components), self.target.size, components)
 
     def make_current(self) -> None:
-        """Direct this thread's OpenGL calls here; needed only where several surfaces are open."""
+        """Direct this thread's OpenGL calls here; only several open surfaces need this."""
         if not self._is_open:
             raise GLError("this surface is closed. Cure: open a new one")
         if Surface._current is self:
@@ -104,7 +106,7 @@ class Surface:
         self._bind()
 
     def close(self) -> None:
-        """Give everything back; calling it again does nothing."""
+        """Release everything; a second call does nothing."""
         if not self._is_open:
             return
         self.make_current()
@@ -131,13 +133,13 @@ class Surface:
 class OffscreenSurface(Surface):
     """A frame without a window; needs no screen.
 
-    The next frame that is opened takes over the context of one that was closed: moderngl keeps
-    50 kB of every context that it made, and a driver takes milliseconds for a new one.
+    The next opened frame takes over the context of a closed one: moderngl never frees 50 kB of each
+    context, and a driver takes milliseconds for a new one.
     """
 
-    _is_reusable = True  # its context, as far as this surface knows
+    _is_reusable = True  # whether its context may serve again
     _spare: ClassVar[tuple[moderngl.Context, dict[str, str]] | None] = None
-    """A context that no surface uses, and the environment that chose its device."""
+    """An unused context, and the environment that chose its device."""
 
     def _bind(self) -> None:
         self.gl.__enter__()  # type: ignore[no-untyped-call]
@@ -146,7 +148,7 @@ class OffscreenSurface(Surface):
         self.gl.__exit__(None, None, None)  # type: ignore[no-untyped-call]
 
     def __exit__(self, *error: object) -> None:
-        if error[0] is not None:  # the state of its context is not known
+        if error[0] is not None:  # the state of its context is unknown
             self._is_reusable = False
         self.close()
 
@@ -154,7 +156,7 @@ class OffscreenSurface(Surface):
         self.target.release()
         self._collect()
         is_reusable = self._is_reusable and self.gl.error == "GL_NO_ERROR"
-        self._unbind()  # a released context would stay current, and keep a window from its own
+        self._unbind()  # a released context would stay current, and block a window's own
         if is_reusable and OffscreenSurface._spare is None:
             OffscreenSurface._spare = self.gl, _environment()
         else:
@@ -162,10 +164,10 @@ class OffscreenSurface(Surface):
 
 
 def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurface:
-    """Open a frame of `size` pixels that needs no screen; up to `samples` a pixel smooth its edges.
+    """Open a frame of `size` pixels without a screen; up to `samples` a pixel smooth its edges.
 
-    Raises ValueError for a size that no picture has, GLError if OpenGL 3.3 cannot be had.
-    The environment variables of glcontext choose device and libraries: GLCONTEXT_DEVICE_INDEX,
+    Raises ValueError for an impossible size, GLError if OpenGL 3.3 is not available. The
+    environment variables of glcontext choose device and libraries: GLCONTEXT_DEVICE_INDEX,
     GLCONTEXT_GLVERSION, GLCONTEXT_LINUX_LIBEGL, GLCONTEXT_LINUX_LIBGL.
     """
     check_size(size)
@@ -194,7 +196,7 @@ def _environment() -> dict[str, str]:
 
 
 def _offscreen_context() -> moderngl.Context:
-    """The context of a frame that was closed, or else a new one; it is current then."""
+    """The context of a closed frame, or else a new one; it is then current."""
     spare = OffscreenSurface._spare
     if spare is not None and spare[1] == _environment():
         OffscreenSurface._spare = None
@@ -204,14 +206,14 @@ def _offscreen_context() -> moderngl.Context:
 
 
 def _new_context() -> moderngl.Context:
-    """One of the newest OpenGL that we have a use for, else of the oldest that will do.
+    """A context of the newest OpenGL that we use, else of the oldest that suffices.
 
-    By EGL on Linux, elsewhere the native way. Some drivers give exactly the version that is
-    requested.
+    It uses EGL on Linux, and the native way elsewhere. Some drivers give exactly the requested
+    version.
     """
     is_linux = sys.platform.startswith("linux")
     how: dict[str, Any] = {"standalone": True, **({"backend": "egl"} if is_linux else {})}
-    with contextlib.suppress(Exception):  # glcontext raises nothing better
+    with contextlib.suppress(Exception):  # glcontext raises no class of its own
         return moderngl.create_context(require=NEWEST_VERSION, **how)
     try:
         return moderngl.create_context(require=OLDEST_VERSION, **how)
@@ -220,7 +222,7 @@ def _new_context() -> moderngl.Context:
 
 
 def image_of(pixels: bytes, size: tuple[int, int], components: int = 3) -> Image:
-    """OpenGL's bytes, bottom row first, as an image with the top row first, (H, W, 3) uint8."""
+    """Turn OpenGL's bytes, bottom row first, into an image, top row first, (H, W, 3) uint8."""
     width, height = size
     return np.frombuffer(pixels, np.uint8).reshape(height, width, components)[::-1].copy()
 
@@ -232,7 +234,7 @@ def check_size(size: tuple[int, int]) -> None:
 
 
 def possible_samples(gl: moderngl.Context, samples: int) -> int:
-    """The largest power of two up to `samples` that the driver has; 0 = edges are not smoothed."""
+    """The largest power of two up to `samples` that the driver has; 0 = no smooth edges."""
     if samples < 0:
         raise ValueError(f"samples is {samples}; it must be 0 (none) or a number such as 4")
     # For both attachments of the layer.
@@ -241,5 +243,5 @@ def possible_samples(gl: moderngl.Context, samples: int) -> int:
 
 
 def is_software(renderer: str) -> bool:
-    """Whether the name of an OpenGL renderer is one that draws on the CPU."""
+    """Whether an OpenGL renderer of this name draws on the CPU."""
     return any(name in renderer.lower() for name in ("llvmpipe", "softpipe", "swrast", "swr"))

@@ -1,10 +1,10 @@
 """Images over the texture coordinates of a surface: its albedo, and maps of its fine shape.
 
-The albedo comes as sRGB and is kept as square roots of linear light, which shaders square: eight
-bits hold either as finely. Software OpenGL reads and blends such bytes as they are, in two thirds
-of the time that it takes to decode sRGB texel by texel, and neighbours blend almost as light does.
-The smaller versions are means of light itself: that of black and white looks as they do from
-afar, not like a darker grey.
+The albedo comes as sRGB and is stored as square roots of linear light, which shaders square: eight
+bits hold both equally finely. Software OpenGL reads and blends such bytes directly, in two thirds
+of the time that it needs to decode sRGB texel by texel, and neighbours blend almost as light does.
+The smaller versions are means of light itself, so black and white texels look right from afar, not
+like a darker grey.
 """
 
 import moderngl
@@ -16,7 +16,7 @@ from ..geometry.arrays import Floats32
 from .surface import Image, Surface, is_software
 
 _SAMPLED_TEXELS = 10_000  # of an image, about, for the median of its redness
-LIGHTNESS = 0.3, 0.6, 0.1  # how light red, green and blue look
+LIGHTNESS = 0.3, 0.6, 0.1  # shares of red, green and blue in lightness
 # Texture units; 4 is for a window's enlargement.
 _BUMP_UNIT = 5
 _AROUND_UNIT = 6
@@ -26,7 +26,7 @@ ANISOTROPY = 8.0  # most texels that one sample averages along its longest axis
 
 
 class _Mipmaps:
-    """Bytes for each texel on the graphics card, and smaller versions for distant surfaces.
+    """Texels of bytes on the graphics card, with smaller versions for distant surfaces.
 
     size: width and height [texels].
     """
@@ -45,7 +45,7 @@ class _Mipmaps:
 class Texture(_Mipmaps):
     """The albedo of a skin, and maps beside it.
 
-    redness: median of red over green light; where the image is redder, lips are, and they gloss.
+    redness: median of red over green light; redder places are lips, which gloss.
     fine_shape: of the skin, None: there is none.
     """
 
@@ -56,12 +56,12 @@ class Texture(_Mipmaps):
         occlusion: Image | None = None,
         fine_shape: "BumpMap | None" = None,
     ) -> None:
-        """Hand an image to the OpenGL of a surface, (H, W, 3), uint8: sRGB, top row first.
+        """Upload an image to the OpenGL of a surface, (H, W, 3), uint8: sRGB, top row first.
 
         Texture coordinate v is 1 at the top.
-        occlusion: how much of the light from all around gets there, 255 = all, (H, W), uint8.
-        fine_shape: of two channels. Per-pixel shading alone has it.
-        Raises ValueError for an image of another shape or type, or beyond the driver's limit.
+        occlusion: share of the light from all around that arrives, 255 = all, (H, W), uint8.
+        fine_shape: a map of two channels; only per-pixel shading shows it. Raises ValueError for an
+        image of another shape or type, or beyond the driver's limit.
         """
         gl = surface.gl
         _check(image, "texture's image", 3, "sRGB")
@@ -83,14 +83,14 @@ class Texture(_Mipmaps):
         for level in range(1, max(self.size).bit_length()):
             texels = _halved(texels)
             self._texture.write(_roots(texels)[::-1].tobytes(), level=level)
-        # Drivers without the extension report 0. Software has it, at several times the cost.
+        # Drivers without the extension report 0. Software OpenGL has it, at several times the cost.
         if gl.max_anisotropy > 1.0 and not is_software(gl.info["GL_RENDERER"]):
             self._texture.anisotropy = min(ANISOTROPY, gl.max_anisotropy)
         self._around = self._means(gl)
         self.fine_shape = fine_shape
 
     def _means(self, gl: moderngl.Context) -> moderngl.Texture:
-        """The lightness of the skin around each place: software reads one number, not four."""
+        """The mean lightness of the skin around each place, one number instead of four."""
         width, height = (max(each >> _AROUND_LEVEL, 1) for each in self.size)
         level = min(_AROUND_LEVEL, max(self.size).bit_length() - 1)
         texels = np.frombuffer(self._texture.read(level=level), np.uint8).reshape(-1, 4)
@@ -100,7 +100,7 @@ class Texture(_Mipmaps):
         return around
 
     def set_uniforms(self, program: moderngl.Program, unit: int, occlusion: float) -> None:
-        """Bind it to a program, through a texture unit. occlusion: whether it counts, 0 or 1."""
+        """Bind it to a program, through a texture unit. occlusion: strength, 0 or 1."""
         program["albedo_texture"] = unit
         program["around_texture"] = _AROUND_UNIT
         self._texture.use(unit)
@@ -111,18 +111,18 @@ class Texture(_Mipmaps):
 
 
 class BumpMap(_Mipmaps):
-    """The fine shape of a surface: furrows that come and go, or relief (2 bytes) that always shows.
+    """The fine shape of a surface: variable furrows, or relief (2 bytes) that always shows.
 
     texels: those of the argument. steepest: slope of a full byte [scene's unit for one unit of the
-    texture coordinates]. define: the preprocessor's name that shader programs need to read it.
+    texture coordinates]. define: the preprocessor's name by which shader programs read it.
     """
 
     def __init__(self, surface: Surface, texels: Image, steepest: float, channels: int = 4) -> None:
-        """Hand texels to the OpenGL of a surface, top row first, shape (H, W, channels), uint8.
+        """Upload texels to the OpenGL of a surface, top row first, shape (H, W, channels), uint8.
 
-        Slope of the height along u and v (128 is level); of four, too, the depth of the furrow, and
-        which of the stream's two amounts counts (0 the first .. 255 the second).
-        Raises ValueError for another shape or type.
+        Two channels have the slope of the height along u and v (128 is level). Of four, the others
+        have the depth of the furrow, and the choice between the stream's two amounts (0 the first
+        .. 255 the second). Raises ValueError for another shape or type.
         """
         kind, more = ("fine shape", "") if channels == 2 else ("bump map", ", depth, slot")
         _check(texels, kind, channels, f"slopes along u and v{more}")
@@ -168,7 +168,7 @@ def _median_redness(image: Image) -> float:
 
 
 def _check(image: Image, name: str, channels: int, meaning: str) -> None:
-    """ValueError for an array that is no image of this many channels."""
+    """Raise ValueError for an array that is not an image of this many channels."""
     is_image = image.ndim == 3 and image.shape[2] == channels and image.size > 0
     if not is_image or image.dtype != np.uint8:
         raise ValueError(

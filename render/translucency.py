@@ -11,10 +11,10 @@ from .camera import PlacedView
 from .frame import Frame, Plane, Skin
 from .stream import MeshBuffers, Share
 
-CUT_WIDTH = 0.008  # of the scene's radius: how thick skin looks where it is cut
-# Of the scene's radius: as far as anything comes out of whole skin that should hide it.
+CUT_WIDTH = 0.008  # of the scene's radius: visible thickness of cut skin
+# Of the scene's radius: largest distance of parts that come out of the skin that should hide them.
 SUNK_DEPTH = 0.08
-# Colour as usual; the layer starts out transparent and collects premultiplied colour.
+# Colours blend as usual; the layer starts transparent and collects premultiplied colour.
 _PREMULTIPLYING_BLEND: Any = (
     moderngl.SRC_ALPHA,
     moderngl.ONE_MINUS_SRC_ALPHA,
@@ -45,7 +45,7 @@ def draw_nearest(
 ) -> None:
     """Blend the nearest layer of a mesh alone: its depths first, then the colours at them.
 
-    Before them comes the inner side of opaque parts.
+    The inner side of opaque parts comes before them.
     """
     gl.enable(moderngl.CULL_FACE)
     gl.cull_face = "front"
@@ -53,7 +53,7 @@ def draw_nearest(
         stream.draw(program, share)
     gl.cull_face = "back"
     gl.enable(moderngl.BLEND)
-    gl.blend_func = moderngl.ZERO, moderngl.ONE  # leaves all colours
+    gl.blend_func = moderngl.ZERO, moderngl.ONE  # changes no colours
     for program, share in shares:
         stream.draw(program, share)
     with blending(gl):
@@ -63,13 +63,13 @@ def draw_nearest(
 
 
 def set_translucency(program: moderngl.Program, frame: Frame, view: PlacedView) -> None:
-    """Set the opacity of a frame's skin, and the plane behind which it has it; None: everywhere."""
+    """Set the opacity of a frame's skin, and the plane behind which it holds (None: everywhere)."""
     program["opacity"] = frame.style.opacity
     set_cut(program, view, frame.cut or (0.0, 0.0, 0.0, -1.0), CUT_WIDTH)
 
 
 def set_cut(program: moderngl.Program, view: PlacedView, cut: Plane, width: float) -> None:
-    """Set where skin is cut, and how far from the cut this is seen [of the scene's radius]."""
+    """Set the plane that cuts the skin, and the visible width of the cut [scene's radii]."""
     program["cut"] = in_view(cut, view)
     if "cut_width" in program:
         program["cut_width"] = width * view.camera.scene_radius

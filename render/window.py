@@ -1,7 +1,7 @@
 """The window: a GLFW window whose frame is drawn like an offscreen one and then shown.
 
-glfw is imported only when a window is opened: a GUI library that brings its own GLFW must be
-imported before, and a server without a screen never needs it.
+glfw is imported only when a window is opened: a GUI library with its own GLFW must be imported
+before it, and a server without a screen never needs it.
 """
 
 import contextlib
@@ -31,7 +31,7 @@ class WindowSurface(Surface):
     """A surface that is visible in a window.
 
     handle: the GLFW window, for input and GUI libraries. detail: settable, for the next frames.
-    area: the part in which the scene is seen, where panels hide the rest; None: all. Settable.
+    area: the part that shows the scene, if panels hide the rest; None: all. Settable.
     rules: plain rectangles over the scene, such as a line between two halves. Settable.
     labels: pictures over both, such as captions: x and y of the lower left corner [pixels]; RGBA,
         premultiplied, top row first, shape (h, w, 4), uint8. Settable.
@@ -46,8 +46,8 @@ class WindowSurface(Surface):
         self.rules: Sequence[tuple[Rectangle, Colour]] = ()
         self.labels: Sequence[tuple[int, int, Image]] = ()
         self._compositor = Compositor(gl, size)
-        self._is_resolved = False  # in this frame: panels may have been drawn
-        self._is_laid = False  # the compositor has the scene as it is now
+        self._is_resolved = False  # in this frame; panels may have been drawn
+        self._is_laid = False  # whether the compositor has the present scene
         self.pixel_scale = max(glfw.get_window_content_scale(handle))
 
     @property
@@ -57,7 +57,7 @@ class WindowSurface(Surface):
 
     @property
     def frame_size(self) -> tuple[int, int]:
-        """Width and height that a frame which begins now will have [pixels]."""
+        """Width and height of a frame that begins now [pixels]."""
         width, height = self._glfw.get_framebuffer_size(self.handle)
         return max(int(width), 1), max(int(height), 1)  # a minimised window counts as one pixel
 
@@ -71,7 +71,7 @@ class WindowSurface(Surface):
         self._glfw.set_window_should_close(self.handle, value)
 
     def begin(self) -> None:
-        """Start a frame in the size that the window has now, as finely as `detail` says."""
+        """Start a frame in the window's present size, with the fineness of `detail`."""
         self.make_current()
         size = self.frame_size
         if size != self.size:
@@ -86,20 +86,20 @@ class WindowSurface(Surface):
         super().begin()
 
     def resolve(self) -> None:
-        """End the scene: panels lie on top. Again: forget the panels, keep the scene."""
+        """End the scene: panels lie on top. A second call forgets panels and keeps the scene."""
         self.make_current()
         self._compositor.compose(self.target, self.area)
         self._draw_marks(self._compositor.frame)
         self._is_resolved = self._is_laid = True
 
     def fill(self, area: Rectangle, colour: Colour) -> None:
-        """Paint a part of the resolved frame in one colour: cheaper than a quad."""
+        """Paint a part of the resolved frame in one colour, which is cheaper than a quad."""
         self._compositor.frame.clear(*colour, viewport=area)
 
     def end(self) -> None:
-        """Finish the frame and show it: as resolved, else the scene amid the panels as they were.
+        """Finish the frame and show it: if resolved, as it is; else the scene with the last panels.
 
-        The latter spares a copy of the scene, and drawing panels that have not changed.
+        The latter saves a copy of the scene, and the drawing of unchanged panels.
         """
         self.make_current()
         if self._is_resolved:
@@ -120,7 +120,7 @@ class WindowSurface(Surface):
             self._compositor.lay(*label)
 
     def show(self, image: Image) -> None:
-        """Show a picture in place of a frame, (H, W, 3), uint8, of the frame's size."""
+        """Show a picture instead of a frame, (H, W, 3), uint8, of the frame's size."""
         self.make_current()
         self.gl.screen.use()
         self.gl.scissor = None
@@ -128,7 +128,7 @@ class WindowSurface(Surface):
         self._glfw.swap_buffers(self.handle)
 
     def read(self) -> Image:
-        """Return the frame as it is seen, with the panels; see `Surface.read`."""
+        """Return the visible frame with the panels; see `Surface.read`."""
         self.make_current()
         if not self._is_laid:
             self._compositor.compose(self.target, self.area)
@@ -158,7 +158,7 @@ class _Loader:
     load = load_opengl_function
 
     def release(self) -> None:
-        """The window owns the context, not moderngl."""
+        """Do nothing: the window owns the context, not moderngl."""
 
     def __enter__(self) -> "_Loader":
         return self
@@ -175,12 +175,12 @@ def open_window(
     visible: bool = True,
     is_scaled: bool = False,
 ) -> WindowSurface:
-    """Open a window of `size` screen units, or less if it is shown and the screen has no room.
+    """Open a window of `size` screen units, or a smaller one if the screen has no room.
 
-    Its frame may have more pixels than that. is_scaled: `size` is that on a screen of ordinary
-    density, and a dense one gets more where a unit is a pixel.
-    Raises ValueError for a size that no window has, GLError if there is no screen or no OpenGL
-    3.3 core. Wants glfw from the GUI library: import imgui_bundle first where it is used.
+    Its frame may have more pixels. is_scaled: `size` is for a screen of ordinary density; a dense
+    screen gets more if its unit is a pixel. Raises ValueError for an impossible size, GLError if
+    there is no screen or no OpenGL 3.3 core. glfw must come from the GUI library: import
+    imgui_bundle before, if you use it.
     """
     check_size(size)
     glfw = _import_glfw()
@@ -216,7 +216,7 @@ def open_window(
 
 
 def _fit(glfw: ModuleType, handle: Any) -> None:
-    """Make a window no larger than its desktop has room for, its frame included."""
+    """Limit a window with its frame to the room of its desktop."""
     if not (monitor := glfw.get_primary_monitor()):
         return
     left, top, right, bottom = glfw.get_window_frame_size(handle)
@@ -251,11 +251,11 @@ def _import_glfw() -> ModuleType:
 
 @contextlib.contextmanager
 def _complaints(glfw: ModuleType) -> Iterator[list[str]]:
-    """Collect the reports of GLFW, instead of its Python warnings."""
+    """Collect the reports of GLFW in place of its Python warnings."""
     texts: list[str] = []
 
     def note(code: int, text: bytes | str) -> None:
-        """Take a report of GLFW."""
+        """Collect one report of GLFW."""
         texts.append(text.decode(errors="replace") if isinstance(text, bytes) else text)
 
     previous = glfw.set_error_callback(note)

@@ -15,8 +15,9 @@ class Bones:
     """Cranium, mandible and eyeballs; only those that moved are computed again.
 
     mandible_weight, head_weight: how far each vertex follows the mandible (given or guessed) and
-    the head's pose (fades to 0 down the neck), 0 to 1, shape (V,). jaw: its present values: open,
-    forward, sideways. lips_closed: how far lips are now kept together over an open jaw, 0 to 1.
+        the head's pose (fades to 0 down the neck), 0 to 1, shape (V,).
+    jaw: its present values: open, forward, sideways.
+    lips_closed: how far lips are now kept together over an open jaw, 0 to 1.
     weight: the mandible's weights at that value of lips_closed, shape (V,).
     """
 

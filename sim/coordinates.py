@@ -94,9 +94,11 @@ def to_posed_head(
 ) -> int:
     """Fill `out` (V, 3) [head units] with positions; return how many are not finite.
 
-    Such vertices are left out. x, rest: positions now and at rest [mm]; axes (3, 3): those of the
-    standard space in head coordinates, times the scale; head_rest: rest positions [head units];
-    turn (4, 4): pose of the head; share (V, 1): how far each vertex follows it.
+    Such vertices are left out.
+
+    x, rest: positions now and at rest [mm]; axes (3, 3): those of the standard space in head
+    coordinates, times the scale; head_rest: rest positions [head units]; turn (4, 4): pose of the
+    head; share (V, 1): how far each vertex follows it.
     """
     broken = 0
     for i in range(len(x)):

@@ -49,12 +49,15 @@ class SimulationUnstable(RuntimeError):  # noqa: N818, the name the whole projec
 class Simulation:
     """A face that follows its controls; made by `sim.create`.
 
-    controls: muscles, jaw, gaze, and the layers above. bones: where the jaw and the eyeballs are.
-    anatomy: the present parts under the skin. touch: blows and pulls on the skin. positions,
-    rest_positions: of the vertices now and at rest [head units], shape (V, 3); `step` rewrites the
-    first. faces: triangles, shape (F, 3). areas: skin that belongs to each vertex at rest [mm2 of
-    the standard face], shape (V,). All of them are read only. grip: how firmly the seal holds the
-    lips together now.
+    controls: muscles, jaw, gaze, and the layers above.
+    bones: the places of jaw and eyeballs.
+    anatomy: the present parts under the skin.
+    touch: blows and pulls on the skin.
+    positions, rest_positions: vertices now and at rest [head units], shape (V, 3), read only;
+        `step` rewrites the first.
+    faces: triangles, shape (F, 3), read only.
+    areas: skin of each vertex at rest [mm2 of the standard face], shape (V,), read only.
+    grip: how firmly the seal holds the lips together now.
     """
 
     def __init__(self, model: FaceModel, state: State | None = None) -> None:

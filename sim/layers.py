@@ -74,11 +74,11 @@ LEAST_WHOLE = 0.08  # of the control in `share_of`: below this the share fades, 
 class Layers:
     """All controls above the lowest ones, with the effect of each on those.
 
-    groups: title of the layer -> its names, from the lowest layer up. actions: name -> its effect,
-    in words; "" if the table has none. shares: name -> its addition to each of the C lowest
-    controls at value 1, shape (C,). floors: name -> the least value of each lowest control at value
-    1, 0 for none, shape (C,). share_of: name -> the control in the row's `share_of`, where there is
-    one.
+    groups: title of the layer -> its names, from the lowest layer up.
+    actions: name -> its effect, in words; "" if the table has none.
+    shares: name -> its addition to each of the C lowest controls at value 1, shape (C,).
+    floors: name -> the least value of each lowest control at value 1, 0 for none, shape (C,).
+    share_of: name -> the control in the row's `share_of`, where there is one.
     """
 
     groups: Mapping[str, tuple[str, ...]]

@@ -278,7 +278,9 @@ def _evened(
     """The turn [rad] of each vertex, smoothed beyond the margins, because skin is a sheet.
 
     Without this, neighbours beside the corners turn by half as much, and a closed lid is a box with
-    walls. distance: from the nearest front edge [mm], shape (V,).
+    walls.
+
+    distance: from the nearest front edge [mm], shape (V,).
     """
     evened_area = 10.0  # mm2
     begins = 0.8  # mm from the front edge
