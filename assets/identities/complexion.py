@@ -28,12 +28,13 @@ from risorius.geometry.colour import to_linear, to_screen
 from ...geometry.arrays import Floats32, Floats64, Integers64
 from ..data_files import Image, read_arrays, read_image
 from ..loading import load
-from ..model import FineShape, Head, Part, Segment
+from ..model import FineShape, Head, Part, Segment, Wrinkles
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
 from ..smooth import shrunk
 from .brows import painted, stubble
 from .eyes import beside_skin, with_irises
 from .features import PLAIN, Features
+from .furrow_map import with_lines
 from .hair import CUTS, HAIR, OWN_CUT, Fall, hair_of, scalp_of
 from .larynx import larynx_of
 from .lids import EYES, fold_of, shaded
@@ -209,6 +210,7 @@ def coloured(
         ambient_occlusion=shaded(_occlusion(shrink), person),
         # In small pictures nobody sees slopes of folds, and all persons share one map.
         fine_shape=_own_shape(person) if shrink == 1 else known,
+        wrinkles=_own_wrinkles(person, shrink),
         parts=_with_hair(person, parts, angle, features, behind),
         segments=_haired_segments(features, behind),
         in_tone=in_tone,
@@ -221,6 +223,15 @@ def _own_shape(person: Person) -> FineShape:
     size = len(known.slopes)
     lids = [fold_of(person, side, size) for side in EYES]
     return with_reliefs(known, [*lids, larynx_of(person, size)])
+
+
+def _own_wrinkles(person: Person, shrink: int) -> Wrinkles:
+    """Wrinkles with the lines of a person; the smallest pictures cannot show them."""
+    lines = person.identity.lines
+    finest = 2  # texels, each way, from which on lines are as wide as one
+    if lines is None or shrink > finest:
+        return person.wrinkles
+    return with_lines(person.wrinkles, lines, shrink)
 
 
 def _beside_light_skin(angle: float) -> Floats64:

@@ -34,6 +34,7 @@ from ...geometry.directions import unit_vectors
 from ..data_files import read_arrays
 from ..loading import load
 from ..norms import NORMS, Sample, measures_of
+from .lines import Lines, drawn_lines
 from .population import EVERYBODY, Population
 from .smiles import USUAL_SMILE, Smile, drawn_smile
 
@@ -78,6 +79,7 @@ class Identity:
     hooding: how much less of it is seen at the outer corner [mm].
     smile: which muscles join in it.
     larynx: how far it stands out [mm].
+    lines: those of expression; None: the built-in head's.
     """
 
     sex: Sex
@@ -94,6 +96,7 @@ class Identity:
     hooding: float = 0.0
     smile: Smile = USUAL_SMILE
     larynx: float = 0.0
+    lines: Lines | None = None
 
     def scaled(self, share: float) -> Identity:
         """An identity with a share of all that is its own: 0 is the mean of people."""
@@ -255,6 +258,7 @@ def sample_identity(
         hooding=float(max(0.3 + 0.5 * hooded + 0.25 * late, 0.0)),
         smile=drawn_smile(is_woman, random),
         larynx=float(random.uniform(*((0.0, 0.8) if is_woman else (1.5, 5.0)))),
+        lines=drawn_lines(not is_woman, age, random),
     )
 
 

@@ -1,0 +1,273 @@
+"""The map of a person's furrows: lines of its own, and folds beside the mouth as deep as its own.
+
+Skin swells between two lines. Below the eyes, on nose, lips and chin all people have the furrows
+of the built-in head, whose map was drawn by eye.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.geometry.texels import Texels
+
+from ...geometry.arrays import Floats32, Floats64, Integers64
+from ..data_files import Image
+from ..loading import load
+from ..model import Wrinkles
+from ..smooth import shrunk, smooth_step
+from .furrows import (
+    FEET_REACH,
+    FOREHEAD_REACH,
+    GLABELLA_REACH,
+    STEP,
+    Line,
+    crows_feet,
+    forehead_lines,
+    frown_lines,
+)
+from .lines import Lines
+
+FINER = 10  # of so many parts of a step a texel takes the nearest
+FULL_DEPTH = 0.8  # [mm] of a furrow at which the map is darkest
+NOWHERE = 1e3  # [mm] of all coordinates, outside the face
+LEVEL = np.array([128.0, 128.0, 0.0], np.float32)  # bytes of slopes and depth of plain skin
+FAN_HUB = np.array([37.0, 1.0, 77.0])  # [mm] in the left orbit, where crow's feet meet
+
+
+class _Region(NamedTuple):
+    """A part of the map, in which lines run one way; all arrays of shape (h, w).
+
+    across: which line a texel lies on, [mm] or [rad]. along: number of the sample there.
+    scale: [mm] for one unit of `across`. cover: how far furrows show there, 0 to 1.
+    bounds: least and greatest `across` and `along` of each row, and of each column, each of shape
+        (4, h) or (4, w).
+    """
+
+    rows: slice
+    columns: slice
+    across: Floats32
+    along: npt.NDArray[np.int32]
+    scale: Floats32
+    cover: Floats32
+    bounds: tuple[Floats64, Floats64]
+
+    def about(self, line: Line) -> tuple[slice, slice]:
+        """Rows and columns that hold what is seen of a line."""
+        seen = np.flatnonzero(line.depth > 1e-4)
+        if not len(seen):
+            return slice(0), slice(0)
+        course = line.course[seen]
+        roll = line.roll / self.scale.min()
+        low, high = course.min() - roll, course.max() + roll
+        return _span_of(self.bounds[0], low, high, seen), _span_of(self.bounds[1], low, high, seen)
+
+
+def _span_of(bounds: Floats64, low: float, high: float, seen: Integers64) -> slice:
+    least, greatest, first, last = bounds
+    near = (
+        (greatest > low)
+        & (least < high)
+        & (last >= FINER * (seen[0] - 1))
+        & (first <= FINER * (seen[-1] + 1))
+    )
+    held = np.flatnonzero(near)
+    return slice(int(held[0]), int(held[-1]) + 1) if len(held) else slice(0)
+
+
+class _Places(NamedTuple):
+    """A map without lines of a person's own, shape (H, H, 4), and where these go."""
+
+    plain: Image
+    forehead: _Region
+    glabella: _Region
+    feet: tuple[_Region, ...]
+    folds: tuple[_Region, ...]
+
+
+def with_lines(known: Wrinkles, lines: Lines, shrink: int = 1) -> Wrinkles:
+    """Wrinkles with the lines of a person; shrink: this many texels, each way, become one."""
+    places = _places(shrink)
+    found = places.plain.copy()
+    left, right = places.feet
+    for number, (region, draw) in enumerate(
+        (
+            (places.forehead, forehead_lines),
+            (places.glabella, frown_lines),
+            (left, crows_feet),
+            (right, crows_feet),
+        )
+    ):
+        drawn = draw(lines, np.random.default_rng([lines.seed, number]))
+        near = found[region.rows, region.columns, :3]
+        _add(near, _bytes_of(region, drawn, len(found) / known.steepest))
+    random = np.random.default_rng([lines.seed, 4])
+    for fold in places.folds:
+        near = found[fold.rows, fold.columns, :3]
+        more = (lines.fold_depth - 1.0 + random.uniform(-0.1, 0.1)) * fold.cover
+        _add(near, more[..., None] * (near - LEVEL))
+    found.flags.writeable = False
+    return replace(known, map=found)
+
+
+def _add(near: Image, more: Floats32) -> None:
+    changed = near + more
+    np.rint(changed, out=changed)
+    near[...] = np.clip(changed, 0.0, 255.0, out=changed)
+
+
+def _bytes_of(region: _Region, drawn: Sequence[Line], per_slope: float) -> Floats32:
+    """What lines add to slopes and depth of a region, shape (h, w, 3), in bytes.
+
+    per_slope: 1 over the greatest slope [1/mm for one texel].
+    """
+    height = np.zeros_like(region.across)
+    depth = np.zeros_like(region.across)
+    for line in drawn:
+        near = region.about(line)
+        along = region.along[near]
+        off = region.across[near] - _finer(line.course)[along]
+        off *= region.scale[near]
+        np.square(off, out=off)
+        here = _finer(line.depth)[along] * region.cover[near]
+        crease = np.maximum(1.0 - off / line.width**2, 0.0)
+        crease *= here * crease * crease
+        trough = np.maximum(1.0 - off / line.roll**2, 0.0)
+        trough *= here * trough
+        depth[near] += crease
+        height[near] -= crease + line.swelling * trough
+    down, right = np.gradient(height)
+    found = np.stack([right, -down, depth], axis=2)
+    found *= np.array([127.0 * per_slope, 127.0 * per_slope, 255.0 / FULL_DEPTH], np.float32)
+    return found
+
+
+def _finer(values: Floats64) -> Floats32:
+    """Values between samples, too, shape (FINER s,)."""
+    steps = np.arange(FINER * len(values)) / FINER
+    return np.interp(steps, np.arange(len(values)), values).astype(np.float32)
+
+
+def _sample_of(reach: tuple[float, float], along: Floats64) -> npt.NDArray[np.int32]:
+    """The nearest of the parts of steps."""
+    low, high = reach
+    return np.rint((np.clip(along, low, high - STEP) - low) * (FINER / STEP)).astype(np.int32)
+
+
+@lru_cache(maxsize=2)
+def _places(shrink: int) -> _Places:
+    """Where lines go; all lengths are chosen by eye, but for the brows'."""
+    head = load("head")
+    known = head.wrinkles.map
+    plain = np.rint(shrunk(known.astype(np.float32), shrink)) if shrink > 1 else known.copy()
+    size = len(plain)
+    rows, columns, place = _face(size)
+    near = plain[rows, columns].astype(np.float32)
+    x, y, z = np.moveaxis(place, 2, 0)
+    beside = np.abs(x)
+    brow = 26.5 + 2.0 * _bump(beside, 32.0, 14.0) - 3.0 * smooth_step(42.0, 54.0, beside)
+    above = smooth_step(0.0, 7.0, y - brow) * smooth_step(74.0, 60.0, y)
+    above *= smooth_step(58.0, 36.0, beside) * smooth_step(40.0, 60.0, z)
+    above *= 1.0 - smooth_step(41.0, 36.0, y) * smooth_step(19.0, 12.0, beside)
+    between = (
+        smooth_step(9.0, 15.0, y) * smooth_step(36.0, 26.0, y) * smooth_step(15.0, 9.0, beside)
+    )
+    leaning = y + 0.05 * np.maximum(y - 45.0, 0.0) ** 1.5  # the forehead leans back
+    away = np.stack([beside, y, z], axis=2) - FAN_HUB
+    level = np.hypot(away[..., 0], away[..., 2]) * np.sign(away[..., 0])
+    up = away[..., 1] + 0.1 * level  # a fan sinks a little outward
+    radius, angle = np.hypot(level, up), np.arctan2(up, level)
+    fan = smooth_step(10.5, 13.0, radius) * smooth_step(36.0, 30.0, radius)
+    fan *= smooth_step(-1.25, -0.85, angle) * smooth_step(0.75, 0.5, angle)
+    fan *= smooth_step(1.2, 2.4, np.hypot(beside - 42.9, y + 0.2))
+    ring = head.vertices[head.rings["nasolabial_fold_left"]]
+    outside = beside - np.interp(-y, -ring[:, 1], ring[:, 0])
+    fold = smooth_step(-9.0, -6.0, outside) * smooth_step(24.0, 18.0, outside)
+    fold *= smooth_step(-95.0, -88.0, y) * smooth_step(-31.0, -37.0, y)
+    # Lines of the built-in head are taken out; those of the lower lid, in the second slot, stay.
+    first = 1.0 - near[..., 3] / 255.0
+    is_above = (y > 9.5 + 11.0 * smooth_step(14.0, 20.0, beside)) & (y < NOWHERE)
+    taken = is_above.astype(np.float64)
+    taken += first * (radius > 8.0) * (radius < 42.0) * (angle > -1.4) * (level > 0.0)
+    near[..., :3] = LEVEL + np.maximum(1.0 - taken, 0.0)[..., None] * (near[..., :3] - LEVEL)
+    is_between = between > 1e-3
+    near[is_between, 3] = 255.0 * (between / np.maximum(between + above, 1e-9))[is_between]
+    plain[rows, columns] = np.rint(near)
+    x_sample = _sample_of(FOREHEAD_REACH, x)
+    radii = _sample_of(FEET_REACH, radius)
+    one = np.ones_like(x)
+    corner = rows.start, columns.start
+    return _Places(
+        plain.astype(np.uint8),
+        _region(corner, above, leaning, x_sample, one),
+        _region(corner, between, x, _sample_of(GLABELLA_REACH, y), one),
+        tuple(_region(corner, fan * (side * x > 0.0), angle, radii, radius) for side in (1, -1)),
+        tuple(_region(corner, fold * (side * x > 0.0), x, x_sample, one) for side in (1, -1)),
+    )
+
+
+def _face(size: int) -> tuple[slice, slice, Floats64]:
+    """The part of the map that has the face, and where its texels lie [mm], shape (h, w, 3)."""
+    head = load("head")
+    x, y, z = np.moveaxis(head.vertices[head.faces], 2, 0)
+    is_face = ((z > 30.0) & (np.abs(x) < 75.0) & (y > -100.0) & (y < 85.0)).all(axis=1)
+    corners = head.uv[head.face_uv].astype(np.float64)
+    corners[~is_face] = -1.0  # outside the map
+    texels = Texels.within(corners, (size, size))
+    spans = [(int(each.min()), int(each.max()) + 1) for each in (texels.rows, texels.columns)]
+    rows, columns = (slice(*span) for span in spans)
+    place = np.full((rows.stop - rows.start, columns.stop - columns.start, 3), NOWHERE)
+    at = texels.rows - rows.start, texels.columns - columns.start
+    place[at] = texels.interpolate(head.vertices[head.faces])
+    return rows, columns, place
+
+
+def _bump(values: Floats64, middle: float, wide: float) -> Floats64:
+    return np.asarray(np.exp(-(((values - middle) / wide) ** 2)))
+
+
+def _region(
+    corner: tuple[int, int],
+    cover: Floats64,
+    across: Floats64,
+    along: npt.NDArray[np.int32],
+    scale: Floats64,
+) -> _Region:
+    """The smallest part of the map that holds what is covered.
+
+    Arrays are of a part of it, (h, w), whose first row and column are the corner.
+    """
+    is_covered = cover > 0.0
+    spans = [np.flatnonzero(is_covered.any(axis=axis)) for axis in (1, 0)]
+    inside = tuple(slice(int(span[0]), int(span[-1]) + 1) for span in spans)
+    lies = is_covered[inside]
+    across, along, scale = across[inside], along[inside], scale[inside]
+    bounds = [
+        np.array(
+            [
+                across.min(axis=axis, where=lies, initial=np.inf),
+                across.max(axis=axis, where=lies, initial=-np.inf),
+                along.min(axis=axis, where=lies, initial=10**9),
+                along.max(axis=axis, where=lies, initial=-1),
+            ]
+        )
+        for axis in (1, 0)
+    ]
+    rows, columns = (
+        slice(start + each.start, start + each.stop)
+        for start, each in zip(corner, inside, strict=True)
+    )
+    return _Region(
+        rows,
+        columns,
+        across.astype(np.float32),
+        along,
+        np.maximum(scale, scale[lies].min()).astype(np.float32),
+        cover[inside].astype(np.float32),
+        (bounds[0], bounds[1]),
+    )

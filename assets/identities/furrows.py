@@ -1,0 +1,157 @@
+"""Courses and depths of a person's lines on forehead, between the brows and beside the eyes.
+
+Lines lie across the pull of their muscles (Kraissl 1951): level on the forehead, upright between
+the brows, a fan beside the eye. A line is a curve over a coordinate along it, with a depth of its
+own in each place. All lengths are chosen by eye, beside those of the built-in head.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...geometry.arrays import Floats64
+from ..smooth import smooth_step
+from .lines import Fan, Lines, Spread
+
+STEP = 0.5  # [mm] along a line, from one sample to the next
+FOREHEAD_REACH = -62.0, 62.0  # [mm] of x, from the first sample to the last
+GLABELLA_REACH = 0.0, 50.0  # [mm] of y
+FEET_REACH = 5.0, 45.0  # [mm] from where crow's feet meet
+FANS = {  # least and greatest angle of crow's feet [rad]
+    Fan.WHOLE: (-0.95, 0.5),
+    Fan.LOWER: (-0.95, -0.1),
+    Fan.CENTRAL: (-0.45, 0.3),
+    Fan.UPPER: (-0.15, 0.55),
+}
+
+
+class Line(NamedTuple):
+    """A line at the samples of its region.
+
+    course: where it runs, across its direction, [mm] or [rad], shape (s,). depth: there [mm],
+    shape (s,). width: from its bottom to where nothing is left of it, roll: to the top of the skin
+    that swells beside it [mm]. swelling: height of that skin beside the depth.
+    """
+
+    course: Floats64
+    depth: Floats64
+    width: float
+    roll: float
+    swelling: float
+
+
+def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
+    """Lines across the forehead, of which each may be broken in two of unequal height."""
+    x = _samples(FOREHEAD_REACH)
+    lowest, highest = 36.5, 70.0  # [mm] above the root of the nose, along the skin
+    spacing = (highest - lowest) / lines.forehead
+    spread = min(spacing, 11.0)
+    middle = 0.5 * (highest + lowest) + random.uniform(-0.5, 0.5) * (spacing - spread)
+    arch = 1.0 - np.exp(-((x / 16.0) ** 2)) - 0.8 * smooth_step(30.0, 58.0, np.abs(x))
+    course = lines.dip * arch + random.normal(0.0, 0.015) * x + 0.8 * _wander(45.0, x, random)
+    deepest = 0.44 * lines.forehead_depth * (4.5 / lines.forehead) ** 0.35  # [mm]
+    found = []
+    for number in range(lines.forehead):
+        place = middle + (number + 0.5 - 0.5 * lines.forehead) * spread
+        place += 0.17 * spread * random.uniform(-1.0, 1.0)
+        own = place + course + 0.45 * _wander(26.0, x, random)
+        shown = _shown(lines.spread, np.abs(x + random.normal(0.0, 4.0)), random)
+        whole = smooth_step(
+            0.0,
+            1.0,
+            1.0 - 0.45 * lines.broken + (0.12 + 0.4 * lines.broken) * _wander(34.0, x, random),
+        )
+        ends = random.uniform(34.0, 54.0, 2)
+        reach = smooth_step(-ends[0], -ends[0] + 14.0, x) * smooth_step(ends[1], ends[1] - 14.0, x)
+        depth = deepest * random.uniform(0.65, 1.0) * whole * reach * shown
+        if random.random() < 0.25 + 0.5 * lines.broken:
+            gap = random.uniform(-20.0, 20.0)
+            over = random.uniform(2.0, 8.0)  # [mm] over which both are there
+            step = random.choice([-1.0, 1.0]) * random.uniform(0.15, 0.26) * spread
+            left = smooth_step(gap + over, gap - 5.0, x)
+            right = smooth_step(gap - over, gap + 5.0, x)
+            parts = [(own + step, depth * left), (own - step, depth * right)]
+        else:
+            parts = [(own, depth)]
+        width = 2.3 * random.uniform(0.85, 1.15)
+        found += [Line(*part, width, 0.45 * min(spread, 9.0) + 0.4, 1.9) for part in parts]
+    for _ in range(lines.fine * lines.forehead):
+        own = random.uniform(lowest, highest) + course + 0.8 * _wander(20.0, x, random)
+        centre, half = random.uniform(-35.0, 35.0), random.uniform(7.0, 18.0)
+        depth = 0.1 * lines.forehead_depth * smooth_step(half, 0.3 * half, np.abs(x - centre))
+        found.append(Line(own, depth, 1.2, 1.8, 0.2))
+    return found
+
+
+def _shown(spread: Spread, beside: Floats64, random: np.random.Generator) -> Floats64:
+    """How much of a line is there, 0 to 1; beside: how far places are from the middle [mm]."""
+    reach = random.uniform(0.8, 1.25)
+    match spread:
+        case Spread.WHOLE:
+            return np.ones_like(beside)
+        case Spread.MIDDLE:
+            return smooth_step(40.0 * reach, 18.0 * reach, beside)
+        case Spread.SIDES:
+            return random.uniform(0.0, 0.3) + 0.7 * smooth_step(6.0 * reach, 28.0 * reach, beside)
+
+
+def frown_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
+    """Upright lines between the brows, which lean apart upward."""
+    y = _samples(GLABELLA_REACH)
+    places = {1: (0.0,), 2: (-5.6, 5.6), 3: (-7.2, 0.4, 6.8)}[lines.frown]
+    deepest = random.integers(len(places))
+    deepest_of_all = 0.55 * lines.frown_depth * (0.75 if lines.frown > 2 else 1.0)  # [mm]
+    found = []
+    for number, place in enumerate(places):
+        own = (place + random.normal(0.0, 0.9 if lines.frown > 1 else 1.8)) * (
+            1.0 + 0.02 * (y - 18.0)
+        )
+        own += 0.45 * _wander(18.0, y, random)
+        low, high = random.uniform(9.0, 13.0), random.uniform(27.0, 37.0)
+        ends = smooth_step(low, low + 6.0, y) * smooth_step(high, high - 9.0, y)
+        share = 1.0 if number == deepest else 1.0 - lines.uneven * random.uniform(0.6, 1.2)
+        depth = deepest_of_all * share * ends * (1.0 + 0.12 * _wander(14.0, y, random))
+        found.append(Line(own, depth, 2.1, 3.7, 1.3))
+    return found
+
+
+def crows_feet(lines: Lines, random: np.random.Generator) -> list[Line]:
+    """Crow's feet of one side, some of which part in two."""
+    radius = _samples(FEET_REACH)
+    low, high = FANS[lines.fan]
+    wide = (high - low) / lines.feet
+    begin = 13.0  # [mm] behind the corner of the lids
+    found = []
+    for number in range(lines.feet):
+        angle = low + (number + 0.5 + 0.25 * random.uniform(-1.0, 1.0)) * wide
+        own = angle + random.normal(0.0, 0.006) * (radius - 20.0)
+        own += 0.45 * _wander(16.0, radius, random) / radius
+        start = begin + random.uniform(0.0, 3.0)
+        end = begin + lines.reach * random.uniform(0.55, 1.0)
+        shown = smooth_step(start - 2.0, start + 2.0, radius)
+        shown = shown * smooth_step(end, start + 0.55 * (end - start), radius)
+        depth = 0.36 * lines.feet_depth * random.uniform(0.55, 1.0) * shown
+        depth *= 1.0 + 0.15 * _wander(9.0, radius, random)
+        roll = float(np.clip(10.0 * wide, 1.4, 2.4))
+        found.append(Line(own, depth, 1.05, roll, 1.2))
+        if random.random() < 0.3:
+            fork = start + random.uniform(4.0, 8.0)
+            away = random.choice([-1.0, 1.0]) * 0.018 * np.maximum(radius - fork, 0.0)
+            branch = 0.6 * depth * smooth_step(fork - 1.0, fork + 3.0, radius)
+            found.append(Line(own + away, branch, 0.9, 1.4, 0.8))
+    return found
+
+
+def _wander(length: float, samples: Floats64, random: np.random.Generator) -> Floats64:
+    """A curve of mean 0 and deviation 1 with waves of about a length [mm], shape (s,)."""
+    waves = length / np.array([0.6, 1.0, 1.7])
+    begins = random.uniform(0.0, 2.0 * np.pi, 3)
+    shares = np.array([0.8, 0.5, 0.33])
+    return np.asarray(np.cos(2.0 * np.pi * samples[:, None] / waves + begins) @ shares * 1.41)
+
+
+def _samples(reach: tuple[float, float]) -> Floats64:
+    """Samples along lines [mm], shape (s,)."""
+    return np.arange(reach[0], reach[1], STEP)

@@ -1,0 +1,163 @@
+"""Lines of expression: their numbers by age and sex, and the maps that they are drawn in."""
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from risorius.assets.identities import Sex, coloured, make_person, sample_identity
+from risorius.assets.identities.furrow_map import with_lines
+from risorius.assets.identities.lines import Fan, Lines, Spread
+from risorius.assets.loading import load
+
+PLAIN = Lines(
+    seed=5,
+    forehead=4,
+    spread=Spread.WHOLE,
+    dip=2.0,
+    broken=0.0,
+    forehead_depth=1.0,
+    frown=2,
+    uneven=0.0,
+    frown_depth=1.0,
+    feet=5,
+    fan=Fan.WHOLE,
+    reach=18.0,
+    feet_depth=1.0,
+    fold_depth=1.0,
+    fine=0,
+)
+
+
+def people(age: float, sex: Sex | None = None) -> list[Lines]:
+    """The lines of two hundred persons of that age."""
+    return [sample_identity(seed, age=age, sex=sex).lines for seed in range(200)]
+
+
+def drawn(shrink: int = 1, **own: object) -> np.ndarray:
+    """The map of PLAIN with other lines."""
+    return with_lines(load("head").wrinkles, PLAIN._replace(**own), shrink).map.astype(int)
+
+
+def about(name: str, high: int, wide: int) -> tuple[slice, slice]:
+    """The part of the map about a named point, that many texels up and down, and to each side."""
+    head = load("head")
+    size = len(head.wrinkles.map)
+    column, row = (head.uv[head.anatomy[name]] * [size, -size] + [0.0, size]).astype(int)
+    return slice(row - high, row + high), slice(column - wide, column + wide)
+
+
+def furrows_along(depth: np.ndarray) -> int:
+    """The number of furrows that a way across them meets, shape (n,)."""
+    is_deep = np.concatenate([[False], depth > 40])
+    return int((is_deep[1:] & ~is_deep[:-1]).sum())
+
+
+def test_lines_get_more_and_deeper_with_age_and_in_men():
+    """At seventy beside twenty-five, in the mean of two hundred."""
+    young, old = people(25.0), people(70.0)
+    for name in ("forehead", "feet", "reach", "fine"):
+        assert np.mean([getattr(x, name) for x in old]) > np.mean([getattr(x, name) for x in young])
+    women, men = people(50.0, Sex.WOMAN), people(50.0, Sex.MAN)
+    for name in ("forehead_depth", "frown_depth", "feet_depth", "fold_depth"):
+        means = [np.mean([getattr(x, name) for x in lines]) for lines in (young, old, women, men)]
+        assert means[1] > 1.3 * means[0], name
+        assert means[3] > means[2], name
+    woman, man = (np.mean([x.forehead_depth / x.feet_depth for x in y]) for y in (women, men))
+    assert man > 1.05 * woman
+
+
+def test_patterns_have_their_published_shares():
+    """Foreheads, frowns and fans, each within a tenth of all people."""
+    lines = people(50.0)
+    spreads, frowns, fans = (
+        Counter(getattr(x, name) for x in lines) for name in ("spread", "frown", "fan")
+    )
+    for kind, share in ((Spread.WHOLE, 0.51), (Spread.MIDDLE, 0.25), (Spread.SIDES, 0.24)):
+        assert spreads[kind] / 200 == pytest.approx(share, abs=0.1)
+    assert frowns[1] < 0.12 * 200 < 0.6 * 200 < frowns[2]
+    for kind, share in ((Fan.WHOLE, 0.36), (Fan.LOWER, 0.31), (Fan.UPPER, 0.05)):
+        assert fans[kind] / 200 == pytest.approx(share, abs=0.1)
+    assert fans[Fan.CENTRAL] > 0.15 * 200
+
+
+def test_a_number_has_the_same_lines_and_map_every_time():
+    """The same bytes from the same number, others from another; nobody else's map is written."""
+    known = load("head").wrinkles
+    before = known.map.copy()
+    lines = [sample_identity(seed).lines for seed in (7, 7, 8)]
+    assert lines[0] == lines[1] != lines[2]
+    maps = [with_lines(known, each).map for each in lines]
+    np.testing.assert_array_equal(maps[0], maps[1])
+    forehead = about("metopion", 60, 150)
+    others = [x[forehead][..., 2].astype(float).ravel() for x in maps[1:]]
+    assert abs(np.corrcoef(*others)[0, 1]) < 0.5
+    np.testing.assert_array_equal(known.map, before)
+    assert not maps[0].flags.writeable
+
+
+@pytest.mark.parametrize("count", [2, 4])
+def test_as_many_lines_are_drawn_as_the_record_says(count):
+    """On the forehead up its middle, between the brows from side to side."""
+    rows, columns = about("metopion", 110, 60)
+    counts = [
+        furrows_along(depth)
+        for seed in range(6)
+        for depth in drawn(seed=seed, forehead=count)[rows, columns, 2].T[::8]
+    ]
+    assert np.median(counts) == count
+    rows, columns = about("glabella", 12, 45)
+    for frown in (1, 2, 3):
+        across = drawn(frown=frown)[rows, columns, 2].max(axis=0)
+        assert furrows_along(across) == frown
+
+
+def test_spread_fan_and_reach_are_where_the_record_says():
+    """Lines in the middle or at the sides, feet above or below, short or long."""
+    rows, columns = about("metopion", 60, 170)
+    ways = (Spread.MIDDLE, Spread.SIDES)
+    middle, sides = (drawn(spread=each)[rows, columns, 2].sum(axis=0) for each in ways)
+    inner = slice(140, 200)
+    assert middle[inner].mean() > 2.0 * middle[:80].mean()
+    assert sides[80:120].mean() > 1.5 * sides[inner].mean()
+    rows, columns = about("exocanthion_left", 110, 120)
+    upper, lower = (drawn(fan=each)[rows, columns, 2] for each in (Fan.UPPER, Fan.LOWER))
+    assert upper[:110].sum() > 2.0 * lower[:110].sum()
+    assert lower[110:].sum() > 2.0 * upper[110:].sum()
+    short, long = (drawn(reach=reach)[rows, columns, 2].sum() for reach in (9.0, 20.0))
+    assert long > 1.3 * short
+
+
+def test_folds_get_as_deep_as_the_record_says_and_all_else_stays():
+    """Half or twice as deep beside the mouth; nose, lips, lower lids and chin as built in."""
+    known = load("head").wrinkles.map.astype(int)
+    shallow, deep = (drawn(fold_depth=depth) for depth in (0.5, 1.4))
+    rows, columns = about("stomion", 60, 170)
+    steep = np.abs(known[rows, columns, :2] - 128).max(axis=2) > 40
+    steep[:, 90:250] = False
+    for found, share in ((shallow, 0.5), (deep, 1.4)):
+        slopes = np.abs(found[rows, columns, :2] - 128)[steep].sum()
+        built_in = np.abs(known[rows, columns, :2] - 128)[steep].sum()
+        assert slopes / built_in == pytest.approx(share, abs=0.2)
+    for place, high, wide in (
+        ("pogonion", 60, 120),
+        ("labiale_superius", 12, 60),
+        ("rhinion", 20, 60),
+    ):
+        near = about(place, high, wide)
+        np.testing.assert_array_equal(deep[near], known[near])
+
+
+def test_small_pictures_have_fewer_texels_of_the_same_lines():
+    """Half as many each way, of the same depth and the same slopes; the smallest share one map."""
+    whole, half = drawn(), drawn(2)
+    assert half.shape == (640, 640, 4)
+    means = whole.reshape(640, 2, 640, 2, 4).mean(axis=(1, 3))
+    assert np.abs(means - half)[..., :3].mean() < 0.1
+    assert np.corrcoef(means[..., 2].ravel(), half[..., 2].ravel())[0, 1] > 0.97
+    person = make_person(sample_identity(6))
+    assert coloured(person, angle=40.0, shrink=4).wrinkles.map is load("head").wrinkles.map
+    assert len(coloured(person, angle=40.0, shrink=2).wrinkles.map) == 640
+    bare = replace(person, identity=replace(person.identity, lines=None))
+    assert coloured(bare, angle=40.0).wrinkles is bare.wrinkles
