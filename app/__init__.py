@@ -1,1 +1,1 @@
-"""The Risorius application: the one place that joins simulation, refinement and rendering."""
+"""The Risorius application, which joins simulation, refinement and rendering."""

@@ -1,6 +1,6 @@
-"""Work on the workers of a Dask cluster, each of which has processes of its own for it.
+"""Work on the workers of a Dask cluster; each worker has its own processes for it.
 
-Threads of a Dask worker cannot draw, and a crash of one looks like a kill. So a Dask worker hands
+Threads of a Dask worker cannot draw, and a crash of one looks like a kill. So a Dask worker passes
 its work to a `WorkerPool`, as this computer does.
 """
 
@@ -21,7 +21,7 @@ from .text import in_one_line
 from .workers import ATTEMPTS, WorkerPool, share_of_cores
 
 PATIENCE = 10.0  # [s] for the scheduler to answer
-LOSSES = 10  # times that Dask may give an item up because the workers under it were lost
+LOSSES = 10  # times that Dask may give up an item whose workers were lost
 
 _pools: dict[str, WorkerPool] = {}
 """In a Dask worker: the processes of each run."""
@@ -30,9 +30,9 @@ _pools: dict[str, WorkerPool] = {}
 def run_on_cluster(
     work: Callable[[WorkerPool, Any], Any], items: Sequence[Any], scheduler: str
 ) -> Generator[tuple[Any, Any, str], None, None]:
-    """Each item as it ends, with the result of its work, or with None and the reason.
+    """Yield each item when it ends, with its result, or with None and the reason.
 
-    An item whose workers are lost goes to others. Results leave the cluster as they are taken.
+    An item whose workers are lost goes to others. The cluster forgets results that have been taken.
     Raises UserError if no scheduler answers.
     """
     distributed = needed("distributed", "--scheduler", "cluster")
@@ -41,7 +41,7 @@ def run_on_cluster(
 
     def end() -> None:
         """End the run's processes on all workers, busy or not."""
-        with contextlib.suppress(Exception):  # workers, or the scheduler, may be gone
+        with contextlib.suppress(Exception):  # workers or the scheduler may be gone
             client.run(_end, run, wait=True, on_error="ignore")
 
     with client, cleaned_up_if_stopped(end):
@@ -53,7 +53,7 @@ def run_on_cluster(
 
 def _client(distributed: Any, scheduler: str) -> Any:
     """A connection to the scheduler at an address; raises UserError if none answers."""
-    try:  # asked first: a client takes half a minute to find that nobody is there
+    try:  # a first test: a client takes half a minute to notice a missing scheduler
         host_and_port = distributed.comm.get_address_host_port(scheduler)
         socket.create_connection(host_and_port, PATIENCE).close()
         return distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
@@ -68,7 +68,7 @@ def _client(distributed: Any, scheduler: str) -> Any:
 def _results(
     distributed: Any, client: Any, do: Callable[[Any], Any], items: Sequence[Any]
 ) -> Iterator[tuple[Any, Any, str]]:
-    """As `run_on_cluster` yields them."""
+    """Results, as `run_on_cluster` yields them."""
     losses = Counter[int]()
     futures = client.map(do, items, pure=False, retries=ATTEMPTS - 1)
     number_of = {future.key: number for number, future in enumerate(futures)}

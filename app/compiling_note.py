@@ -1,4 +1,4 @@
-"""A line for the user where kernels are compiled, which takes long once."""
+"""A line for the user when kernels are compiled, which takes long once."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import click
 
 
 class _CompilingNote(logging.Handler):
-    """Prints once that kernels are compiled, and once that they cannot be kept (jit.py)."""
+    """Prints once that kernels are compiled, and once that they cannot be stored (jit.py)."""
 
     _printed: frozenset[int] = frozenset()
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Print a line, unless one of its level was printed."""
+        """Print a line, unless a line of this level was printed before."""
         if record.levelno not in self._printed:
             self._printed |= {record.levelno}
             line = "Compiling, once for each kind of work: up to half a minute."

@@ -1,4 +1,4 @@
-"""Errors that users can mend: a message of one line, and exit code 2."""
+"""Errors that users can correct: a message of one line, and exit code 2."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .text import in_one_line
 
 
 class UserError(Exception):
-    """An input of the user cannot be used; the text names fault, place and allowed values.
+    """An unusable input of the user; the text names fault, place and allowed values.
 
-    trace: the traceback of the process in which it was raised, if that was another one.
+    trace: the traceback of another process that raised it, if any.
     """
 
     def __init__(self, text: str, trace: str = "") -> None:
@@ -30,15 +30,15 @@ def traceback_of(error: BaseException) -> str:
         return ""
     one: BaseException | None = error
     while one is not None:
-        one.__suppress_context__ = False  # which shows `raise ... from None`, too
+        one.__suppress_context__ = False  # this also shows `raise ... from None`
         one = one.__cause__ or one.__context__
     there = error.trace if isinstance(error, UserError) else ""
     return there + "".join(traceback.format_exception(error))
 
 
 def line_for(error: Exception) -> str | None:
-    """The message for an error that the user can mend; None for a defect."""
-    from risorius import assets, render  # slow, and not needed where all goes well
+    """The message for an error that the user can correct; None for a defect."""
+    from risorius import assets, render  # slow, and not needed without errors
 
     if isinstance(error, MemoryError):
         return "there is not enough memory for this; take a smaller size"
@@ -49,10 +49,10 @@ def line_for(error: Exception) -> str | None:
 
 @contextlib.contextmanager
 def report_user_errors() -> Iterator[None]:
-    """Turn errors that the user can mend into one line on the error stream and exit code 2."""
+    """Turn errors that the user can correct into one line on the error stream and exit code 2."""
     try:
         yield
-    except (BrokenPipeError, click.ClickException):  # nobody reads on; click reports its own
+    except (BrokenPipeError, click.ClickException):  # the reader has gone; click reports its own
         raise
     except Exception as error:
         line = line_for(error)

@@ -1,4 +1,4 @@
-"""Optional libraries: those of this distribution's extras."""
+"""Optional libraries, which this distribution's extras install."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from .errors import UserError
 def needed(module: str, what: str, extra: str, *, package: str | None = None) -> Any:
     """An optional library; raises UserError, with the remedy, if it is missing.
 
-    what: needs it ("--passes"). extra: of this distribution, which brings it. package: what brings
-    the module, if it is called otherwise.
+    what: the feature that needs it ("--passes"). extra: this distribution's extra that installs it.
+    package: the package of the module, if its name differs.
     """
     name = f"{what} needs {package or module}"
     try:
         return import_module(module)
     except ModuleNotFoundError:
         raise UserError(f"{name}; install it in the checkout: pip install '.[{extra}]'") from None
-    except ImportError as error:  # a library of the system that it stands on, say
+    except ImportError as error:  # for example a missing system library
         raise UserError(f"{name}, which is installed but does not load: {error}") from None

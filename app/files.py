@@ -1,7 +1,7 @@
-"""Files: those that are read, whole or refused, and those that are written, whole or not at all.
+"""Files: reading is complete or refused, and writing is complete or undone.
 
-Only plain files are read: a pipe nobody writes into would keep the program waiting for ever, a
-device like /dev/zero has no end. An output is written beside its place and moved there when it is
+Only plain files are read: a pipe without a writer would make the program wait forever, and a device
+like /dev/zero has no end. An output is written beside its place, and moved there when it is
 complete.
 """
 
@@ -27,10 +27,10 @@ class NoSuchFileError(UserError):
 
 
 def read_text(path: Path, *, what: str, longest: int) -> str:
-    """The text in a file, UTF-8 with or without a byte order mark, of `longest` bytes at most.
+    """The text in a file, UTF-8 with or without a byte order mark, at most `longest` bytes.
 
-    what: the kind of file, for error texts ("script"). Raises UserError for a file that cannot be
-    used, and its subclass NoSuchFileError if there is none.
+    what: the kind of file, for error texts ("script"). Raises UserError for an unusable file, and
+    its subclass NoSuchFileError for a missing one.
     """
     try:
         return read_bytes(path, what=what, longest=longest).decode("utf-8-sig")
@@ -39,7 +39,7 @@ def read_text(path: Path, *, what: str, longest: int) -> str:
 
 
 def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None) -> bytes:
-    """The content of a plain file of `longest` bytes at most, or only its `first` bytes.
+    """The content of a plain file, at most `longest` bytes, or only its `first` bytes.
 
     The errors are those of `read_text`.
     """
@@ -55,19 +55,18 @@ def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None)
             return file.read(longest if first is None else first)
     except FileNotFoundError:
         raise NoSuchFileError(f"{path}: no such {what}") from None
-    except (OSError, ValueError) as error:  # a name that no file can have is a ValueError
+    except (OSError, ValueError) as error:  # an impossible name is a ValueError
         why = getattr(error, "strerror", None) or error
         raise UserError(f"{path}: cannot be read: {why}") from None
 
 
 @contextlib.contextmanager
 def written_atomically(target: Path) -> Iterator[Path]:
-    """Yield a path beside `target`, renamed to it if the block ends without an error.
+    """Yield a path beside `target`; it is renamed to `target` if the block has no error.
 
-    Files that the block puts beside that one go along, and lie beside the target then. Where the
-    target is a symbolic link, the file takes the place of the link, as with `mv`: somebody else
-    may have put it into a folder that others may write. UserError if that cannot be, in the
-    block or after it.
+    Files that the block puts beside this path move along, and then lie beside the target. If the
+    target is a symbolic link, the file replaces the link, as with `mv`: another user may have put
+    the link into a shared folder. Raises UserError if this fails, in the block or after it.
     """
     check_links(target)
     parent = Path(os.path.realpath(target.parent))
@@ -83,10 +82,10 @@ def written_atomically(target: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def named_in_text(target: Path) -> Iterator[Path]:
-    """Yield a path to write `target` by, for libraries that take names in UTF-8 alone.
+    """Yield a path to write `target` to, for libraries that only take names in UTF-8.
 
-    It is `target` itself, unless its name or a folder's is no UTF-8: then the file is written in
-    the system's folder for temporary files, and moved after the block.
+    It is `target` itself, unless its name or that of a folder is not UTF-8: then the file is
+    written in the system's folder for temporary files, and moved after the block.
     """
     if as_text(target) == str(target):
         yield target
@@ -99,16 +98,16 @@ def named_in_text(target: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def folder_atomically(target: Path, own: re.Pattern[str], *, overwrite: bool) -> Iterator[Path]:
-    """Yield a folder whose files come into the folder `target` all at once after the block.
+    """Yield a folder; after the block all its files move into the folder `target` together.
 
-    own: names of files that such folders hold. overwrite: those of an earlier time give way;
-    other files stay. Else UserError if the target holds something already.
+    own: pattern of names of our files. overwrite: whether older ones are replaced; other files
+    stay. Else UserError if the target is not empty.
     """
     check_folder(target, overwrite=overwrite)
     is_new = not target.exists()
 
     def give_up() -> None:
-        with contextlib.suppress(OSError):  # it has its files
+        with contextlib.suppress(OSError):  # the target has its files
             target.rmdir()
 
     with contextlib.ExitStack() as stack:
@@ -119,7 +118,7 @@ def folder_atomically(target: Path, own: re.Pattern[str], *, overwrite: bool) ->
                 target.mkdir(parents=True)
         temporary = stack.enter_context(temporary_folder(target, target))
         yield temporary
-        with done_whole(), cannot_be_written(target):  # neither may be lost between the two
+        with done_whole(), cannot_be_written(target):  # no interruption may fall between the two
             for old in target.iterdir():
                 if own.fullmatch(old.name):
                     old.unlink()
@@ -128,9 +127,9 @@ def folder_atomically(target: Path, own: re.Pattern[str], *, overwrite: bool) ->
 
 
 def check_folder(target: Path, *, overwrite: bool) -> None:
-    """Raise UserError if a folder of many files cannot be written, or holds something.
+    """Raise UserError if a folder for many files cannot be written, or is not empty.
 
-    A link to a folder stands for that folder.
+    A link to a folder counts as that folder.
     """
     check_links(target)
     with cannot_be_written(target):
@@ -143,7 +142,7 @@ def check_folder(target: Path, *, overwrite: bool) -> None:
 
 @contextlib.contextmanager
 def temporary_folder(target: Path, parent: Path) -> Iterator[Path]:
-    """A folder in `parent` that is gone after the block; errors are those of writing `target`."""
+    """A folder in `parent`, removed after the block; errors are those of writing `target`."""
     temporary = StagingFolder(parent)
     with cleaned_up_if_stopped(temporary.remove), contextlib.ExitStack() as stack:
         with cannot_be_written(target):
@@ -153,7 +152,7 @@ def temporary_folder(target: Path, parent: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def cannot_be_written(target: Path) -> Iterator[None]:
-    """Turn the system's error at writing `target` into a UserError that names it."""
+    """Turn the system's error when writing `target` into a UserError that names it."""
     try:
         yield
     except OSError as error:
@@ -161,21 +160,21 @@ def cannot_be_written(target: Path) -> Iterator[None]:
 
 
 def check_links(target: Path) -> None:
-    """Raise UserError if the links of a path go round in a circle."""
+    """Raise UserError if the links of a path form a circle."""
     with cannot_be_written(target):
         if os.path.islink(os.path.realpath(target)):
             raise UserError(f"{target}: is a link that leads back to itself; choose another name")
 
 
 def entry_of(path: Path) -> str:
-    """The folder and name of a path; for a link its own, unless it leads to a folder."""
+    """The folder and name of a path; those of a link itself, unless it leads to a folder."""
     if path.is_dir():
         return os.path.realpath(path)
     return os.path.join(os.path.realpath(path.parent), path.name)
 
 
 def check_file(target: Path) -> None:
-    """Raise UserError, before any work is done, where no file of this name can be written."""
+    """Raise UserError, before any work is done, if no file of this name can be written."""
     check_links(target)
     with cannot_be_written(target):
         if target.is_dir():
@@ -196,11 +195,11 @@ def save_text(target: Path, text: str) -> None:
 
 
 def check_apart(outputs: Sequence[Path | None], inputs: Sequence[Path | None]) -> None:
-    """Raise UserError if two outputs are one file, or an output would replace an input."""
+    """Raise UserError if two outputs are one file, or if an output would replace an input."""
     written: set[str] = set()
     read: set[str] = set()
     for path in inputs:
-        if path is not None:  # `realpath`, unlike `resolve`, bears links that lead to themselves
+        if path is not None:  # `realpath`, unlike `resolve`, accepts links to themselves
             read |= {entry_of(path), os.path.realpath(path)}
     for path in outputs:
         if path is None:

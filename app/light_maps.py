@@ -1,4 +1,4 @@
-"""Maps of light that a user brings: Radiance HDR and OpenEXR, all around (equirectangular).
+"""A user's maps of light from all around: Radiance HDR and OpenEXR, equirectangular.
 
 Source: Ward 1991, "Real pixels", Graphics Gems II, for the bytes of Radiance's files.
 """
@@ -27,7 +27,7 @@ Pixels = npt.NDArray[np.float32]
 
 
 def read_light_map(path: Path) -> render.LightMap:
-    """The light in a file, (128, 256) texels; raises UserError for one that cannot be used."""
+    """The light in a file, (128, 256) texels; raises UserError for an unusable one."""
     check_light_map(path)
     with _refused(path):
         pixels = _openexr(path) if _is_openexr(path) else _radiance(_content(path))
@@ -43,7 +43,7 @@ def read_light_map(path: Path) -> render.LightMap:
 def check_light_map(path: Path) -> None:
     """Read a file's header; UserError unless it is a map of light, twice as wide as high.
 
-    Nothing is reserved for pixels.
+    No memory is reserved for pixels.
     """
     if path.suffix.lower() not in LIGHT_SUFFIXES:
         raise UserError(f"{path}: is no map of light; give a file {' or '.join(LIGHT_SUFFIXES)}")
@@ -80,9 +80,9 @@ def _refused(path: Path) -> Iterator[None]:
 
 
 def _radiance_size(content: bytes) -> tuple[int, int, int]:
-    """Height and width in a Radiance file's header [pixels], and where its pixels begin [bytes].
+    """Height and width in a Radiance file's header [pixels], and the place of its pixels [bytes].
 
-    ValueError if it is none.
+    ValueError if it is not a Radiance file.
     """
     head, _, _ = content.partition(b"\n\n")
     found = re.match(rb"-Y (\d{1,5}) \+X (\d{1,5})\n", content[len(head) + 2 :])
@@ -93,7 +93,7 @@ def _radiance_size(content: bytes) -> tuple[int, int, int]:
 
 
 def _radiance(content: bytes) -> Pixels:
-    """The pixels of a Radiance file, shape (H, W, 3); raises ValueError if it is none."""
+    """The pixels of a Radiance file, shape (H, W, 3); raises ValueError for another file."""
     height, width, begin = _radiance_size(content)
     data = np.frombuffer(content, np.uint8, offset=begin)
     if len(data) == 4 * height * width:
@@ -105,8 +105,8 @@ def _radiance(content: bytes) -> Pixels:
 
 
 def _unpacked(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArray[np.uint8]:
-    """Lines whose four channels are packed by the lengths of runs, shape (H, W, 4)."""
-    most_alike = 127  # in a run, of two bytes
+    """Lines of four run-length encoded channels, decoded, shape (H, W, 4)."""
+    most_alike = 127  # bytes in a run, which is coded in two
     if len(data) < height * (4 + 8 * math.ceil(width / most_alike)):
         raise ValueError("it is shorter than its size requires")
     values = data.tobytes()
@@ -120,7 +120,7 @@ def _unpacked(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArr
             column = 0
             while column < width:
                 count = values[at]
-                if count > 128:  # the same value, so often
+                if count > 128:  # a run of one value
                     count -= 128
                     channel[column : column + count] = values[at + 1]
                     at += 2
@@ -135,7 +135,7 @@ def _unpacked(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArr
 
 @contextlib.contextmanager
 def _opened_openexr(path: Path, *, header_only: bool) -> Iterator[Any]:
-    """An OpenEXR file; raises ValueError if it is none, or proves broken in the block."""
+    """An OpenEXR file; raises ValueError for another file, or if it breaks in the block."""
     module = needed("OpenEXR", "a light of .exr", "passes")
     try:
         with module.File(str(path), separate_channels=True, header_only=header_only) as file:

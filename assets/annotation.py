@@ -1,9 +1,9 @@
-"""Where annotators of photographs put the 68 points of iBug on a head.
+"""The places where annotators of photographs put the 68 points of iBug on a head.
 
-The rig has 68 landmarks of its own, which lie where muscles need them (`Head.landmarks`). Those of
-the picture lie where people see a border: on the edge of the lids and of the red of the lips, on
-the brow that is painted. A jaw has no such border; its points lie on the outline of the face, which
-is another place of the skin from every camera.
+The rig has its own 68 landmarks, at places that muscles need (`Head.landmarks`). Landmarks of a
+picture lie on visible borders: on the edges of the lids and of the red of the lips, and on the
+painted brow. A jaw has no such border; its points lie on the outline of the face, which for every
+camera is another line on the skin.
 
 Sources: Sagonas et al. 2016, "300 Faces In-The-Wild Challenge: database and results" (the scheme);
 Zhu et al. 2015, "High-fidelity pose and expression normalization for face recognition in the wild"
@@ -40,8 +40,8 @@ STEPS = 25  # places along each of them
 class Annotation:
     """Places on the skin of one head; see the module.
 
-    inner: of the points 17 to 67, in their order.
-    lanes: on the ways along which the outline is sought: LANES ways of STEPS places on the right
+    inner: those of the points 17 to 67, in their order.
+    lanes: those of the ways on which the outline is sought: LANES ways of STEPS places on the right
         side, then as many on the left. Each way runs from the cheek outward.
     """
 
@@ -53,18 +53,18 @@ class Annotation:
         make_read_only(self.lanes)
 
     def inner_points(self, positions: Floats64) -> Floats64:
-        """Where the points 17 to 67 are, on vertices (V, 3), shape (51, 3)."""
+        """The points 17 to 67 on a skin with vertices (V, 3), shape (51, 3)."""
         return self.inner.interpolate(positions)
 
     def ways(self, positions: Floats64) -> Floats64:
-        """Where the ways of the outline are, on vertices (V, 3), shape (2, LANES, STEPS, 3)."""
+        """The ways of the outline on a skin with vertices (V, 3), shape (2, LANES, STEPS, 3)."""
         return self.lanes.interpolate(positions).reshape(2, LANES, STEPS, 3)
 
 
 def annotation_of(head: Head | FittedHead) -> Annotation:
     """The annotation of a head at rest.
 
-    A head of the user's has the points that its landmark file has, for these are annotations.
+    A user's head has the points of its landmark file, because these are annotations.
     """
     if isinstance(head, Head | Person):
         points, lanes = _of_built_in()
@@ -102,7 +102,7 @@ def _mirror_image(uv: Floats64) -> Floats64:
 
 
 def _evenly(corners: Floats64, count: int) -> Floats64:
-    """Points from corner to corner, as many between each pair, shape (count, k)."""
+    """Points from corner to corner, equally many between each pair, shape (count, k)."""
     return evenly_spaced(corners, np.arange(float(len(corners))), count)
 
 
@@ -123,7 +123,7 @@ def _vertices(numbers: Integers32) -> SurfacePoints:
 
 
 def _with_brows(head: Head | Person, points: SurfacePoints) -> SurfacePoints:
-    """Places with those of the brows on the brows of a head's own picture."""
+    """Places, with those of the brows moved to the brows of a head's own picture."""
     corners = points.corners.copy()
     weights = points.weights.copy()
     sides = ((Segment.RIGHT_BROW, -1.0, range(21, 16, -1)), (Segment.LEFT_BROW, 1.0, range(22, 27)))
@@ -144,8 +144,8 @@ def _with_brows(head: Head | Person, points: SurfacePoints) -> SurfacePoints:
 def _along_brow(places: Floats64) -> Integers32:
     """Five of the places (n, 3) [mm] of a left brow, from the nose outward, shape (5,).
 
-    Both ends, and three on the upper edge, as far from each other along it. The tail ends at the
-    place that is farthest from the nose's end, for it may turn down there.
+    They are both ends, and three on the upper edge at equal distances. The tail ends at the place
+    farthest from the inner end, because a tail may turn down there.
     """
     x, y, _ = places.T
     strip_width = 1.0  # [mm]

@@ -1,9 +1,9 @@
-"""The built-in head with a quarter of its triangles, on which everybody sees what refinement does.
+"""The built-in head with a quarter of its triangles, where everybody sees the effect of refinement.
 
     head = coarse_head()
 
 The layout was made by hand (`coarse.toml`). Its vertices are vertices of the built-in head, so rig,
-landmarks, teeth and picture fit as they are.
+landmarks, teeth and picture fit unchanged.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from .fitting.warp import Similarity
 from .loading import load
 from .model import Head, Part
 
-COARSE = "coarse"  # how a user calls it
+COARSE = "coarse"  # its name for users
 LAYOUT_FILE = Path(__file__).parent / "coarse.toml"
 
 
 @dataclass(frozen=True)
 class CoarseHead(FittedHead):
-    """A head with some vertices of the built-in one. It has the fields of a fitted head, and:
+    """A head with some vertices of the built-in one. Besides the fields of a fitted head it has:
 
-    mandible_weight, jaw_axis, mirror: as of `Head`.
-    anatomy: the anatomical points that are among its vertices, name -> vertex number.
+    mandible_weight, jaw_axis, mirror: as in `Head`.
+    anatomy: the anatomical points among its vertices, name -> vertex number.
     """
 
     mandible_weight: Floats64
@@ -51,7 +51,7 @@ def coarse_head() -> CoarseHead:
     kept, faces = _layout(known)
     number = np.full(len(known.vertices), -1, np.int32)
     number[kept] = np.arange(len(kept))
-    # No part hangs from its lids, and no map shows what its triangles do not hold.
+    # No lashes hang from its lids, and no map shows form beyond its triangles.
     parts = tuple(_behind_lids(known, part) for part in known.parts if part.roots is None)
     still = replace(known.wrinkles, across=np.zeros((len(kept), 2, 3), np.float32))
     return CoarseHead(
@@ -80,7 +80,7 @@ def coarse_head() -> CoarseHead:
 
 
 def _behind_lids(known: Head, part: Part) -> Part:
-    """The part, an eyeball a little smaller: straight edges of lids cut into the built-in one."""
+    """The part, but an eyeball a little smaller: straight edges of lids would cut a full one."""
     share = 0.95  # of the radius
     for eye in known.eyes:
         if part.name == f"eyeball_{eye.name}":
@@ -90,7 +90,7 @@ def _behind_lids(known: Head, part: Part) -> Part:
 
 
 def _layout(known: Head) -> tuple[Integers32, Integers32]:
-    """The vertices of the built-in head that are kept, (V,), and triangles among them, (F, 3)."""
+    """The kept vertices of the built-in head, (V,), and triangles among them, (F, 3)."""
     table = read_toml(LAYOUT_FILE)["triangles"]
     left = np.vstack([*table.values()]).astype(np.int32)
     right = known.mirror[left][:, ::-1]

@@ -1,4 +1,4 @@
-"""The files that belong to an asset: arrays, tables and images, read whole or refused in one line.
+"""The files of an asset: arrays, tables and images, read whole or refused in one line.
 
 Images are PNG files that hold sRGB, row 0 on top.
 """
@@ -23,7 +23,7 @@ def _errors_named(path: Path) -> Iterator[None]:
     """Raise every error of a reader as an AssetError that names the file."""
     try:
         yield
-    except Exception as error:  # zip, its compression, numpy and PNG have their own kinds each
+    except Exception as error:  # zip, its compression, numpy and PNG each raise their own kinds
         raise AssetError(f"{path} cannot be read ({error}); install risorius again") from error
 
 
@@ -44,7 +44,7 @@ def read_toml(path: Path) -> dict[str, Any]:
 
 def read_image(path: Path, *, mode: str = "RGB") -> Image:
     """Read an image, shape (H, W, 3), in mode "L" (H, W), uint8, read-only; or AssetError."""
-    import PIL.Image  # which to load a head takes no time for
+    import PIL.Image  # imported late: to load a head stays fast
 
     with _errors_named(path), PIL.Image.open(path) as file:
         image: Image = np.array(file.convert(mode), dtype=np.uint8)

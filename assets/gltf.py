@@ -1,10 +1,11 @@
-"""The surface that a glTF or GLB file shows: its triangles at rest, and what paints them.
+"""The surface that a glTF or GLB file shows: its triangles at rest, and their paint.
 
-Nodes place meshes, bones bend them, shapes are added as the file weighs them. All becomes one list
-of triangles in the coordinates of the scene, node by node and part by part.
+Nodes place meshes, bones bend them, and shapes are added with the file's weights. The result is one
+list of triangles in the coordinates of the scene, node by node and part by part.
 
-A vertex at a seam of the texture comes twice. Vertices of one node in one place are one, unless the
-file moves them apart by a shape or a bone: then they are of two lips that touch.
+A vertex at a seam of the texture occurs twice in the file. Vertices of one node in one place are
+merged, unless a shape or a bone of the file moves them apart: then they belong to two lips that
+touch.
 
 Source: Khronos Group, "glTF 2.0 Specification", section 3.
 """
@@ -30,11 +31,11 @@ class GltfSurface:
     """The surface that a glTF file shows.
 
     vertices: in the coordinates of the scene, shape (V, 3). faces: shape (F, 3).
-    same: of vertices that the file doubles, the one that `faces` name, shape (V,).
+    same: for each vertex, the one of its doubles that `faces` name, shape (V,).
     corners: the same triangles with the numbers of the file, shape (F, 3).
-    texture: how pictures paint it; None if none does.
-    colours: of vertices, sRGB, shape (V, 3), uint8; None if there are none.
-    has_colour: which vertices have one, shape (V,).
+    texture: pictures and their places; None without pictures.
+    colours: those of vertices, sRGB, shape (V, 3), uint8; None without any.
+    has_colour: flags of vertices with a colour, shape (V,).
     """
 
     vertices: Floats64
@@ -48,12 +49,13 @@ class GltfSurface:
 
 @dataclass(frozen=True)
 class StoredPiece:
-    """One primitive of a mesh, as one node shows it: where its vertices are in the file.
+    """One primitive of a mesh, as one node shows it: the places of its vertices in the file.
 
-    node, mesh, primitive: numbers, of the primitive within its mesh. count: of its vertices, which
-    follow those of the pieces before. to_scene: how a change of stored places changes the places
-    in the scene, a matrix (3, 3) or one for each vertex, (V, 3, 3). triangles: corners as the file
-    runs around them, numbers within the piece, shape (F, 3). name: of the node, or of its mesh.
+    node, mesh, primitive: their numbers; that of the primitive is within its mesh. count: number of
+    its vertices, which follow those of the pieces before. to_scene: takes a change of stored places
+    to the scene, a matrix (3, 3) or one for each vertex, (V, 3, 3). triangles: corners in the
+    file's direction, numbers within the piece, shape (F, 3). name: that of the node, or of its
+    mesh.
     """
 
     node: int
@@ -74,18 +76,18 @@ class _Piece(NamedTuple):
     to_scene: Floats64
     stored: Floats64  # (V, 3) positions as in the file
     seen: Floats64  # (V, 3) in the scene
-    motion: Floats64  # (V, 4) of shapes and bones, mixed: alike where vertices move alike
+    motion: Floats64  # (V, 4) mixture of shapes and bones: equal for vertices that move alike
     faces: Integers64  # (F, 3)
-    is_turned: bool  # whether the file runs around its triangles the other way
+    is_turned: bool  # whether the file's triangles run the other way round
     picture: int  # its number, -1 for none
     uv: Floats64  # (V, 2), v up
     colours: Unsigned8 | None  # (V, 3)
 
 
 def read_gltf(content: bytes, folder: Path) -> GltfSurface:
-    """The surface in a file. folder: its own, in which other files of it may lie.
+    """The surface in a file. folder: the file's own, which may hold further files of it.
 
-    Raises AssetError for a kind that cannot be read, any other error for a broken file.
+    Raises AssetError for an unreadable kind, any other error for a broken file.
     """
     reader = _Reader(GltfFile(content, folder))
     pieces = [*reader.pieces()]
@@ -126,7 +128,7 @@ def read_gltf(content: bytes, folder: Path) -> GltfSurface:
 
 
 def stored_pieces(content: bytes, folder: Path) -> list[StoredPiece]:
-    """Where the vertices of `read_gltf` are in their file, in its order; errors as there."""
+    """Pieces of a file with the vertices of `read_gltf`, in its order; errors as there."""
     reader = _Reader(GltfFile(content, folder))
     return [
         StoredPiece(
@@ -143,7 +145,7 @@ def stored_pieces(content: bytes, folder: Path) -> list[StoredPiece]:
 
 
 class _Reader:
-    """Reads pieces; the painter knows their pictures."""
+    """Reads pieces; the painter has their pictures."""
 
     STRIP = 5
     FAN = 6
@@ -155,7 +157,7 @@ class _Reader:
         self._worlds = _places(self._document.nodes or [])
 
     def pieces(self) -> Iterator[_Piece]:
-        """The surfaces of all nodes that the scene shows."""
+        """The pieces of all nodes that the scene shows."""
         triangles = 4  # the number of this mode
         for number in self._shown():
             node = self._document.nodes[number]
@@ -173,12 +175,12 @@ class _Reader:
                     yield self._piece(number, place, weights)
 
     def name_of(self, number: int) -> str:
-        """The name of a node that shows a mesh, or of this mesh; empty where neither has one."""
+        """The name of a node that shows a mesh, or of this mesh; empty if neither has a name."""
         node = self._document.nodes[number]
         return str(node.name or self._document.meshes[node.mesh].name or "")
 
     def _shown(self) -> list[int]:
-        """The nodes of the scene, from its last root down: so vertices have always been counted."""
+        """The nodes of the scene, from its last root down: vertex numbers follow this order."""
         document = self._document
         if document.scenes:
             waiting = [*(document.scenes[document.scene or 0].nodes or [])]
@@ -194,7 +196,7 @@ class _Reader:
         return [*found]
 
     def _piece(self, number: int, which: int, weights: list[float]) -> _Piece:
-        """A node's primitive, by its number in the mesh. weights: of its shapes."""
+        """A node's primitive, by its number in the mesh. weights: those of its shapes."""
         primitive = self._document.meshes[self._document.nodes[number].mesh].primitives[which]
         attributes = vars(primitive.attributes)
         accessor = self._document.accessors[attributes["POSITION"]]
@@ -203,7 +205,7 @@ class _Reader:
         stored = self._file.values(attributes["POSITION"]).astype(np.float64)
         points = stored
         motion = np.zeros((len(stored), 4))
-        mixture = np.random.default_rng(0)  # of shapes, and of bones: nothing cancels out
+        mixture = np.random.default_rng(0)  # of shapes and bones: no two motions cancel
         targets = [entry(target, "POSITION") for target in primitive.targets or []]
         for place, target in enumerate(targets):
             share = mixture.uniform(0.5, 1.5)
@@ -251,10 +253,10 @@ class _Reader:
         skin: int,
         mixture: np.random.Generator,
     ) -> tuple[Floats64, Floats64, Floats64]:
-        """Where bones bring points (V, 3), a mixture of these bones for each, shape (V,), and how
-        they turn and scale each, (V, 3, 3).
+        """Points (V, 3) moved by bones, a mixture of the bones of each, shape (V,), and their turns
+        and scales, (V, 3, 3).
 
-        unbent: where the node alone has them, by the matrix `world`, for points no bone holds.
+        unbent: points moved by the node's matrix `world` alone, for points without a bone.
         """
         bones = self._document.skins[skin]
         motions = np.array([self._worlds[joint] for joint in bones.joints])
@@ -296,7 +298,7 @@ class _Reader:
 def _moved(points: Floats64, matrices: Floats64) -> Floats64:
     """Points (V, 3) moved by a matrix (4, 4), or by one each, (V, 4, 4)."""
     rows = matrices[..., :3, :]
-    # Written out: equal points come out equal to the last bit, wherever they stand in the list.
+    # Written out, so that equal points stay equal to the last bit at any place in the list.
     along = [rows[..., axis] * points[:, axis, None] for axis in range(3)]
     moved: Floats64 = along[0] + along[1] + along[2] + rows[..., 3]
     return moved
@@ -336,7 +338,7 @@ def _local(node: Any) -> Floats64:
 
 
 def _same_vertices(pieces: list[_Piece], starts: Integers64) -> Iterator[Integers64]:
-    """For each node in turn, which of its vertices is the first of those that are one."""
+    """For each vertex, node by node, the first of the vertices that are one with it."""
     for node in dict.fromkeys(piece.node for piece in pieces):
         own = [piece for piece in pieces if piece.node == node]
         start = starts[next(n for n, piece in enumerate(pieces) if piece.node == node)]
@@ -346,12 +348,12 @@ def _same_vertices(pieces: list[_Piece], starts: Integers64) -> Iterator[Integer
 
 
 def _first_of_same(stored: Floats64, motion: Floats64) -> Integers64:
-    """The first of the vertices that lie in one place and move alike, shape (V,)."""
+    """For each vertex, the first of those in its place that move alike, shape (V,)."""
     same = np.arange(len(stored))
     left = np.arange(len(stored))
-    # Share of the farthest way of any vertex: farther apart, two vertices differ.
+    # Share of the farthest motion of any vertex: more apart, two vertices differ.
     least_distance = 1e-3
-    most_in_one_place = 16  # vertices that move each in its own way; others there stay apart
+    most_in_one_place = 16  # different motions of vertices; further ones stay apart
     for _ in range(most_in_one_place):
         first, number = unique_points(stored[left] + 0.0)  # no zero with a sign
         same[left] = left[first[number]]

@@ -1,11 +1,11 @@
 """A glTF file taken apart: its document, the numbers of its accessors, the files of its pictures.
 
 pygltflib reads the document. The data lie in the GLB file itself, in text within the document, or
-in files beside it. Numbers come out as the specification means them: integers that are normalized
-become shares, sparse ones are filled in, and rows may lie interleaved.
+in files beside it. Numbers come out as the specification means them: Normalized integers become
+shares, sparse rows are filled in, and rows may be interleaved.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.6 and 4, and its registry of extensions.
-Differs from it: an accessor of matrices holds matrices of 4 x 4 floats alone.
+Differs from it: an accessor of matrices holds only matrices of 4 x 4 floats.
 """
 
 from __future__ import annotations
@@ -31,22 +31,21 @@ MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
 
 
 class GltfFile:
-    """One file. If it is broken, each method may raise any error, not only AssetError.
+    """One file. If the file is broken, each method may raise any error, not only AssetError.
 
-    document: that of pygltflib, without animations and extras.
+    document: a pygltflib document, without animations and extras.
     """
 
     def __init__(self, content: bytes, folder: Path) -> None:
-        """content: of the file. folder: its own, in which other files of it may lie.
+        """content: that of the file. folder: the file's own, which may hold further files of it.
 
-        Raises AssetError, which names them, for required extensions that this reader does not
-        support.
+        Raises AssetError, which names the extensions, for required ones without support.
         """
         import pygltflib  # which to load the built-in head takes no time for
 
         text, self._data = chunks_of(content)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of pygltflib, which would print them
+            warnings.simplefilter("ignore")  # pygltflib would print them
             self.document = pygltflib.GLTF2.from_json(
                 text.decode("utf-8-sig"), infer_missing=True, object_hook=_tidied
             )
@@ -55,7 +54,8 @@ class GltfFile:
         version = str(self.document.asset.version)
         if not version.startswith("2."):
             raise AssetError(f"is glTF {named(version)}; export it as glTF 2.0")
-        # Extensions that a file may require: of numbers, and of looks alone, by how names begin.
+        # Extensions that a file may require: for numbers, and for looks only, by beginnings of
+        # names.
         readable = (
             *("KHR_mesh_quantization", "KHR_texture_", "EXT_texture_", "MSFT_texture_"),
             *("KHR_materials_", "KHR_lights_", "EXT_lights_", "KHR_xmp"),
@@ -102,7 +102,7 @@ class GltfFile:
         return content_of(image.uri, self._folder, "picture"), str(name)
 
     def _filled_in(self, rows: npt.NDArray[Any], sparse: Any) -> npt.NDArray[Any]:
-        """Rows with those in place of which a sparse accessor has others."""
+        """Rows with the replacements of a sparse accessor."""
         places = sparse.indices
         kind = np.dtype(COMPONENTS[places.componentType])
         where = self._rows(places.bufferView, places.byteOffset, kind, (sparse.count, 1))[:, 0]
@@ -116,7 +116,7 @@ class GltfFile:
     def _rows(
         self, view: int, offset: int | None, kind: np.dtype[Any], shape: tuple[int, int]
     ) -> npt.NDArray[Any]:
-        """Rows that lie in a part of a buffer, one behind the other or with other data between."""
+        """Rows in a part of a buffer, one after another or with other data between."""
         count, width = shape
         stride = self.document.bufferViews[view].byteStride or width * kind.itemsize
         if not count:
@@ -135,7 +135,7 @@ class GltfFile:
         return memoryview(data)[start : start + view.byteLength]
 
     def _buffer(self, number: int, compressed: list[str]) -> bytes:
-        """The bytes of a buffer; compressed: by which extensions alone they may be there."""
+        """The bytes of a buffer; compressed: extensions that may explain their absence."""
         if number not in self._buffers:
             uri = self.document.buffers[number].uri
             if uri is not None:
@@ -150,10 +150,10 @@ class GltfFile:
 
 
 def content_of(uri: str, folder: Path, kind: str) -> bytes:
-    """The data that a URI holds, or those of the file that it names.
+    """The data of a URI, or of the file that it names.
 
-    folder: of the document. kind: of the data, for the message of the AssetError that is raised for
-    a file that cannot be read.
+    folder: that of the document. kind: that of the data, for messages. Raises AssetError for an
+    unreadable file.
     """
     if uri.startswith("data:"):
         head, _, data = uri.partition(",")
@@ -169,18 +169,18 @@ def content_of(uri: str, folder: Path, kind: str) -> bytes:
 
 
 def entry(part: Any, name: str) -> Any:
-    """A part of the document's, which is an object of pygltflib or, in extensions, a mapping."""
+    """An entry of a part of the document: an object of pygltflib or, in extensions, a mapping."""
     return part.get(name) if isinstance(part, Mapping) else getattr(part, name, None)
 
 
 def shares(rows: npt.NDArray[Any]) -> Floats64:
-    """Integers as shares of the greatest: 0 to 1, those with a sign -1 to 1."""
+    """Integers as shares of their greatest value: 0 to 1, or signed -1 to 1."""
     greatest = np.iinfo(rows.dtype).max
     return np.maximum(rows.astype(np.float64) / greatest, -1.0)
 
 
 def packed(name: str) -> AssetError:
-    """The error for a mesh that an extension compresses."""
+    """The error about a mesh that an extension compresses."""
     return AssetError(f"is compressed ({name}); export it without compression")
 
 
@@ -198,16 +198,16 @@ def chunks_of(content: bytes) -> tuple[bytes, bytes | None]:
         place += 8
         if place + size > len(content):
             raise ValueError("the file ends too early")
-        found.setdefault(kind, content[place : place + size])  # a second one of a kind is ignored
+        found.setdefault(kind, content[place : place + size])  # a second chunk of a kind is ignored
         place += size
     return found[b"JSON"], found.get(b"BIN\0")
 
 
 def _tidied(entries: Mapping[str, Any]) -> dict[str, Any]:
-    """An object of the document as pygltflib can hold it.
+    """An object of the document in a form that pygltflib can hold.
 
-    It knows extras only as objects, and no weights of nodes, which are put among these. Animations
-    are not read: there may be thousands.
+    pygltflib takes extras only as objects, and has no weights of nodes, which are put into the
+    extras. Animations are not read: there may be thousands.
     """
     kept = {key: value for key, value in entries.items() if key not in ("extras", "animations")}
     if "mesh" in entries and "weights" in entries:

@@ -1,4 +1,4 @@
-"""The paint of the primitives of a glTF file: pictures, their places, tints, colours of vertices.
+"""The paint of primitives in a glTF file: pictures, their places, tints, vertex colours.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.8 and 3.9; KHR_texture_transform,
 KHR_materials_pbrSpecularGlossiness, EXT_texture_webp.
@@ -24,7 +24,7 @@ WHITE = (1.0, 1.0, 1.0)
 
 
 class GltfPainter:
-    """Finds what paints a primitive. `pictures` are all so far, by image and tint, unread."""
+    """Finds the paint of a primitive. `pictures` has all so far, by image and tint, unread."""
 
     UNREAD = ("KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds")  # formats of pictures
 
@@ -34,7 +34,7 @@ class GltfPainter:
         self._document = file.document
 
     def painted(self, primitive: Any, count: int) -> tuple[int, Floats64, tuple[float, ...]]:
-        """The number of its picture, texture coordinates (V, 2), and the tint of its material."""
+        """Number of a primitive's picture, texture coordinates (V, 2), and its material's tint."""
         attributes = vars(primitive.attributes)
         nowhere = np.zeros((count, 2))
         if primitive.material is None:
@@ -58,7 +58,7 @@ class GltfPainter:
         return [*self.pictures].index(key), uv * [1.0, -1.0] + [0.0, 1.0], factor
 
     def _image(self, texture: Any) -> int:
-        """The number of a texture's image, below 0 for one of a format that is not read."""
+        """The number of a texture's image, below 0 for a format that is not read."""
         if texture.source is not None:
             return int(texture.source)
         extensions = texture.extensions or {}
@@ -68,7 +68,7 @@ class GltfPainter:
         return -1 - found[0] if found else -1 - len(self.UNREAD)
 
     def _picture(self, number: int, factor: tuple[float, ...]) -> Image:
-        """Read an image, when it is drawn; raises AssetError if it cannot be."""
+        """Read an image when it is drawn; raises AssetError if it is unreadable."""
         if number < 0:
             name = [*self.UNREAD, "no source"][-1 - number]
             raise AssetError(f"its picture is of a kind that is not read ({name}); save it as PNG")
@@ -82,18 +82,18 @@ class GltfPainter:
         return picture if factor == WHITE else tinted(picture, factor)
 
     def colours(self, attributes: Mapping[str, Any], factor: tuple[float, ...]) -> Unsigned8 | None:
-        """The colours of vertices, which are linear light in the file, shape (V, 3)."""
+        """The colours of vertices as sRGB, shape (V, 3); the file has linear light."""
         if attributes.get("COLOR_0") is None:
             return None
         light = self._file.values(attributes["COLOR_0"])[:, :3]
-        if light.dtype.kind != "f":  # whether it says so or not, integers are shares
+        if light.dtype.kind != "f":  # integers are always shares, whatever the file says
             light = shares(light)
         screen = np.rint(255.0 * to_screen(np.nan_to_num(light) * factor))
         return screen.astype(np.uint8)
 
 
 def _base_colour(material: Any) -> tuple[Any, tuple[float, ...]]:
-    """What names the picture of a material, None for none, and its tint in linear light."""
+    """The texture entry of a material, or None, and its tint in linear light."""
     specular = "KHR_materials_pbrSpecularGlossiness"
     older = (material.extensions or {}).get(specular)
     if older is not None:
@@ -109,7 +109,7 @@ def _base_colour(material: Any) -> tuple[Any, tuple[float, ...]]:
 
 
 def _placed(uv: Floats64, placing: Mapping[str, Any]) -> Floats64:
-    """Texture coordinates, v down, where KHR_texture_transform moves them.
+    """Texture coordinates, v down, moved by KHR_texture_transform.
 
     They are scaled, then turned counter-clockwise as seen with v down, then shifted.
     """
@@ -120,7 +120,7 @@ def _placed(uv: Floats64, placing: Mapping[str, Any]) -> Floats64:
 
 
 def _within_picture(values: Floats64, way: int | None) -> Floats64:
-    """Coordinates along one axis of a picture that goes on beyond its edge in some way."""
+    """Coordinates along one axis of a picture, wrapped beyond its edge in a `way`."""
     clamped = 33071  # numbers of ways to continue a picture beyond its edge
     if way == clamped:
         return values.clip(0.0, 1.0)

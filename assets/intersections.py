@@ -1,4 +1,4 @@
-"""Where a surface cuts through itself."""
+"""Places where a surface cuts through itself."""
 
 import numpy as np
 
@@ -28,9 +28,9 @@ def self_intersections(vertices: Points, faces: Faces) -> Faces:
 
 
 def _segment_cuts(start: Points, end: Points, triangle: Points) -> Flags:
-    """Whether segments cut triangles, row by row."""
+    """Flags of segments that cut triangles, row by row."""
     volume, u, v, along = crossings(start, end - start, triangle)
-    margin = 1e-6  # relative; touching at a corner or an edge does not count as intersecting
+    margin = 1e-6  # relative; contact at a corner or an edge is no intersection
     in_triangle = (u > margin) & (v > margin) & (u + v < 1 - margin)
     return np.asarray(
         in_triangle & (along > margin) & (along < 1 - margin) & (np.abs(volume) > PARALLEL)

@@ -1,9 +1,9 @@
 """Load an asset by name: the built-in head or the paper's plane.
 
-The head's numbers lie in `data/head.npz` (docs/head.md says where they are from); its rig and
-the layers of controls above the muscles are text files, written by hand (`rigs/face.toml`,
-`action_units.toml`, `expressions.toml`, `visemes.toml`, `arkit.toml`), and so are the plain words
-for controls (`words.toml`).
+`data/head.npz` has the head's numbers (docs/head.md names their origin). Its rig and the layers of
+controls above the muscles are text files, written by hand (`rigs/face.toml`, `action_units.toml`,
+`expressions.toml`, `visemes.toml`, `arkit.toml`), and so are the plain words for controls
+(`words.toml`).
 """
 
 import functools
@@ -24,7 +24,7 @@ FOLDER = Path(__file__).parent
 HEAD_FILE = FOLDER / "data" / "head.npz"
 RIG_FILE = FOLDER / "rigs" / "face.toml"
 WORDS_FILE = FOLDER / "words.toml"
-ARRAYS = (  # of the data file, that are fields of a head as they are
+ARRAYS = (  # arrays of the data file that become fields of a head unchanged
     "vertices faces landmarks bone_depth mandible_weight jaw_axis mirror uv".split()
 )
 LAYER_FILES = MappingProxyType(  # title -> file, from the lowest layer up
@@ -45,7 +45,7 @@ def load(name: Literal["plane"]) -> Plane: ...
 def load(name: str) -> Head | Plane: ...
 @functools.cache
 def load(name: str) -> Head | Plane:
-    """Load the asset called `name` ("head" or "plane"), once; nobody may change its content.
+    """Load the asset called `name` ("head" or "plane") once; its content is read-only.
 
     Raises AssetError for an unknown name, and for a missing or broken file.
     """
@@ -85,7 +85,7 @@ def read_words() -> Mapping[str, Any]:
 
 
 def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
-    """Parts lie one after the other in shared arrays: an npz entry costs more than its numbers."""
+    """Read parts, which are one after another in shared arrays: npz entries are expensive."""
     of_vertex, of_face = (np.cumsum(arrays[f"part_{of}_counts"])[:-1] for of in ("vertex", "face"))
     names = "vertices", "normals", "colours", "roots", "mandible_shares"
     vertices, normals, colours, roots, shares = (

@@ -1,8 +1,8 @@
-"""Read a triangle mesh of the user's: OBJ, PLY, STL, OFF, glTF or GLB, and what paints it.
+"""Read a user's triangle mesh, OBJ, PLY, STL, OFF, glTF or GLB, and its paint.
 
-Every vertex and triangle stays where the file has it, because landmarks and animation caches count
-on their numbers. trimesh reads STL and OFF; it likes to merge and reorder vertices, and of the
-others it leaves out or misreads what heads have. What paints OBJ: pictures.py.
+Every vertex and triangle keeps its number in the file, because landmarks and animation caches
+depend on it. trimesh reads STL and OFF; it may merge and reorder vertices, and from other formats
+it omits or misreads data that heads have. pictures.py has the paint of OBJ.
 """
 
 import contextlib
@@ -30,21 +30,21 @@ from .user_files import MOST_VERTICES, named, plain_text, read_file
 from .wavefront import read_obj
 
 FORMATS = ("obj", "ply", "stl", "off", "glb", "gltf")  # ends of names
-FARTHEST = 1e9  # of a coordinate, in any unit: far beyond all, and its cube is still a number
+FARTHEST = 1e9  # of a coordinate, in any unit: far beyond any mesh, and its cube is still finite
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """A bare triangle mesh: what `sim.create` and `refine.create` ask for at least.
+    """A plain triangle mesh: the least that `sim.create` and `refine.create` need.
 
     vertices: positions [unit of the file], shape (V, 3), float64.
     faces: vertex numbers, shape (F, 3), int32.
-    texture: how the file itself paints it, where it does.
-    colours: of its vertices, sRGB, shape (V, 3), uint8, where the file has such.
-    has_colour: which vertices have one, shape (V,); None: all.
-    same: of vertices that the file doubles, the one that `faces` name, shape (V,).
-    corners: the vertices of triangles as the file numbers them, shape (F, 3), where some are
-        doubled; None: those of `faces`.
+    texture: the file's own pictures; None without any.
+    colours: those of its vertices, sRGB, shape (V, 3), uint8; None without any.
+    has_colour: flags of vertices with a colour, shape (V,); None: all.
+    same: for each vertex, the one of its doubles that `faces` name, shape (V,).
+    corners: the vertices of triangles by the file's numbers, shape (F, 3), if some are doubled;
+        None: those of `faces`.
     notes: what its bringer should know, a line each.
     """
 
@@ -61,7 +61,7 @@ class Mesh:
         make_read_only(self)
 
     def without(self, triangles: npt.NDArray[np.integer[Any]]) -> Self:
-        """The mesh without some triangles; its vertices keep their numbers."""
+        """The mesh without the flagged triangles; its vertices keep their numbers."""
         left = np.delete(np.arange(len(self.faces)), triangles)
         texture = self.texture
         if texture is not None:
@@ -95,7 +95,7 @@ def read_mesh(path: str | Path) -> Mesh:
 
 
 def _read(content: bytes, suffix: str, folder: Path) -> Mesh:
-    """The mesh in a file of a format. folder: in which other files of it may lie."""
+    """The mesh in a file of a format. folder: the one that may hold further files of it."""
     if suffix == "obj":
         surface = read_obj(content, most=MOST_VERTICES)
         texture, notes = texture_of(surface, folder)
@@ -124,7 +124,7 @@ def _read(content: bytes, suffix: str, folder: Path) -> Mesh:
 
 
 def _numbers(faces: npt.NDArray[Any]) -> Integers32:
-    """Vertex numbers as 32 bits hold them; those beyond are beyond any mesh."""
+    """Vertex numbers as 32-bit integers, clipped; larger ones are invalid in any mesh."""
     return faces.clip(-1, np.iinfo(np.int32).max).astype(np.int32)
 
 
@@ -134,7 +134,7 @@ def _broken_files_named() -> Iterator[None]:
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
-            # numpy's way to say that a number is none, after which it would read no further
+            # numpy warns so about a broken number, and would stop reading there
             warnings.filterwarnings("error", category=DeprecationWarning, message="string or file")
             yield
     except AssetError:
@@ -148,7 +148,7 @@ def _broken_files_named() -> Iterator[None]:
 
 
 def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:
-    """AssetError unless there are triangles between vertices that are numbers within range."""
+    """Raise AssetError unless there are triangles, between finite vertices within range."""
     if not len(faces):
         raise AssetError("holds no triangles; it must hold the surface of a head, as polygons")
     if max(len(faces), len(vertices)) > MOST_VERTICES:
@@ -163,7 +163,7 @@ def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:
             f"triangle {where} (counted from 0) has the vertices {faces[where].tolist()}; there "
             f"are 0 to {len(vertices) - 1}: save the mesh anew"
         )
-    is_near = (np.abs(vertices) <= FARTHEST).all(axis=1)  # not so where a number is none
+    is_near = (np.abs(vertices) <= FARTHEST).all(axis=1)  # False for NaN
     if not is_near.all():
         where = int(np.argmin(is_near))
         raise AssetError(

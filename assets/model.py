@@ -1,8 +1,8 @@
 """The arrays that an asset consists of.
 
 Plain frozen dataclasses of plain numpy arrays: every other package takes arrays, so none of them
-has to import this one. All arrays are read-only. What simulating a head needs not (images, finer
-meshes) is read from its files when it is first asked for.
+has to import this one. All arrays are read-only. Data that a simulation does not need (images,
+finer meshes) are read from files at their first use.
 
 Coordinates of the head: millimetres, x toward the subject's left, y up, z toward the viewer; x = 0
 is the mirror plane. Faces are counter-clockwise seen from outside.
@@ -59,7 +59,7 @@ class Segment(IntEnum):
 
 @dataclass(frozen=True)
 class Eye:
-    """One eyeball: a sphere that looks along +z at rest.
+    """One eyeball: a sphere that faces +z at rest.
 
     name: "right" or "left" (the subject's).
     centre: centre of rotation [mm], shape (3,), float64.
@@ -88,13 +88,14 @@ class Part:
     bone: "cranium", "mandible", "eye_left" or "eye_right"; the part moves with it. Parts of the
         "neck" stand still.
     shine: strength of the highlight, 0 (dull) to 1 (wet).
-    roots: for a part that is attached to the skin and moves with it, for each vertex the one whose
-        place on the skin it keeps to, shape (n,), int32; None for all others.
-    strand_radius: half the thickness of the hairs that it consists of [mm]; 0 where it is none.
+    roots: for a part that moves with the skin, the root of each vertex: the part's vertex whose
+        place on the skin it follows, shape (n,), int32; None for other parts.
+    strand_radius: half the thickness of its hairs [mm]; 0 for a part without hairs.
     mandible_shares: for a part of the skull that stretches between both jaws, how far each vertex
-        goes with the mandible, 0 to 1, shape (n,), float32; None for all others.
-    striation: for hair alone the place of each vertex across and along its strands [mm], the way
-        from their roots to their tips [mm], and how dense they are, shape (n, 6), float32.
+        follows the mandible, 0 to 1, shape (n,), float32; None for other parts.
+    striation: for hair, the place of each vertex across and along its strands [mm], the way from
+        their roots to their tips [mm], and their density, shape (n, 6), float32; None for other
+        parts.
     """
 
     name: str
@@ -114,7 +115,7 @@ class Part:
 
     @property
     def is_enclosed(self) -> bool:
-        """Whether it is in the head, where light from behind does not get."""
+        """Whether it is in the head, where no light from behind arrives."""
         if self.name in (GLASSES, MASK):
             return False
         return self.bone in ("cranium", "mandible", "eye_right", "eye_left")
@@ -125,7 +126,7 @@ class Layer:
     """A table of controls above the muscles: action units, expressions, visemes, ARKit shapes.
 
     title: heading under which a panel lists them.
-    source: the file it was read from, for error messages.
+    source: its file, for error messages.
     rows: control name -> {name of a lower control, or one of NOT_SHARES: value}, as in the file;
         sim/layers.py explains them.
     """
@@ -138,15 +139,16 @@ class Layer:
 
 @dataclass(frozen=True)
 class Wrinkles:
-    """Wrinkles of a face: furrows over its texture, and when its vertices show them.
+    """Wrinkles of a face: furrows over its texture, and the conditions under which they show.
 
     map: row 0 is v = 1, shape (H, W, 4), uint8. Slope of the skin's height along u and v (128 is
         level), depth of the furrow, and the slot that the texel follows (0 the first, 255 the
         second, between them both).
     steepest: slope of 255 in `map` [mm for one unit of the texture coordinates].
-    across: for each vertex and slot the direction at rest in which skin shortens when it wrinkles;
-        its length is how readily it does; zero where it does not; shape (V, 2, 3), float32.
-    resting: how far each vertex is wrinkled at rest, 0 to 1, as with age, shape (V,); (1,) for all.
+    across: for each vertex and slot, the direction at rest in which wrinkling skin shortens; its
+        length is the readiness to wrinkle, zero for none; shape (V, 2, 3), float32.
+    resting: wrinkles of each vertex at rest, such as those of age, 0 to 1, shape (V,); (1,) for
+        all.
     """
 
     map: Image
@@ -162,7 +164,7 @@ class FineShape(NamedTuple):
     """Fine shape of a skin at rest, beyond its triangles, in the layout of `uv`."""
 
     slopes: Image
-    """Of its height along u and v, row 0 is v = 1, shape (H, W, 2), uint8; 128 is level."""
+    """Slopes of its height along u and v, row 0 is v = 1, shape (H, W, 2), uint8; 128 is level."""
     steepest: float
     """Slope of 255 [mm for one unit of the texture coordinates]."""
 
@@ -172,10 +174,10 @@ class FineMesh:
     """The skin of a head with more triangles, at rest.
 
     vertices: [mm], shape (n, 3), float64; the first V are those of the head, bit for bit.
-    faces: shape (4^level F, 3), int32; the children of face f stand together, in its place.
+    faces: shape (4^level F, 3), int32; the children of face f replace it, side by side.
     normals: unit normals of the true form, shape (n, 3), float64.
-    edges: for each cut into four, the ends of the edges that it halved, shape (E, 2), int32; the
-        new vertices are numbered as they are.
+    edges: for each cut into four, the ends of the halved edges, shape (E, 2), int32; new vertices
+        have the order of these edges.
     """
 
     vertices: Floats64
@@ -184,7 +186,7 @@ class FineMesh:
     edges: tuple[Integers32, ...]
 
     def interpolate(self, values: Floats64 | Floats32) -> Floats64:
-        """Carry values of the head's vertices (depth, weight, motion) over to the fine ones.
+        """Carry values of the head's vertices (depth, weight, motion) to the fine ones.
 
         values: shape (V,) or (V, k). Returns shape (n,) or (n, k).
         """
@@ -214,13 +216,13 @@ class Head:
         edge (1) to the ridge around the concha, whose floor is `concha_left`; also `nostril_left`,
         `alar_crease_left`, `rim_left` (from the back of the head along the nape to the throat).
     eyes: the right and the left eye.
-    parts: rigid things that are drawn with the head.
+    parts: rigid parts that are drawn with the head.
     uv: texture coordinates, 0..1, u to the subject's left and v up, shape (U, 2), float32; one
         piece without seams, so that U = V.
     face_uv: numbers of the texture coordinates of each face's corners, shape (F, 3), int32; the
         same numbers as `faces`.
-    file: the file that it was read from. Maps and meshes for drawing lie beside it and are read at
-        their first use; they raise AssetError if they cannot be read.
+    file: its data file. Maps and meshes for drawing lie beside it, and are read at their first use;
+        unreadable ones raise AssetError.
     rig: the parsed rig file.
     layers: action units, expressions, visemes, ARKit shapes, from the lowest up.
     """
@@ -244,7 +246,7 @@ class Head:
 
     @property
     def expressions(self) -> Mapping[str, Mapping[str, float]]:
-        """The shares of each expression, without words: a pose of action units and muscles."""
+        """The shares of each expression without texts: a pose of action units and muscles."""
         rows = next((layer.rows for layer in self.layers if layer.title == "Expressions"), {})
         return {
             name: {key: float(value) for key, value in row.items() if key not in Layer.NOT_SHARES}
@@ -252,7 +254,7 @@ class Head:
         }
 
     def beside(self, ending: str) -> Path:
-        """One of the files beside its own."""
+        """A file beside the head's own, by the ending of its name."""
         return self.file.with_name(self.file.stem + ending)
 
     @cached_property
@@ -262,7 +264,7 @@ class Head:
 
     @cached_property
     def wrinkles(self) -> Wrinkles:
-        """Where the skin wrinkles, and like what; arrays read-only."""
+        """The wrinkles of the skin; arrays are read-only."""
         arrays = read_arrays(self.beside("_wrinkles.npz"))
         return Wrinkles(arrays["map"], float(arrays["steepest"]), arrays["across"])
 
@@ -273,9 +275,9 @@ class Head:
 
     @cached_property
     def ambient_occlusion(self) -> Image:
-        """How open the skin is to light from all around, 255 = wholly; shape (H, W), uint8.
+        """Openness of the skin to light from all around, 255 = full; shape (H, W), uint8.
 
-        Texel by texel that of `albedo`.
+        Its texels are those of `albedo`.
         """
         occlusion = read_arrays(self.beside("_ambient_occlusion.npz"))["ambient_occlusion"]
         rims = [self.uv[self.rings[f"nostril_{side}"]] for side in ("left", "right")]
@@ -285,14 +287,14 @@ class Head:
     def fine_shape(self) -> FineShape:
         """The fine shape of the skin."""
         arrays = read_arrays(self.beside("_fine_shape.npz"))
-        slopes = np.cumsum(arrays["steps"], axis=0, dtype=np.uint8)  # steps take less room
+        slopes = np.cumsum(arrays["steps"], axis=0, dtype=np.uint8)  # steps compress better
         slopes.flags.writeable = False
         return FineShape(slopes, float(arrays["steepest"]))
 
     def finer(self, level: int) -> FineMesh:
-        """The same form with 4 (level 1) or 16 (level 2) triangles for each one; arrays read-only.
+        """The same form with 4 (level 1) or 16 (level 2) triangles for each; arrays are read-only.
 
-        Read at every call. Raises ValueError for another level.
+        Every call reads the file. Raises ValueError for another level.
         """
         levels = (1, 2)
         if level not in levels:

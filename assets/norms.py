@@ -12,13 +12,13 @@ from .data_files import read_toml
 
 @dataclass(frozen=True)
 class Sample:
-    """One sex of one sample: its mean and deviation [mm]."""
+    """One sex of a published sample: its mean and deviation [mm]."""
 
     mean: float
     deviation: float
 
     def score(self, value: float) -> float:
-        """How many deviations a value lies above the mean."""
+        """Deviations of a value from the mean."""
         return (value - self.mean) / self.deviation
 
 
@@ -46,7 +46,7 @@ def measures_of(vertices: Floats64, anatomy: Mapping[str, int]) -> dict[str, flo
     """
 
     def between(first: str, second: str) -> float:
-        """Their distance."""
+        """Distance between two points."""
         return float(np.linalg.norm(vertices[anatomy[first]] - vertices[anatomy[second]]))
 
     right = {name: name.replace("_left", "_right") for pair in DISTANCES.values() for name in pair}

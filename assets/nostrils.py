@@ -1,4 +1,4 @@
-"""Light in the nostrils: walls of flesh scatter it, and from below no hole is black."""
+"""Light in the nostrils: walls of flesh scatter it, so they are not black from below."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from .data_files import Image
 
 
 def lit_nostrils(occlusion: Image, rims: Iterable[Floats32]) -> Image:
-    """How open the skin is to light, (H, W), uint8, with light in the nostrils.
+    """Openness of the skin to light, (H, W), uint8, with light in the nostrils.
 
-    rims: texture coordinates around each nostril, shape (n, 2). How much light is chosen by eye.
+    rims: texture coordinates around each nostril, shape (n, 2). The amount of light is chosen by
+    eye.
     """
     height, width = occlusion.shape
     lit = occlusion.astype(np.float64)
-    inner_light = 66.0  # of 255, where no light gets in straight
+    inner_light = 66.0  # of 255, where no direct light arrives
     for rim in rims:
         middle = rim.mean(axis=0)
         reach = 1.25 * float(np.linalg.norm(rim - middle, axis=1).max())

@@ -1,7 +1,7 @@
-"""A mesh file with everything visible: what a writer needs to give it back as another kind of file.
+"""A mesh file with everything visible, for a writer of another kind of file.
 
-`read_mesh` leaves out what a simulation needs not: normals as the file has them, texture
-coordinates without a picture, materials, the bytes of pictures.
+`read_mesh` omits data that a simulation does not need: the file's normals, texture coordinates
+without a picture, materials, the bytes of pictures.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from .wavefront import MaterialLook, ObjSurface, Placing, looks_of, pictures_of,
 
 @dataclass(frozen=True)
 class Material:
-    """How a part of a surface looks.
+    """The look of a part of a surface.
 
-    picture: the content of its file, and its name; None if none is there.
-    placing: how the picture lies in the texture coordinates.
+    picture: the content of its file, and its name; None without a picture.
+    placing: place of the picture in the texture coordinates.
     """
 
     name: str
@@ -37,13 +37,13 @@ class Material:
 class PaintedMesh:
     """A mesh file with everything visible.
 
-    mesh: as `read_mesh` has it; V vertices in the file's order, F triangles.
+    mesh: the result of `read_mesh`; V vertices in the file's order, F triangles.
     uv: texture coordinates, v up, shape (U, 2). face_uv: their numbers, -1 for none, shape (F, 3).
     normals: shape (N, 3). face_normals: their numbers, -1 for none, shape (F, 3).
     material: place in `materials` of each triangle, -1 for none, shape (F,).
     part: place in `parts` of each triangle, -1 for none, shape (F,). parts: names of the file's
     objects or groups, or of materials in a file without these.
-    libraries: names of the files that define materials, as the file has them.
+    libraries: names of the files that define materials.
     """
 
     mesh: Mesh
@@ -59,7 +59,7 @@ class PaintedMesh:
 
 
 def read_painted(path: Path) -> PaintedMesh:
-    """Read a mesh file that is no glTF: OBJ with its materials, PLY with its colours, or a form.
+    """Read a mesh file other than glTF: OBJ with its materials, PLY with its colours, STL or OFF.
 
     Raises AssetError as `read_mesh` does.
     """
@@ -86,12 +86,12 @@ def read_painted(path: Path) -> PaintedMesh:
 
 
 def _within(numbers: Integers64, count: int) -> Integers64:
-    """Numbers of which those beyond the last count as none."""
+    """Numbers, with those beyond the last one replaced by -1."""
     return np.where(numbers < count, numbers, -1)
 
 
 def _materials(surface: ObjSurface, folder: Path) -> list[Material]:
-    """The materials of a surface, from the libraries beside it that are there."""
+    """The materials of a surface, from those of its libraries that exist."""
     looks: dict[str, MaterialLook] = {}
     pictures: dict[str, Any] = {}
     for name in libraries_of(surface.libraries, folder):

@@ -1,8 +1,8 @@
-"""The pictures with which a mesh file is painted: where they lie, and how much of them is taken.
+"""The pictures of a mesh file: their files, and limits.
 
 A file of unknown origin may name any path, and a picture of a few bytes may decompress to
-gigabytes. So only pictures in the mesh's own folder are opened, only as large as is of use, and
-only those of triangles that are drawn.
+gigabytes. So only pictures in the mesh's own folder are opened, only up to a useful size, and only
+those of drawn triangles.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ LARGEST = 4096  # [pixels] each way: larger ones are shrunk; every graphics card
 
 @dataclass(frozen=True)
 class Texture:
-    """How the file itself paints its mesh.
+    """Pictures of a mesh, and their places.
 
     uv: texture coordinates, v up, shape (U, 2), float32. face_uv: their numbers for each corner,
         shape (F, 3), int32.
-    picture: which of `pictures` each triangle has, -1 for none, shape (F,).
-    pictures: functions that read one each, shape (H, W, 3), and raise AssetError if they cannot.
+    picture: number in `pictures` for each triangle, -1 for none, shape (F,).
+    pictures: functions that read one picture each, shape (H, W, 3), or raise AssetError.
     """
 
     uv: Floats32
@@ -45,9 +45,9 @@ class Texture:
 
 
 def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple[str, ...]]:
-    """The picture that material libraries beside an OBJ file give it; None if they give none.
+    """The texture that material libraries beside an OBJ file give it; None without a picture.
 
-    And a line for each library that is missing, as with many files.
+    It also returns a line for each missing library; many files lack theirs.
     """
     by_material: dict[str, MaterialPicture] = {}
     missing = []
@@ -88,7 +88,7 @@ def _picture_of(
 
 
 def material_key(material: str, known: Container[str]) -> str:
-    """The name under which a material is known; behind its name may stand a remark."""
+    """The name under which a material is known; a remark may follow a name."""
     return material if material in known else material.rpartition(" #")[0].rstrip()
 
 
@@ -115,18 +115,18 @@ def _read_picture(folder: Path, name: str) -> Image:
 
 
 def decoded(content: bytes, name: str) -> Image:
-    """A picture of a file's content, sRGB, shape (H, W, 3), at most LARGEST each way.
+    """The picture in a file's content, sRGB, shape (H, W, 3), at most LARGEST each way.
 
     name: for messages. Raises AssetError for a broken or too large picture, or another format.
     """
     import PIL.Image  # which to load a head takes no time for
 
     try:
-        with warnings.catch_warnings():  # of what unfolds to gigabytes
+        with warnings.catch_warnings():  # Pillow warns of pictures that decompress to gigabytes
             warnings.simplefilter("error", PIL.Image.DecompressionBombWarning)
             with PIL.Image.open(io.BytesIO(content), formats=("PNG", "JPEG", "WEBP")) as picture:
                 return _shrunk(picture)
-    except Exception as error:  # every format of Pillow has its own kinds
+    except Exception as error:  # every format of Pillow raises its own kinds
         reason = " ".join(str(error).split())[:200]
         raise AssetError(
             f"its picture {named(name)}: is broken, too large, or neither PNG, JPEG nor WebP "
@@ -135,7 +135,7 @@ def decoded(content: bytes, name: str) -> Image:
 
 
 def tinted(picture: Image, factor: Sequence[float]) -> Image:
-    """A picture times a factor of linear light for each of red, green and blue."""
+    """A picture, multiplied by a factor of linear light for red, green and blue."""
     shades = to_linear(np.arange(256) / 255.0)
     table = np.rint(255.0 * to_screen(shades[:, None] * np.asarray(factor))).astype(np.uint8)
     channels = [table[picture[..., channel], channel] for channel in range(3)]
@@ -147,7 +147,7 @@ def _shrunk(picture: Any) -> Image:
     import PIL.Image
 
     picture.draft("RGB", (LARGEST, LARGEST))
-    if picture.mode.startswith("I"):  # grey of 16 bits, of which Pillow would cut off the brighter
+    if picture.mode.startswith("I"):  # grey of 16 bits: Pillow would clip it
         levels = np.asarray(picture).astype(np.uint32)
         picture = PIL.Image.fromarray(((levels + 128) // 257).astype(np.uint8))
     colours = picture.convert("RGB")

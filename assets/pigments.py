@@ -1,10 +1,10 @@
-"""Skin colour from what colours skin: melanin and blood absorb light.
+"""Skin colour from its pigments: melanin and blood absorb light.
 
-Densities add up and light falls off exponentially with them, so one description of a face - where
-it is better supplied with blood, where tanned - gives every complexion, and no tone is a tinted
-copy of another. The three spectra are rounded to the red, green and blue of a screen.
-Source: the idea of Tsumura et al. 2003, "Image-based skin color and texture analysis/synthesis by
-extracting hemoglobin and melanin information in the skin"; numbers chosen by eye.
+Densities add up, and light falls exponentially with them. So one description of a face - places
+with more blood, tanned places - gives every complexion, and no tone is a tinted copy of another.
+The three spectra are rounded to the red, green and blue of a screen. Source: the idea of Tsumura et
+al. 2003, "Image-based skin color and texture analysis/synthesis by extracting hemoglobin and
+melanin information in the skin"; numbers chosen by eye.
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ class Complexion:
     hair: tuple[float, float, float]
 
 
-OWN = Complexion(0.40, 1.0, (0.20, 0.14, 0.105))  # that of the picture that is shipped
+OWN = Complexion(0.40, 1.0, (0.20, 0.14, 0.105))  # that of the shipped picture
 COMPLEXIONS = (  # from light to dark
     Complexion(0.17, 1.05, (0.33, 0.235, 0.165)),
     OWN,

@@ -1,10 +1,10 @@
 """Read the surface of a PLY file: points with their colours, polygons, and strips of triangles.
 
-trimesh passes over strips, reads no binary polygons of several sizes, and knows colours by one name
-and in one size.
+trimesh ignores strips, does not read binary polygons of several sizes, and reads colours under one
+name and in one size only.
 
-Source: Turk 1994, "The PLY polygon file format"; names of colours and strips as programs write
-them.
+Source: Turk 1994, "The PLY polygon file format"; names of colours and strips are those that
+programs write.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class PlySurface:
     """The surface of a PLY file.
 
     vertices: shape (V, 3), in the order of the file. faces: shape (F, 3); polygons become fans.
-    colours: of vertices, shape (V, 3), uint8; None if there are none.
+    colours: those of vertices, shape (V, 3), uint8; None without any.
     """
 
     vertices: Floats64
@@ -35,7 +35,7 @@ class PlySurface:
 
 
 class _Lists(NamedTuple):
-    """Lists of numbers, one a row, one behind the other."""
+    """Lists of numbers, one for each row, one after another."""
 
     lengths: Integers64  # (n,)
     values: npt.NDArray[Any]  # all of them
@@ -44,7 +44,7 @@ class _Lists(NamedTuple):
 class _Property(NamedTuple):
     name: str
     kind: str
-    length: str | None  # the kind of a list's length; None: it is no list
+    length: str | None  # the kind of a list's length; None: not a list
 
 
 @dataclass
@@ -108,7 +108,7 @@ def _header(text: bytes) -> tuple[list[_Element], str]:
 
 
 class _Numbers:
-    """Numbers in text, taken one behind the other."""
+    """Numbers in text, taken one after another."""
 
     def __init__(self, text: bytes) -> None:
         self._numbers = np.fromstring(plain_text(text), np.float64, sep=" ")
@@ -129,7 +129,7 @@ class _Numbers:
 
 
 class _Bytes:
-    """Numbers in bytes, taken one behind the other."""
+    """Numbers in bytes, taken one after another."""
 
     def __init__(self, data: bytes, order: str) -> None:
         self._data = data
@@ -162,7 +162,7 @@ def _rows(element: _Element, body: _Numbers | _Bytes) -> dict[str, Any]:
         start = body.place
         lengths = [len(each) for each in _row(element, body)]
         body.place = start
-        most_corners = 16  # of a polygon: lists of one length are read at once, but no strips
+        most_corners = 16  # of a polygon: its lists are read at once, those of strips are not
         columns = (
             _table(element, lengths, body) if max(lengths, default=0) <= most_corners else None
         )
@@ -180,7 +180,7 @@ def _rows(element: _Element, body: _Numbers | _Bytes) -> dict[str, Any]:
 
 
 def _row(element: _Element, body: _Numbers | _Bytes) -> list[npt.NDArray[Any]]:
-    """One row: the numbers of each list, and one for each property that is none."""
+    """One row: the numbers of each list, and one number for each other property."""
     row = []
     for each in element.properties:
         length = 1 if each.length is None else int(body.take(each.length, 1)[0])
@@ -189,13 +189,13 @@ def _row(element: _Element, body: _Numbers | _Bytes) -> list[npt.NDArray[Any]]:
 
 
 def _table(element: _Element, lengths: list[int], body: _Numbers | _Bytes) -> dict[str, Any] | None:
-    """All rows at once, if their lists have these lengths throughout; else None."""
+    """All rows at once, if all their lists have these lengths; else None."""
     kinds = []
     for each, length in zip(element.properties, lengths, strict=True):
         kinds += [*([] if each.length is None else [each.length]), *[each.kind] * length]
     try:
         found = body.table(kinds, element.count)
-    except ValueError:  # other lists are shorter
+    except ValueError:  # other lists are too short
         return None
     columns: dict[str, Any] = {}
     for each, length in zip(element.properties, lengths, strict=True):
@@ -230,7 +230,7 @@ def _fans(polygons: _Lists) -> Integers64:
 
 
 def _strips(strips: _Lists) -> list[Integers64]:
-    """The triangles of each strip; a number below 0 ends one within a list."""
+    """The triangles of each strip; a number below 0 ends a strip within a list."""
     ends = np.cumsum(strips.lengths)
     parts = np.split(strips.values, ends[:-1])
     pieces = [piece for part in parts for piece in np.split(part, np.flatnonzero(part < 0))]

@@ -1,8 +1,7 @@
 """The paper's second test case: a flat sheet.
 
-It has 7 x 11 cells. Source: Kähler et al. 2003, Figure 9 and Table 1 ("plane", 154
-triangles). 154 = 2 * 7 * 11 is the only way to write the count as a grid of halved cells that is
-about as wide as the figure shows.
+It has 7 x 11 cells. Source: Kähler et al. 2003, Figure 9 and Table 1 ("plane", 154 triangles). 154
+= 2 * 7 * 11: no other grid of halved cells with this count is about as wide as in the figure.
 """
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from ..geometry.arrays import Floats64, Integers32
 from .topology import grid_faces
 
-COLUMNS = 11  # of cells along x; chosen: 2 * 7 * 11 = 154
+COLUMNS = 11  # cells along x; chosen: 2 * 7 * 11 = 154
 ROWS = 7  # along y
 CELL = 10.0  # [mm]; chosen, so that the plane is as large as a hand
 

@@ -15,7 +15,7 @@ def smooth_step(low: float, high: float, values: Floats64) -> Floats64:
 
 
 def shrunk(values: Floats32, shrink: int) -> Floats32:
-    """Means of values (H, W, ...), of this many each way; H and W are multiples of it."""
+    """Means over blocks of `shrink` x `shrink` values (H, W, ...); H and W are multiples of it."""
     for axis in (0, 1):
         count = values.shape[axis] // shrink
         blocks = np.moveaxis(values, axis, 0).reshape(count, shrink, *np.delete(values.shape, axis))

@@ -1,4 +1,4 @@
-"""Small questions about triangle lists: boundary loops, grids; fewer of them, and more."""
+"""Small tools for triangle lists: boundary loops, grids, simplification, subdivision."""
 
 from typing import Any, NamedTuple
 
@@ -15,8 +15,9 @@ Edge = tuple[int, int]
 def boundary_loops(faces: Faces) -> list[list[int]]:
     """Closed rows of boundary vertices, in the direction of their faces, longest first.
 
-    At a vertex where holes meet, a row goes on around the faces beside it; it may come back there.
-    Raises ValueError if two faces run along an edge the same way: that is no surface.
+    At a vertex where holes meet, a row continues around the adjacent faces, and may return to the
+    vertex. Raises ValueError if two faces run along an edge in the same direction: that is no
+    surface.
     """
     sides, number = different_pairs(sides_of(faces))
     if len(sides) < len(number):
@@ -47,32 +48,32 @@ def boundary_loops(faces: Faces) -> list[list[int]]:
 
 
 def unique_points(points: Floats64) -> tuple[Integers64, Integers64]:
-    """The first of all points (n, 3) that are the same, in their order, and which each one is."""
+    """The first of equal points (n, 3), in their order, and each point's number among them."""
     _, first, number = np.unique(points, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)
     return first[order], np.argsort(order)[number.reshape(-1)]
 
 
 def strip_triangles(corners: npt.NDArray[np.integer[Any]]) -> Integers64:
-    """The triangles of a strip (n,), shape (F, 3); those without area join parts of it, and go."""
+    """The triangles of a strip (n,), shape (F, 3), without the degenerate ones that join parts."""
     if len(corners) < 3:
         return np.zeros((0, 3), np.int64)
     windows = np.lib.stride_tricks.sliding_window_view(corners.astype(np.int64), 3)
     triangles: Integers64 = windows.copy()
-    triangles[1::2, :2] = windows[1::2, 1::-1]  # each other one runs the other way
+    triangles[1::2, :2] = windows[1::2, 1::-1]  # every second one runs the other way
     has_area = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
     triangles = triangles[has_area]
     return triangles
 
 
 def border_vertices(faces: Faces) -> Integers64:
-    """Numbers of the vertices on edges that have one face, in ascending order."""
+    """Numbers of the vertices on edges with one face, in ascending order."""
     edges, numbers = different_pairs(np.sort(sides_of(faces), axis=1))
     return np.unique(edges[np.bincount(numbers) == 1])
 
 
 def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> Faces:
-    """Triangles between neighbouring rows of vertex numbers (r, n); closed: a row ends in itself.
+    """Triangles between neighbouring rows of vertex numbers (r, n); closed: rows are rings.
 
     a--d   Vertices a and d are of a row, b and c of the next one: a b c, then a c d.
     | \\|
@@ -88,7 +89,7 @@ def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> F
 
 
 class Quartered(NamedTuple):
-    """A triangle list after one cut, and the ends of the edge that each new vertex lies on."""
+    """A triangle list after one cut, and the ends of each new vertex's edge."""
 
     faces: Faces  # (4 F, 3)
     edges: Faces  # (E, 2), lower number first
@@ -114,20 +115,21 @@ def quarter(faces: Faces, vertex_count: int) -> Quartered:
 def decimated(
     vertices: Floats64, faces: Faces, count: int, attempt: int = 0
 ) -> tuple[Floats64, Faces]:
-    """Other vertices and about `count` triangles; the edges of openings stay where they are.
+    """Other vertices and about `count` triangles; the edges of openings stay in place.
 
     By quadric error metrics (Garland, Heckbert 1997, "Surface simplification using quadric error
-    metrics"), in a well-kept library. It may pinch the surface, so that three triangles meet at an
-    edge: then another `attempt` comes out otherwise.
+    metrics"), in a maintained library. It may pinch the surface, so that three triangles meet at an
+    edge; another `attempt` then has another result.
     """
-    import fast_simplification  # dense meshes alone need it
+    import fast_simplification  # only dense meshes need it
 
     unevenness = 5e-5  # share of a mesh's size: 0.01 mm on a head
-    # On a plane, as subdivided polygons are, any place would do: it would take one for many.
+    # On a plane, such as a subdivided polygon, all places are equally good, and it would merge many
+    # vertices.
     uneven = np.random.default_rng(attempt).uniform(-unevenness, unevenness, vertices.shape)
     points, triangles = fast_simplification.simplify(
         np.ascontiguousarray(vertices + uneven * np.ptp(vertices, axis=0).max()),
-        np.array(faces, np.int32),  # one that it may write into
+        np.array(faces, np.int32),  # a copy that it may write into
         target_count=count,
         preserve_border=True,
     )

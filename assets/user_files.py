@@ -1,7 +1,7 @@
-"""Files of the user: read whole, but only if they are files and no longer than allowed.
+"""The user's files: read whole, but only regular files up to a limit.
 
-A path may lead to a pipe that never ends, to a device, or to gigabytes; and text may come in any
-encoding. Nothing of that may reach a reader that trusts its file.
+A path may lead to an endless pipe, to a device, or to gigabytes, and text may have any encoding.
+None of this may reach a reader that trusts its file.
 """
 
 import codecs
@@ -12,9 +12,9 @@ from pathlib import Path, PureWindowsPath
 
 from .errors import AssetError
 
-MOST_VERTICES = 500_000  # of a mesh, and as many triangles: far beyond what can be simulated
-# Readers split lines and words at more characters than the formats do, and guess at encodings.
-# All that the formats mean is ASCII; anything else is in names and remarks.
+MOST_VERTICES = 500_000  # of a mesh, and as many triangles: far more than can be simulated
+# Readers split lines and words at more characters than the formats do, and guess encodings. All
+# content of the formats is ASCII; other characters only occur in names and remarks.
 _CONTROLS = bytes(code for code in (*range(0x20), 0x7F) if code not in b"\t\n\r")
 _NO_CONTROLS = bytes.maketrans(
     _CONTROLS, bytes(ord(" " if code in b"\v\f" else "?") for code in _CONTROLS)
@@ -29,9 +29,9 @@ def named(path: str | Path) -> str:
 
 
 def beside(folder: Path, name: str) -> Path:
-    """The path of a file in a folder; raises AssetError for a name that leads out of it.
+    """The path of a file in a folder; raises AssetError for a name that leads out of the folder.
 
-    Letters with marks may be written in two ways (NFC, NFD): that of the folder counts.
+    Letters with marks may be written in two ways (NFC, NFD); the folder's way is used.
     """
     relative = PureWindowsPath(name).as_posix()
     path = folder / relative
@@ -47,8 +47,8 @@ def beside(folder: Path, name: str) -> Path:
 def read_file(path: str | Path, *, kind: str, most: int) -> bytes:
     """The content of a file, at most `most` megabytes of it.
 
-    kind: the expected one, for messages ("mesh"). Raises AssetError for a file that is missing,
-    empty or too long, or no file but a device, say.
+    kind: the expected kind, for messages ("mesh"). Raises AssetError for a file that is missing,
+    empty or too long, and for a device or another thing that is not a regular file.
     """
     try:
         status = os.stat(path)
@@ -75,7 +75,7 @@ def read_file(path: str | Path, *, kind: str, most: int) -> bytes:
 
 
 def plain_text(content: bytes) -> bytes:
-    r"""Text of any encoding as ASCII whose lines end in \n; other characters become '?'.
+    r"""Text of any encoding as ASCII, with lines that end in \n; other characters become '?'.
 
     Raises AssetError for binary data.
     """
@@ -83,7 +83,7 @@ def plain_text(content: bytes) -> bytes:
 
 
 def text_with_names(content: bytes) -> bytes:
-    r"""Text in UTF-16 (with its mark), UTF-8, or else Latin-1 as UTF-8 whose lines end in \n.
+    r"""Text in UTF-16 (with its mark), UTF-8 or else Latin-1, as UTF-8 with lines that end in \n.
 
     Raises AssetError for binary data.
     """

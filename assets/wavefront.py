@@ -1,8 +1,8 @@
-"""Read the surface of a Wavefront OBJ file: its points and polygons, and where its pictures lie.
+"""Read the surface of a Wavefront OBJ file: points, polygons, and places of its pictures.
 
-trimesh's reader takes relative numbers for places from the end of the file, doubles vertices where
-the texture has a seam or the material changes, and opens the files that the materials name. Here a
-vertex keeps its number and its neighbours, and nothing is opened.
+trimesh's reader counts relative numbers from the end of the file, doubles vertices where the
+texture has a seam or the material changes, and opens the files that materials name. Here a vertex
+keeps its number and its neighbours, and no other file is opened.
 
 Source: Wavefront Technologies, "Object Files (.obj)", Advanced Visualizer manual, appendix B1.
 Differs from it: free-form surfaces are left out, as is the weight w of a vertex.
@@ -32,7 +32,7 @@ class ObjSurface:
 
     vertices: shape (V, 3), in the order of the file. faces: shape (F, 3); polygons become fans.
     uv: texture coordinates, shape (U, 2). face_uv: their numbers, -1 for none, shape (F, 3).
-    normals: as written, shape (N, 3). face_normals: their numbers, -1 for none, shape (F, 3).
+    normals: as in the file, shape (N, 3). face_normals: their numbers, -1 for none, shape (F, 3).
     material: place in `materials` of each triangle, -1 for none, shape (F,).
     libraries: names of files that define materials.
     part: place in `parts`, the names of objects and groups, of each triangle, -1 for none, (F,).
@@ -54,12 +54,13 @@ class ObjSurface:
 def read_obj(content: bytes, *, most: int) -> ObjSurface:
     """The surface in a file.
 
-    most: vertices and triangles that are allowed. Raises AssetError, which names the line.
+    most: largest allowed number of vertices and of triangles. Raises AssetError, which names the
+    line.
     """
     coordinates = array("d")
     places = array("d")
     normals = array("d")
-    corners = array("q")  # vertex, texture coordinates and normal of each
+    corners = array("q")  # vertex, texture coordinates and normal of each corner
     labels = array("q")  # material and part of each triangle
     materials: dict[str, int] = {}
     libraries: list[str] = []
@@ -113,7 +114,7 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
 
 
 def _unusable(number: int, line: bytes) -> AssetError:
-    """The error of a line with its number."""
+    """The error about a line, with its number."""
     excerpt_length = 30  # bytes
     shown = line[:excerpt_length].decode(errors="ignore").strip()
     return AssetError(
@@ -123,10 +124,10 @@ def _unusable(number: int, line: bytes) -> AssetError:
 
 
 def _polygon(fields: list[bytes], counts: tuple[int, int, int]) -> list[tuple[int, int, int]]:
-    """Each corner's numbers of its vertex and, -1 for none, of its texture coordinates and normal.
+    """For each corner the numbers of its vertex, texture coordinates and normal; -1 for none.
 
-    counts: of these so far. In the file numbers count from 1, or back from the last of this many.
-    Raises ValueError for others.
+    counts: numbers of these so far. The file counts from 1, or back from the last one. Raises
+    ValueError for other numbers.
     """
     if len(fields) < 3:
         raise ValueError
@@ -142,16 +143,16 @@ def _polygon(fields: list[bytes], counts: tuple[int, int, int]) -> list[tuple[in
 
 
 def _optional(number: int, count: int) -> int:
-    """A number of texture coordinates or of a normal, from 0 on; -1 for none."""
+    """The number of texture coordinates or of a normal, from 0; -1 for none."""
     return number - 1 if number >= 0 else max(count + number, -1)
 
 
 @dataclass(frozen=True, order=True)
 class Placing:
-    """How a picture lies in texture coordinates.
+    """The place of a picture in texture coordinates.
 
     scale, offset: of coordinates along u and v, in this order. is_clamped: whether the picture's
-    edge goes on beyond it; else it repeats.
+    edge continues beyond it; else the picture repeats.
     """
 
     scale: tuple[float, float] = (1.0, 1.0)
@@ -159,7 +160,7 @@ class Placing:
     is_clamped: bool = False
 
     def placed(self, uv: Floats64) -> Floats64:
-        """Texture coordinates (U, 2) of the file in this picture."""
+        """The file's texture coordinates (U, 2), converted to this picture's."""
         placed = uv * self.scale + self.offset
         return placed.clip(0.0, 1.0) if self.is_clamped else placed
 
@@ -173,7 +174,7 @@ class MaterialLook:
 
 
 def looks_of(content: bytes) -> dict[str, MaterialLook]:
-    """The colours and opacities in a material library (MTL), by material; wrong numbers count 1."""
+    """The colours and opacities in a material library (MTL), by material; invalid ones are 1."""
     looks: dict[str, MaterialLook] = {}
     material = ""
     for line in joined_lines(content).decode().split("\n"):
@@ -193,14 +194,14 @@ def looks_of(content: bytes) -> dict[str, MaterialLook]:
 
 @dataclass(frozen=True, order=True)
 class MaterialPicture:
-    """The picture of a material's colour: the name of its file, and how it lies."""
+    """The picture of a material's colour: the name of its file, and its place."""
 
     name: str
     placing: Placing
 
 
 def pictures_of(content: bytes) -> dict[str, MaterialPicture]:
-    """The pictures of colour in a material library (MTL), by material."""
+    """The colour pictures in a material library (MTL), by material."""
     pictures = {}
     material = ""
     for line in joined_lines(content).decode().split("\n"):
@@ -213,7 +214,7 @@ def pictures_of(content: bytes) -> dict[str, MaterialPicture]:
 
 
 def maps_of(content: bytes) -> list[str]:
-    """The names of all files of pictures in a material library (MTL), also of bumps and gloss."""
+    """The names of all picture files in a material library (MTL), including bumps and gloss."""
     kinds = ("map_", "bump", "disp", "decal", "refl", "norm")
     names = []
     for line in joined_lines(content).decode().split("\n"):
@@ -227,7 +228,7 @@ def _picture_of(rest: str) -> MaterialPicture:
     """The picture of a map: options, and then a name, which may hold blanks and be quoted."""
     values: dict[str, list[str]] = {}
     option, after = _parted(rest)
-    option_words = {  # words that follow each option, those included
+    option_words = {  # numbers of words after each option, including these
         **dict.fromkeys(PLACING, 3),
         "-mm": 2,
         **dict.fromkeys(("-blendu", "-blendv", "-cc", "-clamp", "-texres", "-bm", "-boost"), 1),
@@ -239,7 +240,7 @@ def _picture_of(rest: str) -> MaterialPicture:
         for _ in range(option_words[option]):
             value, after = _parted(rest)
             if not after or (option in PLACING and not _is_number(value)):
-                break  # of three numbers two may be missing, and the last word is the name
+                break  # two of three numbers may be missing, and the last word is the name
             values[option].append(value)
             rest = after
         option, after = _parted(rest)
@@ -267,16 +268,16 @@ def _is_number(word: str) -> bool:
 
 
 def _parted(line: str) -> tuple[str, str]:
-    """The first word of a line and the rest of it, without blanks and tabs around.
+    """The first word of a line, and the rest, without surrounding blanks and tabs.
 
-    Other blanks, as of Japanese, belong to names.
+    Other blanks, such as Japanese ones, belong to names.
     """
     word, *rest = re.split(r"[ \t\r\n]+", line.strip(" \t\r\n"), maxsplit=1)
     return word, rest[0] if rest else ""
 
 
 def joined_lines(content: bytes) -> bytes:
-    """Text, as `text_with_names` has it, in which a backslash at a line's end joins the next one.
+    """The text of `text_with_names`, where a backslash at a line's end joins the next line.
 
     A remark ends with its line: a path in it may end in a backslash.
     """

@@ -1,7 +1,7 @@
-"""Structures under the skin, seen through it: the user's choice of them, and what is seen then.
+"""Structures under translucent skin: the user's choice, and the visible parts for it.
 
-`AnatomyView` holds the choice. `Anatomy` makes muscles, skull and throat of one face when they
-are first asked for. `Dissection` has them, the face's own parts, and the opacity of the skin.
+`AnatomyView` holds the choice. `Anatomy` makes muscles, skull and throat of one face at their first
+use. `Dissection` has these, the face's own parts, and the opacity of the skin.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from ..scenes.openings import opening_before
 from .muscle_bands import Muscles
 
 STRUCTURES = ("muscles", "skull")
-SIDES = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's, whose skin is translucent
+SIDES = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's side with translucent skin
 OPACITY = 0.25  # of the skin, by default
-SOFT = ("oral_cavity", "gums")  # parts that line the mouth, by how their names begin
+SOFT = ("oral_cavity", "gums")  # beginnings of the names of parts that line the mouth
 OUTER_HAIR = (HAIR, HAIR + "_tied")
 
 
@@ -48,11 +48,11 @@ class Dissection(NamedTuple):
     opacity: float = 1.0
     """Of the skin."""
     cut: render.Plane | None = None
-    """In front of it skin is opaque."""
+    """Skin is opaque in front of it."""
 
 
 class Anatomy:
-    """Muscles and skull of a face; of other scenes there is the skin alone."""
+    """Muscles and skull of a face; other scenes only have skin."""
 
     def __init__(self, scene: Drawable) -> None:
         self._scene = scene
@@ -60,13 +60,13 @@ class Anatomy:
         self._necks: list[Any] | None = None  # a mask has none
         self._muscles: Muscles | None = None
         self._followed = np.empty(0)  # the values that shaped the muscles last
-        self._halves: dict[tuple[float, str], Any] = {}  # of parts, by the side that is opened
+        self._halves: dict[tuple[float, str], Any] = {}  # halves of parts, by the opened side
 
     def dissect(self, view: AnatomyView, *, has_hair: bool = True) -> Dissection:
         """The chosen structures as they are now, and the scene's parts that do not hide them.
 
-        Hair throws its shadow on whole skin. Skin that is opened lets light through, and all solid
-        parts throw theirs.
+        Hair throws its shadow on closed skin. Opened skin lets light through, and all solid parts
+        throw shadows.
         """
         has_hair = has_hair and view.has_hair
         scene = self._scene
@@ -103,7 +103,7 @@ class Anatomy:
         return Dissection((*structures, *others, *parts_of_hair), view.opacity, _cut(face, view))
 
     def _structures(self, face: Face, view: AnatomyView) -> list[Any]:
-        """Throat, bones and muscles, which no skin leaves bare."""
+        """The chosen ones of throat, bones and muscles."""
         names = ["throat"]
         if "skull" in view.structures:
             names += ["cranium", "mandible", "spine"]
@@ -118,7 +118,7 @@ class Anatomy:
         return [*self._necks, *(self._skull[name] for name in names), *muscles]
 
     def _muscles_now(self, face: Face) -> Muscles:
-        """The muscles, shaped anew unless nothing has moved: a camera that turns is no reason."""
+        """The muscles, shaped again if the face has moved; a turn of the camera is no reason."""
         bones = face.bone_transforms()
         sums = face.simulation.controls.sums
         now = np.concatenate([face.simulation.positions, *bones.values()], axis=None)
@@ -131,18 +131,18 @@ class Anatomy:
         return self._muscles
 
     def _soft(self, view: AnatomyView) -> list[Any]:
-        """The parts that line the mouth, where anything of them is seen."""
+        """The parts that line the mouth, if they can be seen."""
         is_seen = "muscles" in view.structures or SIDES[view.side]
         return [part for part in self._scene.parts if is_seen and part.name.startswith(SOFT)]
 
     def _whole_hair(self, face: Face, view: AnatomyView) -> list[Any]:
-        """The hair on the side that is not opened; none if both are."""
+        """The hair on the closed side; none if both sides are open."""
         side = SIDES[view.side]
         parts = [part for part in self._scene.parts if side and part.name.startswith(HAIR)]
         return [self._half(face, part, side) for part in parts]
 
     def _half(self, face: Face, part: Any, side: float) -> Any:
-        """The half of a part, as it is now, that is not on a side."""
+        """The half of a part, in its present shape, that is not on `side`."""
         if (side, part.name) not in self._halves:
             aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(face)[0]
             self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < 0.0])
@@ -154,16 +154,16 @@ class Anatomy:
         return half
 
     def _openings(self) -> dict[str, render.Opening]:
-        """The openings of the skin now, by their names."""
+        """The present openings of the skin, by their names."""
         rims = self._scene.rims(render.Opening.RIM_POINTS)
         return {name: render.Opening(*rim) for name, rim in rims.items()}
 
     def _lit(
         self, face: Face, view: AnatomyView, part: Any, openings: Mapping[str, render.Opening]
     ) -> list[tuple[Any, render.Opening | None]]:
-        """A part, in halves where skin is opened before one of them, and where light comes from.
+        """A part, in halves if skin is open in front of one, with the opening for its light.
 
-        With bones alone, what lines the mouth is left out on the side that is opened.
+        If only bones are shown, parts that line the mouth are left out on the opened side.
         """
         opening = openings.get(opening_before(part.name, part.bone))
         if opening is None:
@@ -177,12 +177,12 @@ class Anatomy:
 
 
 def _middle(face: Face) -> Any:
-    """Where the midline is at rest, shape (3,)."""
+    """A point of the midline at rest, shape (3,)."""
     return face.rest_positions[face.head.landmarks[27]]
 
 
 def _cut(face: Face, view: AnatomyView) -> render.Plane | None:
-    """The plane in front of which the skin is whole; None: there is none."""
+    """The plane in front of which the skin is closed; None without a cut."""
     side = SIDES[view.side]
     if not side:
         return None

@@ -1,9 +1,9 @@
-"""Muscles as bands along their fibres, which lie between skin and bone and swell as they shorten.
+"""Muscles as bands along their fibres; they lie between skin and bone, and swell as they shorten.
 
-The fibres of the simulation say where linear muscles run now. Around mouth and eyes, rows of
-landmarks that are moved outward, and carried by the skin, are the fibres of the sphincters. Each
-band has an elliptic cross section, laid under the skin that is there now, on the bone at its origin
-and right below the skin at its insertion.
+The simulation's fibres give the present courses of linear muscles. The fibres of sphincters are
+rows of landmarks around mouth and eyes, moved outward and carried by the skin. Each band has an
+elliptic cross section and lies under the present skin: on the bone at its origin, and right below
+the skin at its insertion.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from ..scenes import Face
 
 ROWS = 22  # places along a band
 AROUND = 16  # places around its cross section
-NEAR = 8  # vertices that say where the skin is
+NEAR = 8  # vertices that give the place of the skin
 RELAXED = np.array([0.68, 0.29, 0.245])  # sRGB
 CONTRACTED = np.array([0.50, 0.035, 0.045])  # sRGB
 TENDON = np.array([0.93, 0.87, 0.77])
 EYE = ((5.0, 9.0), (12.5, 9.0))
 MOUTH = ((1.0, 8.0), (7.5, 8.0))
-RINGS = (  # how names of muscles begin and end; landmarks; bands: how far outward, how wide [mm]
+RINGS = (  # beginnings and ends of names; landmarks; bands: distance outward, width [mm]
     ("orbicularis_oculi", "right", (36, 37, 38, 39), EYE),
     ("orbicularis_oculi", "right", (36, 41, 40, 39), EYE),
     ("orbicularis_oculi", "left", (45, 44, 43, 42), EYE),
@@ -44,7 +44,7 @@ AROUND_OF = {"right": range(36, 42), "left": range(42, 48), "": range(48, 60)}  
 class Muscles:
     """All bands of a face as one part that changes its shape (see render/parts.py).
 
-    striation: place across and along of each vertex, (n, 2) [mm at rest]: where its striation is.
+    striation: place of each vertex across and along the fibres, (n, 2) [mm at rest].
     """
 
     vertices: Floats32
@@ -53,14 +53,14 @@ class Muscles:
     faces: Integers32
     striation: Floats32
     name: str = "muscles"
-    bone: str = "neck"  # stands still: vertices are where they are
+    bone: str = "neck"  # stands still: vertices have their final places
     shine: float = 0.42
     is_enclosed: bool = False
     strand_radius: float = 0.0
 
     @classmethod
     def of(cls, face: Face) -> Muscles:
-        """The muscles of a face, as they are now."""
+        """The muscles of a face in their present state."""
         none = np.zeros((0, 3), np.float32)
         made = cls(none, none, none, none.astype(np.int32), none[:, :2])
         made._build(face)
@@ -71,12 +71,12 @@ class Muscles:
         """Set up everything constant: the bands, their lengths at rest, their faces."""
         simulation = face.simulation.clone()
         simulation.reset()
-        self.names: list[tuple[str, int]] = []  # of linear muscles, and the number of a fibre
+        self.names: list[tuple[str, int]] = []  # names of linear muscles, and numbers of fibres
         widths = list[float]()
         for name, lines in simulation.anatomy.fibres().items():
             stem = name.removesuffix("_left").removesuffix("_right")
             row = face.head.rig["muscle"].get(stem, {})
-            if name.startswith("platysma"):  # it lies on structures that are not drawn
+            if name.startswith("platysma"):  # it lies on structures without drawings
                 continue
             for number, (fibre, _) in enumerate(zip(row.get("fibre", ()), lines, strict=False)):
                 self.names.append((name, number))
@@ -123,7 +123,7 @@ class Muscles:
         return np.concatenate([fibres, carried + self._shift])
 
     def follow(self, face: Face) -> None:
-        """Take the shape and the colours of now."""
+        """Take the present shape and colours."""
         simulation = face.simulation
         sums = simulation.controls.sums
         bone = face.bone_transforms()["cranium"]
@@ -146,7 +146,7 @@ class Muscles:
         end_depth = 3.4  # below the skin, at the end of a band
         start_depth = depth[:, :1]
         deep = start_depth + (end_depth - start_depth) * u * u * (3.0 - 2.0 * u)
-        deep[len(self.names) :] = end_depth  # sphincters have no origin on a bone
+        deep[len(self.names) :] = end_depth  # sphincters do not begin on a bone
         side = unit_vectors(np.cross(np.gradient(lines, axis=1), normal))
         to_edge = half[..., None] * side
         rails = np.stack([lines - to_edge, lines, lines + to_edge])
@@ -166,7 +166,7 @@ class Muscles:
         self._set(grid, np.array(active), u)
 
     def _set(self, grid: Floats64, active: Floats64, u: Floats64) -> None:
-        """Show sections (b, ROWS, AROUND, 3) of bands that are so active, (b,)."""
+        """Set the shape to sections (b, ROWS, AROUND, 3) of bands with activations (b,)."""
         red = RELAXED + np.clip(active, 0.0, 1.0)[:, None] * (CONTRACTED - RELAXED)
         # This share of a band's length is tendon, at both ends.
         tendon = np.clip(1.4 - np.minimum(u, 1.0 - u) / 0.14, 0.0, 0.92)
@@ -199,7 +199,7 @@ class Muscles:
         faces = np.concatenate([first.reshape(-1, 3), second.reshape(-1, 3)])
         self.faces = faces.astype(np.int32)
         a = np.cos(2.0 * np.pi * np.arange(AROUND) / AROUND)
-        # Each band has a stretch of 40 mm of its own in the pattern.
+        # Each band has its own 40 mm of the pattern.
         start = 40.0 * np.arange(count)[:, None, None]
         across = start + 0.5 * self._width[:, None] * a
         along = self._length[:, None, None] * np.linspace(0.0, 1.0, ROWS)[:, None]
@@ -208,7 +208,7 @@ class Muscles:
 
 
 class _Skin:
-    """The skin as it is now, near places."""
+    """The present skin near some places."""
 
     def __init__(self, x: Floats64, faces: Any, bone: Floats64, middle: Floats64) -> None:
         """bone: how deep it is below each vertex of x; middle: from where a face looks outward."""

@@ -1,1 +1,1 @@
-"""Many commands, done side by side: a list of lines, its journal, their results."""
+"""Many commands, done in parallel: a list of lines, its journal, their results."""

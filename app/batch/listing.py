@@ -14,10 +14,10 @@ from ..files import entry_of, read_text
 
 @dataclass(frozen=True)
 class Job:
-    """A line that is to be done.
+    """A line to be done.
 
-    command: where its click command is, "module:name". folder: where its relative paths begin.
-    inputs, outputs: the files that it reads and writes. log: the file of its prints.
+    command: its click command, "module:name". folder: the start of its relative paths.
+    inputs, outputs: the files that it reads and writes. log: the file for its output.
     """
 
     number: int
@@ -30,7 +30,7 @@ class Job:
     log: Path
 
     def is_done(self) -> bool:
-        """Whether all outputs are there, and none is older than an input; they are never half."""
+        """Whether all outputs exist, and none is older than an input; files are complete."""
         files = (*self.outputs, *self.inputs)
         if not all(path.exists() for path in files):
             return False
@@ -49,7 +49,7 @@ def lines_of(path: Path) -> Iterator[tuple[int, str]]:
 
 
 def words_of(text: str) -> list[str]:
-    """The words of a line, as a shell reads it; UserError for an open quotation, and for NUL."""
+    """The words of a line, as a shell reads it; UserError for an unclosed quotation, and NUL."""
     if "\0" in text:
         raise UserError("holds a NUL character, which no name of a file can have")
     try:

@@ -1,4 +1,4 @@
-"""The lines of a list, done; and their results, in words and as a file."""
+"""Execution of the lines of a list; their results in words and as a file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SKIPPED = "skipped"
 
 @dataclass(frozen=True)
 class Result:
-    """The result of a line; `error` says in one line why it failed, and is empty otherwise."""
+    """The result of a line; `error` is the reason of a failure in one line, else empty."""
 
     job: Job
     status: str
@@ -41,7 +41,7 @@ class Result:
 def run_lines(
     jobs: Sequence[Job], *, processes: int, scheduler: str | None, resume: bool
 ) -> Iterator[Result]:
-    """Do the lines, and yield the result of each as it ends; with `resume` skip those done."""
+    """Do the lines, and yield the result of each when it ends; `resume` skips those done."""
     done = {job for job in jobs if resume and job.is_done()}
     waiting = [job for job in jobs if job not in done]
     yield from (Result(job, SKIPPED) for job in done)
@@ -68,7 +68,7 @@ def _run_here(jobs: Sequence[Job], processes: int) -> Iterator[Result]:
 
 
 def do_line(pool: WorkerPool, job: Job) -> Result:
-    """Have a line done by a process."""
+    """Let a process do a line."""
     begin = time.monotonic()
     frames = list[int]()
     try:
@@ -79,7 +79,7 @@ def do_line(pool: WorkerPool, job: Job) -> Result:
 
 
 def _do(job: Job, send: Send) -> None:
-    """In that process: do a line, and send the number of frames that it played."""
+    """In a process: do a line, and send the number of frames that it played."""
     print(f"risorius {job.text}", flush=True)
     try:
         os.chdir(job.folder)
@@ -98,7 +98,7 @@ def _do(job: Job, send: Send) -> None:
 
 
 def in_words(results: Sequence[Result], seconds: float) -> str:
-    """A summary of all lines. seconds: the time that all of them took together."""
+    """A summary of all lines. seconds: the duration of the whole batch."""
     counts = {name: sum(each.status == name for each in results) for name in (OK, FAILED, SKIPPED)}
     frames = sum(each.frames for each in results if each.status == OK)
     outcomes = ", ".join(f"{number} {name}" for name, number in counts.items())
@@ -107,7 +107,7 @@ def in_words(results: Sequence[Result], seconds: float) -> str:
 
 
 def save_summary(target: Path, results: Sequence[Result]) -> None:
-    """Write a CSV file with a row for each line; raises UserError if that cannot be."""
+    """Write a CSV file with a row for each line; raises UserError if this fails."""
     rows = [
         {
             "line": each.job.number,

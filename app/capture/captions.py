@@ -23,7 +23,7 @@ LANCZOS = PIL.Image.Resampling.LANCZOS
 
 @functools.cache
 def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
-    """Pillow's own typeface at a size [pixels]; read once, for that takes longer than writing."""
+    """Pillow's own typeface at a size [pixels]; read once, because reading is slow."""
     return ImageFont.load_default(size=size)
 
 
@@ -45,7 +45,7 @@ def plate(text: str, size: float) -> Image:
 
 @functools.lru_cache(maxsize=8)
 def colour_bar(size: float) -> Image:
-    """A legend of the colours of splits: an upright bar, its numbers and its title, on a plate."""
+    """A legend of the colours of splits: an upright bar with numbers and a title, on a plate."""
     small = font(0.82 * size)
     count = len(render.SPLIT_PALETTE)
     pad = round(0.65 * size)
@@ -88,8 +88,9 @@ def labels(
 ) -> list[Label]:
     """Captions at the foot of viewports, and the colour bar at the upper right.
 
-    A caption stands at the left, the second of two at the right, away from line and face; without
-    room it is left out. least: size of letters [pixels], which are larger in a high picture.
+    A caption stands at the left, the second of two at the right, away from the line and the face;
+    it is left out if there is no room. least: smallest size of letters [pixels]; a high picture has
+    larger ones.
     """
     size = max(least, viewports[0][3] / 36.0)
     pad = round(0.7 * size)
@@ -99,7 +100,7 @@ def labels(
         room = width - image.shape[1] - 2 * pad
         aside = room if (index, len(texts)) == (1, 2) else 0
         made += [(left + pad + aside, bottom + pad, image)] if room >= 0 else []
-    if has_bar and viewports[-1][3] >= 64:  # in less nobody reads its numbers
+    if has_bar and viewports[-1][3] >= 64:  # its numbers need this height
         left, bottom, width, height = viewports[-1]
         image = colour_bar(min(0.78 * size, height / 26.0))
         x = width - image.shape[1] - pad
@@ -109,9 +110,9 @@ def labels(
 
 
 def captioned(image: Image, shown: Sequence[Label], lefts: Sequence[int]) -> Image:
-    """Lay labels on a copy of a picture, and draw a line between viewports.
+    """Draw labels on a copy of a picture, and a line between viewports.
 
-    image: with 3 channels, or 4 and premultiplied. lefts: where viewports begin [pixels].
+    image: with 3 channels, or 4 and premultiplied. lefts: left ends of viewports [pixels].
     """
     page = image.copy()
     for left in filter(None, lefts):
@@ -126,7 +127,7 @@ def captioned(image: Image, shown: Sequence[Label], lefts: Sequence[int]) -> Ima
 def contact_sheet(
     poses: Sequence[tuple[str, Image]], *, columns: int, cell_width: int = 640
 ) -> Image:
-    """Lay named pictures out in a grid, each with its name below it."""
+    """Arrange named pictures in a grid, each with its name below it."""
     rows = math.ceil(len(poses) / columns)
     first = poses[0][1]
     cell_height = round(cell_width * first.shape[0] / first.shape[1])

@@ -1,4 +1,4 @@
-"""Offscreen, frame by frame: a surface with the whole pipeline behind it, and its camera."""
+"""Offscreen drawing, frame by frame: a surface with the whole pipeline, and its camera."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ MARGIN = 0.05  # of the frame, free on each side of a whole scene
 
 
 def whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
-    """A camera like that of `camera_for`, or further away, so that it sees the whole scene."""
+    """A camera like that of `camera_for`, but far enough away to see the whole scene."""
     camera = camera_for(scene, view)
     wanted = camera.distance
     camera.fit(scene.framing.extent, MARGIN)
@@ -41,9 +41,9 @@ def whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
 def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
     """The camera of a named view of the whole scene, or of "yaw,pitch[,zoom]" around its focus.
 
-    Degrees; at zoom 1 the whole scene fits, at 2 all is twice as large.
+    Angles are degrees; at zoom 1 the whole scene fits, at 2 all is twice as large.
 
-    Raises UserError with the views that there are.
+    Raises UserError, which lists the views.
     """
     view = view or DEFAULT_VIEW
     if view in render.VIEWS:
@@ -60,7 +60,7 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
 
 
 def check_camera(view: str | None, source: str = "") -> None:
-    """Raise UserError for a camera that `camera_for` does not know; source: where it is named."""
+    """Raise UserError for a camera unknown to `camera_for`; source: the place that names it."""
     if view and view not in render.VIEWS:
         try:
             _turn(view)
@@ -69,7 +69,7 @@ def check_camera(view: str | None, source: str = "") -> None:
 
 
 def _turn(view: str) -> tuple[float, float, float]:
-    """Yaw and pitch [degrees] and zoom of a camera; raises UserError for a text that names none."""
+    """Yaw and pitch [degrees] and zoom of a camera; raises UserError for another text."""
     try:
         yaw, pitch, zoom = [*map(float, view.split(",")), 1.0][:3]
         if view.count(",") > 2 or not np.isfinite([yaw, pitch, zoom]).all() or zoom <= 0.0:
@@ -83,7 +83,7 @@ def _turn(view: str) -> tuple[float, float, float]:
 
 
 def _framing(scene: Scene, view: str) -> render.OrbitCamera:
-    """A camera that frames `Framing.framed`; the rest of the scene may go beyond the frame."""
+    """A camera that frames `Framing.framed`; the rest of the scene may lie outside the frame."""
     camera = render.OrbitCamera.framing(scene.framing.extent, view=view)
     camera.fit(scene.framing.framed)
     return camera
@@ -91,22 +91,22 @@ def _framing(scene: Scene, view: str) -> render.OrbitCamera:
 
 @dataclass(frozen=True)
 class CaptureOptions:
-    """How a script is filmed."""
+    """Options of a film of a script."""
 
     size: tuple[int, int] = (1280, 720)  # of the whole picture [pixels]
     frames_per_second: float = 30.0
     refinement: Refinement = Refinement()  # noqa: RUF009 - frozen
-    beside: tuple[Refinement, ...] = ()  # comparisons, on its left
+    beside: tuple[Refinement, ...] = ()  # comparisons, on the left
     captions: bool = True  # names and triangle counts under a comparison
     camera: str | render.OrbitCamera | None = None  # a view, or yaw,pitch[,zoom] in degrees
-    is_turntable: bool = False  # the camera goes round once, by the last frame
-    span: tuple[float, float] | None = None  # [s] of the script that is seen; None: all of it
+    is_turntable: bool = False  # the camera goes round once, up to the last frame
+    span: tuple[float, float] | None = None  # [s] of the visible part of the script; None: all
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
-    tone: float | None = None  # of the skin [deg]; None: its own
+    tone: float | None = None  # of the skin [deg]; None: the head's own
     anatomy: AnatomyView = SKIN_ALONE
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
-    is_alive: bool = False  # controls that the script does not name move by themselves
+    is_alive: bool = False  # controls outside the script move by themselves
     passes: tuple[str, ...] = ()  # names of the passes to write beside pictures
 
     @property
@@ -117,7 +117,7 @@ class CaptureOptions:
 
 @dataclass(frozen=True)
 class Frame:
-    """A picture, its labels and passes, and how many triangles its finest mesh has."""
+    """A picture, its labels and passes, and the number of triangles of its finest mesh."""
 
     image: Image
     known: Labelled | None
@@ -137,7 +137,7 @@ class Capture:
         self._passes = Passes(self.pipeline, meshes[-1]) if options.passes else None
         self.viewports = side_by_side(self.surface.size, meshes)
         self._frame: Frame | None = None  # the last one
-        self._shown = np.zeros(0)  # the positions and values that it shows
+        self._shown = np.zeros(0)  # positions and values in that frame
         if options.tone is not None:
             self.pipeline.set_tone(options.tone)
         view = options.camera
@@ -152,7 +152,7 @@ class Capture:
         self.surface.__exit__(*error)
 
     def draw_image(self) -> Image:
-        """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""
+        """Draw the present scene, and read the picture back; (H, W, 4) if transparent."""
         options = self.options
         style = self.options.style
         self.pipeline.draw(self.camera, style, self.viewports, anatomy=options.anatomy)
@@ -166,18 +166,18 @@ class Capture:
         return straight(image) if self.options.is_transparent else image
 
     def refine(self) -> None:
-        """Refine a frame that nobody draws: a refiner may remember it in the next one."""
+        """Refine a frame without drawing it: a refiner may depend on earlier frames."""
         self.pipeline.refine(self.camera, self.viewports)
 
     def is_still(self) -> bool:
         """Whether nothing has moved visibly since this was last False.
 
-        Scenes are compared, not pictures, so each process that plays the script agrees. Passes have
-        to be exact: with passes this is always False.
+        Scenes are compared, not pictures, so all processes that play the script agree. Passes must
+        be exact, so this is always False with passes.
         """
         scene = self.scene
         camera = self.camera
-        # A turn of a bone counts as far out as the scene is wide; a control counts as 1 mm.
+        # A turn of a bone counts at the scene's width from its axis; a control counts as 1 mm.
         bones = [
             np.vstack([each[:3, :3] * camera.scene_radius, each[:3, 3]])
             for each in scene.bone_transforms().values()
@@ -188,14 +188,14 @@ class Capture:
         width, height = self.viewports[0].area[2:]
         pixels = camera.focal(width / height, height) / np.linalg.norm(camera.eye - camera.target)
         is_same = len(now) == len(self._shown) and not self.options.passes
-        # Within so many pixels of motion the last picture is shown once more.
+        # The last picture is shown again if motion is below this number of pixels.
         if is_same and pixels * np.abs(now - self._shown).max() <= 0.05:
             return True
         self._shown = now
         return False
 
     def next_frame(self) -> Frame:
-        """The frame of the scene as it is now: the last one again, if the scene is still."""
+        """The frame of the present scene; the last one again, if the scene is still."""
         if self.is_still() and self._frame is not None:
             self.refine()
         else:
@@ -203,7 +203,7 @@ class Capture:
         return self._frame
 
     def draw_frame(self) -> Frame:
-        """Draw the scene as it is now, with the labels and passes of the picture."""
+        """Draw the present scene, with the labels and passes of the picture."""
         image = self.draw_image()
         known = None
         triangles = max(drawn.triangle_count for drawn, *_ in self.viewports)
@@ -216,7 +216,7 @@ class Capture:
     def play(
         self, script: Script, *, until: float | None = None, progress: bool = True
     ) -> Iterator[float]:
-        """Play a script and yield the time [s] of each frame, the scene moved to it.
+        """Play a script, and yield the time [s] of each frame after the scene has moved to it.
 
         Frames before the options' span are played, too: later ones depend on them.
         """
@@ -241,7 +241,7 @@ class Capture:
 
 
 def straight(premultiplied: Image) -> Image:
-    """Convert premultiplied colours to those of files, (H, W, 4); black where nothing is."""
+    """Convert premultiplied colours to those of files, (H, W, 4); empty pixels are black."""
     image = premultiplied.copy()
     partly = (image[..., 3] > 0) & (image[..., 3] < 255)
     colours = image[partly].astype(np.float32)

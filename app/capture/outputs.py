@@ -1,8 +1,8 @@
 """Outputs for the frames of a film: a file through ffmpeg, or a folder of numbered pictures.
 
-The suffix of its name decides the format of a film. ffmpeg is a process of its own; a failure of it
-is reported in one line. The writer of `imageio_ffmpeg` ignores ffmpeg's exit code, so a film that a
-full disk cut short would pass as whole.
+The suffix of its name decides the format of a film. ffmpeg is a separate process; its failure is
+reported in one line. The writer of `imageio_ffmpeg` ignores ffmpeg's exit code, so a film that a
+full disk cut short would count as complete.
 """
 
 from __future__ import annotations
@@ -40,24 +40,24 @@ from ..sound.decoding import ffmpeg, sound_form, sound_input
 from ..stopping import cleaned_up_if_stopped
 from ..workers import share_of_cores
 
-# AAC and Opus, as players want them, at a quality that sounds like the source.
+# AAC and Opus in forms that players need, at a quality that sounds like the source.
 AAC = "-acodec aac -b:a 192k"
 OPUS = "-acodec libopus -b:a 160k"
-# H.264; 4:2:0 as every player wants it, which needs even sides, at a quality without blocks. The
-# number of threads decides the bytes, and with it the memory: left to x264 it is that of the cores
-# and a half, 1 GB on 64.
+# H.264 in 4:2:0, which every player reads and which needs even sides, at a quality without blocks.
+# The number of threads decides on bytes and memory. By itself x264 takes one and a half times the
+# cores: 1 GB on 64.
 H264 = (
     "-vf crop=trunc(iw/2)*2:trunc(ih/2)*2 -vcodec libx264 -threads 3 -pix_fmt yuv420p -crf 16 "
     "-preset veryfast -movflags +faststart"
 )
 VP9 = "-vcodec libvpx-vp9 -crf 18 -b:v 0 -deadline good -cpu-used 5 -row-mt 1 -pix_fmt yuv420p"
-# Each frame has colours of its own: nothing is kept until the end of a long film.
+# Each frame has its own colours: nothing is kept until the end of a long film.
 GIF = "-filter_complex split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1"
 WEBP = "-vcodec libwebp_anim -quality 88 -compression_level 4 -pix_fmt yuv420p"
 
 
 class FilmFormat(NamedTuple):
-    """One kind of film: its coding and that of its sound, for ffmpeg; None: it is silent."""
+    """One kind of film: ffmpeg's options for pictures and for sound; None: it is silent."""
 
     coding: str
     sound: str | None = None
@@ -67,7 +67,7 @@ class FilmFormat(NamedTuple):
 FORMATS = {
     ".mp4": FilmFormat(H264, AAC),
     ".webm": FilmFormat(VP9, OPUS),
-    # Frames last whole hundredths of a second; players slow down frames shorter than two.
+    # Frames last whole hundredths of a second; players show shorter ones than two too slowly.
     ".gif": FilmFormat(f"{GIF} -loop 0", fastest=50.0),
     ".webp": FilmFormat(f"{WEBP} -loop 0"),
 }
@@ -75,12 +75,12 @@ HEARD = tuple(suffix for suffix, each in FORMATS.items() if each.sound)
 
 
 def format_of(target: Path) -> FilmFormat | None:
-    """The format for a file of this name; None if it is no film."""
+    """The format for a file of this name; None if it is not a film."""
     return FORMATS.get(target.suffix.lower())
 
 
 def check_name(output: Path) -> None:
-    """Raise UserError for a name that is neither a film's, nor a picture's, nor a folder's."""
+    """Raise UserError for a name of neither a film, a picture nor a folder."""
     suffix = output.suffix.lower()
     if suffix not in (*FORMATS, ".png", "") and not output.is_dir():
         raise UserError(
@@ -98,15 +98,15 @@ class Soundtrack:
     begin: float = 0.0
 
     def options(self, coding: str) -> list[str]:
-        """Of ffmpeg, which has the frames as its first input."""
+        """Options of ffmpeg, whose first input is the frames."""
         source = sound_input(self.file, self.seconds, self.begin)
         return [*source, "-map", "0:v", "-map", "1:a:0", *coding.split(), *sound_form()]
 
 
 class Encoder:
-    """An ffmpeg that takes frames and writes the file `part`; `target` names it in error texts."""
+    """An ffmpeg that takes frames and writes the file `part`; errors call it `target`."""
 
-    DYING = 1.0  # [s] for the end of a process that is killed, or has given up
+    DYING = 1.0  # [s] for the end of a killed or failed process
 
     def __init__(
         self,
@@ -116,7 +116,7 @@ class Encoder:
         frames_per_second: float,
         soundtrack: Soundtrack | None = None,
     ) -> None:
-        """Start it, for frames of `size` pixels; raises UserError if there is none."""
+        """Start ffmpeg, for frames of `size` pixels; raises UserError if it is missing."""
         form = FORMATS[target.suffix.lower()]
         self._target = target
         self._part = part
@@ -128,7 +128,7 @@ class Encoder:
         name = ffmpeg()
         coding = form.coding.split()
         self._messages = tempfile.TemporaryFile()
-        try:  # in a session of its own: Ctrl-C is for us alone
+        try:  # in its own session, so Ctrl-C reaches only us
             self._process = subprocess.Popen(
                 [name, "-v", "error", *frames.split(), *sound, *coding, f"file:{part}"],
                 stdin=subprocess.PIPE,
@@ -151,17 +151,17 @@ class Encoder:
             raise self._failure() from None
 
     def finish(self) -> None:
-        """Wait until the file is whole; UserError if it is not."""
+        """Wait until the file is complete; UserError if it is not."""
         self._frames.close()
         if self._process.wait():
             raise self._failure()
 
     def stop(self) -> None:
-        """End the process and those that it began; does nothing after `finish`."""
+        """End the process and its children; this does nothing after `finish`."""
         if sys.platform == "win32":
             self._process.kill()
         else:
-            with contextlib.suppress(OSError):  # none of them is left
+            with contextlib.suppress(OSError):  # all have ended
                 os.killpg(self._process.pid, signal.SIGKILL)  # its session is its group
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(self.DYING)
@@ -173,7 +173,7 @@ class Encoder:
             self._process.wait(self.DYING)
         self._messages.seek(0)
         said = self._messages.read().decode(errors="replace").strip().splitlines()
-        # Without the part of ffmpeg that speaks: "[out#0/mp4 @ 0x55e9629d] ".
+        # ffmpeg's part that reports is left out: "[out#0/mp4 @ 0x55e9629d] ".
         why = (
             re.sub(r"^(\[[^]]*\] )+", "", said[-1])
             if said
@@ -182,7 +182,7 @@ class Encoder:
         return UserError(f"{self._target}: cannot be written: ffmpeg: {why}")
 
 
-FrameSink = Callable[..., None]  # takes pictures one by one, each with its labels and passes
+FrameSink = Callable[..., None]  # takes pictures one by one, with labels and passes
 
 
 @contextlib.contextmanager
@@ -192,10 +192,10 @@ def film(
     frames_per_second: float,
     soundtrack: Soundtrack | None = None,
 ) -> Iterator[FrameSink]:
-    """A film through ffmpeg, in the format of its suffix, with the sound if the format allows one.
+    """A film through ffmpeg, in the format of its suffix, with sound if the format allows it.
 
-    size: of the frames; H.264 leaves out the last row or column of an odd one. Raises UserError
-    where no such film can be written.
+    size: that of the frames; H.264 leaves out the last row or column of an odd side. Raises
+    UserError if no such film can be written.
     """
     fastest = FORMATS[target.suffix.lower()].fastest
     if frames_per_second > fastest:
@@ -208,7 +208,7 @@ def film(
         encoder = Encoder(target, part, size, frames_per_second, soundtrack)
 
         def add(image: Image, _: Labelled | None = None) -> None:
-            """Pass a frame to ffmpeg; a film has no files beside it."""
+            """Pass a frame to ffmpeg; a film has no further files."""
             encoder.add(image)
 
         with cleaned_up_if_stopped(encoder.stop):
@@ -221,13 +221,13 @@ def film(
 
 @contextlib.contextmanager
 def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
-    """Numbered PNG files in a folder. Raises UserError if it holds something already.
+    """Numbered PNG files in a folder. Raises UserError if the folder is not empty.
 
-    overwrite: frames of an earlier film give way to these; other files stay.
+    overwrite: these frames replace those of an earlier film; other files stay.
     """
     count = 0
     waiting: deque[Future[None]] = deque()
-    workers = share_of_cores()  # threads, for most of the time is spent in zlib
+    workers = share_of_cores()  # threads suffice: zlib takes most of the time
 
     def write(picture: Path, image: Image, beside: Labelled | None) -> None:
         """Write one frame, in a thread."""
@@ -243,7 +243,7 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
     ):
 
         def add(image: Image, beside: Labelled | None = None) -> None:
-            """Have the next frame written; raises errors of earlier ones."""
+            """Write the next frame in a thread; raises errors of earlier frames."""
             nonlocal count
             picture = temporary / f"frame_{count:05d}.png"
             waiting.append(threads.submit(write, picture, image, beside))

@@ -1,8 +1,8 @@
-"""Processes that draw a film together, each its share of the frames.
+"""Processes that draw a film together; each draws its share of the frames.
 
-Software OpenGL keeps only one core busy all the time. The simulation is cheap and gives the same
-bytes in every process, so each of them plays the whole script and draws every n-th frame. Their
-pictures come through pipes, in order, while they go on with the next frames.
+Software OpenGL uses only one core well. The simulation is cheap and gives the same bytes in every
+process, so each process plays the whole script and draws every n-th frame. Their pictures come
+through pipes, in order, while the processes go on with the next frames.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ class Share:
 
 
 def worthwhile(options: CaptureOptions, frame_count: int) -> int:
-    """How many processes should draw this many frames: 1 if a GPU draws, or there is one core."""
+    """Number of processes to draw this many frames: 1 if a GPU draws, or there is one core."""
     width, height = options.size
     samples = width * height * max(options.samples, 1) * frame_count
-    least_samples = 1e8  # 27 frames of 1280 x 720: fewer are not worth a start of three seconds
-    most_processes = 8  # more of them than one encoder can follow
+    least_samples = 1e8  # 27 frames of 1280 x 720: fewer do not pay for a start of three seconds
+    most_processes = 8  # more than one encoder can follow
     count = min(share_of_cores(), most_processes, int(samples / least_samples))
     if count < 2:
         return 1
@@ -62,7 +62,7 @@ def drawing(
             drawer.process.kill()
 
     def take(messages: Iterator[Frame | None]) -> Frame:
-        """The next frame: of this process, or the last one again."""
+        """The next frame: from this process, or the last one again."""
         try:
             frame = next(messages)
         except DiedError as why:
@@ -89,7 +89,7 @@ def drawing(
 
 
 def _draw(share: Share, send: Send) -> None:
-    """In a process: pass the frames that are its own, None for one like that before it."""
+    """In a process: send its own frames, and None for a frame equal to the one before."""
     options = share.options
     if share.first == 0:
         announce_compiling()

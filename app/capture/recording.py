@@ -31,8 +31,8 @@ def capture(
 ) -> int:
     """Play `script` into `output`, by its suffix, and its named poses into the picture `sheet`.
 
-    time: of a picture [s]; else it is of the first pose that has a name, or of the end.
-    Returns the largest number of triangles of a frame. Raises UserError for outputs that cannot be.
+    time: that of a picture [s]; None: that of the first pose with a name, or the end. Returns the
+    largest number of triangles of a frame. Raises UserError for impossible outputs.
     """
     _check(script, options, output, sheet, time)
     _check_passes(script, output, options)
@@ -47,7 +47,7 @@ def capture(
 
 
 def _draw_sheet(script: Script, options: CaptureOptions, sheet: Path, progress: bool) -> int:
-    """Lay pictures of the named poses out in one; the largest number of triangles in them."""
+    """Arrange pictures of the named poses in one; return the largest number of triangles."""
     half = 0.5 / options.frames_per_second
     most = 0
     wanted = list(script.key_poses)
@@ -65,7 +65,7 @@ def _draw_sheet(script: Script, options: CaptureOptions, sheet: Path, progress: 
 def _draw_picture(
     script: Script, options: CaptureOptions, output: Path, time: float | None, progress: bool
 ) -> int:
-    """Draw the frame at a time [s]; the number of its triangles."""
+    """Draw the frame at a time [s]; return the number of its triangles."""
     if time is None:
         time = script.key_poses[0].time if script.key_poses else script.duration
     moment = round(time * options.frames_per_second) / options.frames_per_second
@@ -78,7 +78,7 @@ def _draw_picture(
 def _draw_film(
     script: Script, options: CaptureOptions, output: Path, overwrite: bool, progress: bool
 ) -> int:
-    """Draw a film, or by its name a folder of frames; the largest number of triangles in them."""
+    """Draw a film or, by the name, a folder of frames; return the largest number of triangles."""
     rate = options.frames_per_second
     most = 0
     begin, end = options.span or (0.0, script.duration)
@@ -120,7 +120,7 @@ def _check(
     sheet: Path | None,
     time: float | None,
 ) -> None:
-    """Raise UserError, before any work is done, where one of the outputs cannot be."""
+    """Raise UserError, before any work is done, for an impossible output."""
     if time is not None and not _is_image(output):
         raise UserError(
             f"--time {time:g}: is the time of a picture.png; for a film write --time FROM:TO"
@@ -163,7 +163,7 @@ def _check(
 
 
 def _check_passes(script: Script, output: Path | None, options: CaptureOptions) -> None:
-    """Raise UserError, before any work is done, where the passes cannot be had or written."""
+    """Raise UserError, before any work is done, if the passes cannot be made or written."""
     if not options.passes:
         return
     check_wanted(options.passes, script.scene)

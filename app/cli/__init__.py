@@ -18,7 +18,7 @@ from . import commands
 
 
 class OneLineGroup(click.Group):
-    """A command that reports every error a user can mend in one line."""
+    """A command that reports each error that a user can correct in one line."""
 
     def main(
         self,
@@ -28,7 +28,7 @@ class OneLineGroup(click.Group):
         standalone_mode: bool = True,
         **extra: Any,
     ) -> Any:
-        """Run the command; the exit code is 2 for an error that the user can mend."""
+        """Run the command; the exit code is 2 for an error that the user can correct."""
         try:
             with report_user_errors():
                 code = super().main(args, prog_name, complete_var, standalone_mode=False, **extra)

@@ -54,7 +54,7 @@ def batch(
 ) -> None:
     """Run a list of commands in parallel.
 
-    LIST is a text file with a command in each line, as typed after risorius. Lines may hold
+    LIST is a text file with a command in each line, without the word risorius. Lines may hold
     capture, export and convert; lines that begin with # are ignored. Relative paths begin in the
     current folder. All lines are checked before the first is begun.
     """
@@ -102,7 +102,7 @@ def jobs_in(listing: Path, logs: Path, *, resume: bool) -> list[Job]:
             message = error.format_message() if isinstance(error, click.ClickException) else error
             wrong.append((number, " ".join(str(message).split()).rstrip(".")))
     wrong += clashes(jobs)
-    most = 20  # that are reported one by one
+    most = 20  # errors that are reported one by one
     for number, why in sorted(wrong)[:most]:
         click.echo(f"risorius: {in_one_line(f'{listing}:{number}: {why}')}", err=True)
     if len(wrong) > most:
@@ -116,7 +116,7 @@ def jobs_in(listing: Path, logs: Path, *, resume: bool) -> list[Job]:
 
 
 def _job(number: int, text: str, logs: Path, *, resume: bool) -> Job:
-    """The job of a line. Raises UserError, or click's errors, for a line that cannot be done."""
+    """The job of a line. Raises UserError, or click's errors, for an impossible line."""
     name, *arguments = words_of(text)
     command = _listed(name)
     given = _parsed(command, arguments)
@@ -128,7 +128,7 @@ def _job(number: int, text: str, logs: Path, *, resume: bool) -> Job:
     if given.get("overwrite") is False and (resume or not outputs[0].suffix):
         if not resume:
             check_folder(outputs[0], overwrite=False)
-        arguments.insert(0, "--overwrite")  # files there are left by an earlier attempt
+        arguments.insert(0, "--overwrite")  # files there are from an earlier attempt
     assert command.callback is not None
     return Job(
         number,
@@ -153,7 +153,7 @@ def _listed(name: str) -> click.Command:
 
 def _parsed(command: click.Command, arguments: Sequence[str]) -> dict[str, Any]:
     """The arguments as click parses them, by the names of parameters."""
-    with contextlib.redirect_stdout(io.StringIO()):  # of --help
+    with contextlib.redirect_stdout(io.StringIO()):  # output of --help
         try:
             return command.make_context(f"risorius {command.name}", list(arguments)).params
         except click.exceptions.Exit:

@@ -89,7 +89,7 @@ class Filming:
 
     @property
     def still_time(self) -> float | None:
-        """The time of a picture [s]; None: the script's own."""
+        """The time of a picture [s]; None: that of the script."""
         return self.times[0] if self.times is not None and len(self.times) == 1 else None
 
     @property
@@ -111,7 +111,7 @@ class Filming:
         return ",".join(words) or None, is_turntable
 
     def _style(self, drawing: Drawing) -> render.Style:
-        """The style of pictures, in the light of a file where there is one."""
+        """The style of pictures, with the light of a file if there is one."""
         from risorius import render
 
         from ..light_maps import read_light_map
@@ -140,7 +140,7 @@ class Filming:
     def options(
         self, script: Script, drawing: Drawing, *, is_recorded: bool = False
     ) -> CaptureOptions:
-        """All options that decide a script's frames; UserError for options that cannot be."""
+        """All options that decide on a script's frames; UserError for impossible options."""
         from ..capture import CaptureOptions
         from ..refining.refiners import parse_comparison
 
@@ -200,7 +200,7 @@ def capture(
         raise UserError(f"--sound {sound}: only a film is heard; end -o in {', '.join(HEARD)}")
     performance = played(script, scene, settings=settings, sound=sound, quiet=filming.quiet)
     is_recording = script is not None and script.suffix.lower() != ".toml"
-    is_still = output is not None and output.suffix.lower() == ".png"  # not amid a blink
+    is_still = output is not None and output.suffix.lower() == ".png"  # not during a blink
     options = filming.options(performance, drawing, is_recorded=is_recording and not is_still)
     most = film_of(
         performance,

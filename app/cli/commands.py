@@ -1,4 +1,4 @@
-"""The product's sub-commands.
+"""The sub-commands of `risorius`.
 
 Modules that need OpenGL or compiled code are imported inside the commands: --help comes at once.
 """
@@ -62,7 +62,7 @@ class Live:
     )
 
     def listening(self, gains: tuple[str, ...], mirror: bool) -> Listening | None:
-        """Where to listen, None for nowhere; raises UserError for options that need --live.
+        """The place to listen at, or None; raises UserError for options that need --live.
 
         gains: "NAME=x" each. mirror: whether left and right change places.
         """
@@ -133,7 +133,7 @@ def send(recording: Path | None, port: int | None, address: str, loop: bool) -> 
     from ..live.sender import Sender
     from ..recordings.reading import read_take
 
-    if recording is None:  # made by `risorius export` from scripts/speech.toml
+    if recording is None:  # `risorius export` made it of scripts/speech.toml
         recording = Path(str(files("risorius.assets") / "data" / "speech.csv"))
     take = read_take(recording)
     with Sender(address, port, recording.stem) as sender:
@@ -184,7 +184,7 @@ def convert(
     check_file(output)
     if output.suffix.lower() != ".toml":
         raise UserError(f"{output}: scripts are written as .toml; choose a name that ends so")
-    if output.exists() and not overwrite:  # somebody may have worked on it
+    if output.exists() and not overwrite:  # a user may have edited it
         raise UserError(f"{output}: exists already; choose another name, or add --overwrite")
     script = played(recording, None, playback, quiet=quiet)
     if not script.is_converted:
@@ -207,7 +207,7 @@ def open_window(
     listening: Listening | None = None,
     mesh: Path | None = None,
 ) -> None:
-    """Open the viewer on a script's scene; or on a mesh whose landmarks are to be marked.
+    """Open the viewer on a script's scene, or on a mesh whose landmarks must be marked.
 
     performance: None for a new script of the face at rest.
     """
@@ -239,7 +239,7 @@ def open_window(
         from ..viewer import Viewer
         from ..viewer.settings import display_of
 
-        display = None  # as it was last
+        display = None  # as in the last window
         if drawn is not None:
             refinement, anatomy = drawn
             display = display_of(refinement, script.scene, anatomy, **drawing.style_options)
@@ -257,9 +257,9 @@ def open_window(
 
 
 def fitted_head_of(drawing: Drawing, *, may_be_marked: bool) -> tuple[FittedHead | None, str]:
-    """The head of the options, and a line that says why known landmarks do not fit it.
+    """The head of the options, and a line if known landmarks do not fit it.
 
-    The head is None, too, where its landmarks are missing and may be marked.
+    The head is also None if its landmarks are missing and may be marked.
     """
     from risorius.assets.fitting.landmark_file import MisfitError, UnfinishedError
 

@@ -16,7 +16,7 @@ from ..errors import UserError
 from ..sound.decoding import ffmpeg
 from ..text import in_one_line
 
-PATIENCE = 20.0  # [s] for ffmpeg to say which it is
+PATIENCE = 20.0  # [s] for ffmpeg to report its version
 EXTRAS = {
     "window": ("imgui_bundle", "glfw", "miniaudio"),
     "films": ("imageio_ffmpeg",),
@@ -25,21 +25,21 @@ EXTRAS = {
     "passes": ("OpenEXR",),
     "cluster": ("distributed",),
 }
-"""The modules that `pip install '.[EXTRA]'` brings."""
+"""The modules that `pip install '.[EXTRA]'` installs."""
 
 
 class Health(enum.IntEnum):
-    """How much works here; the values are exit codes."""
+    """State of this installation; the values are exit codes."""
 
     WHOLE = 0
-    PARTLY = 1  # it draws, but has no window, no offscreen frames or no films
+    PARTLY = 1  # it draws, but without windows, offscreen frames or films
     NOTHING = 2  # it cannot draw
 
 
 def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
-    """Return how much works here, and the lines of the report.
+    """Return the state of this installation, and the lines of the report.
 
-    offscreen_only: ask for offscreen frames alone, and report on nothing else.
+    offscreen_only: test and report offscreen frames alone.
     """
     found = {finding.name: finding for finding in render.probe(offscreen_only=offscreen_only)}
     system = f"{platform.system()} {platform.machine()}"
@@ -64,7 +64,7 @@ def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
 
 
 def _card(findings: list[render.Finding]) -> str:
-    """Whether the refiner `kahler-gl` runs, which nothing else needs."""
+    """A line on the refiner `kahler-gl`, which is optional."""
     able = [each for each in findings if each.lends_gpu_streams]
     if not able:
         return "kahler-gl: no. It needs OpenGL 4.3; the refiner kahler does the same"
@@ -75,7 +75,7 @@ def _card(findings: list[render.Finding]) -> str:
 
 
 def _names() -> list[str]:
-    """The names that options of refinement take."""
+    """The names that options of refinement accept."""
     from risorius import refine  # slow, and not needed for offscreen frames alone
 
     known: dict[str, refine.Registry[Any]] = {
@@ -87,7 +87,7 @@ def _names() -> list[str]:
 
 
 def _extras() -> str:
-    """Which extras are installed, and the command that installs the others."""
+    """The installed extras, and the command that installs the others."""
     missing = [name for name, modules in EXTRAS.items() if not all(map(_is_there, modules))]
     there = ", ".join(name for name in EXTRAS if name not in missing) or "none"
     cure = (
@@ -99,14 +99,14 @@ def _extras() -> str:
 
 
 def _is_there(module: str) -> bool:
-    """Whether it could be imported; that is not tried."""
+    """Whether it could be imported, without trying to."""
     with contextlib.suppress(ImportError):
         return find_spec(module) is not None
     return False
 
 
 def _films() -> tuple[bool, str]:
-    """Whether there is an ffmpeg that answers, and a line: which, or the cure."""
+    """Whether there is a working ffmpeg, and a line with its version or the remedy."""
     cure = "pip install --force-reinstall imageio-ffmpeg"
     if "IMAGEIO_FFMPEG_EXE" in os.environ:
         cure = "unset IMAGEIO_FFMPEG_EXE"

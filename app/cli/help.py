@@ -29,7 +29,7 @@ MOVED: Mapping[str, str] = {
     "--face": _CONVERT,
     "--rate": _CONVERT,
     "--skin": _STYLE,
-    "--light": _STYLE,  # capture and dataset have another
+    "--light": _STYLE,  # another option in capture and dataset
     "--wrinkles": _STYLE,
     "--wireframe": _WORD,
     "--splits": _WORD,
@@ -45,14 +45,14 @@ MOVED: Mapping[str, str] = {
     "--skin-maps": "pictures always have skin maps; the window can leave them out",
     "--no-skin-maps": "pictures always have skin maps; the window can leave them out",
 }
-"""What to do instead of an option that was removed; {option}: as typed, {name}: without dashes."""
+"""The replacement of each removed option; {option}: as typed, {name}: without dashes."""
 
 
 class RenewedCommand(click.Command):
     """A command whose errors name the replacements of options that were removed."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse; the error for an option that was removed names its replacement."""
+        """Parse; the error for a removed option names its replacement."""
         try:
             return super().parse_args(ctx, args)
         except click.NoSuchOption as error:
@@ -80,4 +80,4 @@ class GroupedCommand(RenewedCommand):
                 with formatter.section(heading):
                     formatter.write_dl(group)
         with formatter.section("Others"):
-            formatter.write_dl(list(rows.values()))  # --help, at least
+            formatter.write_dl(list(rows.values()))  # at least --help

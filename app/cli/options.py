@@ -1,4 +1,4 @@
-"""Options that commands share: their kinds, and the settings objects that they become."""
+"""Options that commands share: their types, and the settings objects made of them."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
 LEAST_SIDE = 16  # [pixels]
 LONGEST_SIDE = 8192  # [pixels]
-BACKGROUNDS = ("light", "dark", "white", "black")  # of `render`
-HEAD_NAMES = ("ada", "kofi", "maria", "coarse")  # of `assets`, which is not imported yet
+BACKGROUNDS = ("light", "dark", "white", "black")  # those of `render`
+HEAD_NAMES = ("ada", "kofi", "maria", "coarse")  # those of `assets`, which is not imported yet
 
 
 class Size(click.ParamType[tuple[int, int]]):
@@ -41,7 +41,7 @@ class Size(click.ParamType[tuple[int, int]]):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[int, int]:
-        """Turn the text into two numbers, or fail with the sizes that are allowed."""
+        """Turn the text into two numbers, or fail with the allowed sizes."""
         if isinstance(value, tuple):
             return value
         written = re.fullmatch("([0-9]{1,6})x([0-9]{1,6})", str(value).lower())
@@ -61,7 +61,7 @@ MAP_BACKGROUND = "map"
 class BackgroundName(click.ParamType["render.Background | str | None"]):
     """The background of the scene, by name or as a colour; None is transparent.
 
-    The word "map" is kept as it is: other options choose the map that lights the scene.
+    The word "map" stays a word: other options choose the map that lights the scene.
     """
 
     name = "COLOUR"
@@ -69,7 +69,7 @@ class BackgroundName(click.ParamType["render.Background | str | None"]):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> render.Background | str | None:
-        """Look the name up, or fail with the names that are allowed."""
+        """Look the name up, or fail with the allowed names."""
         from risorius import render
 
         word = str(value).lower()
@@ -97,7 +97,7 @@ class Times(click.ParamType[tuple[float, ...]]):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[float, ...]:
-        """Turn the text into one or two numbers of seconds, or fail with the forms allowed."""
+        """Turn the text into one or two numbers of seconds, or fail with the allowed forms."""
         if isinstance(value, tuple):
             return value
         try:
@@ -174,7 +174,7 @@ def options_of(settings: type[Any]) -> Iterator[Command]:
 def packed(settings: type[Any], options: Iterable[Command] = ()) -> Callable[[Command], Command]:
     """Give a command the options of such a dataclass, packed into one argument with its name.
 
-    options: in place of those that the fields declare.
+    options: replace those that the fields declare.
     """
     keys = [each.name for each in fields(settings)]
     name = settings.__name__.lower()
@@ -230,7 +230,7 @@ class Subject:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """The files of a head of the user's."""
+        """The files of a user's head."""
         return tuple(each for each in (self.head, self.landmarks) if isinstance(each, Path))
 
     def check_head(self) -> None:
@@ -294,7 +294,7 @@ class Drawing(Subject):
 
     @property
     def is_given(self) -> bool:
-        """Whether the command line sets any option of refinement, style or anatomy."""
+        """Whether the command line sets an option of refinement, style or anatomy."""
         source = click.get_current_context().get_parameter_source
         names = ("look", "refiner", "refiner_settings", "style_settings", "anatomy")
         return any(source(name) is not ParameterSource.DEFAULT for name in names)
@@ -357,7 +357,7 @@ with_playback = packed(Playback, PLAYBACK)
 
 
 def _print_report(report: Report) -> None:
-    """Print on the error stream how a recording was understood."""
+    """Print the report of a recording on the error stream."""
     for line in report.lines:
         click.echo(line, err=True)
 
@@ -384,7 +384,7 @@ def printing(name: str, package: str, file: str, what: str) -> Command:
     """An option that prints a file of a package, and ends the program. what: the help text."""
 
     def show(context: click.Context, _: click.Parameter, asked: bool) -> None:
-        """Print it, if the option is given."""
+        """Print the file, if the option is given."""
         if asked:
             click.echo((files(package) / file).read_text("utf-8"), nl=False)
             context.exit()

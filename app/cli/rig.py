@@ -98,7 +98,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     )
 
     def say(line: str) -> None:
-        """Print a line on the head, unless --quiet is set."""
+        """Print a line about the head, unless --quiet is set."""
         if not rigging.quiet:
             click.echo(in_one_line(line), err=True)
 
@@ -118,7 +118,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
 
 
 def _take_of(rigging: Rigging, kinds: tuple[str, ...]) -> Script | None:
-    """The take to compare sums with; None if nobody reads that, or no shape is ARKit's."""
+    """The take for a comparison of sums; None without output, or without ARKit's shapes."""
     from ..performances import built_in_words, read_performance
 
     if "arkit" not in kinds:
@@ -136,7 +136,7 @@ def _take_of(rigging: Rigging, kinds: tuple[str, ...]) -> Script | None:
 
 
 def _check_output(output: Path, inputs: tuple[Path | None, ...], *, is_folder: bool) -> None:
-    """UserError, before any work is done, where the output cannot be written."""
+    """UserError, before any work is done, if the output cannot be written."""
     from ..files import check_apart, check_file, check_folder
 
     if not is_folder and output.suffix.lower() != ".glb":

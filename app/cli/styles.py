@@ -77,7 +77,7 @@ ANATOMY_WORDS = Words("--anatomy", STRUCTURES, {"dissect": SIDES}, ("opacity",))
 
 
 def style_in(settings: Sequence[str]) -> dict[str, Any]:
-    """All settings of style by name, the usual ones where the option does not set them."""
+    """All settings of style by name, with defaults where the option does not set them."""
     usual = {
         "skin": "textured",
         "light": "studio",

@@ -1,7 +1,7 @@
 """Names of controls: their names in a mirror, and their names in plain words.
 
-A mirror turns sides and values round, of controls and of the channels of recordings alike. Plain
-words, and other words by which a control is found, are in assets, `words.toml`.
+A mirror exchanges sides and the signs of values, of controls and of recorded channels alike. Plain
+words, and other words that find a control, are in `words.toml` of assets.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from typing import Any
 
 from risorius.assets.loading import read_words
 
-SIDES = (("_left", "_right"), ("Left", "Right"))  # how names end: ours, ARKit's
-TURNED = (  # to one side where their value is above 0, to the other below
+SIDES = (("_left", "_right"), ("Left", "Right"))  # ends of names: ours, ARKit's
+TURNED = (  # to one side above 0, to the other below
     "jaw_sideways", "gaze_horizontal", "gaze_horizontal_left", "gaze_horizontal_right",
     "eye_yaw_left", "eye_yaw_right", "head_yaw", "head_roll",
 )  # fmt: skip
-# Sides of a motion, not of the face: both at once stand still.
+# Sides of a motion, not of the face: together they cancel.
 OPPOSITE = ("AU30", "lips_sideways", "jaw", "mouth")
-KNOWN = 4096  # names that are taken apart once: panels ask for all of theirs in each frame
-_TWINS = {  # action units that are each other's image without saying so: eyes turn left, right ...
+KNOWN = 4096  # names whose parts are kept: panels need all of theirs in each frame
+_TWINS = {  # action units that mirror each other by meaning: eyes turn left, right ...
     "AU61": "AU62", "AU62": "AU61", "AU51": "AU52", "AU52": "AU51", "AU55": "AU56", "AU56": "AU55",
     "wink": "wink_right", "wink_right": "wink", "contempt": "contempt_right",
     "contempt_right": "contempt",
@@ -30,7 +30,7 @@ _TWINS = {  # action units that are each other's image without saying so: eyes t
 
 @functools.lru_cache(maxsize=KNOWN)
 def parted(name: str) -> tuple[str, str]:
-    """A name without its side, and the side as it is spelled; "" for the middle."""
+    """A name without its side, and the side as spelled; "" for the middle."""
     for side in (side for pair in SIDES for side in pair):
         if name.endswith(side):
             return name.removesuffix(side), side
@@ -39,7 +39,7 @@ def parted(name: str) -> tuple[str, str]:
 
 @functools.lru_cache(maxsize=KNOWN)
 def twin_of(name: str) -> str:
-    """The name on the other side; itself for one of the middle."""
+    """The name on the other side; the same name for the middle."""
     if name in _TWINS:
         return _TWINS[name]
     base, side = parted(name)
@@ -50,7 +50,7 @@ def twin_of(name: str) -> str:
 
 
 def mirrored(values: Mapping[str, float]) -> dict[str, float]:
-    """Values with left and right exchanged; those of the middle change their sign."""
+    """Values with left and right exchanged; turns and sideways values change sign."""
     result = dict(values)
     for name, value in values.items():
         if twin_of(name) in values:
@@ -59,13 +59,13 @@ def mirrored(values: Mapping[str, float]) -> dict[str, float]:
 
 
 def copied(values: Mapping[str, float], source: str) -> dict[str, float]:
-    """Values in which both sides are like one ("left" or "right"); the middle and the gaze stay."""
+    """Values with both sides equal to one ("left" or "right"); the middle and the gaze stay."""
     result = dict(values)
     sideways = ("gaze_horizontal", "eye_yaw", "eyeLookIn", "eyeLookOut")
     for name, value in values.items():
         base, side = parted(name)
         twin = twin_of(name)
-        is_whole = not side and parted(twin)[0] != name  # of both sides, or a direction
+        is_whole = not side and parted(twin)[0] != name  # for both sides, or a direction
         if is_whole or base in OPPOSITE or base.startswith(sideways) or twin not in values:
             continue
         if (side.strip("_").lower() or "left") == source:
@@ -80,7 +80,7 @@ def readable(name: str) -> str:
 
 
 def sentence(text: str) -> str:
-    """A text with a capital, unless it begins with a code or a file, as "a.b: opened"."""
+    """A text with a capital letter, unless it begins with a code or a file: "a.b: opened"."""
     name, colon, _ = text.partition(":")
     is_plain = text.partition(" ")[0].islower() and not (colon and "." in name)
     return text[:1].upper() + text[1:] if is_plain else text
@@ -109,9 +109,9 @@ def _synonyms() -> tuple[tuple[str, frozenset[str]], ...]:
 
 
 def title_of(name: str, action: str = "") -> tuple[str, str]:
-    """A control's code, "" for none, and its plain name, "" for a code alone.
+    """A control's code, or "", and its plain name, "" if there is only a code.
 
-    name: without its side, where both sides have one name. action: of the control, in words.
+    name: without its side, if both sides share a name. action: that of the control, in words.
     """
     stem = parted(name)[0]
     plain = str(_table("names").get(name) or _table("names").get(stem) or "")
@@ -129,14 +129,14 @@ def title_of(name: str, action: str = "") -> tuple[str, str]:
 
 
 def words_of_group(title: str) -> str:
-    """Other words by which a group of controls is found; "" for none."""
+    """Other words that find a group of controls; "" for none."""
     return str(_table("groups").get(title, ""))
 
 
 def is_found(words: str, text: str, names: Collection[str]) -> bool:
-    """Whether each of the words is in the text, or begins another word for one of the names.
+    """Whether each word is in the text, or begins a synonym of one of the names.
 
-    names: of controls, with their sides.
+    names: those of controls, with their sides.
     """
     stems = {*names, *(parted(name)[0] for name in names)}
     return all(
@@ -150,7 +150,7 @@ def is_found(words: str, text: str, names: Collection[str]) -> bool:
 
 
 def _forms(word: str) -> list[str]:
-    """A word as it was typed, and without its ending: chewing, chew."""
-    word_endings = ("ing", "ed", "s")  # of a word that is looked for
+    """A word as typed, and without its ending: chewing, chew."""
+    word_endings = ("ing", "ed", "s")  # endings of a searched word
     stems = [word.removesuffix(end) for end in word_endings if word.endswith(end)]
     return [word, *(stem for stem in stems if len(stem) >= 3)]  # letters

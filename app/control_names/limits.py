@@ -1,12 +1,11 @@
-"""Limits of controls, and the one place where values are cut off at them.
+"""Limits of controls, and the only place where values are cut off at them.
 
 Tracks add to poses, gains multiply recorded values, trackers overshoot. Only their sum is cut off,
-where it becomes the value of a control: in a key made of a recording, or in the `ControlValues` of
-a scene. `sim` refuses values beyond the limits. `Script.check` refuses values in a file that nobody
-can have meant.
+when it becomes the value of a control: in a key from a recording, or in the `ControlValues` of a
+scene. `sim` refuses values beyond the limits. `Script.check` refuses absurd values in a file.
 
-Names become numbers here, too: a script or a stream has the same in each of its frames, so their
-places are found in its first.
+Names become numbers here, too: a script or a stream has the same names in each frame, so their
+places are found in the first.
 """
 
 from __future__ import annotations
@@ -31,30 +30,30 @@ class Limits(dict[str, tuple[float, float]]):
         super().__init__(limits)
         self.place = {name: place for place, name in enumerate(limits)}
         self._low, self._high = np.array([*limits.values()], np.float64).reshape(-1, 2).T
-        self.places = functools.lru_cache(256)(self._places)  # of so many sets of names
+        self.places = functools.lru_cache(256)(self._places)  # for this many sets of names
 
     def _places(self, names: tuple[str, ...]) -> Places:
-        """The places of controls, shape (n,). Raises UserError on one that there is not."""
+        """The places of controls, shape (n,). Raises UserError for an unknown one."""
         for name in names:
             if name not in self:
                 raise UserError(f"there is no control called '{name}'")
         return np.array([self.place[name] for name in names], np.intp)
 
     def cut_off(self, sums: Floats64, places: Places) -> Floats64:
-        """Values of controls that are set to these sums; both of shape (n,), or (T,) of one."""
+        """Values of controls for these sums; both of shape (n,), or (T,) for one control."""
         return np.asarray(np.minimum(np.maximum(sums, self._low[places]), self._high[places]))
 
     def pose(self, sums: Mapping[str, float], over: ControlValues | None = None) -> ControlValues:
-        """Values of all controls, cut off; those not named as they are in `over`, else 0.
+        """Values of all controls, cut off; unnamed ones have those of `over`, else 0.
 
-        Raises UserError on a name that is no control.
+        Raises UserError for an unknown name.
         """
         return self.posed(self.places(tuple(sums)), np.array([*sums.values()], np.float64), over)
 
     def posed(
         self, places: Places, sums: Floats64, over: ControlValues | None = None
     ) -> ControlValues:
-        """Values as of `pose`, for controls by their places; both of shape (n,)."""
+        """Values as in `pose`, for controls by their places; both of shape (n,)."""
         numbers = np.zeros(len(self)) if over is None else over.numbers.copy()
         numbers[places] = self.cut_off(sums, places)
         return ControlValues(self, numbers)
@@ -64,7 +63,7 @@ class ControlValues(Mapping[str, float]):
     """A value for each control of a scene, within its limits: by name, or as `numbers` (N,)."""
 
     def __init__(self, limits: Limits, numbers: Floats64) -> None:
-        """Made by `Limits`, or from other values within limits; never written."""
+        """`Limits` makes it, or other values within limits do; it never changes."""
         numbers.flags.writeable = False
         self.limits = limits
         self.numbers = numbers

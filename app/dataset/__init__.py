@@ -1,1 +1,1 @@
-"""Labelled pictures of faces, each from its seed alone."""
+"""Labelled pictures of faces, each made from its seed alone."""

@@ -16,10 +16,10 @@ from ..pictures import Image
 
 @dataclass(frozen=True)
 class Degradation:
-    """How much of each; 0 and None leave the picture as it is.
+    """Amount of each effect; 0 and None change nothing.
 
-    blur: standard deviation of a Gaussian, of linear light [pixels]. noise: standard deviation of
-    each channel by itself [grey levels of 255]. jpeg: quality as of Pillow, 1 to 95. seed: of the
+    blur: standard deviation of a Gaussian on linear light [pixels]. noise: standard deviation of
+    each channel by itself [grey levels of 255]. jpeg: Pillow's quality, 1 to 95. seed: that of the
     noise.
     """
 
@@ -30,7 +30,7 @@ class Degradation:
 
 
 def degraded(image: Image, degradation: Degradation) -> Image:
-    """A picture (H, W, 3), uint8, as such a camera would give it."""
+    """A picture (H, W, 3), uint8, from such a camera."""
     values = image.astype(np.float64)
     if degradation.blur > 0.0:
         light = to_linear(image / 255.0)

@@ -1,9 +1,9 @@
-"""The folder of a data set: samples whole or not at all, and how it was begun.
+"""The folder of a data set: complete samples, and the set's options.
 
-The files of a sample are written in `.unfinished` and renamed, its .json last, so that each is
-whole under its final name, whenever the process is killed. A disk that was full, a copy that was
-cut short or a file that was deleted is found by the lengths in the .json: a sample counts as made
-when all of its files are there and as long as they were written.
+The files of a sample are written in `.unfinished` and renamed, its .json last. So a file with its
+final name is complete, even if the process is killed at any time. The lengths in the .json reveal a
+full disk, a copy that was cut short, or a deleted file: a sample counts as made when all of its
+files exist with their written lengths.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from ..staging import is_staging_folder, locked
 from .shards import PATTERN, read_shard
 
 UNFINISHED = ".unfinished"
-SEEN = "seen-"  # begins the name of a file by which workers see that they are at the folder
-LENGTHS = "files"  # the label that holds the length of each other file of a sample [bytes]
+SEEN = "seen-"  # begins names of files that show workers the right folder
+LENGTHS = "files"  # label with the lengths of a sample's other files [bytes]
 
 
 def name_of(index: int) -> str:
@@ -36,22 +36,22 @@ def name_of(index: int) -> str:
 class SetFolder:
     """A folder that holds one data set."""
 
-    BEGUN = "dataset.json"  # how the set was begun
+    BEGUN = "dataset.json"  # options of the set
 
     def __init__(self, path: Path) -> None:
         self.path = path
 
     @property
     def log(self) -> Path:
-        """The file for prints of processes; it is removed when the set is made."""
+        """The file for output of processes; it is removed when the set is made."""
         return self.path / UNFINISHED / "log"
 
     @contextlib.contextmanager
     def held(self, options: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
-        """Begin a set in an empty folder, or resume one, and keep others out meanwhile.
+        """Begin a set in an empty folder, or resume one, and lock out other processes meanwhile.
 
-        options: all that decides the samples, for JSON. Raises UserError if the
-        folder holds something else, or a set that was begun with other options.
+        options: all that decides on the samples, for JSON. Raises UserError if the folder holds
+        something else, or a set that was begun with other options.
         """
         check_links(self.path)
         if self.path.is_file():
@@ -60,7 +60,7 @@ class SetFolder:
             self.path.mkdir(parents=True, exist_ok=True)
             self._check(options, resume=resume)
             unfinished = self.path / UNFINISHED
-            if unfinished.is_symlink():  # the folder behind it may hold the files of others
+            if unfinished.is_symlink():  # the linked folder may hold files of others
                 raise UserError(f"{unfinished}: is a link; remove it")
             unfinished.mkdir(exist_ok=True)
             lock = locked(unfinished / "lock")
@@ -82,7 +82,7 @@ class SetFolder:
     def _check(self, options: Mapping[str, Any], *, resume: bool) -> None:
         """UserError unless this is an empty folder, or the set that is to be resumed.
 
-        A set that ended before its first sample may be begun anew, in another way.
+        A set that ended before its first sample may begin again with other options.
         """
         begun = self.path / self.BEGUN
         if not begun.exists():
@@ -110,7 +110,7 @@ class SetFolder:
                 )
 
     def there(self) -> set[int]:
-        """The numbers of the samples of which there is a .json, here or in a shard."""
+        """The numbers of the samples with a .json, here or in a shard."""
         shards = map(read_shard, self.path.glob(PATTERN))
         packed = {number for shard in shards if shard for number in shard.places}
         with os.scandir(self.path) as items:
@@ -119,14 +119,14 @@ class SetFolder:
             return packed | {int(match[1]) for match in found if match}
 
     def _has_samples(self) -> bool:
-        """Whether a sample is there, or a shard, of whose samples some can be read."""
+        """Whether there is a sample, or a shard with readable samples."""
         return bool(self.there()) or any(self.path.glob(PATTERN))
 
     def has(self, index: int) -> bool:
-        """Whether all files of a sample are there and whole, by the lengths in its .json."""
+        """Whether all files of a sample exist and are complete, by the lengths in its .json."""
         try:
             labels = self.sample(index)
-        except (OSError, ValueError, RecursionError):  # none, a torn one, or anything else
+        except (OSError, ValueError, RecursionError):  # missing, torn, or another file
             return False
         if not isinstance(labels, dict) or labels.get("index") != index:
             return False
@@ -136,7 +136,7 @@ class SetFolder:
         return all(_length(self.path / name) == length for name, length in lengths.items())
 
     def write_sample(self, index: int, write: Callable[[Path], object]) -> int:
-        """Put the files of a sample in place, .json last; returns their size [bytes].
+        """Put the files of a sample in place, .json last; return their size [bytes].
 
         write: writes the picture to a path, and the sample's other files beside it.
         """
@@ -155,7 +155,7 @@ class SetFolder:
         return size
 
     def take_sample(self, index: int, files: Mapping[str, bytes]) -> int:
-        """Put the files of a sample, made elsewhere, in place; how many bytes they have."""
+        """Put the files of a sample, made elsewhere, in place; return their size [bytes]."""
 
         def write(picture: Path) -> None:
             for name, content in files.items():
@@ -176,7 +176,7 @@ class SetFolder:
 
 
 def _add_lengths(file: Path) -> None:
-    """Add the lengths of the files that lie beside the .json of a sample to its labels."""
+    """Add the lengths of the files beside a sample's .json to its labels."""
     labels = json.loads(file.read_bytes())
     beside = sorted(path for path in file.parent.iterdir() if path != file)
     labels[LENGTHS] = {path.name: path.stat().st_size for path in beside}
@@ -184,10 +184,10 @@ def _add_lengths(file: Path) -> None:
 
 
 def _length(file: Path) -> int | None:
-    """How many bytes a plain file has; None if there is none."""
+    """Length of a plain file [bytes]; None if there is none."""
     try:
         return file.stat().st_size if file.is_file() else None
-    except (OSError, ValueError):  # a name that no file can have is a ValueError
+    except (OSError, ValueError):  # an impossible name is a ValueError
         return None
 
 

@@ -1,4 +1,4 @@
-"""Labels of a sample's face, beside those that `capture --passes` writes of any picture.
+"""Labels of a sample's face, besides those of `capture --passes` for any picture.
 
 Unit and convention of every field are in docs/dataset.md.
 """
@@ -27,14 +27,14 @@ def labels_of_face(
     depth: Any,
     covered: Any = None,
 ) -> dict[str, Any]:
-    """All that is known of a face as it is now; `depth`: the depth map of its picture, (H, W).
+    """All labels of a face in its present state; `depth`: the depth map of its picture, (H, W).
 
-    covered: where a mask hides all landmarks behind it, (H, W); None: nowhere.
+    covered: pixels where a mask hides all landmarks behind it, (H, W); None: no pixels.
     """
     arkit = solved(scene, ARKIT_SHAPES, _in_one_frame(scene.simulation.controls.sums))
     labels = labels_of(scene, camera, size, depth, covered)
     pixels = np.array(labels["landmarks"]["pixels"])[:68]
-    positions = scene.positions @ scene.bone_transforms()["cranium"][:3, :3]  # as if not turned
+    positions = scene.positions @ scene.bone_transforms()["cranium"][:3, :3]  # without its turn
     low, high = (np.clip(each, 0.0, size) for each in (pixels.min(axis=0), pixels.max(axis=0)))
     return {
         "action_units": action_units(scene),
@@ -48,9 +48,9 @@ def labels_of_face(
 def action_units(scene: FaceScene) -> dict[str, float]:
     """All action units of FACS that the face has, 0..1: AU12_left, AU12_right, and AU12.
 
-    Units that were set have the set value. Other controls of muscles (visemes, head and gaze)
-    count as far as units can express them. A unit without side is the stronger of its sides, as
-    FACS scores it without regard to sides.
+    Set units have the set value. Other controls of muscles (visemes, head and gaze) count as far as
+    units can express them. A unit without side is the stronger of its sides, because FACS scores it
+    without regard to sides.
     """
     sums = _in_one_frame(scene.simulation.controls.sums)
     found = solved(scene, ACTION_UNITS, sums, _in_one_frame(scene.values))
@@ -62,7 +62,7 @@ def action_units(scene: FaceScene) -> dict[str, float]:
 
 
 def by_number(unit: str) -> tuple[int, str]:
-    """AU2 before AU12, and that before AU12_left."""
+    """Sort key: AU2 before AU12, and AU12 before AU12_left."""
     number, _, side = unit.removeprefix("AU").partition("_")
     return int(number), side
 

@@ -1,4 +1,4 @@
-"""Making a set: samples in processes, person by person, then the index and the card of all."""
+"""Making a set: samples in processes, person by person, then index and card of the set."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .summary import card_of, write_index
 
 @dataclass(frozen=True)
 class Made:
-    """A made set: how many samples it has, how many of them are new, and their bytes."""
+    """A made set: the number of its samples, that of new ones, and their bytes."""
 
     samples: int
     new: int
@@ -39,11 +39,10 @@ def make_set(
     resume: bool = False,
     progress: bool = True,
 ) -> Made:
-    """Make those of `count` samples from number `first` on that are missing or incomplete.
+    """Make the missing and incomplete ones among `count` samples from number `first` on.
 
     jobs: processes here. scheduler: address of a Dask cluster that makes them instead. Raises
-    UserError if the set cannot be made, or was begun otherwise; samples that were made until
-    then stay.
+    UserError if the set cannot be made, or was begun with other options; finished samples stay.
     """
     folder = SetFolder(request.output)
     numbers = range(first, first + count)
@@ -77,7 +76,7 @@ def make_set(
 
 
 def _check(folder: SetFolder, numbers: range) -> None:
-    """Raise UserError if a folder has samples of other numbers already."""
+    """Raise UserError if a folder already has samples with other numbers."""
     there = folder.there()
     if there <= set(numbers):
         return
@@ -91,9 +90,9 @@ def _check(folder: SetFolder, numbers: range) -> None:
 
 
 def _shares(request: SetRequest, missing: Sequence[int], each: int) -> list[Share]:
-    """Shares of this many samples each.
+    """Divide missing samples into shares of `each`.
 
-    The samples of one person are together, for a head takes a while to build; so are those of one
+    Samples of one person stay together, because a head takes long to build; so do those of one
     shard.
     """
 
@@ -111,10 +110,10 @@ def _shares(request: SetRequest, missing: Sequence[int], each: int) -> list[Shar
 def _put_in_place(
     folder: SetFolder, missing: Iterable[int], arriving: Iterator[Brought]
 ) -> Iterator[tuple[int, int]]:
-    """The number and size [bytes] of each sample that was missing, when its files are there."""
+    """Yield number and size [bytes] of each missing sample, after its files are in place."""
     left = set(missing)
     for sample in arriving:
-        if sample.number in left:  # a process that died may have brought it before
+        if sample.number in left:  # a process that died may have sent it before
             left.remove(sample.number)
             has_files = bool(sample.files)
             size = folder.take_sample(sample.number, sample.files) if has_files else sample.size
@@ -122,7 +121,7 @@ def _put_in_place(
 
 
 def _with_advice(made: Iterator[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """The same; an error says how the set goes on."""
+    """The same; an error adds how to continue the set."""
     try:
         yield from made
     except UserError as error:

@@ -1,7 +1,7 @@
-"""How far mouth and eyes are open, as one sees it: the height of the gap between lips or lids.
+"""Visible opening of mouth and eyes: the height of the gap between lips or lids.
 
-Distances between landmarks do not show it: pressed lips roll inward, shut lids lie on each other,
-and the landmarks of their edges stay millimetres apart.
+Distances between landmarks do not show it: pressed lips roll inward, and shut lids lie on each
+other, but the landmarks of their edges stay millimetres apart.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ LOWER_EDGES = {  # landmarks of a lower lip's inner edge and of lower lids, from
 
 
 def apertures(positions: Array, triangles: npt.NDArray[Any], landmarks: Array) -> dict[str, float]:
-    """How far mouth and eyes are open [mm], seen from straight before the head, along z.
+    """Openings of mouth and eyes [mm], seen from the front of the head, along z.
 
-    landmarks: where the 68 are now (68, 3).
+    landmarks: the present 68 (68, 3).
     """
     found = {}
     for name, numbers in LOWER_EDGES.items():
         edge = landmarks[list(numbers)]
-        # Skin may cover an opening from so far [mm].
+        # Skin at this distance [mm] may cover an opening.
         near = around(positions[triangles], (edge[0] + edge[-1]) / 2.0, 60.0)
         found[name] = round(opening(near, edge), 3)
     return found
 
 
 def opening(near: Array, edge: Array) -> float:
-    """Greatest height [mm] of the gap above a lower lip or lid (n, 3), looked at along z.
+    """Greatest height [mm] of the gap above a lower lip or lid (n, 3), seen along z.
 
     near: triangles (m, 3, 3) of the skin around.
     """
-    near = near[to_viewer(near)]  # triangles seen from within cover nothing
+    near = near[to_viewer(near)]  # triangles seen from inside cover nothing
     left, right = sorted(edge[[0, -1], 0])
     end_width = 1.0  # mm beside a corner that do not count: lips and lids are joined there
     # Vertical planes across the opening, in which lines of sight lie.
@@ -79,7 +79,7 @@ def _widest_gap(low: Array, high: Array, middle: float) -> float:
 
 
 def to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
-    """Whether triangles (n, 3, 3) turn their outside to the viewer, shape (n,)."""
+    """Flags of triangles (n, 3, 3) that show their outside to the viewer, shape (n,)."""
     one = triangles[:, 1] - triangles[:, 0]
     other = triangles[:, 2] - triangles[:, 0]
     facing: npt.NDArray[np.bool_] = one[:, 0] * other[:, 1] > one[:, 1] * other[:, 0]
@@ -87,9 +87,9 @@ def to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
 
 
 def cut_by(triangles: Array, x: float | Array) -> tuple[Array, npt.NDArray[np.bool_]]:
-    """Where the plane at x meets the sides of triangles (n, 3, 3): points (n, 3, 3), whether.
+    """Points where the plane at x meets the sides of triangles (n, 3, 3), (n, 3, 3), and flags.
 
-    x: of all, or of each, shape (n, 1).
+    x: one for all, or one for each, shape (n, 1).
     """
     end = np.roll(triangles, -1, axis=1)
     start_x = triangles[:, :, 0]

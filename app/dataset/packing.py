@@ -1,4 +1,4 @@
-"""Packing: the samples of a folder go into shards, each shard when all of its samples are there."""
+"""Packing: samples of a folder go into shards; a shard is written when all of its samples exist."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class Packing:
         self._waiting: dict[int, set[int]] = {}
 
     def begin(self) -> None:
-        """Keep the shards that are whole, and take the others apart, as far as they can be read.
+        """Keep complete shards, and unpack the others as far as they are readable.
 
-        A shard that was written when the set was shorter is taken apart, too.
+        A shard of a formerly shorter set is unpacked, too.
         """
         with cannot_be_written(self._folder.path):
             for path in sorted(self._folder.path.glob(PATTERN)):
@@ -46,7 +46,7 @@ class Packing:
         return number // self._size in self._packed
 
     def expect(self, missing: Iterable[int]) -> None:
-        """Samples that will be made; pack the shards that lack none."""
+        """Note the samples that will be made; pack the shards without missing samples."""
         places = {number // self._size for number in self._numbers}
         self._waiting = {place: set() for place in places - self._packed.keys()}
         for number in missing:
@@ -55,13 +55,13 @@ class Packing:
             self._pack_if_whole(place)
 
     def add(self, number: int) -> None:
-        """A sample was made; pack its shard if that was the last."""
+        """Note a finished sample; pack its shard if it was the last."""
         place = number // self._size
         self._waiting[place].discard(number)
         self._pack_if_whole(place)
 
     def labels_and_place(self, number: int) -> tuple[dict[str, Any], dict[str, str | int]]:
-        """The labels of a sample, and where in which shard it lies."""
+        """The labels of a sample, and its place in its shard."""
         shard = self._packed[number // self._size]
         return shard.labels_of(number), shard.place_of(number)
 
@@ -82,7 +82,7 @@ class Packing:
                 _remove(each)
 
     def _remove_leftovers(self) -> None:
-        """Remove files whose sample is in a shard: the process ended before it could."""
+        """Remove files of samples that are in a shard: the process ended before it removed them."""
         with os.scandir(self._folder.path) as items:
             found = [re.fullmatch(r"(\d{6})[._].+", item.name) for item in items]
         packed = [each[0] for each in found if each and self.has(int(each[1]))]

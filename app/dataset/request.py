@@ -1,4 +1,4 @@
-"""The request for a data set: all that decides its samples, but their number."""
+"""The request for a data set: all that decides on its samples, except their number."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from .table import SampleTable, load_table
 class SetRequest:
     """A requested data set; it can be pickled.
 
-    output: the folder of the set. size: of the pictures [pixels]. passes: some of the images of
-    app/passes/passes.py. refiner: None for the look's. degrade: whether pictures have blur, noise
-    and JPEG. shards: how many samples each has; None for no shards. arguments: the same, as options
-    of the command line.
+    output: the folder of the set. size: that of the pictures [pixels]. passes: some of the images
+    of app/passes/passes.py. refiner: None for the look's. degrade: whether pictures have blur,
+    noise and JPEG. shards: number of samples in each; None for no shards. arguments: the same
+    request as options of the command line.
     """
 
     output: Path
@@ -42,7 +42,7 @@ class SetRequest:
     version: str = version("risorius")
 
     def options(self) -> dict[str, Any]:
-        """All that decides the samples, for JSON; only a set begun with the same can be resumed."""
+        """All that decides on the samples, for JSON; a resumed set must have the same."""
         table = asdict(self.table) | {"excluded": sorted(map(sorted, self.table.excluded.pairs))}
         table["expressions"] = {name: row.row for name, row in self.table.expressions.items()}
         options = {

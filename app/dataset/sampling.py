@@ -1,9 +1,9 @@
-"""Sampling: sample number n of a seed, in plain numbers, before anything is built or drawn.
+"""Sampling: sample number n of a seed in plain numbers, before any building or drawing.
 
     table, seed, n  ->  Sample: expression, head, eyes, camera, person, looks
 
-Everything of a sample comes from numpy's SeedSequence([seed, n]) alone, and each part of it from a
-stream of its own: another camera leaves the faces as they were.
+Everything of a sample comes from numpy's SeedSequence([seed, n]) alone, and each part of it from
+its own stream: another camera does not change the faces.
 
 Sources: aus.toml names those of the table. Letters of intensity are equal fifths of 0..1 here, as
 OpenFace and DISFA number them 1 to 5; FACS makes C and D wider than the others.
@@ -38,11 +38,11 @@ class SampleCamera:
 class Sample:
     """One sample.
 
-    kind, name: sort of face, and which: "expression", "happiness".
-    controls: all values of the face but its gaze.
-    gaze: where it looks within the head, to its left and up [degrees]; None: into the camera.
-    person: number of the one whose head it is, as `assets.identities.sample_identity` has it.
-    light: name of one of the renderer's, which maps of the user's replace.
+    kind, name: kind of face, and its name: "expression", "happiness".
+    controls: all values of the face except its gaze.
+    gaze: direction within the head, to its left and up [degrees]; None: into the camera.
+    person: number of the person, see `assets.identities.sample_identity`.
+    light: name of one of the renderer's lights; the user's maps replace it.
     surroundings: seed of light and background.
     degradation: blur, noise and JPEG of a degraded set.
     """
@@ -95,7 +95,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
 
 
 def chosen(random: np.random.Generator, shares: Shares) -> str:
-    """One of the names, each as often as its share says."""
+    """A random name, with its share as probability."""
     weights = np.array(list(shares.values()))
     return list(shares)[int(random.choice(len(weights), p=weights / weights.sum()))]
 
@@ -117,7 +117,7 @@ def _degradation(table: SampleTable, random: np.random.Generator) -> Degradation
 
 
 class _Face:
-    """A face that is put together unit by unit."""
+    """A face that is composed unit by unit."""
 
     def __init__(self, table: SampleTable, random: np.random.Generator) -> None:
         self._table = table
@@ -147,7 +147,7 @@ class _Face:
         return self._speak() if kind == "speech" else ""
 
     def _mix(self, units: Shares) -> None:
-        """A unit, those that join it, those that join these; half of the time another beside."""
+        """Add a unit, units that join it, units that join these; half of the time also another."""
         random = self._random
         waiting = [chosen(random, units) for _ in range(1 + int(random.random() < 0.5))]
         while waiting and len(self.controls) < MOST_UNITS:
@@ -159,7 +159,7 @@ class _Face:
                     waiting.append(other)
 
     def _speak(self) -> str:
-        """A viseme, or one on its way to another; half of the time with brows and eyes."""
+        """Add a viseme, or one on its way to another; half of the time with brows and eyes."""
         random = self._random
         names = [chosen(random, self._table.speech) for _ in range(2)]
         share = random.uniform(0.2, 0.8) if random.random() < 0.5 else 1.0
@@ -176,16 +176,16 @@ class _Face:
         return "+".join(dict.fromkeys(spoken))
 
     def _add(self, unit: str, value: float) -> bool:
-        """Add a unit unless one that is set excludes it."""
+        """Add a unit, unless a set unit excludes it."""
         is_possible = self._table.goes_with(unit, self.controls)
         if is_possible:
             self.controls[unit] = min(value, 1.0)
         return is_possible
 
     def _intensity(self) -> float:
-        """A value of a letter's fifth of 0..1."""
+        """A random value in a letter's fifth of 0..1."""
         place = LETTERS.index(chosen(self._random, self._table.letters))
-        # Below a quarter of the lowest fifth nothing can be seen.
+        # Nothing is visible below a quarter of the lowest fifth.
         within = self._random.uniform(0.0 if place else 0.25, 1.0)
         return float((place + within) / len(LETTERS))
 
@@ -193,7 +193,7 @@ class _Face:
 def _blink(
     table: SampleTable, random: np.random.Generator, controls: Mapping[str, float]
 ) -> dict[str, float]:
-    """Lids on their way or shut, where nothing else moves them."""
+    """Add lids that are half or fully shut, unless something else moves them."""
     is_blinking = random.random() < table.eyes.blink
     closed = random.uniform(0.25, 1.0)
     if not is_blinking or not {"AU5", "AU43", "AU46_left", "AU46_right"}.isdisjoint(controls):
@@ -207,9 +207,9 @@ def _two_sided(
     controls: Mapping[str, float],
     one_sided: float,
 ) -> dict[str, float]:
-    """Units by side where the face is not symmetric; a lean face leans with all of them."""
+    """Divide units by side in an asymmetric face; all units lean to the same side."""
     is_asymmetric = random.random() < table.sides.asymmetric
-    side = int(random.integers(2))  # the one that is stronger, or alone
+    side = int(random.integers(2))  # the stronger or only side
     result: dict[str, float] = {}
     sides = ("_left", "_right")
     for name, value in controls.items():
@@ -227,7 +227,7 @@ def _two_sided(
 
 
 def _bounded_normal(random: np.random.Generator) -> float:
-    """Of mean 0 and a deviation of about 1, and within 2."""
+    """A normal number with mean 0 and a deviation of about 1, within 2."""
     while abs(value := float(random.standard_normal())) > 2.0:
         pass
     return value

@@ -1,9 +1,9 @@
-"""Shards of a data set: tar files of WebDataset with many samples each, and where these begin.
+"""Shards of a data set: WebDataset's tar files with many samples each, and their listings.
 
-A million small files slow a file system down. `shard-000003.tar` holds the samples 3000 to 3999
-where a shard has 1000. WebDataset parts the name of a file at its first dot, so `003000_seg.png` is
-`003000.seg.png` there. `shard-000003.json` has the length of the tar file, and the place of each
-sample in it; it is written last.
+A million small files slow a file system down. `shard-000003.tar` holds the samples 3000 to 3999 if
+a shard has 1000. WebDataset divides the name of a file at its first dot, so `003000_seg.png`
+becomes `003000.seg.png` there. `shard-000003.json` has the length of the tar file, and the place of
+each sample in it; it is written last.
 
 WebDataset: Aizman, Maltby, Breuel 2019, "High Performance I/O For Large Scale Deep Learning",
 IEEE Big Data.
@@ -30,7 +30,7 @@ PATTERN = "shard-[0-9][0-9][0-9][0-9][0-9][0-9].tar"
 class Shard:
     """A tar file of samples.
 
-    places: of each sample by its number: its first byte in the file, and how many bytes it has.
+    places: sample number -> its first byte in the file, and its length [bytes].
     """
 
     path: Path
@@ -50,13 +50,13 @@ class Shard:
 
 
 def files_in(path: Path) -> Iterator[tuple[str, bytes]]:
-    """All files of samples that can be read from a tar file, by their names outside of it."""
+    """All readable files of samples in a tar file, by their names outside of it."""
     with contextlib.suppress(OSError, tarfile.TarError), path.open("rb") as file:
         yield from _files_in(file)
 
 
 def write_shard(path: Path, samples: Iterable[tuple[int, Sequence[Path]]]) -> Shard:
-    """Write a shard of samples, each a number and its files; raises UserError if that fails."""
+    """Write a shard of samples, each a number and its files; raises UserError if this fails."""
     places: dict[int, tuple[int, int]] = {}
     with written_atomically(path) as part, part.open("wb") as file:
         with tarfile.open(fileobj=file, mode="w", format=tarfile.USTAR_FORMAT) as tar:
@@ -72,7 +72,7 @@ def write_shard(path: Path, samples: Iterable[tuple[int, Sequence[Path]]]) -> Sh
 
 
 def read_shard(path: Path) -> Shard | None:
-    """The shard of a tar file; None unless it is as long as its listing says."""
+    """The shard of a tar file; None unless it has the length in its listing."""
     try:
         content = json.loads(listing_of(path).read_bytes())
         if content["bytes"] != path.stat().st_size:
@@ -84,18 +84,18 @@ def read_shard(path: Path) -> Shard | None:
 
 
 def remove_shard(path: Path) -> None:
-    """Delete a tar file and its listing, as far as they are there."""
+    """Delete a tar file and its listing, as far as they exist."""
     listing_of(path).unlink(missing_ok=True)
     path.unlink(missing_ok=True)
 
 
 def listing_of(path: Path) -> Path:
-    """The file that has the places in a tar file."""
+    """The file with the places in a tar file."""
     return path.with_suffix(".json")
 
 
 def _add(tar: tarfile.TarFile, path: Path) -> int:
-    """Add a file, without time and owner, which bytes would depend on; how many bytes it takes."""
+    """Add a file, without time and owner, so that bytes are the same; return its size [bytes]."""
     content = path.read_bytes()
     member = tarfile.TarInfo(path.name.replace("_", ".", 1))
     member.size = len(content)
@@ -105,7 +105,7 @@ def _add(tar: tarfile.TarFile, path: Path) -> int:
 
 
 def _files_in(file: IO[bytes]) -> Iterator[tuple[str, bytes]]:
-    """The files of samples in a tar file, from where it stands."""
+    """The files of samples in a tar file, from its present position."""
     with tarfile.open(fileobj=file, mode="r:") as tar:
         for member in tar:
             content = tar.extractfile(member)

@@ -1,7 +1,7 @@
 """Shares of a set: samples that one process makes, here or on a worker of a Dask cluster.
 
-A worker that sees the folder of the set writes into it. Others make samples in a folder of their
-own, and hand the bytes back.
+A worker that sees the folder of the set writes into it. Others make samples in their own folder,
+and send the bytes back.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from .studio import Studio
 class Share:
     """The samples that one process makes, by their numbers, person after person.
 
-    token: a file in the folder of unfinished samples, by which a process on another computer sees
-    that the set's folder is there, too; "" on the same computer.
+    token: a file in the folder of unfinished samples, which shows a process on another computer
+    that it sees the set's folder; "" on the same computer.
     """
 
     request: SetRequest
@@ -39,9 +39,9 @@ class Share:
 
 @dataclass(frozen=True)
 class Brought:
-    """A sample that was made, and how many bytes it has.
+    """A finished sample, and its size [bytes].
 
-    files: by their names, where they are handed back.
+    files: name -> content, if they are sent back.
     """
 
     number: int
@@ -50,7 +50,7 @@ class Brought:
 
 
 def make_samples(share: Share, send: Send) -> None:
-    """Make the samples of a share that do not exist yet, and send what is `Brought` of each."""
+    """Make the missing samples of a share, and send `Brought` for each."""
     request = share.request
     here = version("risorius")
     if request.version != here:
@@ -68,13 +68,13 @@ def make_samples(share: Share, send: Send) -> None:
         studio = Studio(request)
         for number in share.numbers:
             size = 0
-            if not folder.has(number):  # a process before may have died behind it
+            if not folder.has(number):  # a former process may have died after it
                 size = folder.write_sample(number, studio.shoot(number).save)
             send(Brought(number, size, {} if is_seen else _taken(folder, number)))
 
 
 def _taken(folder: SetFolder, number: int) -> dict[str, bytes]:
-    """The files of a sample, which are removed."""
+    """The contents of a sample's files, which are then removed."""
     files = {path: path.read_bytes() for path in folder.files_of(number)}
     for path in files:
         path.unlink()
@@ -84,7 +84,7 @@ def _taken(folder: SetFolder, number: int) -> dict[str, bytes]:
 def made_on_cluster(
     folder: SetFolder, shares: Sequence[Share], scheduler: str
 ) -> Iterator[Brought]:
-    """The samples of shares as a Dask cluster makes them; UserError for the first that failed."""
+    """Yield samples as a Dask cluster makes them; UserError for the first failure."""
     if not shares:
         return
     token = f"{SEEN}{secrets.token_hex(8)}"
@@ -100,8 +100,8 @@ def made_on_cluster(
 
 
 def _make_on_worker(pool: WorkerPool, share: Share) -> list[Brought] | str:
-    """On a Dask worker: have a share made by a process; why it failed, if it did."""
-    made: dict[int, Brought] = {}  # a process that died may have brought some of them before
+    """On a Dask worker: let a process make a share; return the samples, and the error, if any."""
+    made: dict[int, Brought] = {}  # a process that died may have sent some of them before
 
     def keep(sample: Brought) -> None:
         made[sample.number] = sample

@@ -1,8 +1,8 @@
-"""The studio: takes the picture and the labels of one sample after the other, in one process.
+"""The studio: takes picture and labels of one sample after another, in one process.
 
-Nothing of one sample is left for the next: the scene is reset, and the objects that stay (the
-context, the heads of some persons) do not depend on earlier samples. So a sample is the same bytes
-from any process, in any order.
+No state of one sample reaches the next: the scene is reset, and the objects that stay (the context,
+the heads of some persons) do not depend on earlier samples. So a sample has the same bytes from any
+process, in any order.
 """
 
 from __future__ import annotations
@@ -45,21 +45,21 @@ from .table import BARE
 
 @dataclass(frozen=True)
 class Shot:
-    """A sample as it was taken."""
+    """The picture and labels of a sample."""
 
     image: Image
     known: Labelled
 
     def save(self, picture: Path) -> None:
-        """Write the picture, and the files that lie beside it; raises OSError if that fails."""
-        # A third of the time of the usual level 6, and 6 % more bytes.
+        """Write the picture and the files beside it; raises OSError if this fails."""
+        # zlib's level: a third of the time of the usual level 6, and 6 % more bytes.
         PIL.Image.fromarray(self.image).save(picture, compress_level=4)
         self.known.save(picture)
 
 
 @dataclass(frozen=True)
 class _Model:
-    """A person before the frame."""
+    """A person in front of the camera."""
 
     scene: FaceScene
     pipeline: Pipeline
@@ -68,11 +68,11 @@ class _Model:
 
 
 class Studio:
-    """A frame without a window, and the heads of some persons before it."""
+    """A frame without a window, and the heads of some persons."""
 
     def __init__(self, request: SetRequest) -> None:
         self._request = request
-        # of each pixel
+        # Samples of each pixel.
         self._surface = render.open_offscreen(request.size, samples=8)
         self._renderer = render.Renderer(self._surface)
         # The last persons are kept.
@@ -86,7 +86,7 @@ class Studio:
         scene = model.scene
         camera = _posed(scene, sample, request.size)
         image, surroundings = self._taken(model, camera, sample)
-        style = render.Style()  # neither light nor background counts in passes
+        style = render.Style()  # light and background do not matter for passes
         is_masked = model.labels["mask"] != BARE
         needed = {"depth", "segmentation"} if is_masked else {"depth"}
         images = model.passes.draw(camera, style, {*needed, *request.passes})
@@ -111,7 +111,7 @@ class Studio:
     def _taken(
         self, model: _Model, camera: render.OrbitCamera, sample: Sample
     ) -> tuple[Image, dict[str, Any]]:
-        """The picture of a scene as it is now, and the labels of its light and background."""
+        """The picture of the present scene, and the labels of its light and background."""
         request = self._request
         random = np.random.default_rng(sample.surroundings)
         lit = light_of(sample.light, request.lights, random)
@@ -134,7 +134,7 @@ class Studio:
         return image, {"light": lit.labels, "background": label}
 
     def _person_of(self, number: int) -> _Model:
-        """Person `number` before the frame, drawn from the table's population."""
+        """The model of person `number`, drawn from the table's population."""
         population = self._request.table.population
         person = make_person(sample_identity(number, population=population))
         colours = own_colours(person.identity, number, population=population)
@@ -167,10 +167,9 @@ class Studio:
 
 
 def _shrink_for(size: tuple[int, int]) -> int:
-    """How many texels of the skin, each way, become one for pictures of a size [pixels].
+    """Number of texels of the skin, each way, that become one for pictures of a size [pixels].
 
-    A face at zoom 1 has two thirds of the texels of the skin, and as many pixels as the picture
-    is high.
+    A face at zoom 1 has two thirds of the skin's texels, and the picture's height in pixels.
     """
     texels = 1280
     shrink = 1
@@ -180,7 +179,7 @@ def _shrink_for(size: tuple[int, int]) -> int:
 
 
 def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.OrbitCamera:
-    """Let a face come to rest in its pose, and its eyes then; the camera before it."""
+    """Let a face come to rest in its pose, and then its eyes; return the camera."""
     scene.reset()
     scene.pose(sample.controls)
     scene.step(SETTLING)
@@ -196,13 +195,13 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
 
 
 def _camera_of(scene: FaceScene, view: SampleCamera, size: tuple[int, int]) -> render.OrbitCamera:
-    """A camera that has the head of the scene, as it is now, in the middle, but for the shift.
+    """A camera with the present head of the scene in the middle, except for the shift.
 
-    It is moved on where landmarks would be beside the picture, of `size` pixels.
+    It moves further if landmarks would lie outside the picture of `size` pixels.
     """
     rest = scene.rest_positions
-    chin = 8  # the landmark
-    below_chin = 12.0  # [mm] of the neck that go with the head
+    chin = 8  # a landmark
+    below_chin = 12.0  # [mm] of the neck that move with the head
     head = rest[:, 1] > rest[scene.landmarks[chin], 1] - below_chin
     camera = render.OrbitCamera.framing(
         np.vstack([scene.positions, rest]), view="front", field_of_view=view.field_of_view

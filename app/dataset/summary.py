@@ -13,12 +13,12 @@ from typing import Any
 from .labels import by_number
 from .request import SetRequest
 
-THERE = 0.05  # from which value on a unit counts as there: a quarter of A
+THERE = 0.05  # value from which a unit counts as present: a quarter of A
 
 
 @dataclass
 class Counts:
-    """How many samples have each kind, each person (by number) and each action unit."""
+    """Numbers of samples by kind, by person (number) and by action unit."""
 
     kinds: Counter[str] = field(default_factory=Counter)
     persons: Counter[int] = field(default_factory=Counter)
@@ -30,7 +30,7 @@ def write_index(
 ) -> Counts:
     """A CSV file with one row for each sample: its kind, the head's pose, every action unit.
 
-    samples: the labels of each, and more columns for it.
+    samples: labels and additional columns of each.
     """
     counts = Counts()
     with path.open("w", encoding="utf-8", newline="") as file:
@@ -62,7 +62,7 @@ def _row(sample: dict[str, Any]) -> dict[str, Any]:
 
 
 def card_of(request: SetRequest, numbers: range, counts: Counts) -> str:
-    """The card of a requested set: how it was made, and how often each kind and unit occurs."""
+    """The card of a requested set: its command, and counts of each kind and unit."""
     samples = len(numbers)
     persons = len(counts.persons)
     units = [(name, counts.units[name]) for name in sorted(counts.units, key=by_number)]

@@ -1,4 +1,4 @@
-"""The surroundings of a sample's face: light, and behind it colours or a part of a picture."""
+"""The surroundings of a sample's face: its light, and colours or a part of a picture behind it."""
 
 from __future__ import annotations
 
@@ -27,27 +27,27 @@ from ..text import as_text
 
 
 def _digest(paths: tuple[Path, ...]) -> str:
-    """Another one for other files."""
+    """A digest that differs for other files."""
     listed = "".join(f"{path.name} {path.stat().st_size}\n" for path in paths)
     return hashlib.sha256(os.fsencode(listed)).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
 class Backgrounds:
-    """Colours (sRGB 0..1) of all samples, or pictures to choose from, or neither: soft colours."""
+    """Colours (sRGB 0..1) of all samples, or pictures to choose from, or else soft colours."""
 
     colour: tuple[float, float, float] | None = None
     pictures: tuple[Path, ...] = ()
 
     @property
     def options(self) -> Any:
-        """All that decides them, for JSON."""
+        """All that decides on backgrounds, for JSON."""
         if not self.pictures:
             return self.colour if self.colour is None else list(self.colour)
         return {"pictures": len(self.pictures), "content": _digest(self.pictures)}
 
     def colours(self, random: np.random.Generator) -> Background:
-        """The colours of one sample: not far from grey, the edge a little darker or lighter."""
+        """Random colours of one sample: near grey, the edge a little darker or lighter."""
         if self.colour is not None:
             return Background(self.colour, self.colour)
         hue, saturation, value = random.uniform([0.0, 0.0, 0.15], [1.0, 0.35, 0.95])
@@ -57,12 +57,12 @@ class Backgrounds:
         return Background(centre, edge)
 
     def picture(self, random: np.random.Generator, size: tuple[int, int]) -> tuple[str, Image]:
-        """The name of one picture, and a part of it of `size`, sRGB, shape (H, W, 3).
+        """The name of a random picture, and a part of it of `size`, sRGB, shape (H, W, 3).
 
-        Raises UserError for a file that is no picture.
+        Raises UserError for a file that is not a picture.
         """
         path = self.pictures[int(random.integers(len(self.pictures)))]
-        # At least this share of a picture's shorter side is seen.
+        # At least this share of a picture's shorter side is visible.
         share, across, along = random.uniform([0.6, 0.0, 0.0], 1.0)
         with _readable(path) as opened:
             whole = PIL.ImageOps.exif_transpose(opened).convert("RGB")
@@ -78,9 +78,9 @@ class Backgrounds:
 
 @dataclass(frozen=True)
 class SampleLight:
-    """The light of a sample: name, and the map that it comes from, turned by an angle [deg].
+    """The light of a sample: its name, and its map, turned by an angle [deg].
 
-    exposure: by how much the map's radiance was multiplied.
+    exposure: factor on the map's radiance.
     """
 
     name: str
@@ -98,13 +98,13 @@ class SampleLight:
 
 @dataclass(frozen=True)
 class LightFiles:
-    """Maps of light, of which each sample has one; none: the table's lights."""
+    """Maps of light, one of which lights each sample; without maps, the table's lights do."""
 
     paths: tuple[Path, ...] = ()
 
     @property
     def options(self) -> Any:
-        """All that decides them, for JSON."""
+        """All that decides on lights, for JSON."""
         return _digest(self.paths) if self.paths else None
 
 
@@ -114,9 +114,9 @@ def _light_map(path: Path) -> LightMap:
 
 
 def light_of(name: str, files: LightFiles, random: np.random.Generator) -> SampleLight:
-    """A light, brighter or darker, warmer or cooler: of a lamp the key is moved, a map is turned.
+    """A varied light: brighter or darker, warmer or cooler, a lamp's key moved, a map turned.
 
-    name: of one of the renderer's, unless there are files.
+    name: one of the renderer's lights, unless there are files.
     """
     if not files.paths and name in LAMPS:
         return SampleLight(name, _lamp(name, random))
@@ -126,7 +126,7 @@ def light_of(name: str, files: LightFiles, random: np.random.Generator) -> Sampl
         name = as_text(path.name)
         light_map = _light_map(path)
         turn = round(float(random.uniform(-180.0, 180.0)), 2)
-    else:  # ours have their windows and lamps before the face
+    else:  # ours have their windows and lamps in front of the face
         turn = round(float(np.clip(25.0 * random.standard_normal(), -60.0, 60.0)), 2)
     light, exposure = light_map.exposed(turn)
     tint = _tint(random)
@@ -136,8 +136,8 @@ def light_of(name: str, files: LightFiles, random: np.random.Generator) -> Sampl
 
 
 def _tint(random: np.random.Generator) -> Floats64:
-    """By what red, green and blue light are multiplied."""
-    # Of red over blue light, with this standard deviation.
+    """Random factors on red, green and blue light."""
+    # Standard deviation of the ratio of red to blue light.
     warmth = 0.08 * np.clip(random.standard_normal(), -2.0, 2.0)
     return np.asarray(random.uniform(0.75, 1.15) * np.array([1.0 + warmth, 1.0, 1.0 - warmth]))
 
@@ -147,9 +147,9 @@ def _tinted(tint: Floats64, light: tuple[float, float, float]) -> tuple[float, .
 
 
 def _lamp(name: str, random: np.random.Generator) -> Light:
-    """One of the renderer's lamps: its key moved, all brighter or darker, warmer or cooler."""
+    """One of the renderer's lamps, with its key moved, and brighter or darker, warmer or cooler."""
     light = LAMPS[name]
-    # The key light is moved, with this standard deviation [degrees].
+    # Standard deviation of the key light's motion [degrees].
     to_key = np.array(light.to_key) + np.radians(18.0) * random.standard_normal(3)
     to_key[2] = max(to_key[2], 0.1)  # not behind the head
     tint = _tint(random)
@@ -184,7 +184,7 @@ def light_files_of(path: Path | None) -> LightFiles:
             raise UserError(f"--light {path}: no map of light in it, {', '.join(LIGHT_SUFFIXES)}")
         for each in paths:
             check_light_map(each)
-    _light_map(paths[0])  # the others when they are drawn: of many it would take minutes
+    _light_map(paths[0])  # the others are read when drawn: many would take minutes
     return LightFiles(paths)
 
 
@@ -199,7 +199,7 @@ def backgrounds_of(text: str | None) -> Backgrounds:
         if not pictures:
             raise UserError(f"--background {text}: no picture in it, {', '.join(suffixes)}")
         for path in pictures:
-            with _readable(path):  # its header: of thousands the whole would take minutes
+            with _readable(path):  # only its header: thousands of whole ones would take minutes
                 pass
         return Backgrounds(pictures=pictures)
     try:
@@ -213,7 +213,7 @@ def backgrounds_of(text: str | None) -> Backgrounds:
 
 @contextlib.contextmanager
 def _readable(path: Path) -> Iterator[PIL.Image.Image]:
-    """An opened picture; raises UserError if it is none, or proves broken in the block."""
+    """An opened picture; raises UserError if it is not a picture, or breaks in the block."""
     try:
         with PIL.Image.open(path) as opened:
             yield opened

@@ -33,7 +33,7 @@ from ..files import NoSuchFileError, read_text
 LETTERS = ("A", "B", "C", "D", "E")
 BLINK = "AU45"
 BARE = "none"  # in the table: neither glasses nor a mask
-PERSONS = 1_000_000  # of each seed: no other seed has them
+PERSONS = 1_000_000  # persons of each seed, which no other seed has
 Shares = Mapping[str, float]
 Range = tuple[float, float]
 
@@ -43,13 +43,13 @@ def _layer(title: str) -> Mapping[str, Any]:
 
 
 def _units() -> list[str]:
-    # These have their own sections
+    # These have their own sections.
     units_of_eyes_and_head = {f"AU{number}" for number in range(51, 65)}
     return [unit for unit in _layer("Action units") if unit not in {BLINK, *units_of_eyes_and_head}]
 
 
 def _drawn(shares: dict[str, float]) -> Shares:
-    """Shares from which one name is drawn; raises ValueError if none can be."""
+    """Shares for a random name; raises ValueError if no name is possible."""
     if not any(shares.values()):
         raise ValueError("all shares are 0; one at least must be above")
     return shares
@@ -62,12 +62,12 @@ def _ordered(ends: Range) -> Range:
 
 
 def _between(low: float, high: float) -> MadeFrom:
-    """Of a range: both of its ends are within these limits."""
+    """Check of a range: both of its ends lie within these limits."""
     return MadeFrom(Annotated[Range, Within(low, high)], _ordered)
 
 
 def _drawn_from(names: Iterable[str] | Callable[[], Iterable[str]]) -> MadeFrom:
-    """Of shares: a table of these names and weights."""
+    """Type of a table of shares: these names and weights."""
     return MadeFrom(dict[Annotated[str, OneOf(names)], Weight], _drawn)
 
 
@@ -79,7 +79,7 @@ Unit = Annotated[str, OneOf(_units)]
 
 @dataclass(frozen=True)
 class Expression(Record):
-    """How often it comes, how often on one side alone, and how often each unit is in it."""
+    """Frequency of an expression, of one side alone, and of each unit in it."""
 
     units: Annotated[dict[Unit, Share], called(REST)]
     share: Weight = 0.0
@@ -87,7 +87,7 @@ class Expression(Record):
 
     @property
     def row(self) -> Shares:
-        """The row as in the table."""
+        """The row in the form of the table."""
         found = {"share": self.share, "one_sided": self.one_sided, **self.units}
         return {name: value for name, value in found.items() if value}
 
@@ -106,14 +106,14 @@ def _pairs(pairs: list[list[str]]) -> tuple[frozenset[str], ...]:
 
 @dataclass(frozen=True)
 class Excluded(Record):
-    """Units that are not there together."""
+    """Units that exclude each other."""
 
     pairs: Annotated[tuple[frozenset[str], ...], MadeFrom(list[list[Unit]], _pairs)]
 
 
 @dataclass(frozen=True)
 class Sides(Record):
-    """How unlike left and right are."""
+    """Differences between left and right."""
 
     asymmetric: Share
     difference: Share
@@ -122,7 +122,7 @@ class Sides(Record):
 
 @dataclass(frozen=True)
 class Eyes(Record):
-    """Where eyes look, and whether they are shut."""
+    """Gaze of eyes, and their frequency of being shut."""
 
     blink: Share
     at_camera: Share
@@ -132,7 +132,7 @@ class Eyes(Record):
 
 @dataclass(frozen=True)
 class HeadTurn(Record):
-    """How far the head turns [degrees], up to half of the neck's range."""
+    """Turns of the head [degrees], up to half of the neck's range."""
 
     yaw: Annotated[float, Within(0.0, 20.0)]
     pitch: Degrees
@@ -141,7 +141,7 @@ class HeadTurn(Record):
 
 @dataclass(frozen=True)
 class Camera(Record):
-    """Where the camera stands."""
+    """Places of the camera."""
 
     yaw: Annotated[Range, _between(-90.0, 90.0)]
     pitch: Annotated[Range, _between(-60.0, 60.0)]
@@ -152,7 +152,7 @@ class Camera(Record):
 
 @dataclass(frozen=True)
 class Persons(Record):
-    """How many they are, the share of women, ages [years], and the tone of their skin."""
+    """Number of persons, share of women, ages [years], and tones of skin."""
 
     count: Annotated[int, Within(1, PERSONS)]
     women: Share
@@ -162,7 +162,7 @@ class Persons(Record):
 
 @dataclass(frozen=True)
 class Degradations(Record):
-    """How often, and how much, pictures are blurred, noisy and compressed."""
+    """Frequency and amount of blur, noise and compression in pictures."""
 
     blurred: Share
     noisy: Share
@@ -200,7 +200,7 @@ class SampleTable(Record):
 
     @property
     def population(self) -> Population:
-        """Whom persons are drawn from."""
+        """The population of random persons."""
         persons = self.persons
         return Population(
             persons.women,
@@ -212,7 +212,7 @@ class SampleTable(Record):
         )
 
     def goes_with(self, unit: str, others: Container[str]) -> bool:
-        """Whether a unit may be added to others."""
+        """Whether a unit may join others."""
         excluded = (pair - {unit} for pair in self.excluded.pairs if unit in pair)
         return not any(other in others for pair in excluded for other in pair)
 
@@ -223,7 +223,7 @@ def table_text() -> str:
 
 
 def load_table(path: Path | None) -> SampleTable:
-    """The table in a file over the one that is included; None: that alone.
+    """The table in a file, completed by the included one; None: the included one.
 
     Raises UserError with file, section and row.
     """

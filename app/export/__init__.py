@@ -1,1 +1,1 @@
-"""The motion of a script, as files that other programs read."""
+"""The motion of a script as files for other programs."""

@@ -1,6 +1,6 @@
-"""A clip: all that a scene did in all frames of a script, for the writers of files.
+"""A clip: a scene's motion in all frames of a script, for the writers of files.
 
-Lengths are millimetres, axes those of the scene (x toward the subject's left, y up, z forward).
+Lengths are millimetres; axes are those of the scene (x toward the subject's left, y up, z forward).
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Clip:
 
     @property
     def skin(self) -> MovingSurface:
-        """The mesh that is simulated."""
+        """The simulated mesh."""
         return self.surfaces[0]
 
     @property
@@ -60,16 +60,16 @@ class Clip:
         return np.arange(self.frame_count) / self.frames_per_second
 
     def refiner(self, refinement: Refinement, splits: Splits | None = None) -> refine.Refiner:
-        """A refiner of the skin; `splits`: in place of its criterion, shape (E,)."""
+        """A refiner of the skin; `splits`: replace its criterion, shape (E,)."""
         return refiner_for(self.scene, refinement, splits)
 
     def refined(
         self, refinement: Refinement, refiner: refine.Refiner | None = None
     ) -> Iterator[refine.RefinedMesh]:
-        """The skin of each frame, in order, as a refiner has it; read it before the next one.
+        """Yield the refined skin of each frame, in order; read it before the next one.
 
-        refiner: one of `refiner`; None: a new one. Raises UserError for a refiner that must know
-        where somebody looks from, and PlugInError if code of another package fails.
+        refiner: a result of `refiner`; None: a new one. Raises UserError for a refiner that needs a
+        viewpoint, and PlugInError if code of another package fails.
         """
         refiner = self.refiner(refinement) if refiner is None else refiner
         plug_ins = plug_ins_of(*refinement.on(self.scene.name))
@@ -90,7 +90,7 @@ def record(
     span: tuple[float, float] | None = None,
     progress: bool = True,
 ) -> Clip:
-    """Play a script on its scene (built unless given) and keep all frames, or those of `span` [s].
+    """Play a script on its scene (built if None), and keep all frames, or those of `span` [s].
 
     Raises UserError if the scene lacks a control of the script.
     """
@@ -135,7 +135,7 @@ def record(
 def _surface_of(
     part: Any, shapes: list[Floats32], matrices: Mapping[str, Floats64]
 ) -> MovingSurface:
-    """A part of a scene whose vertices were these, a new array where it was bent in another way."""
+    """A part of a scene with these vertices in each frame; a changed shape is a new array."""
     is_rigid = all(each is shapes[0] for each in shapes)
     return MovingSurface(
         part.name,
@@ -150,7 +150,7 @@ def _surface_of(
 
 @dataclass(frozen=True)
 class FrameSurface:
-    """One surface in one frame [mm], as mesh files hold it.
+    """One surface in one frame [mm], in the form of mesh files.
 
     points, normals: of vertices, shape (V, 3). faces: shape (F, 3). uv, face_uv: as in
     `MovingSurface`, None without a texture. source: the triangle of the surface that each triangle
@@ -168,7 +168,7 @@ class FrameSurface:
 def frame_surfaces(
     clip: Clip, refinement: Refinement | None = None
 ) -> Iterator[list[FrameSurface]]:
-    """All surfaces of each frame, the skin first, which is refined where that is asked for."""
+    """Yield all surfaces of each frame; the skin comes first, and is refined on request."""
     skins = None if refinement is None else _refined(clip, refinement)
     for frame in range(clip.frame_count):
         skin = None if skins is None else next(skins)
@@ -178,7 +178,7 @@ def frame_surfaces(
 
 
 def _plain(surface: MovingSurface, frame: int) -> FrameSurface:
-    """A surface as it is."""
+    """An unrefined surface in a frame."""
     points = surface.at(frame)
     return FrameSurface(
         points,
@@ -191,7 +191,7 @@ def _plain(surface: MovingSurface, frame: int) -> FrameSurface:
 
 
 def _refined(clip: Clip, refinement: Refinement) -> Iterator[FrameSurface]:
-    """The refined skin of each frame, in arrays of its own."""
+    """Yield the refined skin of each frame, in its own arrays."""
     for mesh in clip.refined(refinement):
         faces = mesh.triangles.astype(np.int32)
         yield FrameSurface(

@@ -1,4 +1,4 @@
-"""The formats that a clip can be written in: one row each, and which of them a file name means."""
+"""The formats of a written clip, one row each, and the choice of a format by a file name."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ if TYPE_CHECKING:
 
 Item = TypeVar("Item")
 
-FRAME = "frame_{:05d}"  # how files of a sequence are called, without their suffix
+FRAME = "frame_{:05d}"  # names of files of a sequence, without suffix
 OWN = re.compile(r"frame_\d{5,}\.obj|frame\.mtl|frame_skin\.png")  # files in such a folder
 
 
 @dataclass(frozen=True)
 class ExportRequest:
-    """Options of an export, beside the clip.
+    """Options of an export, besides the clip.
 
-    refinement: the refined skin is to be written, and not the mesh that is simulated.
-    changes: each frame is refined by itself, into other triangles.
-    overwrite: frames in a folder, and files beside the output, may be replaced.
-    progress: a bar is shown.
-    named_only: no morph targets but those that ARKit names, whose sum is millimetres off.
+    refinement: that of the written skin; None: the simulated mesh is written.
+    changes: whether each frame is refined by itself, into its own triangles.
+    overwrite: whether frames in a folder, and files beside the output, may be replaced.
+    progress: whether a bar is shown.
+    named_only: whether to write only morph targets that ARKit names; their sum is millimetres off.
     """
 
     refinement: Refinement | None = None
@@ -53,7 +53,7 @@ class ExportRequest:
     named_only: bool = False
 
     def counted(self, frames: Iterable[Item], count: int) -> Iterator[Item]:
-        """The frames that are being written, under a progress bar."""
+        """Iterate over frames to write, with a progress bar."""
         from tqdm import tqdm
 
         hidden = not self.progress or None
@@ -62,7 +62,7 @@ class ExportRequest:
             yield from bar
 
 
-# Writes the whole file, or raises UserError; returns a remark for the user, if any.
+# A writer writes the whole file or raises UserError; it returns a remark for the user, or "".
 Writer = Callable[["Clip", Path, ExportRequest], str | None]
 
 
@@ -70,10 +70,10 @@ Writer = Callable[["Clip", Path, ExportRequest], str | None]
 class Format:
     """One kind of file.
 
-    name: for `--as`. suffixes: of its files; () for a folder of one file a frame.
-    writer: "module:function" in this room, imported when it is used. refines: whether it can carry
-    a refined skin. changes: whether its triangles may be others in each frame. beside: how files
-    end that lie beside the one that is named.
+    name: for `--as`. suffixes: those of its files; () for a folder with one file per frame.
+    writer: "module:function" in this room, imported at its use. refines: whether it can hold a
+    refined skin. changes: whether triangles may differ between frames. beside: ends of the names of
+    files beside the named one.
     """
 
     name: str
@@ -85,11 +85,11 @@ class Format:
     beside: tuple[str, ...] = ()
 
     def outputs(self, output: Path) -> tuple[Path, ...]:
-        """All files that are written; the file of this name comes first."""
+        """All written files; the named one comes first."""
         return (output, *(output.with_name(output.stem + end) for end in self.beside))
 
     def load(self) -> Writer:
-        """The function that writes it."""
+        """The function that writes this format."""
         module, _, name = self.writer.partition(":")
         writer: Writer = getattr(import_module(f"{__package__}.{module}"), name)
         return writer
@@ -122,7 +122,7 @@ def format_for(output: Path, name: str | None) -> Format:
 
 
 def _check_suffix(output: Path, chosen: Format, known: Container[str]) -> None:
-    """UserError if a file of this format cannot be called so, or a folder would seem a file."""
+    """UserError if the name does not suit the format, or a folder would look like a file."""
     if not chosen.suffixes and output.suffix.lower() in known:
         raise UserError(
             f"{output}: {chosen.title} is a folder, and this is the name of a file; "
@@ -136,7 +136,7 @@ def _check_suffix(output: Path, chosen: Format, known: Container[str]) -> None:
 
 
 def check_request(output: Path, chosen: Format, request: ExportRequest) -> None:
-    """UserError, before any work is done, where the output cannot be as it is asked for."""
+    """UserError, before any work is done, if the requested output is impossible."""
     if request.refinement is not None and not chosen.refines:
         names = ", ".join(each.name for each in FORMATS if each.refines)
         raise UserError(f"--refined does not go with {chosen.title}; it goes with {names}")
@@ -152,7 +152,7 @@ def check_request(output: Path, chosen: Format, request: ExportRequest) -> None:
         check_folder(output, overwrite=request.overwrite)
         return
     check_file(output)
-    if not output.exists() and not request.overwrite:  # else all are from an earlier time
+    if not output.exists() and not request.overwrite:  # else they are from an earlier export
         for other in chosen.outputs(output)[1:]:
             if os.path.lexists(other):
                 raise UserError(
@@ -164,8 +164,8 @@ def check_request(output: Path, chosen: Format, request: ExportRequest) -> None:
 def write(clip: Clip, output: Path, chosen: Format, request: ExportRequest) -> str | None:
     """Write a clip, whole or not at all; return a remark on the file for the user, if any.
 
-    Sums of many numbers are rounded otherwise by two threads than by one. One writes the same bytes
-    here, within a batch, and on a machine of more cores.
+    Two threads round sums of many numbers differently from one. So one thread writes, and bytes are
+    the same within a batch and on a machine with more cores.
     """
     from threadpoolctl import threadpool_limits
 
@@ -189,7 +189,7 @@ def export(
     frames_per_second: float = 30.0,
     span: tuple[float, float] | None = None,
 ) -> tuple[str, str | None]:
-    """Play a script, or a span of it [s], and write it; a line on that, and a remark, if any."""
+    """Play a script, or a span of it [s], and write it; return a line about it, and a remark."""
     from ..motion import scene_of
     from .clip import record
     from .refined import with_refined_skin
@@ -209,7 +209,7 @@ def export(
 
 
 def _size_in_words(outputs: Iterable[Path]) -> str:
-    """How large files are together, and those in a folder."""
+    """Total size of files, including those in a folder, in words."""
     files = [path for each in outputs for path in (each.iterdir() if each.is_dir() else [each])]
     size = sum(path.stat().st_size for path in files if path.is_file())
     return f"{size / 1e6:.1f} MB" if size >= 1_000_000 else f"{max(size / 1e3, 1.0):.0f} kB"

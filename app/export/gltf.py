@@ -1,10 +1,10 @@
 """A clip as binary glTF (.glb), which Blender, browsers and game engines read: metres, y up.
 
-Bones are animated nodes, each standing where its bone turns; all other motion is weights of morph
-targets: ARKit's shapes by name, as in an avatar (`risorius rig`), and few that have no name and
-hold the rest of the motion. Every frame of the clip is a keyframe. The motion by the head's pose is
-taken out of the skin's shapes, since the bone of the head adds it again. docs/export.md describes
-the content of a file, and how other programs show it.
+Bones are animated nodes at the pivots of the bones. All other motion is weights of morph targets:
+ARKit's shapes by name, as in an avatar (`risorius rig`), and a few unnamed ones for the rest of the
+motion. Every frame of the clip is a keyframe. The motion by the head's pose is removed from the
+skin's shapes, because the bone of the head adds it again. docs/export.md describes the content of a
+file, and how other programs show it.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ Poses = Mapping[str, tuple[Pose, Pose]]
 
 @dataclass(frozen=True)
 class Moving:
-    """The surfaces of a clip with their targets, and how near these come to the simulation.
+    """The surfaces of a clip with their targets, and their distances from the simulation.
 
-    pieces: the skin first. off: name of a surface that bends -> the greatest distance of a vertex,
-    in any frame [mm]. mean: root of the mean square over the skin's vertices, and all frames [mm].
+    pieces: the skin first. off: name of a bending surface -> the greatest distance of a vertex in
+    any frame [mm]. mean: root mean square over the skin's vertices and all frames [mm].
     """
 
     pieces: list[Piece]
@@ -52,7 +52,7 @@ class Moving:
 
     @property
     def farthest(self) -> str:
-        """The surface that is farthest off."""
+        """The surface with the greatest distance."""
         return max(self.off, key=lambda name: self.off[name])
 
     @property
@@ -71,7 +71,7 @@ class Moving:
 
 
 def write_gltf(clip: Clip, part: Path, request: ExportRequest) -> str:
-    """Write the file; return how many targets it has, and how near they come to the clip."""
+    """Write the file; return a line with the number of targets and their distance from the clip."""
     motion = moving_pieces(clip, request)
     glb = Glb(clip.times)
     bones = {piece.bone for piece in motion.pieces if piece.bone is not None}
@@ -128,7 +128,7 @@ def _rigid(surface: MovingSurface, part: Any) -> Piece:
 
 
 def _body_of(surface: MovingSurface, part: Any) -> Body:
-    """A surface as a body that has a place in each pose, as its bone finds it."""
+    """A surface as a body with a shape in each pose, relative to its bone."""
     if part is not None:
         return PartBody(part, surface.rest, part.bone)
     if isinstance(surface, RefinedSurface):
@@ -137,7 +137,7 @@ def _body_of(surface: MovingSurface, part: Any) -> Body:
 
 
 def _named(surface: MovingSurface, bone: str | None, shaped: Shaped, weights: Floats64) -> Piece:
-    """A surface with the named shapes that move it, if any does."""
+    """A surface with the named shapes that move it, if any."""
     count = len(shaped.targets)
     return Piece(
         surface,
@@ -151,7 +151,7 @@ def _named(surface: MovingSurface, bone: str | None, shaped: Shaped, weights: Fl
 
 
 def _with_residual(piece: Piece, residual: Morphs, bends: Floats64) -> Piece:
-    """A piece with more targets, which hold the rest of its motion."""
+    """A piece with additional targets for the rest of its motion."""
     names = tuple(f"residual {index + 1}" for index in range(len(residual.targets)))
     return replace(
         piece,
@@ -163,15 +163,15 @@ def _with_residual(piece: Piece, residual: Morphs, bends: Floats64) -> Piece:
 
 
 def _summed(piece: Piece, changes: npt.NDArray[np.floating]) -> Floats64:
-    """What the targets of a piece add up to in each frame, (N, V, 3), of changes (K, V, 3)."""
+    """Sums of changes (K, V, 3) by the weights of a piece in each frame, (N, V, 3)."""
     return np.asarray(np.tensordot(piece.weights, changes, 1))
 
 
 def _bent(clip: Clip, surface: MovingSurface) -> Floats64:
-    """How normals differ from those at rest in each frame, as the bone finds them, (N, V, 3)."""
+    """Differences of normals from those at rest in each frame, relative to the bone, (N, V, 3)."""
     assert surface.shapes is not None
     shapes = surface.shapes.astype(np.float64)
-    is_refined = isinstance(surface, RefinedSurface)  # its normals are those of the turned head
+    is_refined = isinstance(surface, RefinedSurface)  # its normals include the turn of the head
     if surface is clip.skin and not is_refined:
         _take_pose_out(clip, shapes)
     bent = np.array([surface.normals_of(shape, frame) for frame, shape in enumerate(shapes)])
@@ -181,9 +181,9 @@ def _bent(clip: Clip, surface: MovingSurface) -> Floats64:
 
 
 def _take_pose_out(clip: Clip, shapes: Floats64, *, are_places: bool = True) -> None:
-    """Leave shapes of the skin, (N, V, 3), as the head's bone finds them.
+    """Remove the head's motion from shapes of the skin, (N, V, 3).
 
-    are_places: the bone moves and turns them; normals are turned only.
+    are_places: whether the bone moves and turns them; it only turns normals.
     """
     face = clip.scene.face
     if face is None:

@@ -1,13 +1,13 @@
-"""Motion as morph targets: few shapes, whose weighted sum is where the vertices are in each frame.
+"""Motion as morph targets: a few shapes with a weighted sum for the vertices of each frame.
 
 A singular value decomposition gives the shapes that leave the least error on average. The largest
-error counts, so the vertices farthest off get more weight, and it is done again. This saves a third
-of the shapes (after Lawson 1961, "Contributions to the theory of linear least maximum
-approximation").
+error counts, so the vertices with large errors get more weight, and the decomposition is repeated.
+This saves a third of the shapes (after Lawson 1961, "Contributions to the theory of linear least
+maximum approximation").
 
-Readers such as Blender cut weights off at 0, and their sliders at 1. Weights are brought between
-the two by a shift, which is the same in all frames: its sum is one more target, always at 1. A
-second target for the other direction of each shape would do as well, and take twice as many.
+Readers such as Blender cut weights off at 0, and their sliders at 1. A shift, the same in all
+frames, brings weights between the two; its sum is one more target, always at 1. A second target for
+the opposite direction of each shape would also work, but needs twice as many.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ import numpy as np
 from risorius.geometry.arrays import Floats64
 
 TOLERANCE = 0.098  # [mm] off at most; with single precision it stays below 0.1
-NOTHING = 1e-6  # [mm] a target that moves no vertex so far is left out
+NOTHING = 1e-6  # [mm]: a target that moves every vertex by less is left out
 
 
 @dataclass(frozen=True)
 class Morphs:
-    """Shapes to add, and how much of each in every frame.
+    """Shapes to add, and their weights in every frame.
 
-    targets: how far each vertex is moved at weight 1, shape (K, V, 3).
+    targets: displacement of each vertex at weight 1, shape (K, V, 3).
     weights: 0..1, shape (N, K).
-    error: of any vertex in any frame [unit of the targets].
+    error: largest one of any vertex in any frame [unit of the targets].
     """
 
     targets: Floats64
@@ -37,11 +37,11 @@ class Morphs:
 
 
 def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) -> Morphs:
-    """The fewest targets found whose weighted sum is never farther off than `tolerance`.
+    """The fewest targets that were found with an error of at most `tolerance`.
 
-    moved: of each vertex from rest in each frame, shape (N, V, 3), in the unit of `tolerance`.
-    Where `most` targets do not suffice, the error is larger. Some readers count them in a byte, and
-    52 more have names.
+    moved: displacements of each vertex from rest in each frame, shape (N, V, 3), in the unit of
+    `tolerance`. If `most` targets do not suffice, the error is larger. Some readers count targets
+    in a byte, and 52 more have names.
     """
     curves, lengths, shapes = np.linalg.svd(moved.reshape(len(moved), -1), full_matrices=False)
     # A component below this share of the largest is rounding.
@@ -53,7 +53,7 @@ def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) ->
     found: list[Morphs] = []
     low = 0
     high = limit
-    # More rounds of weighing vertices save hardly a shape.
+    # More rounds of weighting save hardly any shape.
     for _ in range(8):
         weighed = shapes * np.repeat(weighing, 3)
         _, vectors = np.linalg.eigh(weighed @ weighed.T)
@@ -70,7 +70,7 @@ def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) ->
         found.append(_shifted(moved, mixed_curves[:, :high], mixed_shapes[:high]))
         fewer = max(high - 1, 0)
         left = _farthest(moved, mixed_curves[:, :fewer], mixed_shapes[:fewer])
-        # In each round a vertex counts at least 0.03 of the one that is farthest off.
+        # In each round a vertex has at least 0.03 of the weight of the worst one.
         share = left / max(left.max(), NOTHING)
         weighing *= np.sqrt(np.maximum(share, 0.03))
         weighing /= weighing.max()
@@ -79,15 +79,15 @@ def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) ->
 
 
 def follow(weights: Floats64, changes: Floats64) -> Floats64:
-    """Targets of other values of the vertices, such as normals, for the same weights.
+    """Targets for other values of the vertices, such as normals, with the same weights.
 
-    weights: shape (N, K). changes: from rest, shape (N, V, 3). Returns shape (K, V, 3).
+    weights: shape (N, K). changes: differences from rest, shape (N, V, 3). Returns shape (K, V, 3).
     """
     return np.asarray(np.tensordot(np.linalg.pinv(weights, rcond=1e-6), changes, 1))
 
 
 def _farthest(moved: Floats64, curves: Floats64, shapes: Floats64) -> Floats64:
-    """How far off the sum of the shapes is at most at each vertex, shape (V,)."""
+    """Largest error of the sum of the shapes at each vertex, shape (V,)."""
     off = (curves @ shapes).reshape(moved.shape) - moved
     squares = np.einsum("nvc,nvc->nv", off, off)
     return np.asarray(np.sqrt(squares.max(axis=0)))

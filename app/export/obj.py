@@ -1,4 +1,4 @@
-"""OBJ, which every program reads: a folder of one a frame, or one whose vertices a PC2 file moves.
+"""OBJ, which every program reads: a folder with one per frame, or one that a PC2 file moves.
 
 The mesh is the whole head, the skin first, in metres, so that one modifier moves everything.
 Sources: Wavefront, "Advanced Visualizer manual", appendix B1 (OBJ) and B2 (MTL); Blender's own
@@ -25,7 +25,7 @@ from .formats import FRAME, ExportRequest
 def write_obj(clip: Clip, folder: Path, request: ExportRequest) -> None:
     """Write an OBJ of each frame, in metres, and the skin's texture beside them.
 
-    The mesh that is simulated keeps its V vertices, in their order.
+    The simulated mesh keeps its V vertices, in their order.
     """
     material = _write_material(clip, folder / "frame.mtl")
     frames = request.counted(frame_surfaces(clip, request.refinement), clip.frame_count)
@@ -45,7 +45,7 @@ def write_pc2(clip: Clip, part: Path, request: ExportRequest) -> None:
     vertices = len(points[0])
     with part.open("wb") as file:
         head = (b"POINTCACHE2\0", 1, vertices, 0.0, 1.0, clip.frame_count)
-        # Signature, version, vertices, first frame, frames a sample, samples.
+        # Signature, version, vertices, first frame, frames per sample, samples.
         file.write(struct.pack("<12siiffi", *head))
         file.write(np.stack(points).astype("<f4").tobytes())
 
@@ -61,15 +61,15 @@ def _write_material(clip: Clip, path: Path) -> str:
 
 
 def _write(path: Path, text: str) -> None:
-    """Write a text that names files: names keep their bytes, also where they are no UTF-8."""
+    """Write a text with names of files: names keep their bytes, even if they are not UTF-8."""
     path.write_text(text, encoding="utf-8", errors="surrogateescape")
 
 
 def _obj_text(clip: Clip, frame: Sequence[FrameSurface], material: str) -> str:
-    """One OBJ of one object, a group for each surface; material: the MTL that the skin has.
+    """One OBJ of one object, with a group for each surface; material: the skin's MTL.
 
-    Vertices have colours behind their coordinates, as MeshLab writes and Blender reads them: white
-    where there is a texture.
+    Vertices have colours after their coordinates, as MeshLab writes and Blender reads them; they
+    are white where there is a texture.
     """
     texts = [f"mtllib {material}\n" if material else ""]
     points = coordinates = 1
@@ -80,7 +80,7 @@ def _obj_text(clip: Clip, frame: Sequence[FrameSurface], material: str) -> str:
         texts.append(_rows("vn", surface.normals))
         uv = surface.uv
         face_uv = surface.face_uv
-        if uv is None or face_uv is None:  # for readers that expect one at all corners
+        if uv is None or face_uv is None:  # some readers expect one at all corners
             uv = np.zeros((1, 2), np.float32)
             face_uv = np.zeros_like(surface.faces)
         texts.append(_rows("vt", uv))
@@ -96,7 +96,7 @@ def _obj_text(clip: Clip, frame: Sequence[FrameSurface], material: str) -> str:
 
 
 def _rows(name: str, rows: npt.NDArray[np.floating]) -> str:
-    """A line of each row, its numbers after a name."""
+    """A line for each row: a name, then its numbers."""
     line: str = name + " %.6g" * rows.shape[1] + "\n"
     return (line * len(rows)) % tuple(rows.ravel().tolist())
 

@@ -1,7 +1,7 @@
-"""Numbers: a clip as numpy arrays [mm], or the shapes of ARKit as Live Link Face's CSV.
+"""Tables: a clip as numpy arrays [mm], or ARKit's shapes as Live Link Face's CSV.
 
-Curves describe the visible face. Muscles, eyes and head follow their controls late, each with its
-own delay, so the values of controls are written so much later.
+Curves describe the visible face. Muscles, eyes and head follow their controls with different
+delays, so the values of controls are written later by these delays.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     curves = shape_curves(clip.scene, clip.times, clip.activations, clip.controls)
     shapes = dict(zip(ARKIT, curves.T, strict=True))
     lowest = as_seen(clip.times, clip.activations)
-    other_order = {  # its columns are in ARKit's order but for these
+    other_order = {  # its columns have ARKit's order, except these
         "jawLeft": "jawRight",
         "jawRight": "jawLeft",
         "mouthLeft": "mouthRight",
@@ -55,9 +55,8 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     still = np.zeros(clip.frame_count)
     # As the app spells them: JawOpen.
     columns = {name[0].upper() + name[1:]: shapes[name] for name in names}
-    # Full controls in radians, and ARKit counts to the subject's right and down, where ours grow to
-    # the left and up. The head rolls to the right shoulder there, and eyes look ahead along OUTWARD
-    # axes.
+    # Full controls in radians. ARKit counts to the subject's right and down, ours to the left and
+    # up. The head rolls to the right shoulder there, and the axes of straight eyes point OUTWARD.
     angle_columns = {
         "HeadYaw": ("head_yaw", -np.radians(45.0)),
         "HeadPitch": ("head_pitch", -np.radians(30.0)),
@@ -75,7 +74,7 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     with part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["Timecode", "BlendShapeCount", *columns])
-        decimals = 6  # of numbers, whose zeros at the end are left out: three quarters of a table
+        decimals = 6  # of numbers, without zeros at the end: three quarters of a table's size
         for time, *values in zip(clip.times, *columns.values(), strict=True):
             numbers = np.round(values, decimals) + 0.0  # -0 is 0
             texts = (np.format_float_positional(number, trim="-") for number in numbers)
@@ -84,7 +83,7 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
 
 def _timecode(time: float) -> str:
     """A time [s] as HH:MM:SS:FF.fff, the frames of TIMECODE_RATE with their fraction."""
-    timecode_rate = 60  # Live Link Face counts so many frames a second, at any rate of the camera
+    timecode_rate = 60  # Live Link Face counts this many frames a second at any camera rate
     thousandths = round(time * timecode_rate * 1000.0)
     frames, fraction = divmod(thousandths, 1000)
     seconds, frame = divmod(frames, timecode_rate)

@@ -35,7 +35,7 @@ ALWAYS = Usd.TimeCode.Default()
 
 def write_usd(clip: Clip, part: Path, request: ExportRequest) -> None:
     """Write the package; raises OSError if the disk is full."""
-    is_text = as_text(part) == str(part)  # USD takes names in UTF-8 alone
+    is_text = as_text(part) == str(part)  # USD only takes names in UTF-8
     with tempfile.TemporaryDirectory(dir=part.parent if is_text else None) as folder:
         layer = Path(folder) / (f"{part.stem}.usdc" if is_text else "motion.usdc")
         picture = Path(folder) / PICTURE
@@ -78,7 +78,7 @@ def _fill(stage: Any, clip: Clip, request: ExportRequest) -> None:
 
 
 def _add_surface(mesh: Any, surface: MovingSurface, request: ExportRequest) -> None:
-    """A mesh whose triangles stay: its points move, or all of it does."""
+    """Add a mesh with constant triangles: its points move, or it moves as a whole."""
     _set_faces(mesh, surface.faces, ALWAYS)
     if surface.shapes is None:
         _set_points(mesh, surface.rest, surface.normals_of(surface.rest, None), ALWAYS)
@@ -89,7 +89,7 @@ def _add_surface(mesh: Any, surface: MovingSurface, request: ExportRequest) -> N
     if surface.matrices is not None:
         moves = np.ptp(surface.matrices, axis=0).any()
         operation = mesh.AddTransformOp()
-        matrices = [Gf.Matrix4d(matrix.T) for matrix in surface.matrices]  # vectors are rows
+        matrices = [Gf.Matrix4d(matrix.T) for matrix in surface.matrices]  # USD's vectors are rows
         if not moves:
             operation.Set(matrices[0], ALWAYS)
         else:
@@ -106,7 +106,7 @@ def _add_surface(mesh: Any, surface: MovingSurface, request: ExportRequest) -> N
 
 
 def _add_refined(mesh: Any, clip: Clip, request: ExportRequest) -> None:
-    """The refined skin, which has other triangles in each frame."""
+    """Add the refined skin, which has its own triangles in each frame."""
     assert request.refinement is not None
     kind = Sdf.ValueTypeNames.TexCoord2fArray
     st = None if clip.skin.uv is None else _primvar(mesh, "st", kind, UsdGeom.Tokens.vertex)
@@ -119,7 +119,7 @@ def _add_refined(mesh: Any, clip: Clip, request: ExportRequest) -> None:
 
 
 def _set_faces(mesh: Any, faces: npt.NDArray[Any], when: Any) -> None:
-    """Triangles, from a time on or always."""
+    """Set triangles, from a time on or always."""
     counts = np.full(len(faces), 3, np.int32)
     corners = faces.astype(np.int32).ravel()
     mesh.CreateFaceVertexCountsAttr().Set(Vt.IntArray.FromNumpy(counts), when)
@@ -127,7 +127,7 @@ def _set_faces(mesh: Any, faces: npt.NDArray[Any], when: Any) -> None:
 
 
 def _set_points(mesh: Any, points: npt.NDArray[Any], normals: npt.NDArray[Any], when: Any) -> None:
-    """Where vertices are, how they are lit, and the box around them."""
+    """Set vertices, normals, and the box around them."""
     extent = np.stack([points.min(axis=0), points.max(axis=0)])
     for attribute, rows in (
         (mesh.CreatePointsAttr(), points),
@@ -139,7 +139,7 @@ def _set_points(mesh: Any, points: npt.NDArray[Any], normals: npt.NDArray[Any], 
 
 
 def _primvar(mesh: Any, name: str, kind: Any, interpolation: Any) -> Any:
-    """A value that rides along with vertices or corners."""
+    """Add a primvar: a value at vertices or corners."""
     return UsdGeom.PrimvarsAPI(mesh).CreatePrimvar(name, kind, interpolation)
 
 

@@ -1,6 +1,7 @@
 """VTKHDF, for ParaView and VTK: all frames in one HDF5 file, the triangles once if they stay.
 
-Each frame is a step, which says where its rows begin in arrays that hold all frames. Millimetres.
+Each frame is a step, which has the first places of its rows in arrays for all frames. Lengths are
+millimetres.
 
 Source: Kitware, "VTKHDF format specification", version 2.0, PolyData with steps.
 """
@@ -24,12 +25,12 @@ h5py = needed("h5py", "VTKHDF", "export")
 def write_vtkhdf(clip: Clip, part: Path, request: ExportRequest) -> None:
     """Write all surfaces as one PolyData, the skin's triangles first.
 
-    Vertices have `Normals`, and `displacement` from rest where the mesh stays. Triangles have
-    `surface`, the number of theirs among the names in the attribute `surfaces`, and `source`, the
-    triangle of the mesh that they are part of.
+    Vertices have `Normals`, and, if triangles stay, `displacement` from rest. Triangles have
+    `surface`, its number among the names in the attribute `surfaces`, and `source`, the triangle of
+    the mesh that they are part of.
     """
     rest = np.concatenate([each.rest for each in clip.surfaces])
-    memory = io.BytesIO()  # HDF5 crashes where a disk is full
+    memory = io.BytesIO()  # HDF5 crashes on a full disk
     with h5py.File(memory, "w") as file:
         steps = _Steps(file.create_group("VTKHDF"))
         frames = request.counted(frame_surfaces(clip, request.refinement), clip.frame_count)
@@ -47,24 +48,24 @@ def write_vtkhdf(clip: Clip, part: Path, request: ExportRequest) -> None:
 
 
 class _Steps:
-    """The arrays of a file, which grow frame by frame, and where each frame begins in them."""
+    """The arrays of a file, which grow frame by frame, and the beginning of each frame in them."""
 
     def __init__(self, root: Any) -> None:
         self._root = root
         self._steps: dict[str, list[Any]] = defaultdict(list)
         self._meshes: dict[str, list[int]] = defaultdict(list)
-        self._begins: dict[str, Any] = {}  # of the mesh that is shown now
+        self._begins: dict[str, Any] = {}  # beginnings of the present mesh
         root.attrs["Version"] = (2, 0)
         root.attrs["Type"] = np.bytes_("PolyData")
 
     def begin_mesh(self, frame: list[FrameSurface]) -> None:
-        """Add the triangles that this frame has, and those after it until another call."""
+        """Add triangles for this frame, and for later frames until the next call."""
         points = [len(surface.points) for surface in frame]
         starts = np.cumsum([0, *points[:-1]])
         shifted = [surface.faces + start for surface, start in zip(frame, starts, strict=True)]
         triangles = np.concatenate(shifted)
         surfaces = np.repeat(np.arange(len(frame)), [len(surface.faces) for surface in frame])
-        # Of vertices, lines, polygons, strips; polygons alone have cells
+        # For vertices, lines, polygons and strips; only polygons have cells.
         our_cells = np.array([0, 0, 1, 0])
         self._begins = {
             "PartOffsets": len(self._meshes["NumberOfPoints"]),
@@ -122,5 +123,5 @@ class _Steps:
         array[begin:] = rows
 
     def _length(self, name: str) -> int:
-        """How many rows an array has."""
+        """Number of rows of an array."""
         return len(self._root[name]) if name in self._root else 0

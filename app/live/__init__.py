@@ -1,1 +1,1 @@
-"""Faces that are sent while they move: sockets, packets, and a face that eases in and out."""
+"""Live faces: sockets, packets, and a face that fades in and out."""

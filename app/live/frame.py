@@ -11,17 +11,17 @@ from dataclasses import dataclass, field
 
 from ..recordings.names import NONSENSE, shape_of
 
-MOST_BYTES = 16384  # of a packet; the largest that anybody sends has about 3000
+MOST_BYTES = 16384  # of a packet; known senders send at most about 3000
 
 
 @dataclass(frozen=True)
 class LiveFrame:
-    """The content of a packet; a channel that it does not name stays as it was.
+    """The content of a packet; a channel that it does not name keeps its value.
 
-    channels: by the names and in the units of recordings/names.py.
-    subject: the person's name, as the sender gives it; "" if it gives none.
-    has_face: False where the sender says that it sees nobody.
-    is_complete: False where more packets of the same frame must come before it counts.
+    channels: values with names and units of recordings/names.py.
+    subject: the sender's name for the person, or "".
+    has_face: False if the sender reports that it sees nobody.
+    is_complete: False if further packets belong to the same frame.
     """
 
     channels: Mapping[str, float] = field(default_factory=dict)
@@ -31,25 +31,25 @@ class LiveFrame:
 
 
 def put_shape(channels: dict[str, float], name: str, value: float) -> None:
-    """Set a shape, unless its value is far from 0 and 1, as trackers now and then send it."""
+    """Set a shape, unless its value is far from 0 and 1: trackers sometimes send such values."""
     if abs(value) <= NONSENSE:
         channels[name] = value
 
 
 def put_angle(channels: dict[str, float], name: str, degrees: float) -> None:
-    """Set an angle, unless it is more than half a turn or no number."""
+    """Set an angle, unless it is more than half a turn or NaN."""
     if abs(degrees) <= 180.0:
         channels[name] = degrees
 
 
 def readable_subject(name: bytes) -> str:
-    """A sender's name for a face, as far as it can be shown."""
-    longest_subject = 40  # letters; it is shown in the window
+    """A sender's name for a face, reduced to printable letters."""
+    longest_subject = 40  # letters, shown in the window
     text = name[: 4 * longest_subject].decode("utf-8", "replace")
     return "".join(filter(str.isprintable, text))[:longest_subject]
 
 
 def shape_named(name: str) -> str | None:
-    """The shape that a sender calls so, None for another name."""
+    """The shape with a sender's name; None for another name."""
     longest_name = 40  # letters of a shape
     return shape_of(name) if len(name) <= longest_name else None

@@ -1,10 +1,10 @@
-"""A face that somebody sends: from packets to the controls of our face, and how far it overrides.
+"""A live face: from packets to the controls of our face, and the strength of the override.
 
     packets -> channels -> calibration -> mapping -> controls, with a presence of 0 to 1
 
-The newest frame counts. While frames come the presence grows to 1; when they stop, or when the
-sender sees no face, it falls to 0, and our face eases to its values without them. Other motion,
-such as idle life, gets the rest of the weight, 1 less the presence.
+The newest frame counts. While frames come, the presence grows to 1. When they stop, or when the
+sender sees no face, it falls to 0, and our face returns smoothly to its values without them. Other
+motion, such as idle life, has the weight 1 - presence.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from .frame import LiveFrame
 from .protocols import Listening
 from .receiver import Receiver
 
-LOST_AFTER = 0.4  # [s] without a frame; at 30 a second a network may swallow ten
+LOST_AFTER = 0.4  # [s] without a frame; at 30 a second a network may lose ten
 EASING_IN = 0.25  # [s]
 EASING_OUT = 0.6
 CALIBRATING = 0.5  # [s] of a neutral face
-CHANNELS = (*ARKIT, *HEAD_ANGLES, *EYE_ANGLES, *VISEMES)  # that may come
+CHANNELS = (*ARKIT, *HEAD_ANGLES, *EYE_ANGLES, *VISEMES)  # channels that may come
 
 
 class State(enum.Enum):
@@ -37,16 +37,16 @@ class State(enum.Enum):
     WAITING = "waiting"  # nothing has come yet
     RECEIVING = "receiving"
     NO_FACE = "no face"  # the sender sees nobody
-    LOST = "lost"  # frames came, and do no longer
+    LOST = "lost"  # frames came, and have stopped
 
 
 class LiveFace(Receiver):
-    """The received frames, as a face.
+    """The received frames as a face.
 
-    calibration: of the channels; may be replaced at any time.
+    calibration: that of the channels; it may be replaced at any time.
     channels: the newest value of each channel, before calibration.
-    subject: the name of the person, "" if the sender has none.
-    presence: how far it overrides our face, 0 to 1.
+    subject: the name of the person, or "".
+    presence: strength of the override of our face, 0 to 1.
     """
 
     def __init__(
@@ -56,18 +56,18 @@ class LiveFace(Receiver):
         wake: Callable[[], None] = lambda: None,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        """Listen from now on; raises UserError if that cannot be. wake: see `Receiver`."""
+        """Listen from now on; raises UserError if this fails. wake: see `Receiver`."""
         listening.protocol.check()
         gains, default = gains_of(listening.gains, CHANNELS)
         super().__init__(listening, wake, clock)
         self.calibration = Calibration({}, gains, default, listening.mirror)
         self.channels: dict[str, float] = {}
         self.subject = ""
-        self.has_news = False  # a frame was taken in by the last `advance`
+        self.has_news = False  # whether the last `advance` took a frame
         self._pending: dict[str, float] = {}
         self._share = 0.0
         self._has_face = True
-        self._last: float | None = None  # when the newest frame came
+        self._last: float | None = None  # time of the newest frame
         most_rated = 1000  # frames
         self._times: deque[float] = deque(maxlen=most_rated)
         self._neutral: list[dict[str, float]] = []
@@ -77,7 +77,7 @@ class LiveFace(Receiver):
 
     @property
     def silence(self) -> float:
-        """How long ago the newest frame came [s]; infinite before the first."""
+        """Time since the newest frame [s]; infinite before the first."""
         return float("inf") if self._last is None else max(self._clock() - self._last, 0.0)
 
     @property
@@ -98,7 +98,7 @@ class LiveFace(Receiver):
 
     @property
     def presence(self) -> float:
-        """How far it overrides ours, 0 to 1: smoothly in both directions."""
+        """Strength of the override of our face, 0 to 1, smooth in both directions."""
         return self._share * self._share * (3.0 - 2.0 * self._share)
 
     @property
@@ -114,7 +114,7 @@ class LiveFace(Receiver):
     # Its commands
 
     def advance(self, seconds: float) -> None:
-        """Take in the frames that have come; `seconds` have passed since the last call."""
+        """Take the frames that have come; `seconds` have passed since the last call."""
         self.has_news = False
         for at, frame in self.take():
             self._take_in(frame, at)
@@ -140,7 +140,7 @@ class LiveFace(Receiver):
             self._neutral.append(dict(self.channels))
 
     def controls(self) -> dict[str, float]:
-        """Our controls as the face has them, not yet cut off at their limits."""
+        """Values of our controls from the live face, not yet cut off at their limits."""
         return controls_of(self.calibration.apply(self.channels))
 
     def calibrate(self) -> None:
@@ -148,7 +148,7 @@ class LiveFace(Receiver):
         self._neutral, self._neutral_until = [], self._clock() + CALIBRATING
 
     def _end_calibration(self) -> None:
-        """Take the median, which a blink does not move, of each channel."""
+        """Take the median of each channel, which a blink does not change."""
         if self._neutral:
             median = {
                 name: float(np.median([each[name] for each in self._neutral if name in each]))

@@ -5,7 +5,7 @@
     i32 frame, f32 part of a frame, i32 frames a second, i32 denominator of these
     u8 count of values, 61             f32 values: 52 shapes, 3 angles each of head and both eyes
 
-A packet that ends before the values, or counts none, was sent while no face was seen. The order of
+A packet that ends before the values, or counts none, means that no face was seen. The order of
 shapes is ARKit's; the app's files have another. Angles are in radians: the pitch of an eye is 0.61
 where it looks down fully. They grow to the subject's right, down and to the right shoulder.
 
@@ -25,7 +25,7 @@ from .frame import LiveFrame, put_angle, put_shape, readable_subject
 VERSION = 6
 COUNT = 61
 LONGEST_TEXT = 1024  # [bytes] of an id or a name
-# Behind the shapes; None for what eyes do not do.
+# Channels after the shapes; None for the roll of eyes.
 ANGLES = (
     "head_yaw", "head_pitch", "head_roll",
     "eye_yaw_left", "eye_pitch_left", None, "eye_yaw_right", "eye_pitch_right", None,
@@ -33,7 +33,7 @@ ANGLES = (
 
 
 def parse(packet: bytes) -> LiveFrame | None:
-    """The frame in a packet, None if it is none; see the head of this file."""
+    """The frame in a packet, or None for another packet; see the head of this file."""
     if packet[:1] != bytes([VERSION]):
         return None
     try:
@@ -60,7 +60,7 @@ def parse(packet: bytes) -> LiveFrame | None:
 
 
 def _text(packet: bytes, at: int) -> tuple[bytes, int]:
-    """A text that its length precedes, and where the packet goes on; ValueError if it is none."""
+    """A text after its length, and the place after it; ValueError for another content."""
     (length,) = struct.unpack_from(">i", packet, at)
     end = at + 4 + length
     if not 0 <= length <= LONGEST_TEXT or end > len(packet):
@@ -69,7 +69,7 @@ def _text(packet: bytes, at: int) -> tuple[bytes, int]:
 
 
 def packet_of(channels: Mapping[str, float], *, subject: str, frame: int) -> bytes:
-    """The packet that the app would send of these channels; a missing channel is 0."""
+    """The packet that the app would send for these channels; a missing channel is 0."""
     values = [channels.get(name, 0.0) for name in ARKIT]
     for angle in ANGLES:
         degrees = channels.get(angle or "", 0.0) + OUTWARD.get(angle or "", 0.0)

@@ -1,4 +1,4 @@
-"""The protocols that faces are sent in, by the names that the command line has; addresses."""
+"""Protocols of live faces, by their names on the command line; addresses."""
 
 from __future__ import annotations
 
@@ -53,11 +53,10 @@ PROTOCOLS: Mapping[str, Protocol] = {
 
 @dataclass(frozen=True)
 class Listening:
-    """Where packets are expected, of which protocol, and how they are taken at first.
+    """Address and protocol of expected packets, and their first calibration.
 
-    kind: a key of PROTOCOLS. address: the only one that is listened on. port: None for the
-    protocol's own. gains: "NAME=x" each. mirror: left and right
-    change places.
+    kind: a key of PROTOCOLS. address: the one to listen on. port: None for the protocol's own.
+    gains: "NAME=x" each. mirror: whether left and right change places.
     """
 
     kind: str
@@ -73,18 +72,18 @@ class Listening:
 
     @property
     def chosen_port(self) -> int:
-        """The port that is listened on."""
+        """The port to listen on."""
         return self.protocol.port if self.port is None else self.port
 
 
 def resolved(address: str) -> str:
-    """The IPv4 address of a computer, from its name or address. UserError if there is none."""
+    """The IPv4 address of a computer, from its name or address; UserError without one."""
     try:
-        if not address or address.startswith("<"):  # which the system takes for "all of them"
+        if not address or address.startswith("<"):  # the system takes these for all networks
             raise OSError("that is no name")
         found = socket.getaddrinfo(address, None, socket.AF_INET, socket.SOCK_DGRAM)
         return str(found[0][4][0])
-    except (OSError, TypeError, ValueError) as error:  # Python's own, of names too long or odd
+    except (OSError, TypeError, ValueError) as error:  # Python's errors for names too long or odd
         reason = getattr(error, "strerror", None) or error
         raise UserError(
             f"address {in_one_line(repr(address))}: {reason}; write a computer's name, or its "
@@ -96,8 +95,8 @@ def own_address() -> str:
     """The address of this computer in the network; "" without a network. Nothing is sent."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
         try:
-            documentation_address = "192.0.2.1"  # nobody's: kept free for documents (RFC 5737)
-            asked.connect((documentation_address, 9))  # the system only chooses a way
+            documentation_address = "192.0.2.1"  # unused: reserved for documents (RFC 5737)
+            asked.connect((documentation_address, 9))  # the system only chooses a route
             return str(asked.getsockname()[0])
         except OSError:
             return ""

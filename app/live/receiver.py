@@ -1,8 +1,7 @@
-"""Frames as they come: a thread reads packets from the socket and wakes the threads that wait.
+"""Incoming frames: a thread reads packets from the socket, and wakes waiting threads.
 
-A window sleeps until something happens, and a frame must be such a thing: asking for it once in a
-while would let it lie. Nobody is woken for a part of a frame, for one without a face, or for what
-is none.
+A window sleeps until an event, and a frame must be such an event: periodic checks would delay it. A
+part of a frame, a frame without a face, and an unusable packet wake no thread.
 """
 
 from __future__ import annotations
@@ -21,11 +20,12 @@ from .protocols import ANYWHERE, LOOPBACK, Listening, resolved
 class Receiver:
     """A socket and its thread; `close` ends both.
 
-    listening: where. received, unusable: packets so far, and those that are none of the protocol.
-    has_frame: whether a frame waits that somebody was woken for.
+    listening: its address and protocol. received, unusable: numbers of packets so far, and of those
+        outside the protocol.
+    has_frame: whether a frame is waiting.
     """
 
-    LOOK_AROUND = 0.1  # [s] after which the thread sees that it is to end
+    LOOK_AROUND = 0.1  # [s] after which the thread checks whether to end
 
     def __init__(
         self,
@@ -33,15 +33,15 @@ class Receiver:
         wake: Callable[[], None] = lambda: None,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        """Listen at once. wake: called from the thread when a frame waits and none did before.
+        """Listen at once. wake: the thread calls it when a first frame is waiting.
 
-        Raises UserError if that cannot be.
+        Raises UserError if this fails.
         """
         self.listening = listening
         self._wake = wake
         self._clock = clock
         self._parse = listening.protocol.parser()
-        most_waiting = 256  # frames or parts of them; of more, the oldest are dropped
+        most_waiting = 256  # frames or parts of them; the oldest of more are dropped
         self._waiting: deque[tuple[float, LiveFrame]] = deque(maxlen=most_waiting)
         self.received = self.unusable = 0
         self.has_frame = False
@@ -53,12 +53,12 @@ class Receiver:
 
     @property
     def address(self) -> str:
-        """The address that is listened on."""
+        """The address to listen on."""
         return str(self._socket.getsockname()[0])
 
     @property
     def port(self) -> int:
-        """The port that is listened on."""
+        """The port to listen on."""
         return int(self._socket.getsockname()[1])
 
     def take(self) -> list[tuple[float, LiveFrame]]:
@@ -78,13 +78,13 @@ class Receiver:
                 packet = self._socket.recv(MOST_BYTES + 1)
             except TimeoutError:
                 continue
-            except OSError:  # a network that is down may come back
+            except OSError:  # a network may recover
                 time.sleep(self.LOOK_AROUND)
                 continue
             self._read(packet, self._clock())
 
     def _read(self, packet: bytes, at: float) -> None:
-        """Keep a packet's content, wake the threads that wait, and count the packet as done."""
+        """Keep a packet's content, wake waiting threads, and count the packet."""
         frame = self._parse(packet) if len(packet) <= MOST_BYTES else None
         if frame is None:
             self.unusable += 1

@@ -20,7 +20,7 @@ class Sender:
     """Sends frames to one address; a context manager."""
 
     def __init__(self, address: str, port: int | None, subject: str) -> None:
-        """port: None for the protocol's own. Raises UserError if the address is none."""
+        """port: None for the protocol's own. Raises UserError for an invalid address."""
         self.port = PROTOCOLS["livelink"].port if port is None else port
         self._subject = subject
         self._sent = 0
@@ -34,7 +34,7 @@ class Sender:
         self._socket.close()
 
     def send(self, channels: Mapping[str, float]) -> None:
-        """Send one frame; UserError if that cannot be."""
+        """Send one frame; UserError if this fails."""
         packet = packet_of(channels, subject=self._subject, frame=self._sent)
         self._sent += 1
         try:

@@ -3,7 +3,7 @@
     head = assets.fitting.fit_head("anna.obj", "anna_landmarks.json")
     simulation = sim.create(head)
 
-Needed are the 68 iBug landmarks, unless the vertices are known (topologies.py). docs/own_head.md is
+The 68 iBug landmarks are needed, unless the topology is known (topologies.py). docs/own_head.md is
 the user's page. Start reading at head.py.
 """
 

@@ -1,6 +1,6 @@
-"""Balls that a file shows itself: eyeballs among its pieces, and sockets that are shells of them.
+"""Balls in a user's file: eyeballs among its pieces, and sockets that are shells of eyeballs.
 
-A head of few triangles has neither; then its lids alone say where an eyeball is (organs.py).
+A head of few triangles has neither; then its lids alone give the place of an eyeball (organs.py).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ FEWEST = 4  # vertices of an eyeball: fewer are strands and cards
 
 
 def is_eyeball(points: Floats64, centre: Floats64, radius: float) -> bool:
-    """Whether a piece (n, 3) is an eyeball about there, or a layer: an iris, a cornea."""
+    """Whether a piece (n, 3) is an eyeball near there, or a layer of one: an iris, a cornea."""
     if len(points) < FEWEST:
         return False
     off = np.linalg.norm(points - centre, axis=1)
@@ -30,7 +30,7 @@ def is_eyeball(points: Floats64, centre: Floats64, radius: float) -> bool:
 
 
 def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats64, float]:
-    """The sphere that fits points (n, 3) best, if they are a ball about there; else the given one.
+    """The sphere that fits points (n, 3) best, if they are a ball near there; else the given one.
 
     Source: linear least squares of |p|^2 = 2 p c + (r^2 - |c|^2).
     """
@@ -51,10 +51,10 @@ def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats
 def ball_of_pieces(
     pieces: Sequence[Floats64], centre: Floats64, radius: float, lids: Floats64
 ) -> tuple[Floats64, float] | None:
-    """Centre and radius [mm] of the largest eyeball among pieces; None: there is none.
+    """Centre and radius [mm] of the largest eyeball among pieces, else None.
 
-    centre, radius: about where and how large it is. lids: landmarks of the eye, shape (6, 3); a
-    ball that stands out of them is none.
+    centre, radius: an estimate of it. lids: landmarks of the eye, shape (6, 3); a ball that stands
+    out of them is no eyeball.
     """
     found = None
     for points in pieces:
@@ -72,12 +72,12 @@ def ball_of_pieces(
 def ball_of_socket(
     skin: Floats64, outward: Floats64, centre: Floats64, radius: float
 ) -> tuple[Floats64, float] | None:
-    """Centre and radius [mm] of the ball that lies in a shell behind the lids; None: there is none.
+    """Centre and radius [mm] of the ball that lies in a shell behind the lids, else None.
 
     skin: its vertices, shape (V, 3). outward: cosine of each normal with the way from `centre`,
-    shape (V,). centre, radius: about where and how large the ball is.
+    shape (V,). centre, radius: an estimate of the ball.
     """
-    most_radii = 2.0  # of the shell
+    most_radii = 2.0  # radii of the ball: largest shell
     facing = -0.6  # cosine below which skin faces the ball
     away = np.linalg.norm(skin - centre, axis=1)
     shell = skin[(away < most_radii * radius) & (outward < facing)]

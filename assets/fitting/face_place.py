@@ -1,4 +1,4 @@
-"""Where 68 landmarks place a head: the similarity to the face space, or why they are no face."""
+"""The place of a head by its 68 landmarks: a similarity to the face space, or an error."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..model import Head
 from .landmark_file import COUNT, groups_in_disorder
 from .warp import Similarity
 
-ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
+ORIENTING = slice(17, COUNT)  # without the jaw line, whose places differ most between annotators
 
 
 def placed(points: Floats64, known: Head) -> Similarity:
@@ -31,7 +31,7 @@ def placed(points: Floats64, known: Head) -> Similarity:
     disordered = groups_in_disorder(similarity.points(points), template)
     farthest_from_a_face = 14.0  # [mm] mean distance of landmarks from those of the built-in head
     is_far = off[ORIENTING].mean() > farthest_from_a_face
-    most_disordered = 3  # groups of landmarks: with more of them no order is meant
+    most_disordered = 3  # groups: more in disorder mean landmarks without any order
     if disordered and not (is_far and len(disordered) > most_disordered):
         _check_different(similarity.points(points), template)
         raise AssetError(disordered[0].complaint)
@@ -57,9 +57,10 @@ def is_face(points: Floats64) -> bool:
 
 
 def _check_different(points: Floats64, template: Floats64) -> None:
-    """Raise AssetError if landmarks [mm] that are far apart on any face are one place."""
+    """Raise AssetError if landmarks [mm] that are far apart on any face coincide."""
     ways, known = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (points, template))
-    # Landmarks so far apart on the built-in head cannot be one place: no muscle spans no way.
+    # Landmarks that are this far apart on the built-in head cannot coincide: a muscle between them
+    # needs a length.
     least_built_in_distance = 30.0  # [mm]
     a, b = np.unravel_index(
         (ways + np.where(known > least_built_in_distance, 0.0, np.inf)).argmin(), ways.shape

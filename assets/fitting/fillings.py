@@ -1,7 +1,7 @@
-"""Triangles that fill a mouth or an eye which must be open, as masks have them.
+"""Triangles that fill a mouth or an eye, such as those of masks; both must be open.
 
 A filling lies inside the landmarks of an opening, and all its vertices are on the opening's edge:
-it is one polygon in triangles. It is left out of the skin, and its vertices stay.
+it is one polygon, cut into triangles. These are left out of the skin, and their vertices stay.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ OPENINGS = {
 
 @dataclass(frozen=True)
 class Filling:
-    """Which triangles of a mesh fill openings, and which openings these are."""
+    """The triangles of a mesh that fill openings, and names of these openings."""
 
     triangles: Integers
     openings: tuple[str, ...]
@@ -44,9 +44,9 @@ class Filling:
 
 
 def filling_of(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> Filling | None:
-    """All that fills the mouth or an eye of a mesh; None if nothing does.
+    """All triangles that fill the mouth or an eye of a mesh; None if none do.
 
-    numbers: vertices at the landmarks, shape (68,). landmarks: where they lie [unit of the mesh],
+    numbers: vertices at the landmarks, shape (68,). landmarks: their places [unit of the mesh],
     shape (68, 3).
     """
     to_face = placed(landmarks, load("head"))
@@ -67,7 +67,7 @@ def filling_of(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> Filling 
 
 
 def _smooth(points: Floats64) -> Floats64:
-    """A curve through points (n, 3) that swings nowhere beyond them."""
+    """A curve through points (n, 3) without overshoot."""
     place_count = 33
     lengths = arc_lengths(points)
     curve = scipy.interpolate.PchipInterpolator(lengths, points)
@@ -77,8 +77,8 @@ def _smooth(points: Floats64) -> Floats64:
 def _filling(
     vertices: Floats64, faces: Integers32, around: Floats64, upper: Floats64, lower: Floats64
 ) -> Integers:
-    """Which triangles fill an opening, none where they are no polygon whose corners are its edge.
-    In the face space [mm], whose z axis points to the viewer.
+    """The triangles that fill an opening; none if they are not a polygon with all corners on its
+    edge. All is in the face space [mm], whose z axis points to the viewer.
 
     around: landmarks of the opening, (n, 3). upper, lower: curves through them, from corner to
     corner and back, (m, 3) each.
@@ -88,7 +88,7 @@ def _filling(
     centre = edge.mean(axis=0)
     width = np.linalg.norm(upper[-1] - upper[0])
     height = (upper - lower[::-1])[:, 1].mean()
-    if height < 0.02 * width:  # shut: nothing lies in it
+    if height < 0.02 * width:  # shut: no triangle lies in it
         return none
     middles = vertices[faces].mean(axis=1)
     near = np.flatnonzero(np.linalg.norm(middles - centre, axis=1) < 0.6 * width)
@@ -108,7 +108,7 @@ def _filling(
 
 
 def _is_polygon(faces: Integers32) -> bool:
-    """Whether triangles make up one polygon, all of whose corners are on its edge."""
+    """Whether triangles form one polygon with all corners on its edge."""
     sides, uses = np.unique(np.sort(sides_of(faces), axis=1), axis=0, return_counts=True)
     border = sides[uses == 1]
     count = len(faces) + 2  # corners and sides of a polygon of so many triangles
@@ -117,7 +117,7 @@ def _is_polygon(faces: Integers32) -> bool:
 
 
 def _is_inside(points: Floats64, polygon: Floats64) -> Flags:
-    """Which points (n, 2) a polygon (m, 2) goes around."""
+    """Flags of points (n, 2) inside a polygon (m, 2)."""
     to_x, to_y = (polygon[:, None] - points).transpose(2, 0, 1)
     angles = np.unwrap(np.arctan2(to_y, to_x), axis=0, period=2.0 * np.pi)
     closing = np.arctan2(to_y[0], to_x[0]) - np.arctan2(to_y[-1], to_x[-1])

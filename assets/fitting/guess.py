@@ -1,10 +1,10 @@
-"""Where the 68 landmarks of a head may lie, from the few that a user has placed.
+"""A guess of the 68 landmarks of a head, from the few that a user has placed.
 
     first points  ->  similarity to the built-in head  ->  the likeliest person
                   ->  its face laid on the mesh, stiff at first  ->  its landmarks on the mesh
 
-The person's face is laid on the mesh as one lays a cloth: each of its points goes to the nearest
-place that faces the same way. A warp follows them, and bends more in each step.
+The person's face is laid on the mesh like a cloth: each of its points goes to the nearest place
+that faces the same way. A warp follows these points, and bends more in each step.
 
 Source: Amberg, Romdhani, Vetter 2007, "Optimal step nonrigid ICP" (stiffness that falls from step
 to step; here that of a smoothing thin-plate warp).
@@ -29,7 +29,7 @@ from .likely_face import FARTHEST_MATCH, LikelyFace
 from .mesh_validation import pieces_of
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
-# Outer corners of the eyes, tip of the nose, corners of the mouth: easily found by anybody, and
+# Outer corners of the eyes, tip of the nose, corners of the mouth: easy to find for everybody, and
 # far apart in every direction.
 FIRST = (36, 45, 30, 48, 54)
 
@@ -37,10 +37,10 @@ Known = Mapping[int, npt.ArrayLike]  # points (3,) [unit of the mesh] by the lan
 
 
 def guess(mesh: Mesh, known: Known) -> Floats64:
-    """Where all 68 landmarks lie on a mesh [its unit], shape (68, 3).
+    """Guess all 68 landmarks on a mesh [its unit], shape (68, 3).
 
-    known: those of `FIRST` at least; they stay where they are. Raises AssetError if they are
-    no face's.
+    known: at least those of `FIRST`; they stay in place. Raises AssetError if they are not those of
+    a face.
     """
     head = load("head")
     similarity = placing(known)
@@ -48,7 +48,7 @@ def guess(mesh: Mesh, known: Known) -> Floats64:
     given = similarity.points(np.array([known[number] for number in numbers]))
     vertices = similarity.points(mesh.vertices)
     faces = skin_around(vertices, mesh.faces, given)
-    # The landmarks and the face around them are laid on the mesh.
+    # Both the landmarks and the face around them are laid on the mesh.
     chosen = np.concatenate([head.landmarks, _around_landmarks(head)])
     face = LikelyFace(head, vertices, faces, numbers, given, chosen)
     face.fit()
@@ -70,13 +70,13 @@ def guess(mesh: Mesh, known: Known) -> Floats64:
 
 
 def placing(known: Known) -> Similarity:
-    """The similarity to the face space [mm] by landmarks that are known, four of them at least.
+    """The similarity to the face space [mm] by known landmarks, at least four of them.
 
-    Raises AssetError if they are no face's, or that of a mirror image.
+    Raises AssetError if they are not those of a face, or those of its mirror image.
     """
     similarity, off = _laid(known)
     right = "right is the subject's own, on your left where the face looks at you"
-    most_mean_distance = 14.0  # [mm] of the first points: farther off, they are no face's
+    most_mean_distance = 14.0  # [mm] of the first points: more is no face
     if off.mean() > most_mean_distance:
         right_and_left = {"eyes": FIRST[:2], "corners of the mouth": FIRST[3:]}
         for pair, (a, b) in right_and_left.items():
@@ -105,7 +105,7 @@ def _laid(known: Known) -> tuple[Similarity, Floats64]:
 
 
 def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integers32:
-    """The triangles of the skin around some points of a face, facing outward; all in face space.
+    """The triangles of the skin around some points of a face, facing outward, in face space.
 
     The skin is the piece that most of the points lie on: eyeballs, teeth and hair are left out.
     """
@@ -123,7 +123,7 @@ def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integ
 
 
 def _around_landmarks(head: Head) -> Integers32:
-    """Some vertices near the landmarks of a head, but those themselves."""
+    """Some vertices near the landmarks of a head, except the landmarks themselves."""
     reach = 30.0  # [mm] around landmarks: the part of the built-in face that is laid on the mesh
     near = scipy.spatial.cKDTree(head.vertices[head.landmarks]).query(head.vertices)[0] < reach
     near[head.landmarks] = False
@@ -135,19 +135,19 @@ def _around_landmarks(head: Head) -> Integers32:
 def _feet(
     laid: Floats64, head: Head, chosen: Integers32, vertices: Floats64, faces: Integers32
 ) -> Floats64:
-    """Where some vertices of the laid head come to lie on a mesh that faces as they do."""
+    """Places of some vertices of the laid head on a mesh, where it faces the same way."""
     normals = vertex_normals(laid, head.faces)[chosen]
     return nearest_on(laid[chosen], normals, vertices, faces).interpolate(vertices)
 
 
 def centred(vertices: Floats64, radius: float) -> Similarity:
-    """The similarity that moves a mesh (V, 3) to the origin and scales it to `radius`, unturned."""
+    """The similarity that moves a mesh (V, 3) to the origin and scales it to `radius`."""
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     scale = radius / max(float(np.linalg.norm(vertices - middle, axis=1).max()), 1e-12)
     return Similarity(scale, np.eye(3), -scale * middle)
 
 
 def axes_turned() -> list[Floats64]:
-    """The 24 rotations that take axes to axes, the one that leaves them alone first."""
+    """The 24 rotations that take axes to axes, the identity first."""
     turns = np.rint(scipy.spatial.transform.Rotation.create_group("O").as_matrix())
     return sorted(turns, key=lambda turn: -float(np.trace(turn)))

@@ -6,10 +6,10 @@
                                               ->  eyes, teeth, tongue, mouth
 
 Muscles need no fitting: the rig is written in landmarks (sim/rig.py). The mandible's share of the
-skin is carried over, so that a chin goes as stiffly with its bone as the built-in one.
+skin is carried over, so that a chin follows its bone as stiffly as the built-in one.
 
-Source: Kähler, Haber, Yamauchi, Seidel 2002, "Head shop".
-Differs from it: no mesh is fitted to scanned points; the mesh that is brought is animated itself.
+Source: Kähler, Haber, Yamauchi, Seidel 2002, "Head shop". Differs from it: no mesh is fitted to
+scanned points; the user's mesh itself is animated.
 """
 
 from __future__ import annotations
@@ -68,18 +68,18 @@ from .warp import Similarity, ThinPlateSpline, nearest_on
 
 @dataclass(frozen=True)
 class FittedHead(simplifying.SimulatedHead):
-    """A head of the user's, with all that `sim.create` and a renderer read.
+    """A user's head, with all that `sim.create` and a renderer read.
 
     The attributes are those of `Head`, in its millimetres and axes. Pieces without a landmark (the
     mesh's own eyeballs and teeth) were left out.
 
     to_millimetres: takes the file's coordinates to these.
-    file_vertices: numbers in the file of the vertices, or of the nearest, shape (V,), int32.
+    file_vertices: numbers of the vertices, or of the nearest ones, in the file, shape (V,), int32.
     notes: changes of the mesh that its owner should know, a line each.
     called: its name or number, "" if it has none.
-    simplified: the mesh to simulate instead, where this one has too many triangles; else None.
-    files: of the mesh and its landmarks, where it was read from such.
-    lip_cut: of a file whose lips are sealed; its mesh is cut there. None for others.
+    simplified: the mesh that is simulated instead, if this one has too many triangles; else None.
+    files: those of the mesh and its landmarks, if it was read from files.
+    lip_cut: the cut of the mesh, if the file's lips are sealed; else None.
     """
 
     face_uv: Integers32
@@ -104,9 +104,9 @@ class FittedHead(simplifying.SimulatedHead):
 def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHead:
     """Read a mesh and its landmark file (see landmark_file.py) and fit the built-in head to it.
 
-    landmarks: None for a mesh whose vertices are known by their numbers, see topologies.py.
-    Raises AssetError, one line that names the file, where a file is missing, broken or unusable;
-    its subclass UnfinishedError if landmarks are missing, or a known head's do not fit.
+    landmarks: None for a mesh whose vertices are known by their numbers, see topologies.py. Raises
+    AssetError, one line that names the file, where a file is missing, broken or unusable; its
+    subclass UnfinishedError if landmarks are missing, or those of a known head do not fit.
     """
     path = Path(mesh)
     found = read_mesh(path)
@@ -125,13 +125,13 @@ def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHea
     return replace(fitted, files=(path, file))
 
 
-Marks = tuple[Integers32, Floats64 | None]  # landmarks as `read_landmarks` has them
+Marks = tuple[Integers32, Floats64 | None]  # landmarks, see `read_landmarks`
 
 
 def _fit_shut_or_not(mesh: Mesh, marks: Marks, marks_of: Callable[[Mesh], Marks]) -> FittedHead:
-    """Fit a mesh. Filled openings are opened first, and lips that are joined by skin parted.
+    """Fit a mesh. Before, filled openings are opened, and lips that skin joins are parted.
 
-    marks_of: finds the landmarks of a mesh with those vertices and other triangles.
+    marks_of: finds the landmarks of a mesh with the same vertices and other triangles.
     """
     numbers, points = marks
     places = mesh.vertices[numbers] if points is None else points
@@ -163,7 +163,7 @@ def _fit_shut_or_not(mesh: Mesh, marks: Marks, marks_of: Callable[[Mesh], Marks]
 
 
 def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
-    """Fit a mesh whose landmarks are known; its errors are those of `fit_head`."""
+    """Fit a mesh with known landmarks; its errors are those of `fit_head`."""
     known = recognised(mesh)
     if known is None:
         raise UnfinishedError(
@@ -172,7 +172,7 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
         )
 
     def marks_of(parted: Mesh) -> Marks:
-        """The known landmarks; those of lips that were parted on their own lip each."""
+        """The known landmarks; those of parted lips each on their own lip."""
         numbers = known.landmarks
         nearest = nearest_vertices(mesh.vertices[numbers], parted.vertices, parted.faces)
         inner_lips = np.arange(COUNT) >= 60
@@ -192,8 +192,8 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
 def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) -> FittedHead:
     """Fit the built-in head to a mesh with 68 landmarks.
 
-    landmarks: vertex numbers, shape (68,); points: where they lie exactly [unit of the mesh], shape
-    (68, 3), unless at those vertices. Raises AssetError for a mesh that cannot work.
+    landmarks: vertex numbers, shape (68,); points: their exact places [unit of the mesh], shape
+    (68, 3); None: those vertices. Raises AssetError for an unusable mesh.
     """
     known = load("head")
     points = mesh.vertices[landmarks] if points is None else points
@@ -247,9 +247,9 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
 
 
 class _Jaw(NamedTuple):
-    """Where the jaw of a head turns, and the rig by whose angle it does so."""
+    """The axis of a head's jaw, and the rig with its angle."""
 
-    axis: Floats64 | None  # (2, 3) [mm]; None where the head has no ears
+    axis: Floats64 | None  # (2, 3) [mm]; None for a head without ears
     rig: dict[str, Any]
 
 
@@ -260,7 +260,7 @@ def _jaw_of(known: Head, skin: SkinPiece, target: Floats64) -> _Jaw:
 
 
 def _beside_skin(vertices: Floats64, faces: Integers32, skin: SkinPiece) -> list[Floats64]:
-    """The vertices (n, 3) of each piece of a mesh that is not the skin."""
+    """The vertices (n, 3) of each piece of a mesh except the skin."""
     piece = pieces_of(faces, len(vertices))
     own = piece[skin.file_vertices[0]]
     groups = vertices_of_pieces(piece, faces)
@@ -268,7 +268,7 @@ def _beside_skin(vertices: Floats64, faces: Integers32, skin: SkinPiece) -> list
 
 
 class _Carried(NamedTuple):
-    """All that is carried over from the built-in head to a skin of V vertices."""
+    """Data that the built-in head gives to a skin of V vertices."""
 
     eyes: tuple[Eye, ...]
     parts: tuple[Part, ...]
@@ -294,7 +294,7 @@ def _carried_over(
     neck_part = "neck"  # the shirt of the built-in head, which has its shoulders
     return _Carried(
         eyes=eyes,
-        # Landmarks do not say exactly enough where a lid ends for lashes and tears.
+        # Landmarks do not give the edge of a lid exactly enough for lashes and tears.
         parts=tuple(part for part in parts if part.bone != neck_part and part.roots is None),
         uv=spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces)),
         across=nearest.interpolate(known.wrinkles.across).astype(np.float32),
@@ -306,7 +306,7 @@ def _carried_over(
 def _simulated(
     known: Head, coarse: SkinPiece, carried: _Carried, jaw: _Jaw
 ) -> simplifying.SimulatedHead:
-    """The head that is simulated, with a simplified mesh."""
+    """The simulated head, which has a simplified mesh."""
     return simplifying.SimulatedHead(
         vertices=coarse.vertices,
         faces=coarse.faces,
@@ -323,7 +323,7 @@ def _simulated(
 
 
 def _on_finer(carried: _Carried, coarse: SkinPiece, fine: SkinPiece) -> _Carried:
-    """The same for the skin of which `coarse` is the simplified mesh."""
+    """The same data for the skin whose simplified mesh is `coarse`."""
     normals = vertex_normals(fine.vertices, fine.faces)
     nearest = nearest_on(fine.vertices, normals, coarse.vertices, coarse.faces)
     return carried._replace(
@@ -335,7 +335,7 @@ def _on_finer(carried: _Carried, coarse: SkinPiece, fine: SkinPiece) -> _Carried
 
 
 def _sound(skin: SkinPiece) -> SkinPiece:
-    """The skin [mm] facing outward, without what lies behind its lips; AssetError if unusable."""
+    """The skin [mm] facing outward, without a bag behind its lips; AssetError if unusable."""
     _check_size(skin)
     skin = _facing_outward(skin)
     check_openings(skin)
@@ -369,9 +369,9 @@ def _painted(
 
 
 def _check_size(skin: SkinPiece) -> None:
-    """AssetError for a vertex [mm] that is nowhere near the face."""
+    """Raise AssetError for a vertex [mm] far away from the face."""
     off = np.linalg.norm(skin.vertices, axis=1)
-    most_distance = 10_000.0  # [mm] from the middle of the face: farther off, a vertex is a mistake
+    most_distance = 10_000.0  # [mm] from the middle of the face: more is a mistake
     if off.max() > most_distance:
         where = int(off.argmax())
         raise AssetError(
@@ -382,7 +382,7 @@ def _check_size(skin: SkinPiece) -> None:
 
 
 def _facing_outward(skin: SkinPiece) -> SkinPiece:
-    """The same skin with its triangles counter-clockwise seen from outside."""
+    """The same skin, with triangles counter-clockwise as seen from outside."""
     normals = vertex_normals(skin.vertices, skin.faces)
     if normals[skin.landmarks[ORIENTING], 2].mean() > 0.0:
         return skin

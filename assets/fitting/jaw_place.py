@@ -1,6 +1,6 @@
-"""The jaw of a mesh: its axis is found in front of the ears, its angle by how far people open.
+"""The jaw of a mesh: its axis lies in front of the ears, and its angle is that of people.
 
-An ear stands off the side of a head, so its front is where the outline of level sections leaps out.
+An ear stands off the side of a head, so the outline of level sections jumps outward at its front.
 The condyles lie a finger's breadth in front of the ear canal, well below the skin.
 """
 
@@ -13,14 +13,14 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64, Integers32
 
-USUAL_WIDTH = 136.0  # [mm] between the landmarks before the ears, to which lengths here belong
+USUAL_WIDTH = 136.0  # [mm] between the landmarks at the ears; lengths here are for this width
 
 
 def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> Floats64 | None:
-    """Centres of the right and the left condyle [mm], shape (2, 3); None: no ear is to be seen.
+    """Centres of the right and the left condyle [mm], shape (2, 3); None without a visible ear.
 
     vertices: a head in the place of the built-in one [mm], (V, 3). faces: (F, 3).
-    landmarks: their places [mm], (68, 3).
+    landmarks: places of the landmarks [mm], (68, 3).
     """
     width = landmarks[16, 0] - landmarks[0, 0]
     scale = width / USUAL_WIDTH
@@ -33,8 +33,8 @@ def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> F
     if not ears:
         return None
     middle, front = np.mean(ears, axis=0)
-    above_middle = 5.0  # [mm] of an ear's middle lies the canal's upper edge
-    before = 14.0  # [mm]: from the root of the helix over the tragus to the condyle
+    above_middle = 5.0  # [mm] from an ear's middle up to the canal's upper edge
+    before = 14.0  # [mm] from the root of the helix over the tragus to the condyle
     # An ear's size and height vary more than the joint's place in the face.
     up = np.clip(middle + above_middle, -30.0, -8.0)
     forward = np.clip(front + before, -75.0, -40.0)
@@ -45,12 +45,12 @@ def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> F
 def opening_as_people(
     rig: Mapping[str, Any], axis: Floats64, landmarks: Floats64
 ) -> dict[str, Any]:
-    """A rig whose jaw parts the teeth as far as people do; it turns and glides more or less.
+    """A rig whose jaw parts the teeth as far as people's jaws do, by more or less turn and glide.
 
-    axis: of the jaw (2, 3) [mm]. landmarks: (68, 3) [mm]; the lower lip stands for the teeth. The
-    opening is three quarters of the widest, 50 mm between the edges of men's incisors, and grows
-    with the distance from the axis to the teeth. Teeth far below their axis move back as much as
-    down, so the whole way counts.
+    axis: that of the jaw (2, 3) [mm]. landmarks: (68, 3) [mm]; the lower lip represents the teeth.
+    The opening is three quarters of the widest, 50 mm between the edges of men's incisors, and
+    grows with the distance from the axis to the teeth. Teeth far below their axis move back as much
+    as down, so the whole way counts.
     """
     jaw = dict(rig["jaw"])
     down, forward = (landmarks[66] - axis.mean(axis=0))[1:] * (-1.0, 1.0)
@@ -69,16 +69,16 @@ def opening_as_people(
 
 
 def _spread(places: Floats64, faces: Integers32) -> Floats64:
-    """Points all over triangles, (n, 3), so that no section misses them."""
+    """Points all over triangles, (n, 3), so dense that no section misses them."""
     shares = [(i, j, 6 - i - j) for i in range(7) for j in range(7 - i)]
     corners = places[faces]
     return np.concatenate([np.einsum("fcx,c->fx", corners, np.array(s) / 6.0) for s in shares])
 
 
 def _ear(points: Floats64) -> tuple[float, float] | None:
-    """Height of the middle of the left ear and how far its front lies forward, from the eyes [mm].
+    """Height of the left ear's middle, and place of its front, up and forward from the eyes [mm].
 
-    None where fewer than five sections show an ear.
+    None if fewer than five sections show an ear.
     """
     heights = np.arange(-64.0, 16.0, 4.0)
     depths = np.arange(-24.0, -130.0, -2.0)
@@ -89,13 +89,13 @@ def _ear(points: Floats64) -> tuple[float, float] | None:
     has_ear = ~np.isnan(fronts)
     if has_ear.sum() < 5:
         return None
-    # Long ears reach up or down; the root of the ear is where most sections have their front.
+    # Long ears reach up or down; most sections have their front at the root of the ear.
     front = float(np.median(fronts[has_ear]))
     return float(heights[has_ear].mean()), front
 
 
 def _outline(section: Floats64, depths: Floats64) -> Floats64:
-    """How far a section reaches out at each depth [mm]; 0 behind its end."""
+    """Reach of a section to the side at each depth [mm]; 0 behind its end."""
     reach = np.full(len(depths), -np.inf)
     row = np.round((depths[0] - section[:, 2]) / 2.0).astype(np.int64)
     inside = (row >= 0) & (row < len(depths))
@@ -103,12 +103,12 @@ def _outline(section: Floats64, depths: Floats64) -> Floats64:
     known = reach > 0.0
     if known.sum() < 10:
         return np.zeros(len(depths))
-    # Behind the mesh's end there is nothing that could leap out.
+    # Behind the mesh's end no outline can jump out.
     return np.asarray(np.interp(-depths, -depths[known], reach[known], right=0.0))
 
 
 def _front(reach: Floats64, depths: Floats64) -> float:
-    """Where the outline leaps out, the front of an ear, as a depth [mm]; NaN: nowhere."""
+    """Depth at which the outline jumps out, the front of an ear [mm]; NaN: there is none."""
     for row in range(4, len(depths) - 12):
         leap = reach[row] - reach[row - 4]
         stands_out = reach[row : row + 12].max() - reach[row - 4]

@@ -1,19 +1,18 @@
-"""The 68 landmarks of a head: their file, and whether they are in their order.
+"""The 68 landmarks of a head: their file, and a test of their order.
 
 The file is JSON, vertex numbers or coordinates.
 
     {"landmarks": [1225, 1888, ...]}              vertex numbers, counted from 0
     {"landmarks": [[-73.6, 36.8, 36.6], ...]}     points on the mesh, in its own unit
 
-The key may be called anything, other keys are left alone, and the bare list will do. While a head
-is being marked, landmarks that are not placed yet are null, and "guessed" has the numbers of those
-that nobody has looked at.
-Are they in their order? A group that is not would tear the face.
+The key may have any name, other keys are ignored, and a list without a key suffices. While a head
+is being marked, missing landmarks are null, and "guessed" has the numbers of landmarks that nobody
+has moved. A group in a wrong order would tear the face, so the order is tested.
 
-A group in its order lies more like that group of the built-in head than in the order that suits it
-best. For points p, template points t and that order q, sum p_i (t_i - t_q(i)) is about 0 then. A
-shift of the whole group leaves it alone, and over its value for p = t it is near -1 for a face in
-that other order.
+A group in the right order resembles the built-in group at least as much as in the best fitting
+order q. For points p and template points t, sum p_i (t_i - t_q(i)) is then about 0. A shift of the
+whole group does not change this sum. Divided by its value for p = t, it is near -1 for a face whose
+group has the order q.
 
 Source: Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" (the order of the points).
 """
@@ -39,7 +38,7 @@ from .mesh_validation import SkinPiece, path_lengths, pieces_of, with_seams_join
 from .warp import nearest_on
 
 COUNT = 68
-KEY = "landmarks"  # the list to take where there are several
+KEY = "landmarks"  # key of the list, if there are several
 GUESSED = "guessed"
 Point = Annotated[tuple[float, float, float], Within(-FARTHEST, FARTHEST)]
 INNER_LIPS = ((61, 62, 63), (65, 66, 67))  # upper, lower
@@ -49,10 +48,10 @@ OUTER_LIPS = ((50, 51, 52), (56, 57, 58))
 def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]:
     """The 68 landmarks of a mesh: vertex numbers (68,), int32, and points (68, 3) [its unit].
 
-    Where the file holds points, the numbers are the nearest vertices; else there are no points.
+    If the file holds points, the numbers are the nearest vertices; else there are no points.
 
-    Raises AssetError for a file that is missing, too long or no JSON, another count, numbers out of
-    range, and a point that is not on the mesh.
+    Raises AssetError for a file that is missing, too long or not JSON, another count, numbers out
+    of range, and a point off the mesh.
     """
     try:
         found = _all_in(_document(path))
@@ -63,7 +62,7 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]
             )
         if _are_numbers(found):
             numbers = _numbers(found, len(mesh.vertices))
-            # Of vertices that lie in one place triangles name always the same one.
+            # Triangles always name the same one of the vertices in one place.
             return numbers if mesh.same is None else mesh.same[numbers].astype(np.int32), None
         points = _points(found)
         return _nearest(points, mesh), points
@@ -72,7 +71,7 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]
 
 
 def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, Floats64], frozenset[int]]:
-    """Points (3,) [unit of the mesh] of those landmarks that are marked, and which were guessed.
+    """Points (3,) [unit of the mesh] of the marked landmarks, and numbers of the guessed ones.
 
     Raises AssetError as `read_landmarks` does, but not for missing landmarks.
     """
@@ -95,17 +94,17 @@ def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, Floats64], frozenset[i
 
 
 def landmarks_text(places: Mapping[int, Sequence[float]], guessed: Iterable[int] = ()) -> str:
-    """A landmark file of points by their number; null for those that are missing."""
+    """The text of a landmark file with these points by their numbers; missing ones are null."""
     rows = ",\n    ".join(json.dumps(places.get(number)) for number in range(COUNT))
     return f'{{\n  "{KEY}": [\n    {rows}\n  ],\n  "{GUESSED}": {sorted(guessed)}\n}}\n'
 
 
 class UnfinishedError(AssetError):
-    """Landmarks that are not marked yet; in the window a user marks them."""
+    """Landmarks are not marked yet; a user can mark them in the window."""
 
 
 class MisfitError(UnfinishedError):
-    """Landmarks that are known by the topology, but do not fit the head; marked ones may."""
+    """The landmarks of a known topology do not fit the head; marked ones may fit."""
 
 
 def _document(path: Path) -> Any:
@@ -155,7 +154,7 @@ def _points(found: list[Any]) -> Floats64:
 
 
 def _read_each(kind: Any, found: list[Any]) -> list[Any]:
-    """Entries of one kind; ValueError that names the landmark of a wrong one, counted from 0."""
+    """Entries of one kind; ValueError names a wrong landmark, counted from 0."""
     named_entries = {f"landmark {place}": entry for place, entry in enumerate(found)}
     return list(read(dict[str, kind], named_entries, "").values())
 
@@ -163,7 +162,7 @@ def _read_each(kind: Any, found: list[Any]) -> list[Any]:
 def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
     """The vertices nearest to points; each point must be near the mesh."""
     triangles, distance = _triangles_at(points, mesh, mesh.faces)
-    most_share = 0.05  # of the way between the outer eye corners: farther off the mesh is a mistake
+    most_share = 0.05  # of the distance of the outer eye corners: more is a mistake
     outer_eye_corners = [36, 45]
     allowed = most_share * float(np.linalg.norm(np.diff(points[outer_eye_corners], axis=0)))
     if distance.max() > allowed:
@@ -172,7 +171,7 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
             f"landmark {place} lies {distance[place]:.3g} units off the mesh; allowed are "
             f"{allowed:.3g} (a twentieth of the eyes' distance): are unit and axes the mesh's?"
         )
-    # Beside an eye a lash may have been marked, or the ball: the skin is what most points lie on.
+    # At an eye a lash may have been marked, or the ball: most points lie on the skin.
     piece = pieces_of(mesh.faces, len(mesh.vertices))[mesh.faces[:, 0]]
     skin = mesh.faces[piece == np.bincount(piece[triangles]).argmax()]
     if _triangles_at(points, mesh, skin)[1].max() > allowed:
@@ -185,7 +184,7 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
 
 
 def _triangles_at(points: Floats64, mesh: Mesh, faces: Integers32) -> tuple[Any, Floats64]:
-    """The triangles nearest to points, and how far off they are, shapes (n,)."""
+    """The triangles nearest to points, and their distances, shapes (n,)."""
     found = nearest_on(points, np.zeros_like(points), mesh.vertices, faces)
     return found.triangles, np.linalg.norm(found.interpolate(mesh.vertices) - points, axis=1)
 
@@ -193,8 +192,9 @@ def _triangles_at(points: Floats64, mesh: Mesh, faces: Integers32) -> tuple[Any,
 def nearest_vertices(points: Floats64, vertices: Floats64, faces: Integers32) -> Integers32:
     """The vertices nearest to the points of landmarks, shape (68,).
 
-    Where lips touch, the nearest vertex may be on the other lip. So a point inside of the lips goes
-    to the nearest vertex that is nearer, along the skin, to the outside of its own lip.
+    Where lips touch, the nearest vertex may be on the other lip. So a point of the inner lips goes
+    to the nearest vertex on its own lip: the way along the skin to the outside of its own lip is
+    shorter.
     """
     used = np.unique(faces)
     numbers: Integers32 = used[scipy.spatial.cKDTree(vertices[used]).query(points)[1]].astype(
@@ -223,7 +223,7 @@ class Group:
 
     @property
     def complaint(self) -> str:
-        """The message about a group that is not in its order."""
+        """The message about a group in a wrong order."""
         return (
             f"landmarks {self.first} to {self.first + self.count - 1}, the {self.name}, are not in "
             f"their order; right is: {self.right_order} (the subject's own right and left)"
@@ -259,9 +259,9 @@ def _is_disordered(group: Group, points: Floats64, template: Floats64) -> bool:
     best = scipy.optimize.linear_sum_assignment(given @ known.T, maximize=True)[1]
     moved = known - known[best]
     size = 0.5 * float((moved * moved).sum())
-    least_difference = 3.0  # [mm] between mean places in both orders; below it they look alike
+    least_difference = 3.0  # [mm] between mean places in both orders: less looks alike
     is_clear = size > 0.5 * group.count * least_difference**2
-    disordered_correlation = -0.3  # well below 0: points that are in order must not be refused
+    disordered_correlation = -0.3  # well below 0: points in order must pass
     return is_clear and float((given * moved).sum()) < disordered_correlation * size
 
 

@@ -1,4 +1,4 @@
-"""The person of the program's own space that is most similar to a face with few known points.
+"""The person of the program's own space most similar to a face with few known points.
 
 The person's shape and the place of the mesh are fitted together, to three kinds of data:
 the known points, with a large weight; distances of the skin around the landmarks from the planes of
@@ -23,15 +23,16 @@ from ..data_files import read_arrays
 from ..model import Head
 from .warp import Similarity, nearest_on
 
-FARTHEST_MATCH = 18.0  # [mm]: a point of a face finds no place on a mesh that is farther off
+FARTHEST_MATCH = 18.0  # [mm]: a point of a face finds no place farther off on a mesh
 
 
 @dataclass
 class LikelyFace:
-    """A person that is fitted to a mesh.
+    """A person who is fitted to a mesh.
 
-    head: whose topology it has. mesh: vertices of the mesh in the person's space [mm], (V, 3).
-    faces: of the mesh, its skin alone. numbers: known landmarks. given: where they lie [mm].
+    head: the one with the person's topology. mesh: vertices of the mesh in the person's space [mm],
+        (V, 3).
+    faces: those of the mesh's skin. numbers: known landmarks. given: their places [mm].
     skin: vertices of the person that are laid on the mesh.
     """
 
@@ -46,7 +47,7 @@ class LikelyFace:
         modes = read_arrays(self.head.beside("_modes.npz"))["modes"]
         self._modes = modes.astype(np.float64)
         self._weights = np.zeros(len(self._modes))
-        self.moved = Similarity(1.0, np.eye(3), np.zeros(3))  # of the mesh since the beginning
+        self.moved = Similarity(1.0, np.eye(3), np.zeros(3))  # its motion since the beginning
 
     @property
     def vertices(self) -> Floats64:
@@ -54,9 +55,9 @@ class LikelyFace:
         return self.head.vertices + np.tensordot(self._weights, self._modes, 1)
 
     def fit(self) -> None:
-        """Fit it, by the known points alone first."""
+        """Fit it, first by the known points alone."""
         few_steps = 3
-        steps = 8  # after which a median of guesses moves by less than 0.1 mm
+        steps = 8  # afterwards a median guess moves by less than 0.1 mm
         for step in range(steps):
             self._step(has_surface=step >= few_steps)
 
@@ -65,7 +66,7 @@ class LikelyFace:
         vertices = self.vertices
         count = len(self._modes)
         known = self.head.landmarks[self.numbers]
-        pointing = 0.7  # [mm] that known points may be off
+        pointing = 0.7  # [mm] of error in known points
         ways = self._modes[:, known].transpose(1, 2, 0).reshape(-1, count)
         rows = [np.hstack([ways, -_motions(self.given)]) / pointing]
         right = [(self.given - vertices[known]).ravel() / pointing]
@@ -102,10 +103,10 @@ class LikelyFace:
             ]
         )
         off = np.einsum("ni,ni->n", feet - points[is_near], normals)
-        doubtful = 6.0  # [mm] off, at which a place counts less
+        doubtful = 6.0  # [mm] of distance at which a place counts less
         weight = 1.0 / np.sqrt(1.0 + (distance[is_near] / doubtful) ** 2)
-        rough = 2.5  # [mm] that a face is off the space
-        independent = 60.0  # places: neighbours say the same
+        rough = 2.5  # [mm] between a face and the space of persons
+        independent = 60.0  # places that count as independent; neighbours are alike
         weight /= rough * np.sqrt(max(len(feet) / independent, 1.0))
         return weight[:, None] * rows, weight * off
 

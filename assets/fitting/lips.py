@@ -1,8 +1,8 @@
-"""Lips that are one in a mesh, and must be two for muscles to part them.
+"""Joined lips of a mesh, which must be two for muscles to part them.
 
-A file may double vertices along its lips, which the reader has made one: they become two again. Or
-the lips are sealed: skin runs over the mouth. It is cut along the line on which the landmarks of
-the inner lips, 60 to 67, lie: vertices on it are doubled, but for its two ends.
+A file may double vertices along its lips; the reader has merged them, and they become two again. Or
+the lips are sealed: skin runs over the mouth. This skin is cut along the line of the inner lips'
+landmarks, 60 to 67: vertices on it are doubled, except at its two ends.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ def lips_line(landmarks: Floats64) -> Floats64:
 
 
 def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
-    """The mesh with those vertices apart that its file doubles where the lips touch.
+    """The mesh with the file's doubled vertices apart where the lips touch.
 
-    A file doubles vertices along seams of its texture, and the reader makes them one; between lips
-    they are not. landmarks: where they lie [unit of the mesh], shape (68, 3). None if no vertex
-    is doubled there.
+    A file doubles vertices along seams of its texture, and the reader merges them; between lips
+    they must stay apart. landmarks: their places [unit of the mesh], shape (68, 3). Returns None if
+    no vertex is doubled there.
     """
     if mesh.corners is None or mesh.same is None:
         return None
     line = lips_line(landmarks)
-    # Share of the way between the outer eye corners: lips that touch lie nearer to their line.
+    # Share of the distance of the outer eye corners: touching lips lie nearer to their line.
     most_gap = 0.01
     near = most_gap * float(np.linalg.norm(np.diff(landmarks[[36, 45]], axis=0)))
     off = _distances(mesh.vertices, line)
@@ -56,10 +56,10 @@ def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
 class LipCut:
     """A cut between the lips of a mesh.
 
-    sources: the vertex of the file that each new one doubles; the new ones follow behind the last,
-    shape (n,). below: the triangles at the cut on the lower lip, which take the new ones, as the
-    file numbers their corners, the least number first, shape (k, 3).
-    landmarks: vertices of the mesh that is cut, shape (68,). points: where they lie, (68, 3).
+    sources: the file's vertex that each new vertex doubles, shape (n,); new ones follow after the
+    last. below: the triangles at the cut on the lower lip, which take the new vertices, by the
+    file's numbers, the least first, shape (k, 3).
+    landmarks: vertices of the cut mesh, shape (68,). points: their places, (68, 3).
     """
 
     sources: Integers
@@ -82,7 +82,7 @@ class LipCut:
         corners = corners.copy()
         corners[rows] = place[corners[rows]]
         same = np.arange(count) if mesh.same is None else np.asarray(mesh.same)
-        # Of the new ones, those that double the same place are one again.
+        # New vertices that double the same place are merged again.
         _, first, number = np.unique(same[self.sources], return_index=True, return_inverse=True)
         same = np.concatenate([same, count + first[number]])
         faces = mesh.faces.copy()
@@ -99,7 +99,7 @@ class LipCut:
         )
 
     def is_below(self, triangles: Integers) -> npt.NDArray[np.bool_]:
-        """Whether each of some triangles (F, 3), with the file's numbers, takes new vertices."""
+        """Flags of triangles (F, 3), with the file's numbers, that take new vertices."""
         known = set(map(tuple, self.below.tolist()))
         touched = np.flatnonzero(np.isin(triangles, self.sources).any(axis=1))
         found = np.zeros(len(triangles), np.bool_)
@@ -108,10 +108,9 @@ class LipCut:
 
 
 def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | None:
-    """The cut between lips that are sealed; None if no line of edges parts two lips, or they
-    are apart.
+    """The cut between sealed lips; None if lips are apart, or no line of edges parts them.
 
-    numbers: vertices at the landmarks, shape (68,). landmarks: where they lie [unit of the mesh],
+    numbers: vertices at the landmarks, shape (68,). landmarks: their places [unit of the mesh],
     shape (68, 3).
     """
     line = lips_line(landmarks)
@@ -121,7 +120,7 @@ def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | No
     if np.linalg.norm(gaps, axis=1).max() > most_gap * width:
         return None
     path = _path_along(mesh, line)
-    if path is None or len(path) < 5:  # a mouth of fewer edges has no form
+    if path is None or len(path) < 5:  # a mouth with fewer edges has no form
         return None
     inner = path[1:-1]
     parts = _sides_of_path(mesh.faces, path)
@@ -152,14 +151,14 @@ def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | No
 
 
 def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
-    """Vertices that edges join to a path along a line (n, 3), from end to end; None for none."""
+    """A path of edges along a line (n, 3), as vertices from end to end; None if there is none."""
     used = np.unique(mesh.faces)
     ends = used[scipy.spatial.cKDTree(mesh.vertices[used]).query(line[[0, -1]])[1]]
     edges = np.unique(np.sort(sides_of(mesh.faces), axis=1), axis=0)
     points = mesh.vertices[edges]
     lengths = np.linalg.norm(points[:, 0] - points[:, 1], axis=1)
     off = _distances(points.mean(axis=1), line)
-    # Share of the line's length: an edge so far off counts as twice as long.
+    # Share of the line's length: an edge at this distance counts as twice as long.
     near = 0.01 * float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
     weights = np.maximum(lengths, 1e-12) * (1.0 + (off / near) ** 2)
     count = len(mesh.vertices)
@@ -174,7 +173,7 @@ def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
 
 
 def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
-    """The triangles at the inner vertices of a path, in parts that the path divides."""
+    """The triangles at the inner vertices of a path, in the parts that the path separates."""
     strip = np.flatnonzero(np.isin(faces, path[1:-1]).any(axis=1))
     sides = np.sort(sides_of(faces[strip]), axis=1)
     owner = np.tile(np.arange(len(strip)), 3)
@@ -195,7 +194,7 @@ def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
 
 
 def _distances(points: Floats64, line: Floats64) -> Floats64:
-    """How far points (n, 3) are from a line (m, 3), shape (n,)."""
+    """Distances of points (n, 3) from a line (m, 3), shape (n,)."""
     place_count = 33  # on each part of the line
     steps = np.linspace(0.0, 1.0, place_count)[:, None, None]
     places = (line[:-1] + steps * np.diff(line, axis=0)).reshape(-1, 3)

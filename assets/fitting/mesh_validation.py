@@ -1,4 +1,4 @@
-"""Checks whether a mesh can be a face, each with an error of one line.
+"""Checks of a mesh that should be a face, each with an error of one line.
 
 A mesh must be one manifold surface, oriented outward, with a mouth and two eyes that are open or at
 least slit: where the lips are welded no muscle can part them.
@@ -23,27 +23,27 @@ from ..errors import AssetError
 from ..topology import border_vertices, unique_points
 
 MOST_TRIANGLES = 250_000
-FEWEST_TRIANGLES = 300  # below it eyes and mouth have no shape (chosen)
+FEWEST_TRIANGLES = 300  # eyes and mouth of fewer have no shape (chosen)
 
 
 class CoveredError(AssetError):
-    """Skin lies where the mouth or an eye must be open."""
+    """Skin covers the mouth or an eye, which must be open."""
 
 
 class ShutMouthError(CoveredError):
-    """Lips that are joined by skin."""
+    """Skin joins the lips."""
 
 
 @dataclass(frozen=True)
 class SkinPiece:
-    """The piece of a mesh that the landmarks lie on, and where its vertices were."""
+    """The piece of a mesh with the landmarks, and the numbers of its vertices in the file."""
 
     vertices: Floats64  # (V, 3)
     faces: Integers32  # (F, 3)
-    landmarks: Integers32  # (68,) in this piece
+    landmarks: Integers32  # (68,) numbers in this piece
     file_vertices: Integers32  # (V,) numbers in the whole mesh
-    file_faces: Integers64  # (F,) likewise
-    is_turned: bool = False  # whether triangles were turned inside out
+    file_faces: Integers64  # (F,) the same for triangles
+    is_turned: bool = False  # whether the file's triangles faced inward
 
 
 def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> SkinPiece:
@@ -74,17 +74,17 @@ def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Ski
 def with_seams_joined(
     vertices: Floats64, faces: Integers32, landmarks: Integers32
 ) -> tuple[Integers32, Integers32]:
-    """Triangles and landmarks of one piece, where a file has cut it along seams.
+    """Triangles and landmarks of one piece, whose seams in the file are joined.
 
     Programs double vertices where texture or material change, or give each triangle its own. Where
-    landmarks lie on several pieces, vertices on their edges that lie in one place are made one, if
-    a surface comes of it. Else all is returned as it was.
+    landmarks lie on several pieces, coinciding vertices on their edges are merged, if the result is
+    a surface. Else all is returned unchanged.
     """
     piece = pieces_of(faces, len(vertices))
     if (piece[landmarks] == piece[landmarks[0]]).all():
         return faces, landmarks
     border = border_vertices(faces)
-    first, number = unique_points(vertices[border] + 0.0)  # no zero with a sign
+    first, number = unique_points(vertices[border] + 0.0)  # removes signs of zeros
     same = np.arange(len(vertices), dtype=np.int32)
     same[border] = border[first[number]]
     joined = same[faces]
@@ -108,16 +108,16 @@ def _check_count(faces: Integers32, fewest: float, most: float) -> None:
 
 
 def pieces_of(faces: Integers32, count: int) -> Integers32:
-    """Which piece of a mesh each of its `count` vertices belongs to, shape (count,)."""
+    """The piece of a mesh to which each of its `count` vertices belongs, shape (count,)."""
     links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
     graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(count, count))
     return np.asarray(csgraph.connected_components(graph, directed=False)[1], np.int32)
 
 
 def vertices_of_pieces(piece: Integers32, faces: Integers32) -> list[Integers]:
-    """The vertices of each piece of a mesh, in their order, but for those of no triangle.
+    """The vertices of each piece of a mesh, in their order, without those of no triangle.
 
-    piece: of each vertex, as `pieces_of` has it, shape (V,).
+    piece: that of each vertex, see `pieces_of`, shape (V,).
     """
     used = np.unique(faces)
     order = used[np.argsort(piece[used], kind="stable")]
@@ -126,7 +126,7 @@ def vertices_of_pieces(piece: Integers32, faces: Integers32) -> list[Integers]:
 
 
 def _names_twice(faces: Integers32) -> Flags:
-    """Which triangles have two corners that are one vertex, shape (F,)."""
+    """Flags of triangles that have a vertex twice, shape (F,)."""
     return np.asarray((faces == np.roll(faces, 1, axis=1)).any(axis=1))
 
 
@@ -185,8 +185,8 @@ def check_openings(skin: SkinPiece) -> None:
     across = from_above[under]
     around = (from_above[ends] + from_below[ends]).min()
     # The two lips join around the corners of the mouth. If the way along the skin from one to the
-    # other is less than this share of that way, they are welded; behind them a bag may join them
-    # honestly.
+    # other is shorter than this share of the way around, they are welded. A bag behind the lips may
+    # also join them, but farther away.
     welded_share = 0.6
     if over == under or across < welded_share * around:
         raise ShutMouthError(
@@ -207,7 +207,7 @@ def check_openings(skin: SkinPiece) -> None:
 
 
 def without_bag(skin: SkinPiece) -> SkinPiece:
-    """Cut away a bag behind the lips, where the built-in mouth comes; in the face space [mm]."""
+    """Cut away a bag behind the lips, for the built-in mouth; in the face space [mm]."""
     inner_lips = slice(60, 68)
     edge = skin.landmarks[inner_lips]
     edges = _edges(skin.vertices, skin.faces)
@@ -223,7 +223,7 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
     least_bag_depth = 15.0  # [mm]
     if deepest > skin.vertices[is_edge, 2].mean() - least_bag_depth:
         return skin
-    rim_depth = 4.0  # [mm] that lips keep of a bag behind them
+    rim_depth = 4.0  # [mm] of a bag that stay behind the lips
     is_behind &= scipy.spatial.cKDTree(skin.vertices[is_edge]).query(skin.vertices)[0] > rim_depth
     left = np.flatnonzero(~is_behind[skin.faces].any(axis=1))
     part = skin_of(skin.vertices, skin.faces[left], skin.landmarks)
@@ -236,12 +236,12 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
 
 
 def _is_covered(corners: Floats64, point: Floats64) -> bool:
-    """Whether one who looks at a point from the front sees a triangle there, or a little behind."""
+    """Whether a view from the front meets a triangle at a point, or a little behind it."""
     edges = np.roll(corners, -1, axis=1) - corners
     to = point - corners
     turn = edges[:, :, 0] * to[:, :, 1] - edges[:, :, 1] * to[:, :, 0]
     hit = (turn > -1e-6).all(axis=1) | (turn < 1e-6).all(axis=1)
-    # [mm] behind the lids' edges in which skin covers the eye: sockets are deeper.
+    # [mm] behind the lids' edges: skin up to there covers the eye; sockets are deeper.
     cover_depth = 6.0
     return bool((corners[hit, :, 2].mean(axis=1) > point[2] - cover_depth).any())
 
@@ -249,7 +249,7 @@ def _is_covered(corners: Floats64, point: Floats64) -> bool:
 def path_lengths(
     vertices: Floats64, faces: Integers32, starts: npt.NDArray[np.integer[Any]]
 ) -> Floats64:
-    """Lengths of the shortest paths along edges from each start to all vertices, shape (n, V)."""
+    """Lengths of shortest paths along edges from each start to all vertices, shape (n, V)."""
     edges = _edges(vertices, faces)
     return np.asarray(csgraph.dijkstra(edges, directed=False, indices=starts))
 

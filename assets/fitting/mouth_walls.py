@@ -1,9 +1,9 @@
 """The walls of the mouth: they lie within the skin, and stretch between both jaws.
 
 The upper walls hang from the skull, beside the teeth and behind the throat, down to the floor of
-the mouth, which is the mandible's. `Part.mandible_shares` says how far each of their vertices goes
-with the mandible, so they are no longer than a shut mouth needs: nothing of them reaches the neck,
-whose skin follows the head less and less. On another head they are drawn toward the middle of the
+the mouth, which is the mandible's. `Part.mandible_shares` has the share of the mandible's motion at
+each of their vertices. So they are only as long as a shut mouth needs, and do not reach the neck,
+whose skin follows the head less and less. On another head they are moved toward the middle of the
 mouth where they would leave its skin.
 """
 
@@ -25,18 +25,18 @@ from ..model import Part
 from .warp import Similarity
 
 ShareArray = Floats64 | Floats32
-WALLS = "oral_cavity"  # how the names of these parts begin
+WALLS = "oral_cavity"  # the names of these parts begin with it
 
 
 @dataclass(frozen=True)
 class FittedSkin:
-    """The skin and eyes that the organs of the built-in head are fitted into.
+    """The skin and eyes into which the built-in organs are fitted.
 
     vertices, normals: the skin at rest [mm], shape (V, 3).
     faces: its triangles, counter-clockwise seen from outside, shape (F, 3).
     landmarks: their points [mm], shape (68, 3).
     mandible_weight: carried over from the built-in head, shape (V,).
-    pieces: of the file beside the skin, vertices [mm] of each, shape (n, 3).
+    pieces: the file's pieces besides the skin, vertices [mm] of each, shape (n, 3).
     """
 
     vertices: Floats64
@@ -50,15 +50,15 @@ class FittedSkin:
 def stretched_walls(walls: Floats64, shares: ShareArray, mandible: Floats64) -> Floats64:
     """Points [mm], shape (n, 3), between the skull and a jaw that has moved.
 
-    shares: how far each goes with the mandible, 0 to 1, shape (n,). mandible: how that has moved,
-    seen from the skull, a matrix (4, 4) for column vectors.
+    shares: how far each follows the mandible, 0 to 1, shape (n,). mandible: its motion as seen from
+    the skull, a matrix (4, 4) for column vectors.
     """
     moved = moved_points(mandible, walls)
     return np.asarray(walls + shares[:, None] * (moved - walls))
 
 
 def opened_jaws(axis: Floats64, rig: Mapping[str, Any]) -> list[Floats64]:
-    """How the mandible of a head moves while it opens, half and wholly: matrices (4, 4).
+    """Motions of a head's mandible that is half and wholly open: matrices (4, 4).
 
     axis: centres of the right and the left condyle [mm], shape (2, 3).
     """
@@ -79,11 +79,11 @@ def opened_jaws(axis: Floats64, rig: Mapping[str, Any]) -> list[Floats64]:
 def within_skin(
     part: Part, fitted: FittedSkin, mouth: Similarity, jaws: Sequence[Floats64]
 ) -> Part:
-    """A part drawn toward the middle of the mouth, until it lies WALL_DEPTH behind all skin.
+    """A part, moved toward the middle of the mouth until it lies `wall_depth` behind all skin.
 
-    mouth: takes the built-in mouth to that of the head. jaws: how its mandible moves; the skin goes
-    with it by its weight. An open jaw opens the throat of a mask, too, so the border of the skin
-    counts as closed at rest alone.
+    mouth: takes the built-in mouth to that of the head. jaws: motions of its mandible, which the
+    skin follows by its weight. An open jaw also opens the throat of a mask, so the border of the
+    skin counts as closed only at rest.
     """
     walls = part.vertices.astype(np.float64)
     shares: ShareArray = np.full(len(walls), 1.0 if part.bone == "mandible" else 0.0)
@@ -95,7 +95,7 @@ def within_skin(
         moved = stretched_walls(fitted.vertices, fitted.mandible_weight, mandible)
         skins.append((moved, fitted.faces))
     wall_depth = 6.0  # [mm] behind the skin
-    least_cosine = 0.35  # between the skin's normal and a ray: flatter rays count as this
+    least_cosine = 0.35  # between the skin's normal and a ray: flatter rays count like this
     for mandible, (vertices, faces) in zip([np.eye(4), *jaws], skins, strict=True):
         away = stretched_walls(walls, shares, mandible) - middle
         length = np.maximum(np.linalg.norm(away, axis=1), 1e-9)
@@ -108,10 +108,10 @@ def within_skin(
 
 
 def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integers32]:
-    """Vertices and faces of a skin whose border is closed by fans; lids and lips stay open.
+    """Vertices and faces of a skin with its border closed by fans; lids and lips stay open.
 
-    The tip of a fan is the middle of the border, as in the plane of a cut neck. The border of a
-    mask goes around the face: there the tip lies behind the throat, which has room so.
+    The tip of a fan is the middle of the border, for example in the plane of a cut neck. The border
+    of a mask goes around the face; there the tip lies behind the throat, to leave it room.
     """
     skin = fitted.vertices
     faces = fitted.faces
@@ -122,7 +122,7 @@ def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integers32
     border = sides[~has_other]
     links = scipy.sparse.coo_matrix((np.ones(len(border)), border.T), shape=(count, count))
     group = scipy.sparse.csgraph.connected_components(links, directed=False)[1][border[:, 0]]
-    throat = mouth.points((0.0, -71.0, -10.0))  # behind it by 28 mm
+    throat = mouth.points((0.0, -71.0, -10.0))  # 28 mm behind the throat
     widest = 1.5 * np.linalg.norm(fitted.landmarks[54] - fitted.landmarks[48])  # of the mouth
     tips: list[Floats64] = []
     fans: list[Integers32] = []

@@ -1,4 +1,4 @@
-"""How a head ends whose mesh is cut off at the neck: in pictures its skin fades there."""
+"""The end of a head whose mesh is cut off at the neck: its skin fades there in pictures."""
 
 import numpy as np
 

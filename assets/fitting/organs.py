@@ -1,9 +1,9 @@
 """Eyeballs, teeth, tongue and the mouth's inside of another head.
 
-Eyeballs stay round: each is moved and scaled by its own eye's landmarks, then fitted into its
-lids, so that they lie on it all around. Teeth, gums and tongue stay stiff: they follow the warp by
-the similarity that comes nearest to it. The walls of the mouth (mouth_walls.py) and the corners of
-the eyes bend with it.
+Eyeballs stay round: the landmarks of each eye move and scale its ball, which is then fitted into
+the lids, so that they lie on it all around. Teeth, gums and tongue stay stiff: they follow the
+similarity nearest to the warp. The walls of the mouth (mouth_walls.py) and the corners of the eyes
+bend with the warp.
 """
 
 from __future__ import annotations
@@ -25,17 +25,16 @@ from .mouth_walls import WALLS, FittedSkin, within_skin
 from .warp import Similarity, ThinPlateSpline
 
 EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
-STIFF = ("gums", "teeth", "tongue")  # how the names of stiff parts begin
+STIFF = ("gums", "teeth", "tongue")  # beginnings of the names of stiff parts
 LID_CLEARANCE = 0.3  # [mm] between eyeball and the skin of the lids
 RIM_ROWS = 8  # of vertices, from the lids' edge backward
 
 
 def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
-    """The eyes of a head, round and behind its lids.
+    """The eyes of a head: round balls behind its lids.
 
-    An eyeball of the file has its place and size, or the ball that its socket is the shell of. Else
-    the lids say it. Eyeballs and irises differ less than the openings in front of them: by the root
-    of the ratio.
+    An eyeball of the file gives place and size, or the ball inside a socket does; else the lids do.
+    Eyeballs and irises differ less than the openings in front of them: by the root of the ratio.
     """
     eyes = []
     lid_depth = 5.0  # [mm] from the landmarks on a lid's edge that its inner skin may reach
@@ -48,7 +47,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         scale = float(np.sqrt(scale))
         away = fitted.vertices - centre
         outward = (fitted.normals * away).sum(axis=1) / np.linalg.norm(away, axis=1)
-        # The wall of a socket faces its ball, and may be narrower than that is.
+        # The wall of a socket faces its ball, and may be narrower than the ball.
         is_lid = outward > -0.5
         is_lid &= scipy.spatial.cKDTree(target).query(fitted.vertices)[0] < lid_depth
         skin = np.vstack([target, fitted.vertices[is_lid]])
@@ -68,7 +67,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
 
 
 def _extent(points: Floats64) -> float:
-    """From corner to corner of an eye [mm]."""
+    """Vector from corner to corner of an eye [mm]."""
     return float(np.linalg.norm(points[3] - points[0]))
 
 
@@ -77,7 +76,7 @@ def _behind_lids(
 ) -> tuple[Floats64, float]:
     """Centre and radius [mm] of the sphere that lies behind the lids all around.
 
-    centre, radius: about where and how large it is; middle: of the opening; skin: of the lids.
+    centre, radius: an estimate; middle: that of the opening; skin: that of the lids.
     """
     around = np.arctan2(skin[:, 1] - middle[1], skin[:, 0] - middle[0])
     sector_count = 12  # around an eye; in each the nearest skin should lie on the eyeball
@@ -85,19 +84,19 @@ def _behind_lids(
     parts = [skin[sector == k] for k in np.unique(sector)]
 
     def off(values: Floats64) -> Floats64:
-        """How far the sphere is from the lids in each sector, and from its size."""
+        """Errors of the sphere: distances from the lids in each sector, and from its size."""
         size = radius * np.exp(values[3])
         gaps = np.array([np.linalg.norm(part - values[:3], axis=1).min() for part in parts])
         gaps -= size + LID_CLEARANCE
-        aside_cost = 2.0  # of a millimetre: an eye looks out of the middle of its opening
+        aside_cost = 2.0  # per millimetre: an eye looks out of the middle of its opening
         aside = aside_cost * (values[:2] - centre[:2])
-        size_cost = 20.0  # [mm] of a sphere twice as large
-        sunk_cost = 3.0  # times that of a gap before the eyeball, for skin in it
+        size_cost = 20.0  # [mm] for a sphere twice as large
+        sunk_cost = 3.0  # of skin inside the ball, times that of a gap in front of it
         return np.concatenate(
             [np.where(gaps < 0.0, sunk_cost * gaps, gaps), aside, [size_cost * values[3]]]
         )
 
-    # [mm] off the lids from which a sector counts less: corners are off the ball.
+    # [mm] of distance from which a sector counts less: corners are off the ball.
     touching_distance = 0.5
     found = scipy.optimize.least_squares(
         off, np.append(centre, 0.0), loss="soft_l1", f_scale=touching_distance
@@ -106,7 +105,7 @@ def _behind_lids(
 
 
 def _way_forward(centre: Floats64, radius: float, skin: Floats64) -> float:
-    """How far [mm] a sphere may move forward until it touches one of the points in front of it."""
+    """Way [mm] that a sphere may move forward until it touches a point in front of it."""
     away = skin - centre
     across = np.linalg.norm(away[:, :2], axis=1)
     in_front = (away[:, 2] > 0.0) & (across < radius)
@@ -119,10 +118,10 @@ def _way_forward(centre: Floats64, radius: float, skin: Floats64) -> float:
 def lids_on_eyes(
     known: Head, vertices: Floats64, eyes: Sequence[Eye], shares: Sequence[float]
 ) -> Floats64:
-    """Vertices moved so that lids lie as far from eyes as the built-in head's.
+    """Vertices, moved so that lids have the built-in head's distance from eyes.
 
-    eyes: in the order of `known.eyes`. shares: for each row of vertices around the eye, from its
-    edge out, how much of the way it goes. The corners of the eye, which rest on flesh, stay.
+    eyes: in the order of `known.eyes`. shares: share of the way for each row of vertices around the
+    eye, from its edge outward. The corners of the eye stay, because they rest on flesh.
     """
     placed = vertices.copy()
     for old, new in zip(known.eyes, eyes, strict=True):
@@ -145,10 +144,10 @@ def place_parts(
     *,
     kept_bone: str = "",
 ) -> tuple[Part, ...]:
-    """The rigid parts of the built-in head, in another one.
+    """The rigid parts of the built-in head, fitted into another head.
 
-    warp: takes the built-in head there. jaws: how its mandible moves, see `opened_jaws`. kept_bone:
-    of parts that stay as they are.
+    warp: takes the built-in head there. jaws: motions of its mandible, see `opened_jaws`.
+    kept_bone: bone of parts that do not change.
     """
     mouth = _mouth_of(known, fitted, warp)
     balls = {f"eye_{old.name}": (old, new) for old, new in zip(known.eyes, eyes, strict=True)}
@@ -169,7 +168,7 @@ def place_parts(
 
 
 def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similarity:
-    """Where the stiff parts of the mouth come to lie: behind the skin, as one."""
+    """The place of the stiff parts of the mouth: behind the skin, as one body."""
     found = [
         part.vertices.astype(np.float64) for part in known.parts if part.name.startswith(STIFF)
     ]
@@ -177,16 +176,16 @@ def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similar
     stiff = np.vstack([*found, known.vertices[known.landmarks[mouth_landmarks]]])
     mouth = Similarity.between(stiff, warp.points(stiff))
     placed = mouth.points(np.vstack(found)) if found else np.zeros((0, 3))
-    least_forward = 0.2  # share of a normal from which skin is in front of teeth
+    least_forward = 0.2  # share of a normal: skin from here on is in front of teeth
     skin = fitted.vertices[fitted.normals[:, 2] > least_forward]
-    # [mm] and number of skin vertices that teeth and gums must keep away from.
+    # Depth [mm], and number of skin vertices from which teeth and gums keep away.
     teeth_clearance = 4.0, 3
     distance, beside = scipy.spatial.cKDTree(skin[:, :2]).query(placed[:, :2], k=teeth_clearance[1])
-    stiff_depth = 2.5  # [mm] of teeth and gums behind the skin: the least that lips and cheeks are
+    stiff_depth = 2.5  # [mm] of teeth and gums behind the skin: lips and cheeks are thicker
     depth = (
         np.where(distance < teeth_clearance[0], skin[beside, 2], np.inf).min(axis=1) - stiff_depth
     )
-    farthest_back = 10.0  # [mm] that the teeth are set back for it
+    farthest_back = 10.0  # [mm] that the teeth move back for this
     back = float(np.clip((placed[:, 2] - depth).max(initial=0.0), 0.0, farthest_back))
     return replace(mouth, shift=mouth.shift - np.array([0.0, 0.0, back]))
 
@@ -217,7 +216,7 @@ def _resized(part: Part, old: Eye, new: Eye) -> Part:
 
 
 def _bent(part: Part, warp: ThinPlateSpline) -> Part:
-    """A part that takes the shape of its new place."""
+    """A part that the warp bends into its new place."""
     vertices = warp.points(part.vertices)
     ahead = warp.points(part.vertices + part.normals) - vertices
     normals = unit_vectors(ahead)
@@ -227,15 +226,15 @@ def _bent(part: Part, warp: ThinPlateSpline) -> Part:
 def with_eyelid_rims(
     parts: Sequence[Part], vertices: Floats64, faces: Integers32, eyes: Sequence[Eye]
 ) -> tuple[Part, ...]:
-    """The parts of a head, with rims of flesh from the edge of the skin around an eye to the ball.
+    """The parts of a head, with rims of flesh from the skin's edge around an eye to the ball.
 
     The built-in lids reach behind the front of the ball, and flesh fills their corners. The lids of
-    other meshes may end before it; without a rim one would see into the empty head.
-    vertices: of the skin [mm], shape (V, 3); faces: its triangles, shape (F, 3).
+    other meshes may end in front of it; without a rim the empty head would show.
+    vertices: those of the skin [mm], shape (V, 3); faces: its triangles, shape (F, 3).
     """
     loops = [(eye, _edge_around(eye, vertices, faces)) for eye in eyes]
-    # Of the rim from the edge of lids to the eyeball.
-    flesh = "eye_corners"  # the part that rims belong to: they have its colour
+    # Sizes of the rim from the edge of lids to the eyeball.
+    flesh = "eye_corners"  # the part that rims belong to, with its colour
     placed = []
     for part in parts:
         if part.name == flesh:
@@ -248,7 +247,7 @@ def with_eyelid_rims(
 
 
 def _without_corners(part: Part, closed: Sequence[Eye]) -> Part:
-    """Flesh without the corners of eyes in closed sockets: their skin fills them itself."""
+    """Flesh without the corners of eyes in closed sockets, which the head's own skin fills."""
     middle = part.vertices.astype(np.float64)[part.faces].mean(axis=1)
     most_radii = 2.0  # of an eye, within which its flesh lies
     stays = np.ones(len(part.faces), np.bool_)
@@ -269,16 +268,16 @@ def _edge_around(eye: Eye, vertices: Floats64, faces: Integers32) -> list[int]:
     most_radii = 1.6  # from the ball's centre: the edge around an eye is nearer
     reach = most_radii * eye.radius
     away = np.linalg.norm(vertices - eye.centre, axis=1)
-    near = faces[(away[faces] < 2.0 * reach).any(axis=1)]  # all would take a second
+    near = faces[(away[faces] < 2.0 * reach).any(axis=1)]  # all of them would take a second
     loops = boundary_loops(near)
     return next((loop for loop in loops if away[loop].max() < reach), [])
 
 
 def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
-    """Vertices (RIM_ROWS n, 3), row by row, and faces that are seen from the front.
+    """Vertices (RIM_ROWS n, 3), row by row, and faces that face the front.
 
-    edge: where the skin ends, shape (n, 3), in the direction of its faces. From each of its points
-    a row runs backward around the ball and comes nearer to it.
+    edge: the end of the skin, shape (n, 3), in the direction of its faces. From each of its points
+    a row runs backward around the ball and approaches it.
     """
     away = edge - eye.centre
     length = np.linalg.norm(away, axis=1)
@@ -289,8 +288,8 @@ def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
     end = np.maximum(0.5 * np.pi + np.arcsin(rim_depth / eye.radius), start)
     share = np.linspace(0.0, 1.0, RIM_ROWS)[:, None]
     angle = (1.0 - share) * start + share * end
-    tucked_depth = 0.2  # [mm] within the lids, where a rim begins
-    sunk_depth = 0.3  # [mm] within the ball, where it ends
+    tucked_depth = 0.2  # [mm] inside the lids, where a rim begins
+    sunk_depth = 0.3  # [mm] inside the ball, where it ends
     reach = (1.0 - share) * (length + tucked_depth) + share * (eye.radius - sunk_depth)
     ahead = np.sin(angle)[..., None] * beside + np.cos(angle)[..., None] * [0.0, 0.0, 1.0]
     points = eye.centre + (reach[..., None] * ahead).reshape(-1, 3)
@@ -302,7 +301,7 @@ def _joined(part: Part, rims: Sequence[tuple[Floats64, Integers32]]) -> Part:
     if not rims:
         return part
     colour = part.colours.mean(axis=0)
-    least_light = 0.6  # share at its end, which lies in the shade
+    least_light = 0.6  # share of light at its end, in the shade
     for points, faces in rims:
         light = np.repeat(np.linspace(1.0, least_light, RIM_ROWS), len(points) // RIM_ROWS)
         part = replace(

@@ -1,7 +1,7 @@
-"""Where another head's skin finds itself on the warped built-in one: each lip on its own.
+"""Correspondence of another head's skin with the warped built-in one, lip by lip.
 
-Full lips overlap, the lower one in front of the edge of the upper one or the other way round. The
-warped lips cross there, and the nearest point may be one of the other lip.
+Full lips overlap: either lip may lie in front of the edge of the other. The warped lips cross
+there, and the nearest point may be on the other lip.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from .warp import nearest_on
 
 
 def nearest_own(known: Head, warped: Floats64, skin: SkinPiece, normals: Floats64) -> SurfacePoints:
-    """Feet of a skin's vertices [mm] on the warped built-in skin, as `nearest_on` has them.
+    """Feet of a skin's vertices [mm] on the warped built-in skin, see `nearest_on`.
 
-    Feet of one lip are not on the other one.
+    Vertices of one lip have no feet on the other.
     """
     found = nearest_on(skin.vertices, normals, warped, known.faces)
     own = _lip_sides(skin.vertices, skin.faces, skin.landmarks)
@@ -42,7 +42,7 @@ def _lip_sides(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> 
     ways = [path_lengths(vertices, faces, landmarks[edge]).min(axis=0) for edge in edges_of_lips]
     upper, lower = ways
     lip_reach = 20.0  # [mm] along the skin, from the edge of a lip
-    between = 4.0  # [mm] by which the way to the other lip is longer
+    between = 4.0  # [mm] by which the way to the other lip must be longer
     sides = np.zeros(len(vertices), np.int32)
     sides[(upper < lip_reach) & (upper + between < lower)] = 1
     sides[(lower < lip_reach) & (lower + between < upper)] = -1
@@ -50,7 +50,7 @@ def _lip_sides(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> 
 
 
 def _replaced(points: SurfacePoints, where: Flags, others: SurfacePoints) -> SurfacePoints:
-    """The same places, but others for some of them."""
+    """The same places, some of them replaced."""
     places = {}
     for name in ("distances", "triangles", "corners", "weights"):
         values = getattr(points, name).copy()

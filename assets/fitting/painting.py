@@ -1,14 +1,14 @@
-"""The built-in skin's picture on another head: where each vertex finds its colour in it.
+"""The built-in skin's picture on another head: the place of each vertex in it.
 
-A vertex takes the texture coordinates of the nearest point on the warped built-in skin. That is
-right on a face and wrong where one head has folds that the other has not: in nostrils, behind ears,
-in the mouth. So feet are trusted the less the farther they are, not at all on an ear or in a
-nostril; vertices between trusted ones spread evenly, as by springs. With its surroundings fixed
-such a patch covers the enclosed area once (Tutte 1963, "How to draw a graph").
+A vertex takes the texture coordinates of the nearest point on the warped built-in skin. This is
+right on a face, but wrong where one head has folds that the other lacks: in nostrils, behind ears,
+in the mouth. So farther feet are trusted less, and those on an ear or in a nostril not at all.
+Vertices between trusted ones are spread evenly, as if by springs. With its surroundings fixed such
+a patch covers the enclosed area once (Tutte 1963, "How to draw a graph").
 
-A mesh that brings a picture has its own texture coordinates; the maps of the built-in head (of its
-wrinkles, of segments such as nose and lips) lie in others. They are drawn anew, texel by texel:
-everything drawn has one layout in the end.
+A mesh with a picture has its own texture coordinates; the maps of the built-in head (its wrinkles,
+and segments such as nose and lips) have others. The maps are drawn again texel by texel, so that
+all pictures have one layout.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def spread_uv(
 ) -> Floats32:
     """Texture coordinates in the built-in picture for another head's vertices, shape (V, 2).
 
-    warped: the built-in skin, where it was brought; nearest: feet on it.
+    warped: the built-in skin in its new place; nearest: feet on it.
     skin: the other head's vertices, unit normals and faces.
     """
     vertices, normals, faces = skin
@@ -51,22 +51,22 @@ def spread_uv(
     away = np.linalg.norm(feet - vertices, axis=1)
     across = cross_products(warped, nearest.corners)
     across = unit_vectors(across)
-    trusted_within = 6.0  # [mm] from a foot: the trust in it falls to half
+    trusted_within = 6.0  # [mm] from a foot: its trust falls to half
     trust = 1.0 / (1.0 + (away / trusted_within) ** 2)
     least_cosine = 0.3  # between the normals of a vertex and of its foot
     trust[(across * normals).sum(axis=1) < least_cosine] = 0.0
     is_folded = read_arrays(known.beside("_plain.npz"))["is_folded"]  # on ears and in nostrils
     trust[nearest.interpolate(is_folded.astype(np.float64)) > 0.3] = 0.0
-    # A neck or shoulders below those of the built-in head all find its rim.
+    # A neck or shoulders below those of the built-in head have their feet on its rim.
     rim = np.concatenate([known.rings["rim_left"], known.rings["rim_right"]])
     on_rim = nearest.interpolate(np.isin(np.arange(len(known.vertices)), rim).astype(np.float64))
     count = len(vertices)
     sides = sides_of(faces).astype(np.int64)
     links = np.unique(np.sort(sides, axis=1), axis=0)
     trust[is_behind_others(feet, vertices, links) & (on_rim < 0.99)] = 0.0
-    # The nearer, the stiffer: else even steps over uneven edges, and slopes in the picture jump.
+    # Shorter edges are stiffer: else uneven edges take even steps, and slopes in the picture jump.
     lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
-    # [mm] of neighbours, so that close ones do not hold each other too firmly.
+    # [mm] between neighbours at least, so that close ones do not hold each other too firmly.
     least_distance = 0.05
     stiffness = 1.0 / np.maximum(lengths, least_distance)
     linked = sparse.coo_array((stiffness, links.T), shape=(count, count))
@@ -74,7 +74,7 @@ def spread_uv(
     degree = linked.sum(axis=0)
     neighbour = degree / np.maximum(np.bincount(links.ravel(), minlength=count), 1)
     hold_range = 4.0, 12.0
-    least_trust = 1e-6  # so that every vertex finds a colour
+    least_trust = 1e-6  # above 0, so that every vertex finds a colour
     hold = (
         neighbour
         * (hold_range[0] + (hold_range[1] - hold_range[0]) * trust)
@@ -93,13 +93,13 @@ def spread_uv(
 
 
 def is_behind_others(feet: Floats64, vertices: Floats64, links: Integers64) -> Flags:
-    """Whether another part of the skin lies over the same place, and nearer to it, shape (V,).
+    """Whether another part of the skin lies over the same place and nearer, shape (V,).
 
-    links: edges, shape (E, 2). The middles of long ones count as vertices do: the vertices of a
-    coarse skin alone are too far apart to separate a nostril from the nose around it.
+    links: edges, shape (E, 2). The middles of long edges count like vertices: vertices of a coarse
+    skin alone are too far apart to separate a nostril from the nose around it.
     """
     lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
-    # [mm] between feet that compete, where their vertices are farther apart.
+    # [mm] between competing feet; their vertices are farther apart.
     competing_distance = 2.0
     long = links[lengths > competing_distance]
     all_feet, places = (np.vstack([each, each[long].mean(axis=1)]) for each in (feet, vertices))
@@ -117,10 +117,10 @@ def is_behind_others(feet: Floats64, vertices: Floats64, links: Integers64) -> F
 
 
 def plain_skin(known: Head) -> tuple[Image, Image]:
-    """The built-in picture with skin over its ears and nostrils, and light without their shade.
+    """The built-in picture, with plain skin for ears and nostrils, and light without their shade.
 
-    Another head has them elsewhere, as form, and light shows them. The pictures ship as data,
-    as `plain_picture` and `own_light` of revision c11b6d62 drew it.
+    Another head has them elsewhere, as form, and light shows them. The pictures ship as data;
+    `plain_picture` and `own_light` of revision c11b6d62 drew them.
     """
     drawn = read_arrays(known.beside("_plain.npz"))
     picture = known.albedo.copy()
@@ -132,7 +132,7 @@ def plain_skin(known: Head) -> tuple[Image, Image]:
 
 @dataclass(frozen=True)
 class Layout:
-    """Where the corners of triangles lie in a picture: texture coordinates and their numbers."""
+    """Corners of triangles in a picture: texture coordinates and their numbers."""
 
     uv: Floats32
     face_uv: Integers32
@@ -144,7 +144,7 @@ class Layout:
 
 
 def texels_within(layout: Layout, size: tuple[int, int]) -> Texels:
-    """The texels of a picture of (height, width) that triangles lie over, and one beside them.
+    """The texels of a picture of (height, width) under triangles, and one texel around them.
 
     Raises AssetError if triangles cover the picture many times over.
     """
@@ -168,7 +168,7 @@ def sampled(picture: Unsigned8, uv: Floats64) -> Unsigned8:
 def drawn_over(picture: Image, layout: Layout, colours: Floats64 | tuple[Image, Layout]) -> Image:
     """A picture with triangles of `layout` drawn over it.
 
-    colours: of each corner, shape (F, 3, 3), or another picture and where they lie in it.
+    colours: that of each corner, shape (F, 3, 3), or another picture and their layout in it.
     """
     texels = texels_within(layout, picture.shape[:2])
     if isinstance(colours, tuple):
@@ -183,10 +183,10 @@ def drawn_over(picture: Image, layout: Layout, colours: Floats64 | tuple[Image, 
 def maps_in(
     known: Head, theirs: Layout, own: Layout, size: tuple[int, int] = (SIZE, SIZE)
 ) -> tuple[Wrinkles, Image, Image]:
-    """The built-in head's wrinkles, segments and light, in a layout of another mesh's own.
+    """The built-in head's wrinkles, segments and light, in the layout of another mesh.
 
-    theirs: where the same triangles lie in the built-in layout. size: of the picture (H, W), which
-    light goes with.
+    theirs: the built-in layout of the same triangles. size: that of the picture (H, W), which is
+    also the light's.
     """
     import PIL.Image  # which to load a head takes no time for
 
@@ -200,7 +200,7 @@ def maps_in(
     change = texels.interpolate(_rates_at_corners(theirs, own)[own.face_uv]).reshape(-1, 2, 2)
     slope = (found[:, :2] - 128.0) * (known.wrinkles.steepest / 127.0)
     slope = np.einsum("nij,nj->ni", change, slope)
-    steepest_percentile = 99.9  # of slopes that a map of wrinkles holds as they are
+    steepest_percentile = 99.9  # of slopes that a map of wrinkles holds unclipped
     steepest = (
         max(float(np.percentile(abs(slope), steepest_percentile)), 1e-6) if len(slope) else 1.0
     )
@@ -212,10 +212,10 @@ def maps_in(
 
 
 def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
-    """How fast the built-in layout changes along another, shape (U, 4) for its coordinates `uv`.
+    """Rates of change of the built-in layout along another, shape (U, 4) for its `uv`.
 
-    Means of the triangles around each, by area: rates of triangles jump at their sides, and would
-    break a furrow into scraps.
+    They are means over the surrounding triangles, by area: rates of single triangles jump at their
+    sides, and would break a furrow into pieces.
     """
     corners = own.corners
     ways = corners[:, 1:] - corners[:, :1]
@@ -229,10 +229,10 @@ def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
 
 
 def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Image, Layout] | None:
-    """The picture of some triangles and where they lie in it; None if they have none.
+    """The picture of some triangles, and their layout in it; None if they have none.
 
     Several pictures become one, side by side; triangles without one take the others' mean colour.
-    turned: whether the corners of these triangles are wanted in the other order.
+    turned: whether to return the corners of these triangles in the other order.
     """
     import PIL.Image  # which to load a head takes no time for
 

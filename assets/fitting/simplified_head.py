@@ -1,4 +1,4 @@
-"""The simplified mesh of a dense head as a head of its own, for files that must be small."""
+"""The simplified mesh of a dense head as a separate head, for small files."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from .warp import nearest_on
 
 
 def simplified_head(head: FittedHead) -> FittedHead:
-    """The head whose own triangles are those that are simulated; it moves as `head` does.
+    """A head whose own triangles are the simulated ones; it moves as `head` does.
 
-    Its picture is that of `head`, drawn anew in the layout of the built-in one. Raises AssetError
-    for a head that has no simplified mesh.
+    Its picture is that of `head`, drawn again in the built-in layout. Raises AssetError for a head
+    that has no simplified mesh.
     """
     coarse = head.simplified
     if coarse is None:

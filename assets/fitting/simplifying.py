@@ -1,4 +1,4 @@
-"""A mesh of fewer triangles to simulate, where a head has more than can be moved in time."""
+"""A mesh of fewer triangles to simulate, for a head with too many to move in time."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from ..topology import border_vertices, decimated
 from .landmark_file import nearest_vertices
 from .mesh_validation import SkinPiece, check_manifold, pieces_of
 
-MOST_SIMULATED = 20_000  # triangles: with more the picture is no better, and waits for physics
-SIMPLIFIED = 15_000  # triangles are left
+MOST_SIMULATED = 20_000  # triangles: more give no better picture, and physics takes long
+SIMPLIFIED = 15_000  # triangles that are left
 
 
 @dataclass(frozen=True)
@@ -50,14 +50,14 @@ class SimulatedHead:
 
 
 def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
-    """The same form [mm] with as many triangles as can be moved in time, most of them of the head.
+    """The same form [mm] with few enough triangles to move in time, most of them on the head.
 
-    landmarks: where they lie [mm], shape (68, 3).
+    landmarks: their places [mm], shape (68, 3).
     """
     distance = scipy.spatial.cKDTree(landmarks).query(skin.vertices)[0]
     head_reach = 100.0  # [mm] around the landmarks; beyond lies the body
     is_head = (distance < head_reach)[skin.faces].any(axis=1)
-    most_attempts = 8  # to simplify a mesh so that it stays a surface
+    most_attempts = 8  # to simplify a mesh that stays a surface
     for attempt in range(most_attempts):
         vertices, faces = unpinched(*_fewer(skin, is_head, attempt))
         with contextlib.suppress(AssetError):
@@ -74,9 +74,9 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
 
 
 def _fewer(skin: SkinPiece, is_head: Flags, attempt: int) -> tuple[Floats64, Integers32]:
-    """Other vertices and fewer triangles; a body takes only those that its head leaves.
+    """Other vertices and fewer triangles; the head has first choice of them, before the body.
 
-    is_head: of the skin's triangles, shape (F,).
+    is_head: flags of the skin's triangles, shape (F,).
     """
     body = skin.faces[~is_head]
     if not len(body):
@@ -92,7 +92,7 @@ def _fewer(skin: SkinPiece, is_head: Flags, attempt: int) -> tuple[Floats64, Int
 def _part_with(
     vertices: Floats64, faces: Integers32, count: int, attempt: int
 ) -> tuple[Floats64, Integers32]:
-    """A part of a mesh with at most `count` triangles; its edges stay where they are."""
+    """A part of a mesh with at most `count` triangles; its edges stay in place."""
     used, numbers = np.unique(faces, return_inverse=True)
     part = numbers.reshape(-1, 3).astype(np.int32)
     if len(part) <= count:
@@ -101,11 +101,11 @@ def _part_with(
 
 
 def unpinched(vertices: Floats64, faces: Integers32) -> tuple[Floats64, Integers32]:
-    """The same mesh, whose sheets take vertices of their own where they touch along an edge.
+    """The same mesh, with separate vertices for sheets that touch along an edge.
 
     `decimated` pinches folds of a dense mesh, so that more than two triangles meet at an edge. A
-    vertex stays one as long as triangles around it hang together by edges of two; the largest piece
-    is kept, since others are scraps that hung by such an edge alone.
+    vertex stays one if edges with two triangles connect all triangles around it. The largest piece
+    is kept; the others were attached only by such an edge.
     """
     sides = sides_of(faces)
     _, edge = different_pairs(np.sort(sides, axis=1))
@@ -133,7 +133,7 @@ def _sewn(
     """Two parts of a mesh as one, joined where their edges meet."""
     edge = border_vertices(faces)
     more_edge = border_vertices(more_faces)
-    joined_share = 2e-4  # of the size of both: `decimated` moves an edge by less
+    joined_share = 2e-4  # of the size of both parts: `decimated` moves an edge by less
     joined_distance = joined_share * float(np.ptp(np.vstack([vertices, more]), axis=0).max())
     distance, nearest = scipy.spatial.cKDTree(vertices[edge]).query(more[more_edge])
     is_joined = distance < joined_distance

@@ -1,8 +1,8 @@
-"""The parts under the skin of a head that is opened: skull, cartilage of the nose, throat.
+"""The parts under the skin of an opened head: skull, cartilage of the nose, throat.
 
-They ship as data (`data/skull.npz`). Programs of revision f4bd608f (`assets/skull.py`,
-`assets/throat.py`) carved them from the skin that the built-in head then had, moved inward by the
-depth of its bone, by measures of an adult skull; they are a proxy. Landmarks and directions of the
+They ship as data (`data/skull.npz`) and are a proxy. Programs of revision f4bd608f
+(`assets/skull.py`, `assets/throat.py`) carved them from the built-in skin of that time, moved
+inward by the depth of its bone, with measures of an adult skull. Landmarks and directions of the
 scalp carry them to another head, and the cranium is pushed in where it would leave the skin.
 """
 
@@ -33,10 +33,10 @@ def build_skull(
     pivots: Mapping[str, Floats64],
     names: Collection[str] = ("cranium", "mandible", "spine", "nose", "throat"),
 ) -> dict[str, Part]:
-    """Parts under the skin at rest, which move with their bones; all unless names says which.
+    """Parts under the skin at rest, which move with their bones; those in `names`, or all.
 
-    head: with vertices, faces and landmarks. pivots: what "mandible" turns about, (3,).
-    Raises AssetError if the file is missing or broken.
+    head: any object with vertices, faces and landmarks. pivots: the point about which "mandible"
+    turns, (3,). Raises AssetError if the file is missing or broken.
     """
     file = Path(__file__).parents[1] / "data" / "skull.npz"
     arrays = read_arrays(file)
@@ -44,7 +44,7 @@ def build_skull(
     kept = load("head").landmarks
     own = head.landmarks
     bare = np.arange(len(head.vertices))
-    # Above and behind these there are no landmarks; the ears lie aside [mm].
+    # There are no landmarks above and behind these; the ears lie aside [mm].
     is_behind = (known[:, 2] < -20.0) & (abs(known[:, 0]) < 65.0)
     is_far = (known[:, 1] > 55.0) | is_behind
     has_built_in_vertices = hasattr(head, "anatomy") and len(head.vertices) == len(known)
@@ -72,9 +72,9 @@ def build_skull(
         "throat": (np.array([0.10, 0.035, 0.035]), np.array([0.36, 0.13, 0.12])),
     }
     brows = head.vertices[head.landmarks[17:27], 1].max()
-    back = pivots["mandible"][2] - 28.0  # [mm] behind the condyles the cranium is free, too
+    back = pivots["mandible"][2] - 28.0  # [mm] behind the condyles: the cranium is free there, too
     for name in names:
-        faces = arrays[f"{name}_faces"].T.astype(np.int32)  # steps from the first corners
+        faces = arrays[f"{name}_faces"].T.astype(np.int32)  # each row is a step from the one before
         faces[:, 0] = np.cumsum(faces[:, 0])
         faces[:, 1:] += faces[:, :1]
         points = warp.points(0.02 * arrays[f"{name}_vertices"].T)  # integers to mm
@@ -91,8 +91,8 @@ def build_skull(
 def _same_directions(ways: Floats64, seen: Floats64) -> tuple[Any, Any]:
     """Find vertices in the same directions from within the cranium.
 
-    ways: (n, 3), seen: (m, 3), places from the condyles [mm]. Returns whether each way has a
-    vertex, (n,), and the number of the nearest one, (n,).
+    ways: (n, 3), seen: (m, 3), places from the condyles [mm]. Returns flags of ways with a vertex,
+    (n,), and numbers of the nearest ones, (n,).
     """
     centre = np.array([0.0, 40.0, 0.0])  # [mm] over the condyles
     apart = scipy.spatial.distance.cdist(ways - centre, seen - centre, "cosine")
@@ -100,9 +100,9 @@ def _same_directions(ways: Floats64, seen: Floats64) -> tuple[Any, Any]:
 
 
 def _under_skin(points: Floats64, free: Floats64, skin: Floats64, normals: Floats64) -> Floats64:
-    """Push points of bone in where they would leave the skin.
+    """Push points of bone inward where they would leave the skin.
 
-    points: (n, 3) [mm]. free: (n,) how far each lies in the part that is pushed [mm]. skin,
+    points: (n, 3) [mm]. free: (n,) depth of each inside the part that is pushed [mm]. skin,
     normals: (m, 3) its vertices and their normals.
     """
     neighbour_count = 6
@@ -119,10 +119,10 @@ def _under_skin(points: Floats64, free: Floats64, skin: Floats64, normals: Float
 
 
 def neck_sections(head: Any) -> list[Part]:
-    """What closes the ends of a neck, seen from above; head: with vertices, faces, landmarks."""
+    """Parts that close the cut of a neck, seen from above; head: with vertices and landmarks."""
     chin = head.vertices[head.landmarks[8], 1]
     parts = []
-    # How far out, and colour.
+    # Radius share, and colour.
     rings = (0.0, FLESH), (0.5, FLESH), (0.93, FLESH), (0.95, FAT), (1.0, FAT)
     for loop in boundary_loops(head.faces):
         edge = head.vertices[loop]

@@ -1,13 +1,13 @@
-"""Heads whose vertices are known by their numbers: their 68 landmarks need no file.
+"""Heads with known vertex numbers: their 68 landmarks need no file.
 
 A topology is recognised by its counts of vertices and triangles, by edges between vertices, and by
-lengths of these. The counts are those of a whole file or of one piece of it, so eyes, teeth and
-helpers may be there or not. topologies.toml has those that are included; everybody adds others in
-JSON files, one topology each:
+lengths of these edges. The counts are those of a whole file or of one piece, so eyes, teeth and
+helpers may be missing. topologies.toml has the included topologies; users add others in JSON files,
+one topology each:
 
     {"name": "FLAME", "counts": [[5023, 9976]], "landmarks": [68 vertex numbers]}
 
-The built-in head and the coarse one, which all persons share, are recognised, too.
+The built-in head (with all persons) and the coarse one are recognised, too.
 """
 
 from __future__ import annotations
@@ -39,12 +39,11 @@ OUTER_EYE_CORNERS = (36, 45)  # landmarks
 
 @dataclass(frozen=True)
 class Topology(Record):
-    """Which vertices a known head has.
+    """A known arrangement of vertices.
 
-    counts: of vertices and triangles, two numbers each, of the whole file or one piece.
+    counts: numbers of vertices and of triangles, in pairs, of the whole file or one piece.
     landmarks: vertex numbers from 0, of the file or within the piece; 68 of them.
-    edges: two vertices, and the length between them as a share of that between the outer corners
-    of the eyes.
+    edges: two vertices, and their distance as a share of that of the outer eye corners.
     """
 
     name: str
@@ -53,7 +52,7 @@ class Topology(Record):
     edges: list[tuple[Number, Number, float]] = field(default_factory=list)
 
     def check(self, where: str) -> None:
-        """Raise AssetError if a file does not name 68 vertices that it has."""
+        """Raise AssetError unless a file names 68 vertices within its counts."""
         fewest = min((vertices for vertices, _ in self.counts), default=0)
         if len(self.landmarks) != COUNT:
             raise AssetError(
@@ -86,9 +85,9 @@ def topologies_folder() -> Path:
 
 
 def recognised(mesh: Mesh) -> KnownHead | None:
-    """The known head that a mesh is, or has as a piece; None for others.
+    """The known head that a mesh is, or contains as a piece; None for other meshes.
 
-    Raises AssetError for a file of the user's topologies that cannot be used.
+    Raises AssetError for an unusable file among the user's topologies.
     """
     known = [*_own_topologies(), *_built_in_topologies()]
     for numbers, triangles in _candidates(mesh):
@@ -100,7 +99,7 @@ def recognised(mesh: Mesh) -> KnownHead | None:
 
 
 def _candidates(mesh: Mesh) -> Iterator[tuple[Integers, int]]:
-    """Vertices in their order, and the number of triangles: of each piece, then of all."""
+    """Vertices in order and the number of triangles: of each piece, then of the whole mesh."""
     piece = pieces_of(mesh.faces, len(mesh.vertices))
     triangles = np.bincount(piece[mesh.faces[:, 0]], minlength=int(piece.max()) + 1)
     for group in sorted(vertices_of_pieces(piece, mesh.faces), key=len, reverse=True):
@@ -110,7 +109,7 @@ def _candidates(mesh: Mesh) -> Iterator[tuple[Integers, int]]:
 
 
 def _has_edges(mesh: Mesh, numbers: Integers, topology: Topology) -> bool:
-    """Whether all edges of a topology are sides of triangles, as long as its heads have them."""
+    """Whether all edges of a topology are sides of triangles, with about the expected lengths."""
     if not topology.edges:
         return True
     first, second = numbers[[edge[:2] for edge in topology.edges]].T
@@ -129,7 +128,7 @@ def _has_edges(mesh: Mesh, numbers: Integers, topology: Topology) -> bool:
 
 @cache
 def _built_in_topologies() -> tuple[Topology, ...]:
-    """Those that are included."""
+    """The included topologies."""
     path = Path(__file__).parents[1] / "topologies.toml"
     rows = read_toml(path)["topology"]
     found = [read(Topology, row, path.name, error=AssetError) for row in rows]
@@ -139,7 +138,7 @@ def _built_in_topologies() -> tuple[Topology, ...]:
 
 
 def _own_topologies() -> Iterator[Topology]:
-    """Those of the user; raises AssetError for a file that cannot be used."""
+    """The user's topologies; raises AssetError for an unusable file."""
     for path in sorted(topologies_folder().glob("*.json")):
         try:
             document = parsed_json(read_file(path, kind="topology", most=1))

@@ -1,8 +1,8 @@
-"""From head to head: similarity by landmarks, thin-plate warp, and what lies where on a surface.
+"""From head to head: similarity by landmarks, thin-plate warp, nearest places on a surface.
 
-The warp takes the built-in head's landmarks exactly to those of another head and bends space in
-between as little as possible; depth of bone, weights and texture coordinates are then read off at
-the nearest point of the warped skin.
+The warp takes the built-in head's landmarks exactly to those of another head, and bends the space
+in between as little as possible. The nearest point of the warped skin then gives depth of bone,
+weights and texture coordinates.
 
 Source: Kähler, Haber, Yamauchi, Seidel 2002, "Head shop", section 4 (landmarks carry a head model
 to another head by scattered data interpolation, here the biharmonic kernel r); Umeyama 1991
@@ -36,7 +36,7 @@ class Similarity:
 
     @classmethod
     def between(cls, source: Floats64, target: Floats64) -> Similarity:
-        """The one that brings points (n, 3) nearest to others; its determinant may be negative.
+        """The similarity that brings points (n, 3) nearest to others; it may be mirrored.
 
         That happens where `target` is the mirror image of `source`.
         """
@@ -56,16 +56,16 @@ class Similarity:
 
     @property
     def inverse(self) -> Similarity:
-        """The way back."""
+        """The similarity back."""
         back = self.rotation.T / self.scale
         return Similarity(1.0 / self.scale, self.rotation.T, -back @ self.shift)
 
     def points(self, points: npt.ArrayLike) -> Floats64:
-        """Points moved, shape (..., 3)."""
+        """Move points, shape (..., 3)."""
         return self.vectors(points) + self.shift
 
     def vectors(self, vectors: npt.ArrayLike) -> Floats64:
-        """Displacements turned and scaled, shape (..., 3)."""
+        """Turn and scale displacements, shape (..., 3)."""
         return self.scale * (np.asarray(vectors, dtype=np.float64) @ self.rotation.T)
 
 
@@ -73,10 +73,10 @@ class ThinPlateSpline:
     """The smoothest deformation of space that takes some points to others, or near them."""
 
     def __init__(self, source: Floats64, target: Floats64, give: float | Floats64 = 0.0) -> None:
-        """Both (n, 3), in no plane; of equal points of `source` the first one counts.
+        """Points (n, 3) each, not in one plane; the first of equal points of `source` counts.
 
-        give: how readily points miss their targets where the deformation is less smooth, of all or
-        each (n,) [unit of `source`].
+        give: smoothing; points may miss their targets more where it is larger, one number or (n,)
+        [unit of `source`].
         """
         first = np.sort(np.unique(source.round(6), axis=0, return_index=True)[1])
         give = np.broadcast_to(give, len(source))[first]
@@ -85,16 +85,16 @@ class ThinPlateSpline:
         )
 
     def points(self, points: npt.ArrayLike) -> Floats64:
-        """Where points (n, 3) come to lie."""
+        """Move points (n, 3)."""
         return np.asarray(self._spline(np.asarray(points, dtype=np.float64)), np.float64)
 
 
 def nearest_on(
     points: Floats64, normals: Floats64, vertices: Floats64, faces: Integers32
 ) -> SurfacePoints:
-    """Feet of points (n, 3) on a mesh; a surface that faces away from a point's normal is farther.
+    """Feet of points (n, 3) on a mesh; surfaces that face away from a point count as farther.
 
-    So the lower lip's points find the lower lip though the upper one is nearer.
+    So points of the lower lip find the lower lip even if the upper one is nearer.
     """
-    wrong_side_distance = 12.0  # [mm] that a point seems farther off where the surface faces away
+    wrong_side_distance = 12.0  # [mm] added to the distance of a surface that faces away
     return closest_points(points, vertices, faces, normals, wrong_side_distance)

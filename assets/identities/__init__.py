@@ -3,7 +3,7 @@
     person = make_person(sample_identity(7))        # the shape of a number's person
     person = coloured(person, angle=-20.0, irises="brown")
 
-Any of them goes where the built-in head goes: `sim.create(person)`, `FaceScene(person)`.
+A person can replace the built-in head everywhere: `sim.create(person)`, `FaceScene(person)`.
 """
 
 from ..model import GLASSES, MASK

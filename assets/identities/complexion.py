@@ -3,13 +3,13 @@
 The individual typology angle, ITA = arctan((L* - 50) / b*) [deg], measures a tone. By it skin is
 called very light (above 55), light (above 41), intermediate (above 28), tan (above 10), brown
 (above -30) or dark (Chardon, Cretois, Hourseau 1991, "Skin colour typology and suntanning
-pathways", Int. J. Cosmetic Science 13:191-208). It is that of the bare skin of the face in the
-picture; lips and cheeks follow, for all that changes are amounts of melanin and blood
-(pigments.py), and hair.
+pathways", Int. J. Cosmetic Science 13:191-208). Here it is the tone of the face's bare skin in the
+picture. Lips and cheeks follow, because only amounts of melanin and blood (pigments.py), and hair,
+change.
 
-Where skin is darker than the darkest complexion that is painted, the melanin that comes on top
-absorbs more evenly: published clusters of facial skin have b* of 15 at L* of 27 and of 38, below
-the 19 at 52 ("Proposed shade guide for human facial skin", IADR 2009, abstract 120461).
+For skin darker than the darkest painted complexion, the additional melanin absorbs more evenly:
+published clusters of facial skin have b* of 15 at L* of 27 and of 38, below the 19 at 52 ("Proposed
+shade guide for human facial skin", IADR 2009, abstract 120461).
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ from .population import DARKEST, LIGHTEST
 from .relief import with_reliefs
 
 GREY_HAIR = (0.54, 0.52, 0.49)
-LOCKS_LIGHTER = 1.2  # than painted hair, which no other hair shades
-BEHIND = 30.0  # [mm] of the scalp, in the map of it: from the hairline back
+LOCKS_LIGHTER = 1.2  # than painted hair: no other hair shades them
+BEHIND = 30.0  # [mm] from the hairline back, in the map of the scalp
 IN_FRONT = 10.0
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
 LEVELS = 4096  # of the table from light to bytes
@@ -64,10 +64,10 @@ class _Tints:
     beard: Floats32  # (H, W)
     brow: Floats32  # (H, W)
     scalp: Floats32  # (H, W)
-    lids: Floats32  # their edges, where lashes root (H, W)
-    detail: Floats32  # what of the picture's lightness is relief, in powers of e (H, W)
+    lids: Floats32  # edges of the lids, where lashes root (H, W)
+    detail: Floats32  # relief in the picture's lightness, in powers of e (H, W)
     skin: Floats64  # (5,)
-    melanins: Floats64  # of the tones in `angles`
+    melanins: Floats64  # amounts for the tones in `angles`
     angles: Floats64  # ITA, rising
 
     def melanin_of(self, angle: float) -> float:
@@ -76,7 +76,7 @@ class _Tints:
 
 
 def typology_angle(light: npt.ArrayLike) -> Floats64:
-    """ITA [deg] of linear light 0..1, shape (..., 3), by L* and b* of CIE 1976."""
+    """ITA [deg] of linear light 0..1, shape (..., 3), from L* and b* of CIE 1976."""
     # CIE, of linear sRGB (D65).
     to_yz = np.array([[0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
     relative = np.asarray(light, dtype=np.float64) @ to_yz.T / to_yz.sum(axis=1)
@@ -105,7 +105,7 @@ def recoloured(
     tints = _tints() if shrink == 1 else _shrunk_tints(shrink)
     density, redness, _ = _changes(tints.melanin_of(angle), blood)
     hair = _hair_light(angle if haired_as is None else haired_as, features)
-    grey_share = 0.12  # of how grey hair on the scalp is; lashes have the segment of brows
+    grey_share = 0.12  # share of the scalp's greyness for lashes, which are in the segment of brows
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
     kept = _kept_hair(tints, features, shrink)
     behind = None if haired_as is None else _behind(tints, features)
@@ -145,14 +145,14 @@ def recoloured(
 
 
 def _hair_light(angle: float, features: Features) -> Floats64:
-    """Linear light of somebody's hair that is not grey, shape (3,); angle: ITA [deg]."""
+    """Linear light of a person's hair without grey, shape (3,); angle: ITA [deg]."""
     hair = _changes(_tints().melanin_of(angle), 1.0)[2]
     fair_hair = (0.58, 0.44, 0.29)  # sRGB
     return np.asarray(hair + features.fair * (to_linear(np.array(fair_hair)) - hair))
 
 
 def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
-    """How much of hair's colour is on each texel, with a person's brows and lids."""
+    """Share of hair's colour on each texel, with a person's brows and lids."""
     kept = tints.hair
     if features.brows is not None:
         kept = np.where(tints.brow < 1.99, np.float32(0.0), kept)
@@ -171,12 +171,12 @@ def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
 
 @lru_cache(maxsize=1)
 def _shrunk_stubble(size: int, shrink: int) -> Floats32:
-    """Stubble with this many texels less each way."""
+    """Stubble with `shrink` times fewer texels each way."""
     return shrunk(stubble(size), shrink)
 
 
 def _grown_over(behind: Floats32) -> Floats32:
-    """The share of texels that is covered by hair; behind: how far behind the hairline [mm]."""
+    """Share of texels that hair covers; behind: their distance behind the hairline [mm]."""
     most_cover = np.float32(0.99)  # share that dense hair covers
     dense_depth = np.float32(22.0)  # [mm] behind the hairline, where hair is dense
     t = np.clip(behind / dense_depth, np.float32(0.0), np.float32(1.0))
@@ -192,10 +192,10 @@ def coloured(
     features: Features = PLAIN,
     shrink: int = 1,
 ) -> Person:
-    """A person with skin of a tone (ITA [deg]), eyes of a colour, and the hair of its cut.
+    """A person with skin of a tone (ITA [deg]), eyes of a colour, and the hair of the person's cut.
 
-    The hair stays in other tones (`in_tone`). irises: None leaves them as they are. shrink: as of
-    `recoloured`, for small pictures; what is painted on the skin has this many texels less.
+    The hair does not change in other tones (`in_tone`). irises: None leaves them unchanged. shrink:
+    as in `recoloured`, for small pictures; paintings on the skin have fewer texels, too.
     """
     parts = person.parts
     if irises is not None:
@@ -208,7 +208,7 @@ def coloured(
         person,
         albedo=in_tone(angle),
         ambient_occlusion=shaded(_occlusion(shrink), person),
-        # In small pictures nobody sees slopes of folds, and all persons share one map.
+        # Small pictures do not show slopes of folds, so all persons share one map.
         fine_shape=_own_shape(person) if shrink == 1 else known,
         wrinkles=_own_wrinkles(person, shrink),
         parts=_with_hair(person, parts, angle, features, behind),
@@ -235,9 +235,9 @@ def _own_wrinkles(person: Person, shrink: int) -> Wrinkles:
 
 
 def _beside_light_skin(angle: float) -> Floats64:
-    """How much light skin of a tone [ITA] throws back beside light skin, up to 1, shape (3,)."""
+    """Light from skin of a tone [ITA], relative to light skin, up to 1, shape (3,)."""
     tints = _tints()
-    light_skin = 41.0  # ITA from which on skin is called light
+    light_skin = 41.0  # ITA from which skin is called light
     lost = np.zeros((2, 3))
     for row, tone in enumerate((min(angle, light_skin), light_skin)):
         density, redness, _ = _changes(tints.melanin_of(tone), 1.0)
@@ -246,7 +246,7 @@ def _beside_light_skin(angle: float) -> Floats64:
 
 
 def _haired_segments(features: Features, behind: Floats32) -> Image:
-    """What texels belong to, with brows and the hairline of a person."""
+    """Segments of texels, with the brows and the hairline of a person."""
     found = load("head").segments.copy()
     texels = found.reshape(-1)
     haired = _texels_of(Segment.HAIR)
@@ -261,8 +261,8 @@ def _haired_segments(features: Features, behind: Floats32) -> Image:
         covered = scipy.ndimage.gaussian_filter(hairs[near], blur)
         left = np.arange(found.shape[1]) > found.shape[1] / 2
         sides = np.where(left, np.uint8(Segment.LEFT_BROW), np.uint8(Segment.RIGHT_BROW))
-        # It is called brow from a third of its darkness above and below on, so that free ends of
-        # hairs are left out of a dense one; a thin tail is kept to its end.
+        # A texel is brow from a third of the darkness above and below it on. So a dense brow loses
+        # the free ends of its hairs, and a thin tail is kept to its end.
         least_cover = np.maximum(0.1, covered.max(axis=0) / 3.0)
         is_brow = (covered > least_cover) & (found[near] == Segment.SKIN)
         found[near] = np.where(is_brow, sides, found[near])
@@ -294,14 +294,14 @@ def _with_hair(
 
 
 def built_in_hair(head: Head) -> tuple[Part, ...]:
-    """What stands on the scalp of the built-in head, where the picture shows it cropped."""
+    """Hair on the scalp of the built-in head, where the picture shows it cropped."""
     behind = np.float32(0.01 * BEHIND) * read_arrays(head.beside("_tints.npz"))["scalp"] - IN_FRONT
     scalp = scalp_of(head.vertices, head.faces, head.uv.astype(np.float64), behind)
     return hair_of(OWN_CUT, scalp, to_screen(LOCKS_LIGHTER * to_linear(np.array(OWN.hair))), 1.0)
 
 
 def _behind(tints: _Tints, features: Features) -> Floats32:
-    """How far texels lie behind a person's hairline [mm]; half as far if the top is bald."""
+    """Distance of texels behind a person's hairline [mm]; halved if the top is bald."""
     scalp = tints.scalp
     behind = np.float32(BEHIND) * scalp - np.float32(IN_FRONT)
     line = features.hairline
@@ -315,7 +315,7 @@ def _behind(tints: _Tints, features: Features) -> Floats32:
 
 
 def _changes(melanin: float, blood: float) -> tuple[Floats64, Floats64, Floats64]:
-    """Density of melanin and blood that comes to the picture's, and light of hair; (3,) each."""
+    """Added densities of melanin and blood, and light of hair, (3,) each."""
     amounts = [complexion.melanin for complexion in COMPLEXIONS]
     usual = np.interp(melanin, amounts, [complexion.blood for complexion in COMPLEXIONS])
     hair = [
@@ -369,7 +369,7 @@ def _tints() -> _Tints:
 
 @lru_cache(maxsize=1)
 def _shrunk_tints(shrink: int) -> _Tints:
-    """The maps with this many texels less each way."""
+    """The maps with `shrink` times fewer texels each way."""
     whole = _tints()
     names = [each.name for each in fields(whole)]
     maps: dict[str, Any] = {
@@ -382,7 +382,7 @@ def _shrunk_tints(shrink: int) -> _Tints:
 
 @lru_cache(maxsize=2)
 def _occlusion(shrink: int) -> Image:
-    """How much light from all around gets to the texels of the built-in head, (H, W), uint8."""
+    """Share of light from all around at the texels of the built-in head, (H, W), uint8."""
     light = load("head").ambient_occlusion
     found = np.rint(shrunk(light.astype(np.float32), shrink)).astype(np.uint8)
     found.flags.writeable = False

@@ -1,4 +1,4 @@
-"""A person's eyes: irises of which no two are alike; whites and rims that go with the skin.
+"""A person's eyes: individual irises; whites and rims that fit the skin.
 
 Irises differ in crypts and furrows between their fibres (Sturm, Larsson 2009, "Genetics of human
 iris colour and patterns", Pigment Cell Melanoma Res. 22:544-562), and their dark edge fades with
@@ -25,11 +25,11 @@ from .population import DARKEST, IRIS_SHARES, LIGHTEST, ONLY_BROWN
 
 
 class Iris(NamedTuple):
-    """How a person's irises differ from most of their colour.
+    """Differences of a person's irises from most irises of their colour.
 
-    lightness: in powers of 2. greyness: share of their colour that is lost. ring: how much browner
-    they are around the pupil, 0 to 1. limbus: how much darker their edge is than the painted one,
-    fibres: how far light and dark ones are apart, both in powers of 2. seed: of single fibres.
+    lightness: in powers of 2. greyness: lost share of their colour. ring: how much browner they are
+    around the pupil, 0 to 1. limbus: how much darker their edge is than the painted one, in powers
+    of 2. fibres: contrast of light and dark fibres, in powers of 2. seed: seed of single fibres.
     """
 
     lightness: float = 0.0
@@ -46,7 +46,7 @@ USUAL_IRIS = Iris()
 def drawn_iris(
     years: float, chance: float, random: np.random.Generator, *, angle: float = LIGHTEST
 ) -> Iris:
-    """The irises of a person of an age and a tone [ITA]; chance: of edge and fibres, 0 to 1."""
+    """Random irises for an age and a tone [ITA]; chance: that of edge and fibres, 0 to 1."""
     lightness, greyness, ring = random.uniform(0.0, 1.0, 3)
     seed = int(chance * 2**31)
     darker, rougher = np.random.default_rng(seed).uniform(0.0, 1.0, 2).tolist()
@@ -77,9 +77,9 @@ def with_irises(
 
 
 def beside_skin(parts: Sequence[Part], eyes: Sequence[Eye], darker: Floats64) -> tuple[Part, ...]:
-    """Parts of which whites and rims of the eyes go with the skin.
+    """Parts, with whites and rims of the eyes that fit the skin.
 
-    darker: light of the skin beside that of light skin, shape (3,), up to 1.
+    darker: light of the skin relative to light skin, shape (3,), up to 1.
     """
     # As powers of the skin's light: flesh at the inner corner, wet edges of the lids, the white.
     shares = {"eye_corners": np.full(3, 0.85), "wet_edges": np.full(3, 0.85)}
@@ -104,14 +104,14 @@ def _eyeball(parts: Sequence[Part], eye: Eye) -> Part:
 
 
 def _aside(part: Part, eye: Eye) -> Floats64:
-    """How far each vertex is from the axis, in radii of the iris; behind the middle infinite."""
+    """Distance of each vertex from the axis, in radii of the iris; infinite behind the middle."""
     off = part.vertices - eye.centre
     radius = np.linalg.norm(off[:, :2], axis=1) / eye.iris_radius
     return np.where(off[:, 2] > 0.0, radius, np.inf)
 
 
 def _varied(part: Part, eye: Eye, colours: Floats32, iris: Iris) -> Floats32:
-    """The colours of an eyeball (n, 3), sRGB, with irises as somebody has them."""
+    """The colours of an eyeball (n, 3), sRGB, with a person's irises."""
     light = to_linear(colours)
     aside = _aside(part, eye)
     grey = light @ np.array([0.2126, 0.7152, 0.0722])
@@ -128,15 +128,15 @@ def _varied(part: Part, eye: Eye, colours: Floats32, iris: Iris) -> Floats32:
 
 
 def _fibres(part: Part, eye: Eye, aside: Floats64, seed: int) -> Floats64:
-    """How light fibres of an iris are at each vertex, 1 in the mean square, shape (n,).
+    """Lightness of an iris' fibres at each vertex, with a mean square of 1, shape (n,).
 
-    They are waves around the axis, which break up from the pupil to the edge. Eyes of one person
-    are as rough as each other, with fibres in other places.
+    Fibres are waves around the axis, which break up from the pupil to the edge. Both eyes of a
+    person are equally rough, with fibres in different places.
     """
     random = np.random.default_rng([seed, int(eye.centre[0] > 0.0)])
     off = part.vertices - eye.centre
     around = np.arctan2(off[:, 1], off[:, 0])
-    counts = np.array([3, 5, 8, 11, 14, 17])  # around the axis, which has 60 vertices
+    counts = np.array([3, 5, 8, 11, 14, 17])  # waves around the axis, which has 60 vertices
     begins = random.uniform(0.0, 2.0 * np.pi, len(counts))
     twists = random.normal(0.0, 4.0, len(counts))  # [radians] on one radius of the iris
     in_iris = np.minimum(aside, 1.0)[:, None]
@@ -145,5 +145,5 @@ def _fibres(part: Part, eye: Eye, aside: Floats64, seed: int) -> Floats64:
 
 
 def _times(colours: Floats32, factor: Floats64) -> Floats32:
-    """Colours (sRGB) of which light is multiplied."""
+    """Colours (sRGB) with their light multiplied by a factor."""
     return np.asarray(to_screen(to_linear(colours) * factor), np.float32)

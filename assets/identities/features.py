@@ -17,12 +17,12 @@ from .space import Identity, Sex
 class Features:
     """Effects of sex and age on the picture of a face; the default is the built-in head's.
 
-    brows: of a person, else the built-in head's. lid_line: how dark lashes make the edges of the
-    lids, 0 to 1. stubble: how much of the skin short hairs of a beard cover. beard, lips: density
-    of its shadow, and of blood in them, beside that of the built-in head. pale_lips: share of the
-    skin's further melanin that lips lack. relief: of pores and
-    patches, beside its own. fair, grey: shares of such hair. hairline: where hair begins. iris: how
-    irises differ from most of their colour.
+    brows: those of a person; None: the built-in head's. lid_line: how dark lashes make the edges of
+    the lids, 0 to 1. stubble: share of the skin that short hairs of a beard cover. beard, lips:
+    density of a beard's shadow, and of blood in the lips, relative to the built-in head. pale_lips:
+    share of the skin's additional melanin that lips lack. relief: strength of pores and patches,
+    relative to the built-in head. fair, grey: shares of such hair. hairline: the border of hair.
+    iris: differences of irises from most of their colour.
     """
 
     brows: Brows | None = None
@@ -42,10 +42,10 @@ PLAIN = Features()
 
 
 def features_of(identity: Identity, angle: float, random: np.random.Generator) -> Features:
-    """Brows, beard, lips, hair and relief of a person of that sex and age, chosen by eye.
+    """Random brows, beard, lips, hair and relief for an identity's sex and age, chosen by eye.
 
-    Women's eyes and lips are darker beside their skin (Russell 2009, "A sex difference in facial
-    contrast and its exaggeration by cosmetics", Perception 38:1211-1219), less so with age
+    Women's eyes and lips are darker relative to their skin (Russell 2009, "A sex difference in
+    facial contrast and its exaggeration by cosmetics", Perception 38:1211-1219), less so with age
     (Porcheron, Mauger, Russell 2013, PLoS ONE 8:e57985). Lips of dark skin differ most, from its
     own lightness to far lighter and pinker ones (Vergnaud and others 2024, "Lip color diversity",
     Skin Res. Technol. 30:e13583); on light skin `pale_lips` changes nothing.
@@ -54,7 +54,7 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
     years = identity.age
     beard, fibres, fair, grey, line, hairs = random.uniform(0.0, 1.0, 6)
     fair_skin = 45.0  # ITA above which hair may be fair
-    shaved_density = 0.12  # of hair in the shipped picture
+    shaved_density = 0.12  # density of a beard in the shipped picture
     brows = drawn_brows(is_man, years, random)
     hairline = drawn_hairline(is_man, years, random)
     iris = drawn_iris(years, fibres, random, angle=angle)
@@ -78,9 +78,9 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
 
 
 def _share_of_grey(years: float, angle: float, early: float) -> float:
-    """The share of somebody's hair that is grey; early: how soon it turns, 0 to 1.
+    """Share of grey in a person's hair; early: how soon it turns grey, 0 to 1.
 
-    From 45 to 65 years it is 0.27 in the mean, with dark skin it comes later (Panhard, Lozano,
+    From 45 to 65 years it is 0.27 in the mean, and dark skin has it later (Panhard, Lozano,
     Loussouarn 2012, "Greying of the human hair", Br. J. Dermatology 167:865-873).
     """
     dark_skin = -30.0  # ITA below which hair turns grey later

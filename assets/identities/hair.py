@@ -1,4 +1,4 @@
-"""Hair that stands off the head: short, shells over the scalp (render/shaders/shells.glsl).
+"""Short hair that stands off the head: shells over the scalp (render/shaders/shells.glsl).
 
 One surface gives the renderer the place and density of hair, and the length and direction of each
 strand; it moves with the skin. Strands run away from a whorl: one at the crown combs hair
@@ -26,21 +26,21 @@ from ..topology import grid_faces, quarter
 
 HAIR = "hair"  # the name of the part
 SLEEK = 0.4
-FINE = 0.22  # of the way along long strands, in which they change less than short ones
-MEAN = 0.6  # of the strands' way, where the part's own vertices lie
+FINE = 0.22  # factor along long strands, which change less than short ones
+MEAN = 0.6  # share of the strands' way at which the part's vertices lie
 LOOSE_LENGTH = 22.0
 
 
 @dataclass(frozen=True)
 class Cut:
-    """How hair is cut and combed; all numbers of `CUTS` are chosen by eye.
+    """The cut and the combing of hair; all numbers of `CUTS` are chosen by eye.
 
-    whorl: the way from the middle of the head to where strands begin (x left, y up, z ahead).
-    sides, top: how long strands are [mm], on both sides and behind, and on top of the head.
+    whorl: direction from the middle of the head to the origin of strands (x left, y up, z ahead).
+    sides, top: lengths of strands [mm], on both sides and behind, and on top of the head.
     lift: the sine of the angle at which they stand off the head.
-    behind: how far behind the hairline they are as long as that [mm].
+    behind: distance behind the hairline where they have this length [mm].
     knot: half the width of the knot or tail that they are tied to [mm]; 0: none.
-    tail: how long that hangs down [mm]; 0: it is wound to a knot.
+    tail: length of a hanging tail [mm]; 0: it is wound to a knot.
     """
 
     whorl: tuple[float, float, float]
@@ -54,10 +54,10 @@ class Cut:
 
 @dataclass(frozen=True)
 class Fall:
-    """How hair falls that is long enough to, beside the face; chosen by eye, all in [mm].
+    """The fall of long hair beside the face; chosen by eye, all in [mm].
 
-    parting: from the middle of the face, to the subject's left, to where it parts.
-    below: how far below the ears it ends.
+    parting: from the middle of the face to the parting, positive to the subject's left.
+    below: from the ears down to its end.
     """
 
     parting: float
@@ -83,7 +83,7 @@ CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Hairline:
-    """Where hair begins, beside the built-in head's: how far behind [mm].
+    """The hairline, as distances behind the built-in head's [mm].
 
     front, temples: in the middle, and more at the corners of the forehead.
     crown: how bald the top is, 0 to 1.
@@ -110,11 +110,11 @@ class Hairline:
 
 
 def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> Hairline:
-    """The hairline of a person of a sex and age.
+    """A random hairline for a sex and an age.
 
-    It is straight, round, or like an M as often as among 456 persons (women 43, 39, 18 %, men 46,
-    11, 43 %); men's lies 4.5 mm higher (Kashiyama and others 2021, "Hairline morphology", Plast.
-    Reconstr. Surg. Glob. Open 9:e3765). Its recession is chosen.
+    It is straight, round, or M-shaped with the frequencies among 456 persons (women 43, 39, 18 %,
+    men 46, 11, 43 %); men's lies 4.5 mm higher (Kashiyama and others 2021, "Hairline morphology",
+    Plast. Reconstr. Surg. Glob. Open 9:e3765). Its recession is chosen.
     """
     kind, _, share, bald = random.uniform(0.0, 1.0, 4)
     front = float(np.clip(random.normal(0.0, 3.0), -6.0, 6.0))
@@ -132,8 +132,8 @@ def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> H
 class Scalp(NamedTuple):
     """Where hair grows: vertices (n, 3) [mm], unit normals, faces, and mm behind the hairline.
 
-    covers: the least heights of hair over them [mm], shape (n,), at which coarse triangles of a
-    hollow skin do not hide it.
+    covers: the least heights of hair above the vertices [mm], shape (n,), so that coarse triangles
+    of a hollow skin do not hide it.
     """
 
     points: Points
@@ -144,14 +144,14 @@ class Scalp(NamedTuple):
 
 
 def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Part, ...]:
-    """The parts drawn as hair; colour: sRGB, shape (3,); length: beside that of the cut."""
+    """The parts drawn as hair; colour: sRGB, shape (3,); length: factor on the cut's."""
     points, normals, faces, behind, covers = scalp
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     whorl = unit_vectors(np.array([cut.whorl]))[0]
     beside = unit_vectors(np.cross([[0.0, 0.3, 1.0]], whorl))[0]
     out = points - middle
     angle = np.arctan2(out @ np.cross(whorl, beside), out @ beside)
-    painted_depth = 1.0  # [mm] behind the hairline, where hairs lie on the skin only
+    painted_depth = 1.0  # [mm] behind the hairline, where hairs are only painted
     is_hairy = (behind[faces] > painted_depth).any(axis=1)
     faces, rows, angle = _parted(faces[is_hairy], angle)
     points = points[rows]
@@ -170,18 +170,19 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     way = long[:, None] * (lift * normals + np.sqrt(1.0 - lift**2) * comb)
     way += covers[:, None] * normals
     clearance = 0.5  # [mm] over the skin
-    sinking = 0.3  # [mm] down for each from 4 before the hairline on
+    sinking = 0.3  # [mm] down per mm, from 4 mm in front of the hairline on
     off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
     points = points + off[:, None] * normals
     uneven = 2.0 * np.sin(0.22 * radius * angle) + 1.5 * np.sin(0.57 * radius * angle + 1.0)
-    hem_depth = 20.0  # [mm] behind the hairline, until hair is dense
-    bare_depth = 5.0  # [mm] the same where hair is drawn back
+    hem_depth = 20.0  # [mm] behind the hairline, up to dense hair
+    bare_depth = 5.0  # [mm] the same for hair that is drawn back
     dense = np.minimum(
         (behind - (bare_depth if cut.knot else painted_depth) + uneven) / hem_depth, 2.0
     )
     along = (FINE if cut.knot else 1.0) * radius * away
     striation = np.column_stack([radius * angle, along, way, dense])
-    # Tips of cropped hair point out everywhere, so no highlight lies as a ring around the whorl.
+    # Tips of cropped hair point outward everywhere, so there is no ring of highlights around the
+    # whorl.
     short_shine = 0.12 * min(cut.top / 20.0, 1.0) ** 2
     hair = Part(
         name=HAIR,
@@ -194,17 +195,17 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
         striation=striation.astype(np.float32),
     )
     loose = loose_hairs(hair, min(0.5 * length * cut.top, LOOSE_LENGTH))
-    upward_share = 0.8  # of normals: nothing below is seen, but at the hem of a bald crown
+    upward_share = 0.8  # of normals: the inside is only visible at the hem of a bald crown
     hangs = (normals[:, 1] < upward_share) | ((0.3 < dense) & (behind < 2.0 * hem_depth))
-    hangs &= points[:, 2] > middle[2]  # over the skin
+    hangs &= points[:, 2] > middle[2]  # loose hair hangs over the skin
     return from_within(hair, faces[hangs[faces].all(axis=1)]), loose, hair
 
 
 def _parted(faces: Integers32, angle: Floats64) -> tuple[Integers32, Integers64, Floats64]:
-    """Give faces (F, 3) vertices of their own where angles (V,) begin anew.
+    """Give faces (F, 3) their own vertices where angles (V,) wrap around.
 
-    So strands do not cross from one side to the other. Returns the faces, and of each of their
-    vertices the number that it had and its angle.
+    So strands do not cross from one side to the other. Returns the faces, and for each of their
+    vertices its former number and its angle.
     """
     crosses = np.ptp(angle[faces], axis=1) > np.pi
     doubled, number = np.unique(faces[crosses], return_inverse=True)
@@ -218,10 +219,10 @@ def _parted(faces: Integers32, angle: Floats64) -> tuple[Integers32, Integers64,
 
 
 def from_within(hair: Part, faces: Integers32) -> Part:
-    """Some faces of hair as they are seen from the head: below what hangs over, and at tips."""
+    """Some faces of hair as seen from the head: below hanging hair, and at tips."""
     used, number = np.unique(faces[:, ::-1], return_inverse=True)
     rows = {n: getattr(hair, n)[used] for n in ("vertices", "normals", "colours", "striation")}
-    inner_light = 0.6  # share inside, where lamps do not reach
+    inner_light = 0.6  # share of light inside, where no lamp reaches
     rows |= {
         "faces": number.reshape(-1, 3).astype(np.int32),
         "colours": inner_light * rows["colours"],
@@ -230,7 +231,7 @@ def from_within(hair: Part, faces: Integers32) -> Part:
 
 
 def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
-    """Single hairs, as long [mm], that stand off the smooth outline of a part."""
+    """Single hairs, up to `longest` [mm], that stand off the smooth outline of a part."""
     assert hair.striation is not None
     random = np.random.default_rng(0)
     step_count = 5
@@ -243,12 +244,12 @@ def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
     root, normal, colour, way = ((shares * each[corners]).sum(axis=1) for each in columns)
     normal = unit_vectors(normal)
     across = unit_vectors(np.cross(normal, way))
-    rise = (0.05, 0.4)  # least and most, share of the length
+    rise = (0.05, 0.4)  # least and most, as shares of the length
     off = random.uniform(*rise, (hair_count, 1))
-    stray = 0.2  # share of the length, aside
+    stray = 0.2  # share of the length to the side
     aside = random.normal(0.0, stray, (hair_count, 1))
     along = longest * (np.cross(across, normal) + off * normal + aside * across)
-    droop = 0.2  # share of the length, down
+    droop = 0.2  # share of the length downward
     bent = longest * droop * (normal + np.array([0.0, 1.0, 0.0]))
     turn = np.radians([0.0, 120.0, 240.0])[:, None]
     ring = np.cos(turn) * normal[:, None] + np.sin(turn) * across[:, None]
@@ -273,13 +274,13 @@ def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
 def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) -> Scalp:
     """The scalp of a head, finer than its mesh and round between its corners.
 
-    uv: of vertices, shape (V, 2). behind: how far texels lie behind the hairline [mm], (H, W).
-    Source: Boubekeur, Alexa 2008, "Phong tessellation".
+    uv: those of vertices, shape (V, 2). behind: distances of texels behind the hairline [mm], (H,
+    W). Source: Boubekeur, Alexa 2008, "Phong tessellation".
     """
     height, width = behind.shape
 
     def far(places: Points) -> Floats64:
-        """How far places on the texture lie behind the hairline [mm]."""
+        """Distances of places on the texture behind the hairline [mm]."""
         at = [(1.0 - places[:, 1]) * height - 0.5, places[:, 0] * width - 0.5]
         return np.asarray(map_coordinates(behind, at, order=1, mode="nearest"), np.float64)
 
@@ -288,7 +289,7 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
     points = vertices[used]
     uv = uv[used]
     covers = np.zeros(len(points))
-    level_count = 2  # cuts of the scalp's triangles into four
+    level_count = 2  # number of cuts of the scalp's triangles into four
     bulge_share = 0.75  # of the way to the planes of an edge's ends
     for _ in range(level_count):
         cut = quarter(faces, len(points))
@@ -297,7 +298,7 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
         middle = ends.mean(axis=1, keepdims=True)
         above = ((middle - ends) * normals[cut.edges]).sum(axis=2, keepdims=True)
         bulge = -bulge_share * (above * normals[cut.edges]).mean(axis=1)
-        # Where skin is hollow, its unrefined triangles lie over it.
+        # Where skin is hollow, its unrefined triangles lie above the refined ones.
         hollow = bulge_share * np.maximum(above, 0.0).mean(axis=(1, 2))
         covers = np.concatenate([covers, covers[cut.edges].mean(axis=1) + hollow])
         points = np.vstack([points, middle[:, 0] + bulge])

@@ -1,7 +1,7 @@
 """The prominence of the larynx, which men's necks show: a rounded ridge in the map of fine shape.
 
-The plates of men's thyroid cartilages meet at a right angle, women's at 120 degrees (Standring,
-"Gray's Anatomy", larynx), so hers hardly shows. How high and wide it is was chosen by eye.
+The plates of thyroid cartilages meet at a right angle in men and at 120 degrees in women
+(Standring, "Gray's Anatomy", larynx), so women's hardly show. Height and width were chosen by eye.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def larynx_of(person: Person, size: int) -> Relief:
     texels = _neck(size)
     x, y, _ = texels.interpolate(person.vertices[person.faces]).T
     throat = person.vertices[person.anatomy["cervicale"], 1]
-    below = 15.0  # [mm] below the angle between chin and neck
+    below = 15.0  # [mm] down from the angle between chin and neck
     half_width, half_height = 6.5, 9.0  # [mm]
     notch = 0.25 * np.exp(-((x / 2.5) ** 2) - ((y - throat + below - 6.0) / 3.0) ** 2)
     ridge = np.exp(-((x / half_width) ** 2) - ((y - throat + below) / half_height) ** 2)

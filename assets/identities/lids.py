@@ -1,9 +1,9 @@
-"""The fold of a person's upper lids: where its crease lies, and how far the fold hangs over it.
+"""The fold of a person's upper lids: the place of its crease, and the fold's overhang.
 
-Skin below the crease that is seen while the eye is open is 1.4 ± 1.1 mm high in whites of 41 to 60
-years, higher in women, and spreads more with age (Cartwright and others 1994, "Measurements of
-upper eyelid and eyebrow dimensions in healthy white individuals", Am. J. Ophthalmology
-117:231-234). That all people are spread so is an assumption. The fold is in the maps alone.
+Visible skin below the crease of an open eye is 1.4 ± 1.1 mm high in whites of 41 to 60 years. It is
+higher in women, and varies more with age (Cartwright and others 1994, "Measurements of upper eyelid
+and eyebrow dimensions in healthy white individuals", Am. J. Ophthalmology 117:231-234). We assume
+this spread for all people. The fold is in the maps alone.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ STEPS = 81  # along the edge of a lid
 
 
 def shaded(occlusion: Image, person: Person) -> Image:
-    """Ambient light on the skin, shape (H, H), of which less gets into the creases of lids."""
+    """Ambient light on the skin, shape (H, H), with less in the creases of lids."""
     found = occlusion.copy()
     for side in EYES:
         fold = fold_of(person, side, len(found))
@@ -41,7 +41,7 @@ def shaded(occlusion: Image, person: Person) -> Image:
 def fold_of(person: Person, side: str, size: int) -> Relief:
     """The fold of one upper lid in a map of this many texels each way.
 
-    All its lengths are chosen by eye but that of the skin that is seen.
+    All its lengths are chosen by eye, except that of the visible skin.
     """
     near = _about(side, size)
     texels = near.texels
@@ -55,15 +55,15 @@ def fold_of(person: Person, side: str, size: int) -> Relief:
     identity = person.identity
     seen = identity.seen_lid * arch - identity.hooding * smooth_step(0.35, 1.0, along)
     above = away - np.maximum(seen, 0.0)  # the crease
-    # [mm] of seen skin at which the fold begins to hide the crease, and hides it no more.
+    # [mm] of visible skin at which the fold hides the crease, and at which it no longer does.
     shows = is_lid * smooth_step(-0.2, 0.5, seen)
     groove_width = 0.6  # [mm]
     groove = np.exp(-((above / groove_width) ** 2)) * shows
     hangs = smooth_step(-0.1, 1.3, above) * (1.0 - smooth_step(2.0, 7.0, above)) * is_lid
     groove_depth = 0.2  # [mm]
     fold_height = 0.55 + 0.25 * identity.hooding  # [mm]
-    crease_dark = 0.4  # share of ambient light that a crease lacks
-    below_dark = 0.2  # the same, below a fold
+    crease_dark = 0.4  # share of ambient light missing in a crease
+    below_dark = 0.2  # the same below a fold
     below = shows * (1.0 - smooth_step(-1.2, 0.3, above)) * smooth_step(0.0, 0.4, away)
     heights = fold_height * hangs - groove_depth * groove
     return relief_of(texels, heights, 1.0 - crease_dark * groove - below_dark * below)
@@ -72,8 +72,8 @@ def fold_of(person: Person, side: str, size: int) -> Relief:
 class _About(NamedTuple):
     """The texels about an eye.
 
-    nearest: number of the sample of the upper lid's edge that is nearest to each texel on the
-    built-in head.
+    nearest: for each texel, number of the nearest sample on the upper lid's edge of the built-in
+    head.
     """
 
     texels: Texels

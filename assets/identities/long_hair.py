@@ -1,8 +1,8 @@
-"""Hair that is longer than the way to its end: it hangs beside the face, or is tied behind it.
+"""Long hair: it hangs beside the face, or is tied behind the head.
 
-It is drawn as short hair is (hair.py), in layers from the inside out over one surface of strands
-side by side. Those that hang run over the head from a parting; those that are tied are a rope,
-which is wound to a knot or hangs as a tail from where strands over the scalp come together.
+It is drawn like short hair (hair.py), in layers from the inside out over one surface of parallel
+strands. Hanging strands run over the head from a parting. Tied strands are a rope, which is wound
+to a knot, or hangs as a tail from the place where strands over the scalp meet.
 """
 
 from __future__ import annotations
@@ -22,34 +22,34 @@ from ..topology import grid_faces
 from . import hair as short
 from .hair import HAIR, Cut, Fall, Scalp, from_within
 
-EDGE, ROUNDED = np.radians([62.0, 50.0])  # from the face to where hair begins; to where it is whole
-HEM = 28.0  # [mm] over which tips thin out, are uneven, rise in front
-FULL = 2.0  # density where no layer is thin; [mm] that hair stands off the head
+EDGE, ROUNDED = np.radians([62.0, 50.0])  # angles from the face to hair, and to its full volume
+HEM = 28.0  # [mm] of thinning tips
+FULL = 2.0  # density where all layers are full; [mm] that hair stands off the head
 VOLUME = 9.0
-DOWN, RIGHT = np.array([(0.0, -1.0, -0.12), (1.0, 0.0, 0.0)])  # it hangs, clear of the back
+DOWN, RIGHT = np.array([(0.0, -1.0, -0.12), (1.0, 0.0, 0.0)])  # it hangs down, free of the back
 Even = Floats64 | float  # a number may stand for all
 
 
 def falling_hair(
     cut: Fall, scalp: Scalp, head: Any, colour: Floats64, length: float
 ) -> tuple[Part, ...]:
-    """The parts that are drawn as hair, the inner side first.
+    """The parts that are drawn as loose hair, the inner side first.
 
-    head: with vertices and anatomy. colour: sRGB, shape (3,); length: beside that of the cut.
+    head: with vertices and anatomy. colour: sRGB, shape (3,); length: factor on the cut's.
     """
     vertices = head.vertices
     at = head.anatomy
     ear = 0.5 * (vertices[at["tragion_left"]] + vertices[at["tragion_right"]])
-    middle = np.array([0.0, ear[1] + 29.0, ear[2] - 8.0])  # of the head, from the ears [mm]
+    middle = np.array([0.0, ear[1] + 29.0, ear[2] - 8.0])  # middle of the head, from the ears [mm]
     strand_count = 51
-    around = np.linspace(-1.0, 1.0, strand_count)  # from the right of the face round the back
+    around = np.linspace(-1.0, 1.0, strand_count)  # from the right of the face around the back
     share = 1.0 - np.abs(around)
     side = np.sign(around)
     crown = vertices[at["vertex"]] + [0.4 * cut.parting, 0.0, -30.0] - middle
     front = vertices[at["trichion"]] + [cut.parting, 0.0, -4.0] - middle
     angle = EDGE + (np.pi - EDGE) * share**1.3
     level = np.stack([side * np.sin(angle), 0.0 * angle, np.cos(angle)], axis=-1)
-    sample_count = 14  # along each strand over the head, and as many below
+    sample_count = 14  # along each strand over the head, and the same number below
     over = np.linspace(0.0, 1.0, sample_count)
     drop = np.linspace(0.0, 1.0, sample_count)[1:]
     roots = unit_vectors(front + (share**0.8)[:, None] * (crown - front))
@@ -58,12 +58,12 @@ def falling_hair(
     ways = np.array([scipy.spatial.geometric_slerp(*pair, over) for pair in pairs])
     across = 88.0 * side * (np.pi - angle)
     uneven = 0.6 * np.sin(0.9 * across) + 0.4 * np.sin(0.37 * across + 1.0)
-    # Beside the face the outer side comes round to the inner one.
+    # Beside the face the outer side curves to the inner one.
     beside = np.clip((angle - EDGE) / ROUNDED, 0.0005, 1.0)
     ragged_depth = 6.0  # [mm] of uneven tips
     layered_rise = 16.0  # [mm] that tips rise in front
     ends = ear[1] - cut.below * length + layered_rise * (1.0 - beside) ** 3 + ragged_depth * uneven
-    rise = np.clip(over / 0.35, 0.0, 1.0)  # share of the way to where the volume is whole
+    rise = np.clip(over / 0.35, 0.0, 1.0)  # share of the way to the full volume
     risen = 0.1 + 0.9 * np.sin(0.5 * np.pi * rise)
     thick = VOLUME * risen * np.sin(0.5 * np.pi * beside)[:, None]
     solid = np.vstack([scalp.points, vertices[vertices[:, 1] > ear[1] - 53.0]]) - middle
@@ -73,19 +73,19 @@ def falling_hair(
     start = places[:, -1:]
     wide = np.linalg.norm((start - middle)[..., [0, 2]], axis=-1)
     height = start[..., 1] + drop * (ends[:, None] - start[..., 1])
-    lobe_depth = 42.0  # [mm] below the ear's tragus: above, lobes would come through curving tips
+    lobe_depth = 42.0  # [mm] below the tragus: higher tips would meet the lobe
     curved, thinned = _tips(height, ears_end=ear[1] - lobe_depth, ends=ends)
     fall = middle + (wide * curved - thinned * thick[:, -1:])[..., None] * level[:, None]
     fall[..., 1] = height
     thick = np.hstack([thick, thick[:, -1:] * (1.0 - thinned)])
     sharp = np.concatenate([places, fall], axis=1)
-    bending_steps = 1.3  # along strands, over which they bend from the head
+    bending_steps = 1.3  # along strands: range over which they bend away from the head
     bent = scipy.ndimage.gaussian_filter1d(sharp, bending_steps, axis=1, mode="nearest")
-    bent[:, 0] = sharp[:, 0]  # roots stay where they are
+    bent[:, 0] = sharp[:, 0]  # roots stay
     along = _along(bent)
     off = 88.0 * (angle - EDGE)[:, None]
-    # Hair gets dense over 2 mm from the parting and 4 mm from the face: farther, and strands in
-    # front are bars over the skin.
+    # Hair gets dense within 2 mm from the parting and 4 mm from the face: over longer ways, strands
+    # in front would be bars over the skin.
     dense = np.minimum(0.5 + along / 1.4, 0.1 + off / 2.4)
     dense = np.minimum(dense, (along[:, -1:] - along) / HEM)
     hair = _layers(HAIR, bent, across[:, None], thick, dense, colour)
@@ -93,19 +93,19 @@ def falling_hair(
 
 
 def _tips(height: Floats64, *, ears_end: float, ends: Floats64) -> tuple[Floats64, Floats64]:
-    """How far strands beside the face curve to it below the ears, and what they lose of volume.
+    """Curve of strands to the face below the ears, and their loss of volume.
 
-    height: along strands [mm], (n, m). ends: of each strand, (n,). Shares of the radius and of the
-    volume, (n, m).
+    height: along strands [mm], (n, m). ends: that of each strand, (n,). Returns shares of the
+    radius and of the volume, (n, m).
     """
-    tip_thinning = 0.7  # share of the volume that tips lack
-    tip_curving = 0.27  # share of the radius that tips lack
+    tip_thinning = 0.7  # share of the volume missing at tips
+    tip_curving = 0.27  # share of the radius missing at tips
     low = np.clip((ears_end - height) / np.maximum(ears_end - ends, 1.0)[:, None], 0.0, 1.0)
     return 1.0 - tip_curving * low**1.6, tip_thinning * low**2
 
 
 def _reach(ways: Floats64, solid: Floats64) -> Floats64:
-    """How far the skin is in some directions [mm]: a soft maximum of its points nearby.
+    """Distance of the skin in some directions [mm]: a soft maximum over its points nearby.
 
     ways: (n, m, 3) unit. solid: (k, 3) points of the skin, from the middle of the head [mm].
     """
@@ -118,7 +118,7 @@ def _reach(ways: Floats64, solid: Floats64) -> Floats64:
 
 
 def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Part, ...]:
-    """The parts that are drawn as hair of a cut with a knot, or a tail; see `falling_hair`."""
+    """The parts that are drawn as tied hair, of a cut with a knot or a tail; see `falling_hair`."""
     points = scalp.points
     out = -unit_vectors(np.array([cut.whorl]))[0]
     ways = unit_vectors(points - 0.5 * (points.min(axis=0) + points.max(axis=0)))
@@ -128,7 +128,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     if cut.tail:
         far = length * cut.tail * t
         root_depth = 12.0  # [mm] within the scalp, where a tail begins
-        free_distance = 75.0  # [mm] from there, where it is whole
+        free_distance = 75.0  # [mm] from there to its full width
         bent = smooth_step(root_depth, free_distance, far)
         tie_distance = 28.0  # [mm] from there to its tie
         free = smooth_step(tie_distance, free_distance, far)
@@ -141,8 +141,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         thick *= np.sqrt(1.0 - 0.97 * t**4)
         shade = np.exp(-(((far - tie_distance) / 5.0) ** 2))
         dense = np.minimum(far / root_depth, (far[-1] - far) / HEM)
-        # Locks of a tail and of a knot, how wide they are [mm], how deep it is between, turns they
-        # make.
+        # For a tail and a knot: number of locks, their width [mm], depth between them, their turns.
         tail = (6, 24.0, 0.04, 0.1)
         locks, wide, deep, turns = tail
     else:  # as a ball from its rim to its middle
@@ -164,7 +163,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     turn = np.pi + place + 2.0 * np.pi * turns * t  # begins on the side of the head
     ring = np.cos(turn) * unit_vectors(np.cross(RIGHT, ways)) + np.sin(turn) * RIGHT
     places = line + cut.knot * thick * (1.0 - deep * groove) * ring
-    lost_light = 0.5  # share below a knot and at a tail's tie
+    lost_light = 0.5  # share of light lost below a knot and at a tail's tie
     light = 1.0 - np.maximum(5.0 * deep * groove, lost_light * shade)
     across = locks * wide * place[..., 0] / (2.0 * np.pi)
     tied = _layers(HAIR + "_tied", places, across, VOLUME, dense[:, 0], light * colour)
@@ -176,15 +175,15 @@ def _layers(
 ) -> Part:
     """Strands side by side, in layers.
 
-    places: along each from its root, where the outermost layer lies [mm], shape (n, m, 3). across,
-    thick, dense: their place beside each other [mm], the volume that they fill [mm], how dense they
-    are, (n, m). colour: sRGB, (n, m, 3).
+    places: those of the outermost layer along each strand from its root [mm], shape (n, m, 3).
+    across, thick, dense: place of strands beside each other [mm], thickness of their volume [mm],
+    their density, (n, m). colour: sRGB, (n, m, 3).
     """
     shape = places.shape
     points = places.reshape(-1, 3)
     number = np.arange(places.size // 3).reshape(shape[:2])
     out = unit_vectors(points - points.mean(axis=0))
-    outward_share = 0.01  # in normals: where strands meet there is no triangle
+    outward_share = 0.01  # in normals: no triangles where strands meet
     normals = unit_vectors(vertex_normals(points, grid_faces(number)) + outward_share * out)
     ahead = unit_vectors(np.gradient(places, axis=1).reshape(-1, 3))
     layer_share = 0.4  # of the volume
@@ -206,6 +205,6 @@ def _layers(
 
 
 def _along(places: Floats64) -> Floats64:
-    """How far along strands their places lie [mm], (n, m, 3) -> (n, m)."""
+    """Lengths along strands up to their places [mm], (n, m, 3) -> (n, m)."""
     steps = np.linalg.norm(np.diff(places, axis=1, prepend=places[:, :1]), axis=2)
     return np.asarray(steps.cumsum(axis=1))

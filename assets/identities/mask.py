@@ -1,8 +1,8 @@
 """Surgical masks: a pleated sheet from the bridge of the nose to below the chin, and ear loops.
 
 The sheet is a membrane: it hangs on the skin that stands out farthest, the tip of the nose and the
-chin, and lies on the cheeks. It goes with the skull and the mandible as the skin below it does.
-All sizes are chosen by eye, after usual masks.
+chin, and lies on the cheeks. It follows skull and mandible like the skin below it. All sizes are
+chosen by eye, after usual masks.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class _Piece(NamedTuple):
 
     surface: Tube
     colours: Floats64  # (n, 3)
-    shares: Floats64  # of the mandible, (n,)
+    shares: Floats64  # shares of the mandible's motion, (n,)
 
 
 def _joined(pieces: list[_Piece]) -> Part:
@@ -93,7 +93,7 @@ def _loops(person: Person, sheet: Floats64, shares: Floats64, colour: Colour) ->
 
 
 def _places(person: Person) -> tuple[Floats64, Floats64]:
-    """Where the sheet's vertices are: turns about the upright axis [rad], and heights [mm]."""
+    """Places of the sheet's vertices: turns about the upright axis [rad], and heights [mm]."""
     landmarks = person.vertices[person.landmarks]
     widest = np.radians(66.0)
     across = np.linspace(-1.0, 1.0, SHAPE[1])
@@ -109,7 +109,7 @@ def _places(person: Person) -> tuple[Floats64, Floats64]:
 
 
 def _skin_below(person: Person, middle: Floats64, turn: Floats64, height: Floats64) -> Floats64:
-    """How far the skin reaches from the upright axis at the vertices of the sheet [mm]."""
+    """Distance of the skin from the upright axis at the vertices of the sheet [mm]."""
     skin = person.vertices
     corners = skin[person.faces]
     corners = corners[corners[:, :, 2].min(axis=1) > middle[2] - 40.0]
@@ -119,7 +119,7 @@ def _skin_below(person: Person, middle: Floats64, turn: Floats64, height: Floats
     weights = np.stack([first[is_within], second[is_within]], axis=-1) / steps
     weights = np.column_stack([weights, 1.0 - weights.sum(axis=1)])
     points = np.einsum("wk,fkc->fwc", weights, corners).reshape(-1, 3) - middle
-    radius = 65.0  # [mm] at which degrees are counted as lengths
+    radius = 65.0  # [mm], to convert degrees into lengths
     there = np.column_stack([radius * np.arctan2(points[:, 0], points[:, 2]), points[:, 1]])
     reach = np.hypot(points[:, 0], points[:, 2])
     places = np.column_stack([radius * turn.ravel(), height.ravel()])
@@ -129,7 +129,7 @@ def _skin_below(person: Person, middle: Floats64, turn: Floats64, height: Floats
 
 
 def _membrane(skin: Floats64) -> Floats64:
-    """How far a taut sheet over the skin reaches [mm]; its upper edge and sides lie on it."""
+    """Distance of a taut sheet over the skin [mm]; its upper edge and sides lie on the skin."""
     clearance = 2.6  # [mm]
     below = skin + clearance
     sheet = below.copy()
@@ -146,7 +146,7 @@ def _membrane(skin: Floats64) -> Floats64:
 
 
 def _pleats(down: Floats64, aside: Floats64) -> tuple[Floats64, Floats64]:
-    """How far three pleats stand out [mm], and how deep their creases are, 0 to 1."""
+    """Heights of three pleats [mm], and depths of their creases, 0 to 1."""
     count = 3
     place = (down - 0.28) / 0.5 * count
     phase = np.where((place > 0.0) & (place < count), place % 1.0, 0.0)
@@ -157,7 +157,7 @@ def _pleats(down: Floats64, aside: Floats64) -> tuple[Floats64, Floats64]:
 
 
 def _mandible_shares(person: Person, sheet: Floats64) -> Floats64:
-    """How far vertices of the sheet go with the mandible: as the skin, smoothly over the lips."""
+    """Mandible shares of the sheet's vertices: those of the skin, smooth over the lips."""
     near = scipy.spatial.cKDTree(person.vertices).query(sheet, k=4)[1]
     shares = person.mandible_weight[near].mean(axis=-1)
     return np.asarray(scipy.ndimage.gaussian_filter(shares, 3.0, mode="nearest"))

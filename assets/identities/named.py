@@ -16,7 +16,7 @@ from .space import Identity, Sex, sample_identity
 
 
 class _Known(NamedTuple):
-    """Who bears a name: a number's face of some sex and age, in chosen colours."""
+    """The person with a name: a number's face of some sex and age, in chosen colours."""
 
     seed: int
     sex: Sex
@@ -53,9 +53,9 @@ def own_colours(
     irises: str | None = None,
     population: Population = EVERYBODY,
 ) -> Colours:
-    """The colours of a number, the same ones every time; tones are as likely as each other.
+    """The colours of a number, always the same; all tones are equally likely.
 
-    angle, irises: instead of the number's own.
+    angle, irises: replace the number's own.
     """
     random = np.random.default_rng([seed, 18])
     drawn_angle = float(random.uniform(*population.tones))
@@ -73,7 +73,7 @@ def in_own_colours(
 
 
 def in_colours(person: Person, colours: Colours, *, shrink: int = 1) -> Person:
-    """A person with skin, eyes and hair of these colours; shrink: as of `coloured`."""
+    """A person with skin, eyes and hair of these colours; shrink: as in `coloured`."""
     return coloured(
         person,
         angle=colours.angle,
@@ -86,14 +86,14 @@ def in_colours(person: Person, colours: Colours, *, shrink: int = 1) -> Person:
 
 @cache
 def person_in_words(who: int | str) -> str:
-    """Name, sex and age of the person of a number or a name: "Person 7, woman, about 60"."""
+    """Name, sex and age of the person with a number or a name: "Person 7, woman, about 60"."""
     known = sample_identity(who) if isinstance(who, int) else NAMED[who]
     name = f"Person {who}" if isinstance(who, int) else who.capitalize()
     return f"{name}, {known.sex.value}, about {5 * round(known.age / 5.0)}"
 
 
 def person_called(who: int | str) -> Person:
-    """The person of a number (0 and more) or of a name in `NAMED`, in own colours."""
+    """The person with a number (0 or more) or a name in `NAMED`, in own colours."""
     if isinstance(who, int):
         made = in_own_colours(make_person(sample_identity(who)), who)
         return replace(made, called=str(who))

@@ -2,8 +2,8 @@
 
     person = make_person(sample_identity(7))
 
-The skin is the mean person, moved by the modes as the identity has them (space.py); then eyeballs
-are placed, and lids are laid on them.
+The skin is the mean person, moved by the modes with the identity's weights (space.py). Then
+eyeballs are placed, and lids are laid on them.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ from .space import Identity, Sex, person_space, scores_of
 
 @dataclass(frozen=True)
 class Person(FittedHead):
-    """A head with the triangles of the built-in one. It has the fields of a fitted head, and:
+    """A head with the triangles of the built-in one. Besides the fields of a fitted head it has:
 
-    mandible_weight, jaw_axis, anatomy, mirror: as of `Head`. `mirror` is that of the built-in head
-        where left and right differ, too.
-    identity: the weights and features that it was made from.
+    mandible_weight, jaw_axis, anatomy, mirror: as in `Head`. `mirror` is that of the built-in head,
+        even if left and right differ.
+    identity: its weights and features.
     in_tone: makes the texture in another tone, from the angle of `recoloured` [deg].
     """
 
@@ -60,17 +60,17 @@ class Person(FittedHead):
 
     @property
     def scores(self) -> dict[str, float]:
-        """How many deviations they lie above the means of its sex, code -> score."""
+        """Deviations of the measures from the means of the person's sex, code -> score."""
         return scores_of(self.measures, self.identity.sex)
 
 
 def make_person(identity: Identity) -> Person:
     """The head of an identity; the same numbers give the same head.
 
-    Where its skin would be turned over or cut itself, all of it is brought nearer to the mean;
-    the person's `identity` has the weights that were used.
+    If its skin would turn over or cut itself, the whole face is brought nearer to the mean; the
+    person's `identity` has the used weights.
     """
-    shares = (1.0, 0.85, 0.7, 0.5, 0.25, 0.0)  # of the weights, tried in turn
+    shares = (1.0, 0.85, 0.7, 0.5, 0.25, 0.0)  # shares of the weights, tried in turn
     for share in shares[:-1]:
         with contextlib.suppress(AssetError):
             return _made(identity if share == 1.0 else identity.scaled(share))
@@ -78,7 +78,7 @@ def make_person(identity: Identity) -> Person:
 
 
 def _made(identity: Identity) -> Person:
-    """The head of an identity; raises AssetError if its skin would be turned over or cut itself."""
+    """The head of an identity; raises AssetError if its skin would turn over or cut itself."""
     known = load("head")
     space = person_space()
     beside = known.vertices[:, :1]
@@ -87,7 +87,7 @@ def _made(identity: Identity) -> Person:
     bent = space.mean + space.moved(np.array(identity.weights)) + askew
     eyes = tuple(_eye(known, eye, bent) for eye in known.eyes)
     bent = _resting_face(known, bent, eyes, identity)
-    lid_shares = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far rows around the eye are laid on it
+    lid_shares = (1.0, 1.0, 1.0, 0.6, 0.25)  # shares by which rows around the eye are laid on it
     vertices = lids_on_eyes(known, bent, eyes, lid_shares)
     neck = vertices[known.anatomy["menton"]], identity.sex
     vertices = _on_neck(vertices, *neck)
@@ -100,7 +100,7 @@ def _made(identity: Identity) -> Person:
     named = _named(known)
     spread, usual = (np.var(x[named], 0).sum() for x in (vertices, known.vertices))
     larger = float(np.sqrt(spread / usual))
-    give = 0.2  # share of the warp that organs in the head follow
+    give = 0.2  # smoothing of the warp that organs in the head follow
     warp = ThinPlateSpline(known.vertices[named], vertices[named], give)
     normals = vertex_normals(vertices, known.faces)
     landmarks = vertices[known.landmarks]
@@ -140,13 +140,13 @@ def _made(identity: Identity) -> Person:
 
 
 def _on_neck(points: Floats64, chin: Floats64, sex: Sex) -> Floats64:
-    """Points of a skin or a shirt, of which those below the jaw lie on the neck of that sex."""
-    jaw_slope = 0.35  # of the jaw's line, up to the back
+    """Points of a skin or a shirt; those below the jaw are moved to a neck of that sex."""
+    jaw_slope = 0.35  # of the jaw's line, rising to the back
     jaw_depth = 20.0  # [mm] where it ends
     below = chin[1] - points[:, 1:2] + jaw_slope * (chin[2] - np.maximum(points[:, 2:], jaw_depth))
-    # Share, of women's: 330 mm around beside 398 (Gordon and others 2014, ANSUR II).
+    # Share for women's necks: 330 mm around, men's 398 (Gordon and others 2014, ANSUR II).
     narrowing = 0.17
-    fade_height = 30.0  # [mm] below it, where the neck begins
+    fade_height = 30.0  # [mm] below the jaw, over which the neck begins
     narrower = narrowing * (sex is Sex.WOMAN) * smooth_step(0.0, fade_height, below)
     neck_axis = np.array([0.0, 0.0, -8.0])  # [mm]
     return np.asarray(points - narrower * [1.0, 0.0, 1.0] * (points - neck_axis))
@@ -155,10 +155,10 @@ def _on_neck(points: Floats64, chin: Floats64, sex: Sex) -> Floats64:
 def _resting_face(
     known: Head, vertices: Floats64, eyes: tuple[Eye, ...], identity: Identity
 ) -> Floats64:
-    """Vertices with the lids, the corners of the mouth, and the brows of an identity at rest."""
+    """Vertices with the resting lids, corners of the mouth and brows of an identity."""
     x = vertices.copy()
-    lower_lid_height = -0.96  # share of the iris' radius
-    row_shares = (1.0, 1.0, 1.0, 0.7, 0.25)  # how far rows around the eye go with the lid's edge
+    lower_lid_height = -0.96  # in radii of the iris
+    row_shares = (1.0, 1.0, 1.0, 0.7, 0.25)  # shares of rows around the eye in the lid's motion
     for eye in eyes:
         upper = 1.0 - identity.covered / eye.iris_radius
         for lid, height in (("superius", upper), ("inferius", lower_lid_height)):
@@ -171,13 +171,13 @@ def _resting_face(
                 is_above = vertices[ring, 1] > inner[1] + along * (outer[1] - inner[1])
                 open_ = np.sqrt(np.clip(1.0 - (2.0 * along - 1.0) ** 2, 0.0, 1.0))
                 x[ring, 1] += share * moved * open_ * (is_above == (lid == "superius"))
-    # Brows slide over the forehead; lips, which touch, go one way.
+    # Brows slide over the forehead; touching lips move in one direction.
     normals = vertex_normals(vertices, known.faces)
     up = np.array([0.0, 1.0, 0.0])
     line = vertices[known.landmarks[[48, 54, 62, 66]], 1]
-    most_turn = 1.8  # [mm] of the corners of the mouth
+    most_turn = 1.8  # [mm] that corners of the mouth turn
     turned = np.clip(identity.corners - line[:2].mean() + line[2:].mean(), -most_turn, most_turn)
-    corner_radius = 9.0  # [mm] about corners of the mouth, which go with them
+    corner_radius = 9.0  # [mm] about corners of the mouth: skin there follows them
     brow_radius = 11.0  # [mm] about brows
     for points, way, wide in (
         (known.landmarks[48:55:6], turned * up, corner_radius),
@@ -189,10 +189,10 @@ def _resting_face(
 
 
 def _resting(known: Head, identity: Identity) -> Floats32:
-    """How far furrows show in a face at rest, 0 to 1, shape (V,): between the brows they frown."""
+    """How far furrows show in a face at rest, 0 to 1, shape (V,); not between the brows."""
     past = float(np.clip((identity.age - 30.0) / 45.0, 0.0, 1.0))
     off = known.vertices - known.vertices[known.anatomy["glabella"]]
-    # [mm] about the glabella, which furrows of age leave out.
+    # [mm] about the glabella, where furrows of age would look like a frown.
     frown_radii = np.array([15.0, 18.0, 30.0])
     frowned = np.exp(-((off / frown_radii) ** 2).sum(axis=1))
     most_resting = {Sex.WOMAN: 0.45, Sex.MAN: 0.5}
@@ -201,14 +201,14 @@ def _resting(known: Head, identity: Identity) -> Floats32:
 
 
 def _own_places(known: Head, identity: Identity) -> Floats64:
-    """How deep furrows are at each vertex beside those of most people of that age, shape (V,).
+    """Depths of furrows at each vertex, relative to most people of that age, shape (V,).
 
-    Chosen: waves over the face, whose phases are those of the person; the halves are alike.
+    Chosen: waves over the face, with the person's phases; both halves are alike.
     """
     phases = np.array([identity.age, identity.covered]).view(np.uint32)
     random = np.random.default_rng(phases)
     wave_count = 5
-    length = 60.0  # [mm] of a wave in the mean
+    length = 60.0  # [mm] of a wave on average
     ways = random.normal(0.0, 2.0 * np.pi / length, (3, wave_count)) / np.sqrt(3.0)
     begins = random.uniform(0.0, 2.0 * np.pi, wave_count)
     halves = np.abs(known.vertices * [1.0, 0.0, 0.0]) + known.vertices * [0.0, 1.0, 1.0]
@@ -217,7 +217,7 @@ def _own_places(known: Head, identity: Identity) -> Floats64:
 
 
 def _named(known: Head) -> Integers32:
-    """Vertices that lead what lies in the head: landmarks, named points, rows of lips and lids."""
+    """Vertices that organs in the head follow: landmarks, named points, rows of lips and lids."""
     rows = [row for name, row in known.rings.items() if name.startswith(("mouth_", "eye_1"))]
     return np.unique(np.concatenate([known.landmarks, list(known.anatomy.values()), *rows]))
 

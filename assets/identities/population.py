@@ -1,10 +1,10 @@
-"""Whom persons are drawn from: shares of sexes, cuts of hair and colours of eyes, ages, tones.
+"""The population of random persons: shares of sexes, cuts and eye colours, ages, tones.
 
 Cuts are chosen by eye; tones and ages are drawn evenly. Irises of very light skin: in the United
 States 41 of 100 people have brown eyes, 15 specked ones, 12 green and 32 blue or grey ones
 (American Academy of Ophthalmology 2016, as tabulated by Statistic Brain), of all tones; of its
-whites 34 have blue ones (Grant, Lauderdale 2002, Ann. Hum. Biol. 29:657-666). How many of light
-skin lie between, how blue and grey part, and how fast both fade with darker skin is assumed.
+whites 34 have blue ones (Grant, Lauderdale 2002, Ann. Hum. Biol. 29:657-666). We assume the shares
+of light skin between these, the split of blue and grey, and how fast both fade with darker skin.
 """
 
 from __future__ import annotations
@@ -49,11 +49,11 @@ CUTS_OF_MEN = MappingProxyType(
 
 @dataclass(frozen=True)
 class Population:
-    """Whom persons are drawn from; the default is that of `person_called`.
+    """The population of random persons; the default is that of `person_called`.
 
-    women: their share, 0 to 1. ages: lowest and highest [years]. tones: darkest and lightest, ITA
-    [deg]. irises: shares of their colours with light skin. cuts_of_women, cuts_of_men: shares of
-    cuts of hair.
+    women: share of women, 0 to 1. ages: lowest and highest [years]. tones: darkest and lightest,
+    ITA [deg]. irises: shares of their colours with light skin. cuts_of_women, cuts_of_men: shares
+    of cuts of hair.
     """
 
     women: float = 0.5
@@ -70,11 +70,11 @@ EVERYBODY = Population()
 def drawn_irises(
     random: np.random.Generator, angle: float, shares: Mapping[str, float] = IRIS_SHARES
 ) -> str:
-    """The colour of a person's eyes; shares: with very light skin. Dark skin has brown ones.
+    """A random colour of eyes; shares: those with very light skin. Dark skin has brown eyes.
 
-    Hazel ones are met on darker skin than those without brown.
+    Hazel eyes occur with darker skin than eyes without brown.
     """
-    # ITA at which none has such eyes, and from which on all have their share.
+    # ITA up to which nobody has such eyes, and from which they have their full share.
     fades = {"brown": (-90.0, -80.0), "hazel": (-5.0, 45.0)}
     pale_fade = 15.0, 50.0
     weights = {

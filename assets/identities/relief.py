@@ -1,4 +1,4 @@
-"""Heights that a person's skin has more than the built-in head's, in a part of its maps."""
+"""Additional heights of a person's skin over the built-in head's, in a part of its maps."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ..model import FineShape
 
 
 class Relief(NamedTuple):
-    """A part of a map, with what a person has there.
+    """A part of a map, with a person's heights and light there.
 
-    rows, columns: the part. heights: added to the skin [mm], light: share of ambient light that
-    gets there, both of shape (h, w).
+    rows, columns: the part. heights: added to the skin [mm], (h, w). light: share of ambient light
+    that arrives, (h, w).
     """
 
     rows: slice
@@ -27,7 +27,7 @@ class Relief(NamedTuple):
 
 
 def relief_of(texels: Texels, heights: Floats64, light: Floats64) -> Relief:
-    """The part of a map that holds these texels; heights and light: of each, shape (n,)."""
+    """The part of a map that holds these texels; heights and light: those of each, shape (n,)."""
     top, left = texels.rows.min(), texels.columns.min()
     rows = slice(int(top), int(texels.rows.max()) + 1)
     columns = slice(int(left), int(texels.columns.max()) + 1)

@@ -1,8 +1,8 @@
-"""Shirts of several colours, and what is around the neck: a band, a roll, wings, or a V.
+"""Shirts of several colours, with a band, a roll, wings or a V around the neck.
 
-The built-in shirt ends in a band. Everything else lies on it, in places that are counted along its
-columns, from the front to the back, and down from the upper edge of the band. So it fits any neck.
-All sizes are chosen by eye, after usual shirts and jerseys.
+The built-in shirt ends in a band. All else lies on this shirt, in places along its columns, from
+the front to the back, and down from the upper edge of the band. So it fits any neck. All sizes are
+chosen by eye, after usual shirts and jerseys.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ SHIRTS: Mapping[str, Colour] = MappingProxyType(
         "sky": (0.47, 0.59, 0.72),
     }
 )
-COLUMNS = 52  # of the built-in shirt, from the front over the left shoulder
-BAND = 4  # row of it that is the upper edge of the band, outside
+COLUMNS = 52  # columns of the built-in shirt, from the front over the left shoulder
+BAND = 4  # its row at the upper edge of the band, outside
 
 
 class _Cloth(NamedTuple):
@@ -48,7 +48,7 @@ class _Cloth(NamedTuple):
 def in_shirt(shirt: Part, skin: Floats64, colour: str, collar: str) -> Part:
     """The built-in shirt of a person, in a colour of SHIRTS, with a collar of COLLARS.
 
-    skin: of the person, (V, 3). Raises KeyError for other colours and collars.
+    skin: that of the person, (V, 3). Raises KeyError for other colours and collars.
     """
     pieces = COLLARS[collar](shirt, skin, np.array(SHIRTS[colour]))
     surfaces = [each.surface for each in pieces]
@@ -64,19 +64,19 @@ def in_shirt(shirt: Part, skin: Floats64, colour: str, collar: str) -> Part:
 
 
 def _in_colour(shirt: Part, colour: Floats64) -> _Cloth:
-    """The built-in shirt, as bright in its places as it is."""
+    """The built-in shirt in another colour, with its own shades."""
     shade = shirt.colours / np.array(SHIRTS["blue"])
     vertices, normals = (each.astype(np.float64) for each in (shirt.vertices, shirt.normals))
     return _Cloth(Tube(vertices, normals, shirt.faces), shade * colour)
 
 
 def _plain(shirt: Part, colour: Floats64) -> Floats64:
-    """The colour of that shirt where nothing shades it."""
+    """The colour of this shirt without shade."""
     return np.asarray(np.median(shirt.colours, axis=0) / np.array(SHIRTS["blue"]) * colour)
 
 
 def _banded(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
-    """The built-in shirt as it is."""
+    """The built-in shirt in a colour."""
     return [_in_colour(shirt, colour)]
 
 
@@ -110,7 +110,7 @@ def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
 
 
 def _ribs(count: int) -> Floats64:
-    """Shades of columns of knitting, two of which are a rib."""
+    """Shades of columns of knitting; two columns are a rib."""
     return np.where(np.arange(count) % 2, 0.9, 1.03)
 
 
@@ -119,7 +119,7 @@ def _winged(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     surface = _Surface(shirt)
     down = np.linspace(0.0, 1.0, 13)[:, None]
     along = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.0, 1.0, 61))  # from one point to the other
-    opening = 0.35 + 3.6 * down**0.6  # columns from the middle to the front edges
+    opening = 0.35 + 3.6 * down**0.6  # columns from the middle to the edges in front
     columns = opening + along * (COLUMNS - 2.0 * opening)
     from_front = np.minimum(columns, COLUMNS - columns)
     length = 37.0 + 24.0 * smooth_step(9.0, 0.0, from_front)
@@ -161,7 +161,7 @@ def _buttoned(surface: _Surface, colour: Floats64) -> list[_Cloth]:
         around = np.sin(turn)[:, None] * [1.0, 0.0, 0.0] + np.cos(turn)[:, None] * slope
         profile = ((5.3, 1.2), (5.3, 3.2), (4.6, 3.6), (3.4, 3.2), (0.05, 3.1))
         rows = [middle + radius * around + height * out for radius, height in profile]
-        # Against the clock, seen from outside.
+        # Counter-clockwise, seen from outside.
         rims = np.stack(rows)[::-1, :]
         shades = np.array([0.9, 0.9, 1.05, 0.95, 0.8])
         pieces.append(_rowed(rims, shades[:, None], light, closed=True))
@@ -180,7 +180,7 @@ def _pointed(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     columns = np.linspace(0.0, COLUMNS, 3 * COLUMNS, endpoint=False)
     from_front = np.minimum(columns, COLUMNS - columns)
     edge = np.interp(from_front, found, line[:, 0])
-    ribbed = 15.0  # [mm] that its border is wide
+    ribbed = 15.0  # [mm] of its border's width
     steps = np.array([0.0, 0.0, 1.0, 4.0, 8.0, 12.0, ribbed, ribbed + 1.5, ribbed + 4.0])
     away = np.array([0.2, 2.2, 3.1, 3.4, 3.4, 3.2, 2.6, 2.0, 2.6])
     shades = np.array([0.5, 0.85, 1.0, 1.0, 1.0, 0.97, 0.8, 0.7, 0.95])
@@ -218,11 +218,11 @@ class _Surface:
         self._normals = np.concatenate([outward, outward[:, :1]], axis=1)[BAND:-1]
 
     def lowest(self, columns: Floats64) -> Floats64:
-        """How deep its end lies in columns [mm], shape as theirs."""
+        """Depth of its end in columns [mm], in their shape."""
         return np.asarray(np.interp(columns, np.arange(COLUMNS + 1), self._depths[-1]))
 
     def down(self, columns: Floats64, depths: Floats64) -> Floats64:
-        """Points in columns at depths below the edge [mm], both (r, n) or as one, (r, n, 3)."""
+        """Points in columns at depths below the edge [mm], for (r, n) or broadcast, (r, n, 3)."""
         return self._read(self._grid, columns, depths)
 
     def outward(self, columns: Floats64, depths: Floats64) -> Floats64:
@@ -253,8 +253,8 @@ class _Surface:
 
 
 def _off_neck(skin: Floats64, points: Floats64, axis: Floats64) -> Floats64:
-    """Points around the neck, (n, 3), moved out off the skin there."""
-    clearance = 3.0 + 1.5 * (points[:, 2] < axis[2])  # [mm] more behind, where heads bend to
+    """Points around the neck, (n, 3), moved outward off the skin."""
+    clearance = 3.0 + 1.5 * (points[:, 2] < axis[2])  # [mm], more at the back, to which heads bend
     apart = skin - axis
     radius = 60.0  # [mm] at which degrees are counted as lengths
     places = np.column_stack([radius * np.arctan2(apart[:, 0], apart[:, 2]), skin[:, 1]])
@@ -281,6 +281,6 @@ def _surface_of(points: Floats64, *, closed: bool = False) -> Tube:
 
 
 def _rowed(points: Floats64, shades: Floats64, colour: Floats64, *, closed: bool = False) -> _Cloth:
-    """A piece of rows of points; shades of its colour: of each point, (r, n), or as one."""
+    """A piece of rows of points; shades: those of each point, (r, n), or broadcast."""
     shaded = np.broadcast_to(shades, points.shape[:2]).reshape(-1, 1) * colour
     return _Cloth(_surface_of(points, closed=closed), shaded)

@@ -1,9 +1,9 @@
-"""A person's smile: which muscles join the one that draws the corners up.
+"""A person's smile: the muscles that join the one that draws the corners up.
 
 In a canine smile the raisers of the upper lip pull first, in 31 of 100 people; in 67 the corners
 lead, and 2 bare both rows of teeth (Rubin 1974, "The anatomy of a smile", Plast. Reconstr. Surg.
 53:384-387). Women show gums twice as often as men (Tjan and others 1984, J. Prosthet. Dent.
-51:24-28). What each muscle adds is chosen by eye.
+51:24-28). The share of each muscle is chosen by eye.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from ..model import Layer
 
 
 class Smile(NamedTuple):
-    """How somebody's smile differs from the built-in one, which has none of these.
+    """Differences of a person's smile from the built-in one, which has none of these.
 
-    lift: how far the upper lip is raised, 0 to 1. curl: how far it rolls in, spread: how wide the
-    mouth gets, and drop: how far the jaw opens, each from -1 (less) to 1 (more).
+    lift: rise of the upper lip, 0 to 1. curl: roll of this lip, spread: width of the mouth, drop:
+    opening of the jaw, each from -1 (less) to 1 (more).
     """
 
     lift: float = 0.0
@@ -35,7 +35,7 @@ CANINE_SHARE = 0.33
 
 
 def drawn_smile(is_woman: bool, random: np.random.Generator) -> Smile:
-    """The smile of somebody of a sex."""
+    """A random smile for a sex."""
     kind, share, *others = random.uniform(0.0, 1.0, 5)
     share *= 1.0 if is_woman else 0.8
     lift = 0.5 + 0.5 * share if kind < CANINE_SHARE else 0.25 * share
@@ -44,7 +44,7 @@ def drawn_smile(is_woman: bool, random: np.random.Generator) -> Smile:
 
 
 def smiling(layers: tuple[Layer, ...], smile: Smile) -> tuple[Layer, ...]:
-    """Tables of controls in which AU12 and joy are those of a smile."""
+    """Tables of controls with AU12 and joy of a smile."""
     added = {
         "AU12": {
             "zygomaticus_minor": 0.45 * smile.lift,

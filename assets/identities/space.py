@@ -1,22 +1,22 @@
-"""How people differ, on the vertices of the built-in head: modes, and persons drawn from them.
+"""Differences between people, on the vertices of the built-in head: modes, and random persons.
 
 A person is the mean with a weight for each mode; a weight of 1 is one deviation of people. The
-modes were fitted to those of ICT-FaceKit as the head's form was (docs/head.md), and turned so that
-the first ones move the face most (principal components). They know neither sex nor age.
+modes were fitted to those of ICT-FaceKit like the head's form (docs/head.md), and turned so that
+the first ones move the face most (principal components). They depend on neither sex nor age.
 
 Weights are drawn from the distribution of people, widened 1.1 to 1.2 times except for the size of
 the head. Sex and age move its mean: the sexes lie as far apart as the published measures of women
 and men (`assets.norms`). Some points move, too (brow ridge, jaw and chin of men; skin that sags);
-these amounts are chosen by eye, after anatomists. The norms are of
-Europeans. For each person a random share, 0 to 1, of the way from the mean of all people with these
-modes to the means of the norms is taken. Neither this share nor the form depends on the tone of the
-skin: this independence is an assumption.
-Source: Blanz, Vetter 1999, "A morphable model for the synthesis of 3D faces".
+these amounts are chosen by eye, after anatomists. The norms are of Europeans. For each person, the
+middle lies at a random share, 0 to 1, of the way from the mean of all people with these modes to
+the means of the norms. Neither this share nor the form depends on the tone of the skin: this
+independence is an assumption. Source: Blanz, Vetter 1999, "A morphable model for the synthesis of
+3D faces".
 
-Three widths were taken with calipers, which press on the skin over the bone (`norms`). A surface is
-wider there: on three scanned persons the jaw is 1.3 times as wide as the outer eye corners are
-apart, where the norms have 1.15. So the depth of the pressure is added; its amount is chosen by
-these three.
+Three widths were measured with calipers, which press on the skin over the bone (`norms`). A surface
+is wider there: on three scanned persons the ratio of the jaw's width to the distance of the outer
+eye corners is 1.3, in the norms 1.15. So the depth of this pressure is added; its amount is chosen
+by these three persons.
 """
 
 from __future__ import annotations
@@ -39,12 +39,13 @@ from .population import EVERYBODY, Population
 from .smiles import USUAL_SMILE, Smile, drawn_smile
 
 MOST = 2.5  # deviations
-PRESSED = {"go-go": 10.0, "zy-zy": 4.0, "ft-ft": 2.0}  # [mm] by calipers, both sides together
-YOUNG = 30.0  # [years] from which on age is seen
-# Points of the left half, an anatomical name or the number of a landmark, a way that they go, how
-# far ten years take them, and how far a man's lie from a person's of no sex [mm]. Up and forward
-# they are taken from the outer corner of the eye, so that a large head has no low brow. Those of
-# the jaw and the corners of the mouth have half of what parts the published widths and heights.
+PRESSED = {"go-go": 10.0, "zy-zy": 4.0, "ft-ft": 2.0}  # [mm] of calipers, both sides
+YOUNG = 30.0  # [years] from which age is visible
+# Points of the left half: an anatomical name or the number of a landmark, a direction, their way in
+# ten years [mm], and the distance of a man's point from the mean of both sexes [mm]. Upward and
+# forward they are relative to the outer corner of the eye, so that a large head has no low brow.
+# Points of the jaw and the corners of the mouth have half of the difference between published
+# widths and heights.
 POINTS: tuple[tuple[str | int, tuple[float, float, float], float, float], ...] = (
     (24, (0, -1, 0), 0.35, 1.4), (26, (0, -1, 0), 0.35, 1.4), (24, (0, 0, 1), 0.0, 2.6),
     ("glabella", (0, 0, 1), 0.0, 3.1), ("metopion", (0, 0, -1), 0.0, 1.6),
@@ -56,7 +57,7 @@ POINTS: tuple[tuple[str | int, tuple[float, float, float], float, float], ...] =
 
 
 class Sex(Enum):
-    """Whose norms a face is measured by."""
+    """The sex whose norms a face is compared with."""
 
     WOMAN = "woman"
     MAN = "man"
@@ -99,7 +100,7 @@ class Identity:
     lines: Lines | None = None
 
     def scaled(self, share: float) -> Identity:
-        """An identity with a share of all that is its own: 0 is the mean of people."""
+        """An identity with a share of its differences: 0 is the mean of people."""
         kinds = (self.weights, self.unevenness)
         weights, unevenness = (tuple(share * weight for weight in kind) for kind in kinds)
         return replace(self, weights=weights, unevenness=unevenness, brows=share * self.brows)
@@ -111,7 +112,7 @@ def norms_of(sex: Sex) -> dict[str, Sample]:
 
 
 def scores_of(measures: Mapping[str, float], sex: Sex) -> dict[str, float]:
-    """How many deviations measures on the surface [mm] lie above the means of a sex."""
+    """Deviations of measures on the surface [mm] from the means of a sex."""
     return {
         code: sample.score(measures[code] - PRESSED.get(code, 0.0))
         for code, sample in norms_of(sex).items()
@@ -127,9 +128,9 @@ class PersonSpace:
     modes: Floats64
     """Shape (k, V, 3)."""
     slopes: Floats64
-    """How the measures of NORMS change with each weight [mm], shape (m, k)."""
+    """Changes of the measures of NORMS with each weight [mm], shape (m, k)."""
     pushed: Floats64
-    """How POINTS go their way with each weight [mm], shape (n, k)."""
+    """Changes of POINTS along their directions with each weight [mm], shape (n, k)."""
     anatomy: Mapping[str, int]
 
     def moved(self, weights: Floats64) -> Floats64:
@@ -137,23 +138,23 @@ class PersonSpace:
         return np.asarray(np.tensordot(weights, self.modes, 1), dtype=np.float64)
 
     def draw(self, sex: Sex, age: float, random: np.random.Generator) -> Floats64:
-        """The weights of a person of that sex and age [years], shape (k,)."""
+        """Random weights for a sex and an age [years], shape (k,)."""
         chance = np.clip(random.normal(size=len(self.modes)), -MOST, MOST)
         near_norms = float(random.uniform())
         rows, beside, apart = self._measured(sex)
         unit = np.eye(len(self.modes))
-        # Higher, because noses come too far forward without it, brows draw them long, and the skin
-        # above the lips of women comes out as high as men's.
+        # These are higher: without this, noses stand too far forward, brows make them long, and the
+        # skin above women's lips is as high as men's.
         firmness_of = MappingProxyType({"sn-prn": 6.0, "ft-ft": 1.5, "n-sn": 4.0, "sn-ls": 5.0})
         firmly = np.array([firmness_of.get(code, 1.0) for code in NORMS])[:, None]
-        mean_firmness = 4.0  # of published means, beside the modes
+        mean_firmness = 4.0  # weight of published means relative to the modes
         asked = mean_firmness * (firmly * rows).T
         held = unit + asked @ rows
         middle = np.linalg.solve(held, asked @ (near_norms * beside))
         decades = max(age - YOUNG, 0.0) / 10.0
         side = 1.0 if sex is Sex.MAN else -1.0
         far = np.array([decades * older + side * male for _, _, older, male in POINTS])
-        # What ten years do to measures, in deviations.
+        # Changes of measures in ten years, in deviations.
         aged_measures = MappingProxyType(
             {
                 "sn-ls": 0.25,
@@ -169,11 +170,11 @@ class PersonSpace:
         pushes = asked @ (apart + aged) + self.pushed.T @ far / tolerance**2
         own = np.linalg.solve(held + self.pushed.T @ self.pushed / tolerance**2, pushes)
         mean = middle + own
-        # Deviations of the first mode, which is the size of the head, of the second one, and from
-        # the fifth on.
+        # Deviations of the first mode (the size of the head), of the second to fourth, and of the
+        # others.
         widths = {0: 0.6, 1: 1.1, 4: 1.2}
         width = np.interp(np.arange(len(unit)), list(widths), list(widths.values()))
-        most_deviations = 4.0  # of any weight that is drawn
+        most_deviations = 4.0  # of any random weight
         return np.clip(mean + width * chance, -most_deviations, most_deviations)
 
     def _measured(self, sex: Sex) -> tuple[Floats64, Floats64, Floats64]:
@@ -220,22 +221,22 @@ def sample_identity(
     is_even: bool = False,
     population: Population = EVERYBODY,
 ) -> Identity:
-    """The person of a number: the same one every time; even: left and right alike.
+    """The person with a number, always the same; even: left and right are alike.
 
-    seed: 0 and more. sex, age: instead of the number's own.
+    seed: 0 or more. sex, age: replace the number's own.
     """
     random = np.random.default_rng([seed, 17])
     drawn = Sex.WOMAN if random.random() < population.women else Sex.MAN
     sex = drawn if sex is None else sex
     years = float(random.uniform(*population.ages))
     age = years if age is None else age
-    hair_lengths = 0.8, 1.2  # least and most, times those of the cut
+    hair_lengths = 0.8, 1.2  # least and most factor on those of the cut
     hair = float(random.uniform(*hair_lengths))
     cuts = population.cuts_of_women if sex is Sex.WOMAN else population.cuts_of_men
     cut = str(random.choice(list(cuts), p=_normalised(cuts)))
     weights = person_space().draw(sex, age, random)
     sides = np.clip(random.normal(size=len(weights)), -MOST, MOST)
-    unevenness = 0.1  # deviations that the left side has of another person
+    unevenness = 0.1  # deviations of another person, added to the left side
     uneven = (0.0 if is_even else unevenness) * sides
     covered, corners, brows = np.clip(random.normal(size=3), -2.0, 2.0)
     furrows = float(np.clip(1.0 + 0.35 * random.normal(), 0.3, 1.7))

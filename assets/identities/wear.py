@@ -1,7 +1,7 @@
 """Clothes of persons: shirts, masks, and glasses on nose and ears.
 
-Lenses are clear, so only their frame is there. It moves with the head, and keeps off the skin at
-rest. All sizes are chosen by eye, after usual frames (lens 48 mm, bridge 18 mm, temple 140 mm).
+Lenses are clear, so only the frame is drawn. It moves with the head, and does not touch the resting
+skin. All sizes are chosen by eye, after usual frames (lens 48 mm, bridge 18 mm, temple 140 mm).
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ from .wires import Colour, Tube, beside_head, tube
 class Frame:
     """A frame of glasses.
 
-    half_width, half_height: of a lens [mm]. squareness: 2 is an ellipse, more nears a rectangle.
+    half_width, half_height: of a lens [mm]. squareness: 2 is an ellipse; larger numbers approach a
+        rectangle.
     thickness: of the rims [mm]. colour: sRGB. shine: 0 dull, 1 wet; more than a little breaks into
     dashes where a rim is one or two pixels wide.
     """
@@ -57,7 +58,7 @@ def wearing(
 ) -> Person:
     """A person in a shirt of SHIRTS with a collar of COLLARS.
 
-    frame: of FRAMES, or none. cover: a mask of MASKS, or none. Raises KeyError for others.
+    frame: one of FRAMES, or "". cover: a mask of MASKS, or "". Raises KeyError for others.
     """
     parts = [
         in_shirt(part, person.vertices, shirt, collar) if part.bone == "neck" else part
@@ -74,9 +75,9 @@ def wearing(
 
 
 def glasses(person: Person, frame: Frame, nose: Floats64 | None = None) -> Part:
-    """Glasses that fit a person; nose: points that they sit on, (n, 3), else the skin's."""
+    """Glasses that fit a person; nose: points that carry them, (n, 3); None: the skin."""
     skin = person.vertices
-    farthest = 9.0 if nose is None else 20.0  # [mm] that they may move forward, on skin or a mask
+    farthest = 9.0 if nose is None else 20.0  # [mm] that they may move forward
     nose = skin if nose is None else nose
     eyes = {eye.name: eye for eye in person.eyes}
     middle = 0.5 * (eyes["left"].centre + eyes["right"].centre)

@@ -16,9 +16,9 @@ Colour = tuple[float, float, float]
 
 
 def beside_head(skin: Floats64, start: Floats64, end: Floats64, radius: float) -> Floats64:
-    """A path of a wire from a start before the ear to an end above or below it, (24, 3).
+    """A path of a wire from in front of the ear to an end above or below it, (24, 3).
 
-    It keeps off the skin of the head. radius: of the wire [mm].
+    It does not touch the skin of the head. radius: that of the wire [mm].
     """
     side = np.sign(start[0])
     share = np.linspace(0.0, 1.0, 24)[:, None]
