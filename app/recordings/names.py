@@ -1,4 +1,4 @@
-"""The channels of a take: the names that every reader of recordings answers in, and their units.
+"""The channels of a take: the names that every reader of recordings uses, and their units.
 
     mouthSmileLeft ...      the 52 shapes of Apple's ARKit, 0 to 1, and a little beyond by noise
     AU12, AU12_left ...     action units, 0 to 1 (intensity E is 1)
@@ -7,7 +7,7 @@
     eye_yaw_left, eye_pitch_left, eye_yaw_right, eye_pitch_right    [degrees], in the head's frame
 
 Left and right are the subject's own. Angles grow to the subject's left, up, and (roll) to the left
-shoulder, as the controls do. Readers turn signs and units of a format; nobody after them does.
+shoulder, like the controls. Only readers convert the signs and units of a format.
 
 Programs spell them in many ways: `mouthSmile_L`, `MouthSmileLeft`, `blendShapes.mouthSmileLeft` and
 `mouth_smile_left` are one name; the functions below find it.
@@ -38,9 +38,9 @@ ARKIT = (
     "cheekPuff", "cheekSquintLeft", "cheekSquintRight", "noseSneerLeft", "noseSneerRight",
     "tongueOut",
 )  # fmt: skip
-"""The 52 shapes in the order in which ARKit counts them, as packets without names do."""
+"""The 52 shapes in ARKit's order, which packets without names use."""
 
-NONSENSE = 3.0  # a shape beyond is no measurement
+NONSENSE = 3.0  # a larger shape is no measurement
 LARGEST_ANGLE = 360.0  # [degrees]; a larger one is no measurement
 HEAD_ANGLES = ("head_yaw", "head_pitch", "head_roll")
 EYE_ANGLES = ("eye_yaw_left", "eye_pitch_left", "eye_yaw_right", "eye_pitch_right")
@@ -53,7 +53,7 @@ ACTION_UNIT = re.compile(
     r"au[ _]?0*([1-9]\d?)(?:[ _]?(r|c|l|left|right))?"
     r"(?:[ _.-]?(int(?:ensity)?|detection|detected|presence|present|binary|occurrence))?$"
 )
-OCULUS_VOWELS = {"i": "ih", "o": "oh", "u": "ou", "e": "E"}  # of its visemes -> ours
+OCULUS_VOWELS = {"i": "ih", "o": "oh", "u": "ou", "e": "E"}  # Oculus' visemes -> ours
 _SOUND = {name.removeprefix("viseme_").casefold(): name for name in VISEMES}
 
 
@@ -64,12 +64,12 @@ def measured(name: str, values: Floats64) -> Floats64:
 
 
 def letters_of(name: str) -> str:
-    """The name without capitals and what stands between words."""
+    """The name in lower case, without separators between words."""
     return re.sub(r"[^a-z0-9]", "", name.casefold())
 
 
 def _spellings() -> dict[str, str]:
-    """Letters -> shape; sides also as L and R, in front or behind."""
+    """Letters -> shape; sides also as L and R, before or after the name."""
     found = {}
     for name in ARKIT:
         found[letters_of(name)] = name
@@ -97,9 +97,9 @@ _ANGLES = _angle_spellings()
 class Unit:
     """An action unit that a column holds.
 
-    side: "_left", "_right", "" for both or unknown. is_short_right: the file writes the letter
-    R alone, which means intensity in OpenFace's files that have no L. kind: "intensity",
-    "detection", "" if the name does not say.
+    side: "_left", "_right", or "" for both or unknown. is_short_right: whether the name only has
+    the letter R, which means intensity in OpenFace's files without an L. kind: "intensity",
+    "detection", or "" if the name does not show it.
     """
 
     number: int
@@ -135,7 +135,7 @@ def shape_of(column: str) -> str | None:
 
 
 def angle_of(column: str) -> str | None:
-    """The angle of head or eye that a column holds, unit and sign aside."""
+    """The angle of head or eye that a column holds, without its unit and sign."""
     return _ANGLES.get(letters_of(column))
 
 

@@ -1,4 +1,4 @@
-"""OpenFace's CSV (1 and 2): action units 0 to 5, head pose, and gaze as the camera sees it.
+"""OpenFace's CSV (1 and 2): action units 0 to 5, head pose, and gaze in the camera's axes.
 
 Source: OpenFace's wiki, "Output Format". The camera's x points to the subject's left, y down:
 pose_Rx + is down, pose_Ry + to the subject's right, pose_Rz + to the subject's left shoulder;
@@ -58,7 +58,7 @@ def read(table: Table, request: TakeRequest) -> Take:
     units = without_rows({name: numbers[name] for name in found}, lost)
     scaling: list[str] = []
     channels = intensities(units, scaling)
-    if any("divided by 5." in note for note in scaling):  # as OpenFace itself writes them
+    if any("divided by 5." in note for note in scaling):  # the values are OpenFace's own
         scaling.clear()
     elif not scaling and units:
         scaling.append("Action units go no higher than 1, and were taken for 0 to 1, not 0 to 5.")
@@ -84,9 +84,9 @@ def read(table: Table, request: TakeRequest) -> Take:
 def _eyes(
     numbers: dict[str, Floats64], head: dict[str, Floats64], notes: list[str]
 ) -> dict[str, Floats64]:
-    """Both eyes' angles in the head: the gaze that the camera sees, less the head's own turn.
+    """Both eyes' angles in the head: the gaze in the camera's axes minus the head's turn.
 
-    A camera stands above the screen that people look at, so that their gaze is never 0.
+    A camera stands above the screen that people look at, so their gaze is never 0.
     """
     if set(GAZE) <= numbers.keys():
         across = numbers[GAZE[0]]

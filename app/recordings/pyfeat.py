@@ -2,11 +2,11 @@
 
 Versions differ in the head's angles: those before 0.7 write degrees, Pitch + up, later ones
 radians, Pitch + down. Yaw + is to the subject's right; Roll + to the subject's left shoulder, in
-version 2 to the right one. This was found by comparing angles in files of theirs with the landmarks
-beside them, in version 2 of yaw and roll alone. No version gives a time but the number of a frame.
+version 2 to the right one. A comparison of angles with landmarks in files of py-feat showed this;
+for version 2 it covered yaw and roll alone. No version gives times, only numbers of frames.
 
 Version 2 measures most of the face twice. Its shapes have a side and a strength, its units only a
-probability. So the shapes count, and of the units those which MediaPipe never sees: AU6, AU9.
+probability. So the shapes count, and also the units that MediaPipe never sees: AU6, AU9.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def _head(numbers: dict[str, Floats64], is_second: bool, notes: list[str]) -> di
     if not pose:
         return {}
     size = max(float(np.nanpercentile(np.abs(values), 90)) for values in pose.values())
-    largest_radians = 1.6  # a head that is seen turns no further
+    largest_radians = 1.6  # a visible head turns no further
     is_early = size > largest_radians
     notes.append(
         f"Angles of the head reach {size:.2g} and were taken for "

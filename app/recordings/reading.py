@@ -1,7 +1,7 @@
 """A file -> a Take: its format is recognised from its content, never from its name.
 
-`TABLES` and `DOCUMENTS` list the formats, the most special first. A new one is two functions, one
-that recognises it and one that reads it, and a row here.
+`TABLES` and `DOCUMENTS` list the formats, the most special first. A new format needs two functions,
+to recognise and to read it, and a row here.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from . import mediapipe_json, named_columns, openface, pyfeat, speech
 from .table import Table, header_of, table_in
 from .take import Take, TakeRequest
 
-# Of each kind of table: whether the names of columns are its own, and how it is read.
+# For each kind of table: a test of the columns' names, and a reader.
 TABLES: Sequence[tuple[Callable[[tuple[str, ...]], bool], Callable[[Table, TakeRequest], Take]]] = (
     (named_columns.is_live_link, named_columns.read),
     (pyfeat.recognises, pyfeat.read),
     (openface.recognises, openface.read),
     (named_columns.recognises, named_columns.read),
 )
-# Of each kind of JSON: whether the document is of it, and how it is read from which file.
+# For each kind of JSON: a test of the document, and a reader.
 DOCUMENTS: Sequence[tuple[Callable[[Any], bool], Callable[[Any, str, TakeRequest], Take]]] = (
     (speech.recognises_tracks, speech.read_tracks),
     (speech.recognises_cues, speech.read_cues),
@@ -38,7 +38,7 @@ DOCUMENTS: Sequence[tuple[Callable[[Any], bool], Callable[[Any, str, TakeRequest
 LONGEST_FILE = 2**29  # [bytes]; ten minutes of py-feat's 2183 columns are about as long
 BEGINNING = 2**16  # [bytes] that show whether a file is a recording; a header of 2183 names fits
 NOT_IN_TEXT = re.compile("[\x00-\x08\x0e-\x1a\x1c-\x1f]")  # characters of no text and no table
-JSON = re.compile(r"\s*(\{|\[\s*(\[\s*)*[\{\]])")  # no script in TOML begins so
+JSON = re.compile(r"\s*(\{|\[\s*(\[\s*)*[\{\]])")  # no TOML script begins like this
 SPEAKS_OF_FACES = re.compile(
     r'"(category_?name|(face_?)?blend_?shapes|mouthcues|viseme_set|facsnames|jaw_?open|'
     r'eyeblink_?l(eft)?|mouthsmile_?l(eft)?|(viseme_)?(pp|sil))"',
@@ -49,8 +49,8 @@ SPEAKS_OF_FACES = re.compile(
 def read_take(path: Path, *, face: str | None = None, rate: float | None = None) -> Take:
     """The take in a file that another program wrote.
 
-    face: which one, where a file holds several; the default is the one seen in most frames.
-    rate: frames a second, where the file's own times are wrong or missing.
+    face: its name, if a file holds several; the default is the face in most frames.
+    rate: frames a second, if the file's own times are wrong or missing.
 
     Raises UserError with the file, the fault, its place, and the allowed values.
     """
@@ -64,7 +64,7 @@ def read_take(path: Path, *, face: str | None = None, rate: float | None = None)
 
 
 def _take_in(text: str, path: Path, request: TakeRequest) -> Take:
-    """The take in a text. UserError as `read_take` has it."""
+    """The take in a text; UserError as in `read_take`."""
     known_kinds = (
         "Live Link Face, OpenFace and py-feat tables, tables with ARKit or AU names above columns, "
         "MediaPipe JSON, OpenFaceFX and Rhubarb tracks"
@@ -88,7 +88,7 @@ def _take_in(text: str, path: Path, request: TakeRequest) -> Take:
 def is_recording(path: Path) -> bool:
     """Whether a file looks like a recording, by its first lines; `read_take` reports faults.
 
-    False for scripts, heads and files that are no text.
+    False for scripts, heads and binary files.
     """
     text = read_beginning(path)
     if JSON.match(text):
@@ -98,7 +98,7 @@ def is_recording(path: Path) -> bool:
 
 
 def _strange(names: tuple[str, ...]) -> str:
-    """The description of a file of no known kind."""
+    """The description of a file of an unknown kind."""
     if len(names) < 2:
         return "is no table and no JSON"
     listed = ", ".join(f"'{name}'" for name in names[:4])
@@ -108,7 +108,7 @@ def _strange(names: tuple[str, ...]) -> str:
 def read_recording(path: Path) -> tuple[str, str]:
     """The whole text of a file, and its encoding.
 
-    UserError if nothing is there, for a file that is too long, and for one without text.
+    UserError for a missing file, a file that is too long, and a file without text.
     """
     content = read_bytes(path, what="recording", longest=LONGEST_FILE)
     if not content.strip():
@@ -122,7 +122,7 @@ def read_recording(path: Path) -> tuple[str, str]:
 
 
 def read_beginning(path: Path) -> str:
-    """The first lines of a file; '' without a file, and for one without text."""
+    """The first lines of a file; '' for a missing file, and for one without text."""
     try:
         content = read_bytes(path, what="recording", longest=LONGEST_FILE, first=BEGINNING)
     except UserError:
@@ -133,7 +133,7 @@ def read_beginning(path: Path) -> str:
 def _decoded(content: bytes) -> tuple[str | None, str]:
     """The text in these bytes, with line ends of one kind, and its encoding.
 
-    None if they are no text. The end of the bytes may be torn.
+    None if they are not text. The end of the bytes may be cut inside a character.
     """
     codec, encoding = _encoding_of(content)
     text = content.decode(codec, errors="replace")
@@ -143,7 +143,7 @@ def _decoded(content: bytes) -> tuple[str | None, str]:
 
 
 def _encoding_of(content: bytes) -> tuple[str, str]:
-    """Python's codec of a text, and its name, by the mark at the beginning or by the bytes."""
+    """Python's codec of a text, and the encoding's name, from its mark or its bytes."""
     if content.startswith((codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE)):
         return "utf-32", "UTF-32"
     if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):

@@ -1,4 +1,4 @@
-"""The report on a take that is played: its kind, and the channels that move the face.
+"""The report on a played take: its kind, and the channels that move the face.
 
 The first line has its kind. Below it stand a few short lines, aligned; one screen at most.
 """
@@ -34,7 +34,7 @@ class Report:
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """All of it, as a terminal shows it."""
+        """The whole report in lines for a terminal."""
         wide = max((len(heading) for heading, _ in self.rows), default=0)
         shown = [f"{in_one_line(self.source)}: {self.recognised}"]
         width = 100  # [characters] of a line
@@ -54,7 +54,7 @@ class Report:
 
     @property
     def in_brief(self) -> str:
-        """All of it in a line, for the window's message."""
+        """The whole report in one line, for the window's message."""
         name = Path(self.source).name
         count = len(self.notes)
         return f"{name}: {self.recognised}" + (f"; {counted(count, 'note')}" if count else "")
@@ -89,7 +89,7 @@ def _recognised(take: Take) -> str:
 
 
 def _still(take: Take) -> set[str]:
-    """Channels that never change; of a single frame those that are 0."""
+    """Channels that never change; for a single frame, those at 0."""
     if len(take.times) == 1:
         return {name for name, values in take.channels.items() if not values.any()}
     return {name for name, values in take.channels.items() if not np.ptp(values)}
@@ -108,8 +108,8 @@ def _used(names: set[str]) -> str:
 
 
 def _neutral(calibration: Calibration) -> str:
-    """How far the face is from 0 at rest, and where most."""
-    slight_value = 0.02  # of a neutral channel, which is not worth a line
+    """Distance of the resting face from 0, and its largest channels."""
+    slight_value = 0.02  # of a neutral channel, too small for the report
     neutral = {
         name: abs(value)
         for name, value in calibration.neutral.items()

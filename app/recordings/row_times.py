@@ -1,4 +1,4 @@
-"""Times of rows by the numbers beside them: frames that are counted, and rows that share a time."""
+"""Times of rows by their numbers: counted frames, and rows that share a time."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def frame_times(
 
 
 def spread(values: Floats64, notes: list[str]) -> Floats64:
-    """Values that repeat over several rows, spread evenly so that each row has its own.
+    """Values that repeat over several rows, spread evenly, so that each row has its own value.
 
     A clock that counts seconds, or timecode of 30 for rows of 60 a second, gives one time to a
     group of rows.
@@ -51,7 +51,7 @@ def spread(values: Floats64, notes: list[str]) -> Floats64:
     usual = float(np.median(lengths))
     quantum = float(np.median(jumps[jumps > 0.0]))
     place = np.arange(len(there)) - np.repeat(starts, lengths).astype(np.float64)
-    place[: lengths[0]] += max(usual - lengths[0], 0.0)  # the first group began before the file
+    place[: lengths[0]] += max(usual - lengths[0], 0.0)  # the first group may begin before the file
     whole_lengths = np.maximum(lengths, usual)
     found = values.copy()
     found[known] = there + quantum * place / np.repeat(whole_lengths, lengths)

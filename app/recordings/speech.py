@@ -1,7 +1,7 @@
-"""Speech: visemes in JSON as OpenFaceFX writes them, mouth shapes of Rhubarb Lip Sync.
+"""Speech in JSON: visemes of OpenFaceFX, and mouth shapes of Rhubarb Lip Sync.
 
 OpenFaceFX shares each moment among fifteen visemes, so that the lips' weight is about 0.4 where
-they meet: far too little to shut them. Its peaks of PP and FF are raised to what contact needs, and
+they meet: far too little to shut them. Its peaks of PP and FF are raised until lips touch, and
 silence to 1, at the cost of all others. Rhubarb has one of nine mouth shapes for each stretch of
 time (its manual, "Mouth shapes").
 """
@@ -54,7 +54,7 @@ class _Track(Record):
 
 @dataclass(frozen=True)
 class _Tracks(Record):
-    """What OpenFaceFX writes."""
+    """The document of OpenFaceFX."""
 
     others: Rest[Any]
     channels: list[_Track]
@@ -62,7 +62,7 @@ class _Tracks(Record):
 
 @dataclass(frozen=True)
 class _Cue(Record):
-    """A mouth shape and when it begins."""
+    """A mouth shape and its beginning."""
 
     others: Rest[Any]
     start: Time
@@ -72,7 +72,7 @@ class _Cue(Record):
 
 @dataclass(frozen=True)
 class _Cues(Record):
-    """What Rhubarb Lip Sync writes as JSON."""
+    """The JSON document of Rhubarb Lip Sync."""
 
     others: Rest[Any]
     mouth_cues: Annotated[list[_Cue], called("mouthCues")]
@@ -110,12 +110,12 @@ def read_tracks(document: Any, source: str, request: TakeRequest) -> Take:
 
 
 def _made_clear(channels: dict[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
-    """Weights that shut the lips where they are to meet, and that rest in silence."""
-    clear_peak = 0.8  # tracks whose peaks are higher are clear enough
+    """Weights raised so that lips meet where they must, and the mouth rests in silence."""
+    clear_peak = 0.8  # tracks with higher peaks are clear enough
     if max(float(values.max()) for values in channels.values()) > clear_peak:
         return channels
     found = dict(channels)
-    least_peaks = {"viseme_PP": 1.0, "viseme_FF": 0.9}  # that a sound needs
+    least_peaks = {"viseme_PP": 1.0, "viseme_FF": 0.9}  # weight that a sound needs
     for name, wanted in least_peaks.items():
         if name in found and (height := _height(found[name])):
             found[name] = np.minimum(found[name] * (wanted / height), wanted)
@@ -128,22 +128,22 @@ def _made_clear(channels: dict[str, Floats64], notes: list[str]) -> dict[str, Fl
 
 
 def _height(values: Floats64) -> float:
-    """How high the peaks of a track are, in the middle; 0 if it has none."""
+    """The median height of a track's peaks; 0 without peaks."""
     edged = np.concatenate([[-1.0], values, [-1.0]])
-    least_peak = 0.1  # a lower one is a neighbour's shadow
+    least_peak = 0.1  # a lower peak belongs to a neighbouring sound
     is_peak = (values >= edged[:-2]) & (values >= edged[2:]) & (values > least_peak)
     return float(np.median(values[is_peak])) if is_peak.any() else 0.0
 
 
 def recognises_cues(document: Any) -> bool:
-    """Whether the document is what Rhubarb Lip Sync writes as JSON."""
+    """Whether the document is one of Rhubarb Lip Sync."""
     return isinstance(document, dict) and isinstance(document.get("mouthCues"), list)
 
 
 def read_cues(document: Any, source: str, request: TakeRequest) -> Take:
     """The take in `{"mouthCues": [{"start": 0.0, "end": 0.2, "value": "A"}]}`.
 
-    Mouth shapes hold, and go over into each other around the moments of change.
+    Mouth shapes hold, and blend into each other around the moments of change.
     """
     request.refuse_face(source)
     written = read_table(_Cues, document, source, error=UserError)
@@ -154,7 +154,7 @@ def read_cues(document: Any, source: str, request: TakeRequest) -> Take:
     cues = sorted((cue.start, cue.value) for cue in given)
     starts = np.array([start for start, _ in cues])
     ends = np.append(starts[1:], max(end, starts[-1]))
-    transition = 0.08  # [s] in which one mouth shape goes over to the next
+    transition = 0.08  # [s] in which one mouth shape changes into the next
     half = np.minimum(
         (ends - starts) / 2.0, transition / 2.0
     )  # of its way out, and of the next one's in
@@ -179,13 +179,13 @@ def read_cues(document: Any, source: str, request: TakeRequest) -> Take:
 
 
 def _sound_of(metadata: Any, source: str, notes: list[str]) -> Path | None:
-    """The sound file that Rhubarb heard: where it was then, or beside the recording."""
+    """The sound file that Rhubarb used: at its old place, or beside the recording."""
     name = metadata.get("soundFile") if isinstance(metadata, dict) else None
     if not isinstance(name, str) or not name:
         return None
     folder = Path(source).parent
     for path in (folder / name, folder / PureWindowsPath(name).name):
-        with contextlib.suppress(OSError, ValueError):  # a name that no file can have
+        with contextlib.suppress(OSError, ValueError):  # an impossible name
             if path.is_file():
                 notes.append(f"The sound is '{path.name}', which the file names.")
                 return Path(os.path.abspath(path))

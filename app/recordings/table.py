@@ -1,12 +1,12 @@
 """A table in a text: names above columns, with commas, tabs, blanks and the like between cells.
 
-Plain lines stay as they are. Lines with blanks between cells, quoted cells or decimal commas are
-taken apart by the csv module and put together again with `CLEAN` between cells.
+Plain lines stay as they are. The csv module divides lines with blanks between cells, quoted cells
+or decimal commas, and they are joined again with `CLEAN` between cells.
 
-Numbers are read by `numpy.loadtxt`, whose parser is compiled: ten minutes of 60 frames a second
-(36 000 rows of 63 columns) take about 0.7 s. pandas and polars need 0.2 s, but bring 80 MB and more
-for one function, and stop or guess at rows that are too short, which are found and reported here.
-The csv module alone took 2 to 3 s.
+Numbers are read by `numpy.loadtxt`, whose parser is compiled: ten minutes of 60 frames a second (36
+000 rows of 63 columns) take about 0.7 s. pandas and polars need 0.2 s, but are 80 MB or more for
+one function, and stop or guess at short rows, which this module finds and reports. The csv module
+alone took 2 to 3 s.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .take import TakeRequest
 
 LARGEST = 1e30  # a larger number is no measurement; nanoseconds since 1970 are 1.8e18
 FACE_COLUMNS = ("face_id", "identity", "face_idx", "faceid", "face")
-MOST_LISTED = 8  # faces in a message
+MOST_LISTED = 8  # faces that a message lists
 DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "blanks"}
 CLEAN = "\x1f"  # the unit separator of ASCII, which no cell holds
 DECIMAL_COMMA = re.compile(r"[-+]?(\d*|\d{1,3}(\.\d{3})+),\d+(e[-+]?\d+)?", re.IGNORECASE)
@@ -51,13 +51,13 @@ class Layout:
 
     @property
     def is_plain(self) -> bool:
-        """Whether a line can be split at its delimiters, without more."""
+        """Whether a line can simply be split at its delimiters."""
         is_written_oddly = self.is_quoted or self.has_decimal_commas or self.has_percents
         return not is_written_oddly and self.delimiter != " "
 
     @property
     def notes(self) -> list[str]:
-        """The guess in one sentence; none of plain cells between commas."""
+        """The guess in one sentence; none for plain cells between commas."""
         if self.is_plain and self.delimiter == ",":
             return []
         guessed = [f"{DELIMITERS[self.delimiter]} between cells"]
@@ -95,7 +95,7 @@ class Layout:
 
 
 def without_percent(cell: str) -> str:
-    """`12%` as `0.12`; another cell as it is."""
+    """`12%` as `0.12`; any other cell unchanged."""
     if not cell.endswith("%"):
         return cell
     try:
@@ -109,9 +109,9 @@ class Table:
     """Rows of cells under names.
 
     source: the file, for error messages.
-    names: of the columns, as the file spells them, without blanks around.
+    names: those of the columns in the file's spelling, without surrounding blanks.
     lines: the text of each row; all have as many cells as there are names.
-    line_numbers: of each row in the file, counted from 1.
+    line_numbers: number of each row in the file, counted from 1.
     delimiter: the character between the cells of `lines`.
     notes: oddities of the file, each one sentence.
     """
@@ -125,7 +125,7 @@ class Table:
 
     @property
     def places(self) -> dict[str, int]:
-        """Name without capitals -> number of the first column that is called so."""
+        """Name in lower case -> number of the first column with this name."""
         return {name.casefold(): number for number, name in reversed([*enumerate(self.names)])}
 
     def cells(self, column: int) -> list[str]:
@@ -133,7 +133,7 @@ class Table:
         return [line.split(self.delimiter, column + 1)[column].strip() for line in self.lines]
 
     def cells_of(self, name: str) -> list[str]:
-        """The text in the first column with this name, capitals aside."""
+        """The text in the first column with this name, in capitals or not."""
         return self.cells(self.places[name.casefold()])
 
     def numbers_of(self, places: Mapping[str, int]) -> dict[str, Floats64]:
@@ -162,15 +162,15 @@ class Table:
 
 
 def header_of(text: str) -> tuple[str, ...]:
-    """The names in the first line that is one; none: there is no table."""
+    """The names in the first line that is a header; none if there is no table."""
     first = next((line for _, line in _lines_of(text) if not _is_empty(line)), "")
     return _names_in(first, _layout_of(text, first))
 
 
 def _names_in(header: str, layout: Layout) -> tuple[str, ...]:
-    """The names in the first row; none where it has no names."""
+    """The names in the first row; none if it is not a header."""
     names = tuple(cell.strip() for cell in _cells_of(header, layout))
-    longest_name = 80  # [characters] of a column; a longer name is no header
+    longest_name = 80  # [characters] of a column's name; a longer one is no header
     is_header = all(len(name) <= longest_name for name in names) and any(
         re.search(r"[^\W\d]", name) for name in names
     )
@@ -178,7 +178,7 @@ def _names_in(header: str, layout: Layout) -> tuple[str, ...]:
 
 
 def table_in(text: str, *, source: str) -> Table:
-    """The table in a text, but a row at its end that is torn. UserError for other wrong rows."""
+    """The table in a text, without a torn row at its end. UserError for other wrong rows."""
     numbered = [(number, line) for number, line in _lines_of(text) if not _is_empty(line)]
     layout = _layout_of(text, numbered[0][1])
     names = _names_in(numbered[0][1], layout)
@@ -194,9 +194,7 @@ def table_in(text: str, *, source: str) -> Table:
     if not rows:
         raise UserError(f"{source}: has a header and no rows below it; nothing was recorded")
     counts = {count for _, count, _ in rows}
-    if counts == {
-        len(names) + 1
-    }:  # row names that the header leaves out, or a delimiter at the end
+    if counts == {len(names) + 1}:  # row names without a header, or a delimiter at the end
         is_at_end = all(not line.rpartition(delimiter)[2].strip() for _, _, line in rows)
         names = (*names, "") if is_at_end else ("", *names)
         if not is_at_end:
@@ -213,7 +211,7 @@ def table_in(text: str, *, source: str) -> Table:
 
 
 def repeated_columns(names: Sequence[str]) -> list[str]:
-    """A sentence where columns have the same name; OpenFace's `x_0` is another than its `X_0`."""
+    """A sentence if columns have the same name; OpenFace's `x_0` and `X_0` differ."""
     counts = Counter(name for name in names if name)
     repeated = [name for name, count in counts.items() if count > 1]
     if not repeated:
@@ -236,13 +234,13 @@ def _is_empty(line: str) -> bool:
 
 
 def _layout_of(text: str, header: str) -> Layout:
-    """The layout: the delimiter that makes most cells of the header, which has no numbers."""
+    """The layout: its delimiter gives the header most cells, none of which is a number."""
     quote = "'" if header.lstrip().startswith("'") else '"'
-    decimals_sought = 2**16  # characters of the text in which a decimal comma is looked for
+    decimals_sought = 2**16  # characters of the text that are searched for a decimal comma
     sample = [*_lines_of(text[:decimals_sought])]
     best = _with_delimiter(header, sample, quote)
     best = replace(best, is_quoted=quote in text)
-    # A comma in a cell can only be found where commas do not part cells, or where quotes do.
+    # A comma in a cell can only be found if commas do not separate cells, or if cells are quoted.
     if best.is_plain and best.delimiter == "," and "%" not in text[:decimals_sought]:
         return best
     cells = [cell.strip() for _, row in best.rows_of(sample) for cell in row]
@@ -258,9 +256,9 @@ def _layout_of(text: str, header: str) -> Layout:
 def _with_delimiter(header: str, sample: Sequence[tuple[int, str]], quote: str) -> Layout:
     """The layout whose delimiter parts the header, and the row below it, into most cells.
 
-    A row may have one cell more or less than the header: a name of its own, or nothing behind the
-    last delimiter. Blanks part words, too: they count where nothing else parts cells, and where the
-    row has numbers and the header none.
+    A row may have one cell more or less than the header: its own name, or nothing after the last
+    delimiter. Blanks also separate words: they only count if no other delimiter fits, and the row
+    has numbers but the header has none.
     """
     rows = [line for _, line in sample if not _is_empty(line)]
     row = rows[1] if len(rows) > 1 else header
@@ -292,7 +290,7 @@ def _is_number(cell: str) -> bool:
 
 
 def _cells_of(line: str, layout: Layout) -> list[str]:
-    """The cells in one line; none where one is longer than any cell is."""
+    """The cells in one line; none if one is too long for a cell."""
     try:
         return next((cells for _, cells in layout.rows_of([(1, line)])), [])
     except csv.Error:
@@ -304,7 +302,7 @@ def _cleaned(
 ) -> list[tuple[int, int, str]]:
     """Number, count of cells and text of each row, with `CLEAN` between cells.
 
-    A line whose quote nothing closes is left out, with a note: it costs no other row.
+    A line with an unclosed quote is left out, with a note; no other row is lost.
     """
     rows = _rows_in(numbered, layout)
     if rows is not None and len({count for _, count, _ in rows[:-1]}) <= 1:
@@ -325,7 +323,7 @@ def _cleaned(
 def _rows_in(
     numbered: Sequence[tuple[int, str]], layout: Layout
 ) -> list[tuple[int, int, str]] | None:
-    """The rows as `_cleaned` has them; None if a quote is not closed, or only by another row."""
+    """The rows of `_cleaned`; None if a quote is not closed, or only by another row."""
     rows: list[tuple[int, int, str]] = []
     is_closed = True
     try:
@@ -342,7 +340,7 @@ def _rows_in(
 def one_face(table: Table, request: TakeRequest) -> Table:
     """The rows of the named face, or of the face that most rows show.
 
-    UserError for a face that is not there. Faces are called as the file calls them.
+    UserError for a missing face. Faces have the file's names.
     """
     places = table.places
     column = next((places[name] for name in FACE_COLUMNS if name in places), None)

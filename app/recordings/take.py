@@ -1,4 +1,4 @@
-"""A recording of a face, of any program: channels over time; and the request to a reader."""
+"""A recording of a face by any program: channels over time; and the request to a reader."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ class TakeRequest:
 
 @dataclass(frozen=True)
 class Take:
-    """Channels over time, in the names and units of names.py; as recorded, not yet calibrated.
+    """Channels over time, with the names and units of names.py, not yet calibrated.
 
-    kind: what wrote it, as a report calls it ("Live Link Face", "OpenFace 2", ...).
+    kind: the program that wrote it ("Live Link Face", "OpenFace 2", ...).
     source: the file, for error messages.
-    times: of each frame [s], shape (T,), from 0 and strictly rising; T is at least 1.
+    times: time of each frame [s], shape (T,), from 0 and strictly rising; T is at least 1.
     channels: name -> values, shape (T,); finite.
-    is_calibrated: whether the neutral face was taken away already.
+    is_calibrated: whether the neutral face was already subtracted.
     notes: values that were guessed, skipped or left out, each one sentence.
-    unknown: columns that no reader knows, as the file spells them.
+    unknown: unknown columns in the file's spelling.
     has_keys: whether times are those of keys with straight lines between them, not of frames.
-    sound: the file of the sound that the recording names, if it exists.
+    sound: the sound file that the recording names, if it exists.
     """
 
     kind: str

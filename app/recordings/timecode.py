@@ -1,4 +1,4 @@
-"""Timecode: frames are counted behind the seconds, as in `10:32:09:07.867`; drop-frame with `;`.
+"""Timecode: it counts frames after the seconds, `10:32:09:07.867`; drop-frame has `;`.
 
 Source: SMPTE 12M.
 """
@@ -20,7 +20,7 @@ TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})([:;])(\d{1,6}(?:\.\d+)?)$"
 def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> Floats64:
     """Times [s] of timecode, HH:MM:SS:FF.fraction; NaN where a cell has none.
 
-    rate: frames a second that the user knows; it counts where the timecode agrees.
+    rate: frames a second from the user; it counts if the timecode agrees.
     """
     parts = np.full((len(cells), 4), np.nan)  # hours, minutes, seconds, frames with their fraction
     has_semicolon = False
@@ -32,7 +32,7 @@ def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -
     known = np.isfinite(numbers)
     seconds = np.unwrap(parts[known, :3] @ (3600.0, 60.0, 1.0), period=DAY)  # also over midnight
     base, is_sure = _base_of(seconds, numbers[known])
-    pace = base  # frames a second in truth: 29.97 of a timecode that counts to 30
+    pace = base  # true frames a second: 29.97 for a timecode that counts to 30
     if rate is not None:
         if not is_sure and round(rate) > numbers[known].max():
             base = float(round(rate))
@@ -66,10 +66,10 @@ def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -
 
 
 def _base_of(seconds: Floats64, numbers: Floats64) -> tuple[float, bool]:
-    """The frames that timecode counts in a second, and whether it turns over often enough to show.
+    """The frames that timecode counts in a second, and whether enough seconds show this.
 
-    seconds: whole, shape (T,). numbers: of frames in their second, shape (T,). Where the frames of
-    one second end and the next begin, the usual step is missing just this count.
+    seconds: whole, shape (T,). numbers: those of frames in their second, shape (T,). Where one
+    second ends and the next begins, the number falls short of the usual step by this count.
     """
     highest = float(numbers.max())
     rates = (  # [frames / s], as timecode counts them
@@ -92,7 +92,7 @@ def _base_of(seconds: Floats64, numbers: Floats64) -> tuple[float, bool]:
 
 
 def _dropped(parts: Floats64, base: float) -> int:
-    """How many numbers drop-frame timecode leaves out at minutes; 0 where those are in the file.
+    """Numbers that drop-frame timecode leaves out at minutes; 0 if the file has them.
 
     parts: hours, minutes, seconds, frames, shape (T, 4). Every tenth minute has all numbers.
     """
@@ -105,9 +105,9 @@ def _dropped(parts: Floats64, base: float) -> int:
 
 
 def _jumps_at_minutes(seconds: Floats64, numbers: Floats64, base: float) -> bool:
-    """Whether as many frames as drop-frame timecode leaves out are missing at most minutes.
+    """Whether most minutes lack the frame numbers that drop-frame timecode leaves out.
 
-    seconds: whole, shape (T,). numbers: of frames in their second, shape (T,).
+    seconds: whole, shape (T,). numbers: those of frames in their second, shape (T,).
     """
     steps = np.diff(seconds * base + numbers)
     minutes = seconds // 60.0
@@ -119,10 +119,10 @@ def _jumps_at_minutes(seconds: Floats64, numbers: Floats64, base: float) -> bool
 
 
 def with_colons(cells: list[str]) -> list[str]:
-    """Timecode with a colon before its frames, also where the file has a point there.
+    """Timecode with a colon before its frames, even if the file has a point there.
 
-    Two digits behind the point are hundredths of a second unless they never reach 60: then they
-    count frames, at least 24 of them.
+    Two digits after the point are hundredths of a second. If they never reach 60, they count frames
+    instead, at least 24 a second.
     """
     if not cells or not all(re.fullmatch(r"\d+:\d+:\d+\.\d\d", cell) for cell in cells if cell):
         return cells

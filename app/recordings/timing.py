@@ -1,8 +1,8 @@
-"""When each row of a recording was seen: from timecode, a clock, a time stamp, or frame numbers.
+"""The time of each row of a recording: from timecode, a clock, a time stamp or frame numbers.
 
-Timecode counts frames behind its seconds (SMPTE 12M): `10:32:09:07.867`, drop-frame with `;`. A
-clock has a fraction of the second there: `10:32:09.129`, perhaps behind a date or a number of days.
-A time stamp is one number, in a unit that its name or its steps show.
+Timecode counts frames after its seconds (SMPTE 12M): `10:32:09:07.867`, drop-frame with `;`. A
+clock has a fraction of the second there: `10:32:09.129`, perhaps after a date or a number of days.
+A time stamp is one number; its name or its steps show the unit.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ COMPACT_CLOCK = re.compile(  # ISO 8601 in its basic form
     r"(\d{4})(\d\d)(\d\d)T(\d\d)(\d\d)(\d\d(?:[.,]\d+)?)(Z|[-+]\d\d(?::?\d\d)?)?$",
     re.IGNORECASE,
 )
-DURATION = re.compile(  # of ISO 8601, in cells that are no number
+DURATION = re.compile(  # of ISO 8601, in cells that are not numbers
     r"(?P<sign>[-+]?)P(?=.*\d)(?:(?P<days>[\d.,]+)D)?"
     r"(?:T(?:(?P<hours>[\d.,]+)H)?(?:(?P<minutes>[\d.,]+)M)?(?:(?P<seconds>[\d.,]+)S)?)?$",
     re.IGNORECASE,
@@ -42,8 +42,8 @@ MEASURED = re.compile(
     r"(?P<number>[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e[-+]?\d+)?)\s*(?P<unit>[a-zµμ]+)$",
     re.IGNORECASE,
 )
-SHORTEST_STEP = 0.004  # [s] between frames; shorter ones are no seconds
-UNITS = (  # shortest step, longest step, of which length [s]; of a time stamp
+SHORTEST_STEP = 0.004  # [s] between frames; shorter steps are not seconds
+UNITS = (  # of time stamps: shortest step, longest step, unit [s]
     (SHORTEST_STEP, 2.5, 1.0, "seconds"),
     (4.0, 2.5e3, 1e-3, "milliseconds"),
     (4e3, 2.5e6, 1e-6, "microseconds"),
@@ -61,8 +61,8 @@ SPELLED_UNITS = {
 class Stamp:
     """A column name that stands for time.
 
-    place: in STAMPS; of several columns the first in STAMPS counts. unit: the unit in the name
-    [s], None if it has none.
+    place: place in STAMPS; the first of several columns counts. unit: the unit in the name [s], or
+    None.
     """
 
     place: int
@@ -70,7 +70,7 @@ class Stamp:
 
 
 def stamp_of(name: str) -> Stamp | None:
-    """The meaning of a column or key by its name; None if it is no time."""
+    """The time stamp that a column or key has by its name; None for another name."""
     letters = letters_of(name)
     stamp_names = (  # without the unit behind them; the first that a file has and that rises counts
         "timestamp",
@@ -134,7 +134,7 @@ def is_frame(name: str) -> bool:
 def times_of(table: Table, rate: float | None, notes: list[str]) -> tuple[Floats64, set[str]]:
     """Seconds of each row, shape (rows,), NaN where none is known; and the columns of times.
 
-    rate: frames a second, where the user knows better than the file.
+    rate: frames a second from the user, who overrides the file.
     """
     places = table.places
 
@@ -145,7 +145,7 @@ def times_of(table: Table, rate: float | None, notes: list[str]) -> tuple[Floats
         return table.numbers([places[name]])[:, 0]
 
     used = {name for name in places if is_frame(name) or stamp_of(name)}
-    used.add("approx_time")  # of py-feat: minutes and whole seconds, of no use
+    used.add("approx_time")  # py-feat's: minutes and whole seconds, which are useless
     return find_times([*places], texts, numbers, len(table.lines), rate, notes), used
 
 
@@ -160,8 +160,9 @@ def find_times(
 ) -> Floats64:
     """Seconds of each of `count` rows, shape (count,), NaN where none is known.
 
-    names: of columns or keys. texts, numbers: their cells, and these as numbers, NaN for no number.
-    rate: frames a second, where the user knows better. written_rate: that the file itself says.
+    names: those of columns or keys. texts, numbers: their cells as text and as numbers, NaN for no
+        number.
+    rate: frames a second from the user. written_rate: frames a second from the file.
     """
     stamps = {name: stamp for name in names if (stamp := stamp_of(name))}
     has_stamps = False
@@ -216,7 +217,7 @@ def _measured(cell: str) -> float | None:
 
 
 def _seconds_in(cell: str) -> float:
-    """The seconds in a cell with a unit, or of seconds without one; NaN for another cell."""
+    """The seconds in a cell, with or without a unit; NaN for another cell."""
     seconds = _measured(cell)
     if seconds is not None:
         return seconds
@@ -259,7 +260,7 @@ def stamp_times(
 
 
 def _in_seconds(stamps: Floats64, unit: float, name: str, notes: list[str]) -> Floats64:
-    """The stamps from 0, with the note that says in which unit they were read."""
+    """The stamps from 0, with a note about their unit."""
     if unit != 1.0:
         notes.append(f"Time stamps were read as {name}.")
     return (stamps - np.nanmin(stamps)) * unit
@@ -268,8 +269,8 @@ def _in_seconds(stamps: Floats64, unit: float, name: str, notes: list[str]) -> F
 def clock_times(cells: Sequence[str], name: str, notes: list[str]) -> Floats64 | None:
     """Times [s] of `2024-05-01T12:00:00.033Z`, `0 days 00:00:00.033`, `00:00:00,033`, `0:00.03`.
 
-    NaN where a cell has none; None if none has one, or where they stand still. The zone and
-    dates but those by year, month and day do not count: midnight is found by the hours.
+    NaN for a cell without a time; None if no cell has one, or if times stand still. Zones are
+    ignored, and so are dates other than year, month and day: hours show midnight.
     """
     seconds = np.full(len(cells), np.nan)
     days = np.zeros(len(cells))
@@ -306,7 +307,7 @@ def _seconds_of_day(found: re.Match[str]) -> float:
 
 
 def _day_of(found: re.Match[str]) -> int:
-    """The day of a match of CLOCK, counted from anywhere; 0 where none can be known."""
+    """The day of a match of CLOCK, counted from any day; 0 if it is unknown."""
     if found["days"]:
         return int(found["days"])
     parts = re.split("[-/.]", found["date"] or "")

@@ -1,8 +1,8 @@
 """Units of values, and flags of rows without a face: the same for tables and JSON of all programs.
 
-Shapes are 0 to 1, or 0 to 100 as programs for animation count them. Action units are 0 to 1, 0 to 5
-(FACS' A to E), or 0 to 100. Trackers write zeros, or the last values, while they see no face, and
-many say so in a flag.
+Shapes are 0 to 1, or 0 to 100 in programs for animation. Action units are 0 to 1, 0 to 5 (FACS' A
+to E), or 0 to 100. Trackers write zeros, or the last values, while they see no face, and many have
+a flag for this.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from .names import ARKIT, NONSENSE, letters_of, measured
 
 Rows = npt.NDArray[np.bool_]
 
-COUNT = "blendshapecount"  # of the values in a row
+COUNT = "blendshapecount"  # number of values in a row
 NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
                  "mouthShrugUpper")  # fmt: skip
 ZERO = 1e-6
 
 
 def is_flag(name: str) -> bool:
-    """Whether a column or key says if a face is seen."""
+    """Whether a column or key is a flag of a visible face."""
     letters = letters_of(name)
     sure_flags = (
         "facedetected",
@@ -54,20 +54,20 @@ def is_flag(name: str) -> bool:
 def rows_without_face(
     names: Iterable[str], texts: Callable[[str], Sequence[str]], count: int
 ) -> Rows:
-    """The rows in which a flag says that no face is seen, shape (count,).
+    """The rows in which a flag reports no visible face, shape (count,).
 
-    names: of columns or keys. texts: the cells of one of them, "" if there is none. A confidence
-    counts where nothing says yes or no.
+    names: those of columns or keys. texts: the cells of one of them, "" without any. A confidence
+    counts if there is no other flag.
     """
     lost = np.zeros(count, dtype=bool)
     flags = [name for name in names if is_flag(name)]
     plain = [name for name in flags if "confidence" not in letters_of(name)]
-    least_confidence = 0.5  # a flag is 0 or 1; a confidence below is none
+    least_confidence = 0.5  # a flag is 0 or 1; a lower confidence means no face
     for name in plain or flags:
         values = np.array([_flag_in(cell) for cell in texts(name)])
         if letters_of(name) == COUNT:
             is_lost = values == 0.0
-            if is_lost.all():  # of a program that counts nothing
+            if is_lost.all():  # the program does not count
                 continue
         else:
             highest = float(np.nanmax(values, initial=0.0))
@@ -77,7 +77,7 @@ def rows_without_face(
 
 
 def shares(shapes: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
-    """ARKit's shapes, 0 to 1; NaN where the value is none. Trackers overshoot a little.
+    """ARKit's shapes, 0 to 1; NaN for invalid values. Trackers overshoot a little.
 
     Rows of zeros in a take whose face is never at 0 are rows without a face, NaN throughout.
     """
@@ -108,7 +108,7 @@ def shares(shapes: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats
 
 def intensities(units: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
     """Action units as intensities 0 to 1; FACS' 0 to 5 (A to E) and percent are divided."""
-    highest_unit = 6.0  # an intensity of 0 to 5 beyond is none
+    highest_unit = 6.0  # a value of 0 to 5 cannot be larger
     found = of_percent(units, highest_unit, "Action units", notes)
     found = {name: np.where(np.abs(v) > highest_unit, np.nan, v) for name, v in found.items()}
     highest = max((float(np.nanmax(values, initial=0.0)) for values in found.values()), default=0.0)
@@ -125,7 +125,7 @@ def without_rows(channels: Mapping[str, Floats64], lost: Rows) -> dict[str, Floa
 
 
 def is_calibrated(shapes: Mapping[str, Floats64], notes: list[str]) -> bool:
-    """Whether the neutral face was taken away: then shapes that never rest are often at 0.
+    """Whether the neutral face was subtracted: restless shapes are then often at 0.
 
     Rows without a face, which are NaN, do not count.
     """
@@ -140,7 +140,7 @@ def is_calibrated(shapes: Mapping[str, Floats64], notes: list[str]) -> bool:
 def of_percent(
     channels: Mapping[str, Floats64], most: float, kind: str, notes: list[str]
 ) -> dict[str, Floats64]:
-    """The channels, divided by 100 where rows of them have values that only percent have.
+    """The channels, divided by 100 if their values can only be percent.
 
     most: the highest value in another unit.
     """
@@ -150,7 +150,7 @@ def of_percent(
     most_percent = 300.0  # of a shape; programs for animation allow more than 100
     is_large = (values > most) & (values <= most_percent)
     moving = np.any(np.nan_to_num(values) != 0.0, axis=0)
-    share_of_percent = 0.05  # of rows with large values: percent, and no stray values
+    share_of_percent = 0.05  # of rows with large values: these are percent, not errors
     if not is_large.any() or is_large.any(axis=0).sum() <= share_of_percent * moving.sum():
         return dict(channels)
     notes.append(f"{kind} go from 0 to 100 and were divided by 100.")
@@ -158,7 +158,7 @@ def of_percent(
 
 
 def _rows_of_zeros(shapes: Mapping[str, Floats64]) -> Rows:
-    """The rows that have no face: all shapes are 0, even shapes that are above 0 elsewhere."""
+    """The rows without a face: all shapes are 0, even shapes that are above 0 in other rows."""
     if not shapes:
         return np.zeros(0, dtype=bool)
     table = np.stack([*shapes.values()])

@@ -1,1 +1,1 @@
-"""How scenes are refined: presets by name, refiners bound as a preset has them, and wrinkles."""
+"""Refinement of scenes: presets by name, refiners bound with their options, and wrinkles."""

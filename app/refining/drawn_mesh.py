@@ -1,8 +1,8 @@
-"""A scene's mesh as one refiner has it drawn, in buffers that a renderer lent.
+"""A scene's mesh from one refiner, in buffers that a renderer lent.
 
 The refiner reads the mesh and writes only into those buffers. The refined mesh is forgotten with
-the frame (Kähler, Haber, Seidel 2003, section 3). Where buffers and refiner are on the graphics
-card, nothing else knows.
+the frame (Kähler, Haber, Seidel 2003, section 3). If buffers and refiner are on the graphics card,
+no other module depends on it.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ from .refiners import refiner_for
 from .wrinkling import GRADIENTS, WRINKLES, Wrinkling
 
 FADE = "fade"  # an attribute of refined meshes
-LARGE_MESH = 20_000  # triangles from which on a graphics card refines, where it may choose
+LARGE_MESH = 20_000  # triangles from which the graphics card refines by default
 
 
 @dataclass
 class DrawnMesh:
-    """The scene's mesh as one refiner has it drawn; two of them make a comparison."""
+    """The scene's mesh from one refiner; two of them make a comparison."""
 
     label: str  # its name under the picture
     refiner: refine.Refiner
     stream: render.Stream | render.GpuStream
     mesh: refine.RefinedMesh | None = None  # the last result, refined from:
     positions: Floats64 | None = None
-    plug_ins: tuple[PlugIn, ...] = ()  # somebody else's code that refines it
+    plug_ins: tuple[PlugIn, ...] = ()  # code of other packages that refines it
     wrinkles: bool = False  # whether the last frame has any
     resting: Callable[[], refine.Refiner] | None = None  # makes its twin, refined at rest
     _splits_at_rest: Unsigned8 | None = None  # of each edge, (E,)
@@ -46,9 +46,9 @@ class DrawnMesh:
         camera: render.OrbitCamera,
         wrinkling: Wrinkling | None = None,
     ) -> None:
-        """Fill the lent buffers with refined triangles, as the camera sees them.
+        """Fill the lent buffers with refined triangles for a camera.
 
-        `wrinkling`: of the scene's skin. Raises PlugInError if code of another package fails.
+        `wrinkling`: that of the scene's skin. Raises PlugInError if code of another package fails.
         """
         view = refine.View(camera.eye)
         self.positions = positions
@@ -56,7 +56,7 @@ class DrawnMesh:
         if self.can_wrinkle and wrinkling is not None:
             more["values"] = {WRINKLES: wrinkling.amounts, GRADIENTS: wrinkling.gradients}
         self.wrinkles = bool(more)
-        refiner: Any = self.refiner  # one without attributes need not know of values
+        refiner: Any = self.refiner  # one without attributes may lack `values`
         with reported(self.plug_ins):
             if isinstance(self.stream, render.GpuStream):
                 self.mesh = refiner.refine_on_card(positions, self.stream, view, **more)
@@ -68,14 +68,14 @@ class DrawnMesh:
         assert self.mesh is not None and self.positions is not None
         with reported(self.plug_ins):
             if isinstance(self.stream, render.GpuStream):
-                mesh: Any = self.mesh  # of a refiner that fetches rows on demand
+                mesh: Any = self.mesh  # a refiner may fetch rows on demand
                 self.stream.show(mesh, self.positions, has_bumps=self.wrinkles)
             else:
                 counts = self.mesh.vertex_count, self.mesh.triangle_count
                 self.stream.upload(*counts, has_bumps=self.wrinkles)
 
     def splits(self) -> Unsigned8:
-        """For each triangle drawn, how many splits its source triangle's edges have."""
+        """For each drawn triangle, the number of splits of its source triangle's edges."""
         assert self.mesh is not None
         with reported(self.plug_ins):
             return splits_of_source(self.refiner, self.mesh)
@@ -92,13 +92,13 @@ class DrawnMesh:
 
     @property
     def has_uv(self) -> bool:
-        """Whether rows carry texture coordinates, which a refiner from outside may leave out."""
+        """Whether rows have texture coordinates; a foreign refiner may leave them out."""
         # Position, normal, u and v.
         return self.refiner.vertex_columns >= 8
 
     @property
     def can_wrinkle(self) -> bool:
-        """Whether rows carry wrinkles, too."""
+        """Whether rows also have wrinkles."""
         return self.refiner.vertex_columns >= 16
 
     @property
@@ -108,7 +108,7 @@ class DrawnMesh:
 
     @property
     def triangle_count(self) -> int:
-        """How many triangles the last frame drew."""
+        """Number of triangles in the last frame."""
         return self.stream.triangle_count
 
     @property
@@ -118,9 +118,9 @@ class DrawnMesh:
 
 
 def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> DrawnMesh:
-    """Bind the refiner that is asked for to the scene's mesh; borrow render buffers for it.
+    """Bind the requested refiner to the scene's mesh; borrow render buffers for it.
 
-    Where a look is asked for as it is, a graphics card makes the same of a large mesh.
+    For an unchanged look of a large mesh, a graphics card refines, with the same result.
     """
     has_card = renderer.lends_gpu_streams and not renderer.surface.is_software
     is_open = refinement.refiner is None and not refinement.options
@@ -132,7 +132,7 @@ def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> 
         stream = _stream_for(scene, renderer, refiner)
 
     def resting() -> refine.Refiner:
-        """A refiner of its own: some remember the frame before."""
+        """A separate refiner: some refiners depend on the frame before."""
         twin = refiner_for(scene, asked)
         twin.refine(scene.rest_positions)
         return twin
@@ -157,7 +157,7 @@ def _attributes_of(scene: Drawable) -> dict[str, Any]:
 def _stream_for(
     scene: Drawable, renderer: render.Renderer, refiner: refine.Refiner
 ) -> render.Stream | render.GpuStream:
-    """Buffers for the most that a refiner makes of the scene's mesh, on its side of the bus."""
+    """Buffers for a refiner's largest output, on its side of the bus."""
     room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
     if not (renderer.lends_gpu_streams and isinstance(refiner, refine.GpuRefiner)):
         return renderer.lend_stream(*room)
@@ -167,6 +167,6 @@ def _stream_for(
 
 
 def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> Unsigned8:
-    """For each drawn triangle, how many splits its source triangle's edges have."""
+    """For each drawn triangle, the number of splits of its source triangle's edges."""
     splits: Unsigned8 = refiner.splits[refiner.triangle_edges].sum(axis=1, dtype=np.uint8)
     return np.take(splits, mesh.source)

@@ -1,4 +1,4 @@
-"""Refinement by code of other packages: which plug-ins are in use, and which one raised an error.
+"""Refinement by code of other packages: the plug-ins in use, and the source of errors.
 
 A criterion, a scheme or a refiner may come from any package, or be registered by a program. An
 error in its code is reported in one line, with the name of the plug-in.
@@ -19,18 +19,18 @@ from ..errors import UserError, line_for
 
 
 class PlugIn(NamedTuple):
-    """A criterion, scheme or refiner that is not of this application."""
+    """A criterion, scheme or refiner from outside this application."""
 
     kind: str
     """"criterion", "scheme" or "refiner"."""
     name: str
-    """By which it was chosen."""
+    """The name by which it was chosen."""
     factory: Any
-    """Its class, or the function that makes it; of one that was handed over its class."""
+    """Its class, or the function that makes it; for a given object its class."""
 
     @property
     def module(self) -> str:
-        """The name of the module that it is defined in."""
+        """The name of the module that defines it."""
         return str(getattr(self.factory, "__module__", None) or type(self.factory).__module__)
 
     def __str__(self) -> str:
@@ -43,10 +43,10 @@ class PlugInError(UserError):
 
 
 def plug_ins_of(refiner: str, options: Mapping[str, Any]) -> tuple[PlugIn, ...]:
-    """The plug-ins that a refiner stands for, with options as `refine.create` takes them.
+    """The plug-ins behind a refiner with these options of `refine.create`.
 
     Unknown names are left out: `refine.create` reports them. Raises PlugInError for a module that
-    ends the program as it is imported.
+    ends the program during its import.
     """
     wanted: list[tuple[str, Any, refine.Registry[Any]]] = [("refiner", refiner, refine.refiners)]
     chosen = options.get("criterion", ())
@@ -72,8 +72,8 @@ def plug_ins_of(refiner: str, options: Mapping[str, Any]) -> tuple[PlugIn, ...]:
 def reported(plug_ins: Sequence[PlugIn]) -> Iterator[None]:
     """Turn an error that one of the plug-ins raises, or causes, into a PlugInError.
 
-    An error outside their code counts as an error in their results (an array of another size, say),
-    unless it can be reported as it is.
+    An error outside their code counts as an error in their results (for example an array of another
+    size), unless it can be reported directly.
     """
     try:
         yield
@@ -92,11 +92,11 @@ def reported(plug_ins: Sequence[PlugIn]) -> Iterator[None]:
 
 
 def culprit_of(error: BaseException, plug_ins: Sequence[PlugIn]) -> PlugIn | None:
-    """The plug-in in whose code an error was raised; None if it was raised in no such code."""
+    """The plug-in whose code raised an error; None for errors in other code."""
     for frame in _frames(error):
         package = _package(frame.f_globals.get("__name__", ""))
         there = [each for each in plug_ins if _package(each.module) == package]
-        for plug_in in there:  # a package may bring several
+        for plug_in in there:  # a package may have several
             if type(frame.f_locals.get("self")) is plug_in.factory:
                 return plug_in
         if there:
@@ -105,7 +105,7 @@ def culprit_of(error: BaseException, plug_ins: Sequence[PlugIn]) -> PlugIn | Non
 
 
 def error_in(plug_in: PlugIn, error: BaseException) -> PlugInError:
-    """An error whose text names the plug-in, the error that it raised, and where."""
+    """An error whose text names the plug-in, its error, and the place."""
     package = _package(plug_in.module)
     where = ""
     for frame in _frames(error):
@@ -116,7 +116,7 @@ def error_in(plug_in: PlugIn, error: BaseException) -> PlugInError:
 
 
 def _factory(kind: str, name: str, registry: refine.Registry[Any]) -> Any:
-    """The factory of a plug-in; None if none has this name."""
+    """The factory of a plug-in; None for an unknown name."""
     try:
         return registry.find(name)
     except ValueError:

@@ -1,7 +1,7 @@
-"""Refinement presets: how each scene is refined, under names that a user chooses from as looks.
+"""Refinement presets for each scene, by names that users choose as looks.
 
 `smooth` looks best: films and the window show it by default. `paper` is the rule of Kähler, Haber,
-Seidel 2003 alone. Everything that draws a scene gets its refiner, and that refiner's options, here.
+Seidel 2003 alone. All drawing code gets a scene's refiner, with its options, here.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ from typing import Any
 
 from ..errors import UserError
 
-STATIC = "none"  # the refiner that leaves the mesh as it is
+STATIC = "none"  # the refiner that does not change the mesh
 CHANGED = ", changed"  # after the name of a preset or refiner whose options a user has changed
 FIRST_PRESET = "smooth"  # the default
 PAPERS_PRESET = "paper"
 PAPERS_CRITERION = "normal"
-THRESHOLDS = ("threshold_once", "threshold_twice")  # options of PAPERS_CRITERION alone
+THRESHOLDS = ("threshold_once", "threshold_twice")  # options of PAPERS_CRITERION only
 
 
 @dataclass(frozen=True)
 class Preset:
-    """How one scene is refined: by which refiner, and with which options of each refiner."""
+    """Refinement of one scene: the refiner, and options for each refiner."""
 
     refiner: str = "kahler"
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by refiner
@@ -41,16 +41,16 @@ def _for_both(options: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
     return {"kahler": options, ON_CARD: options}
 
 
-# A flat mesh needs no slack, since it is not bent at rest. A search found the values: with them the
-# wave makes about as many triangles at most as in Table 1 (1328).
+# A flat mesh needs no tolerance, because it is not bent at rest. A search found the values: with
+# them the wave's largest number of triangles is about that of Table 1 (1328).
 PLANE_THRESHOLDS = {"threshold_once": 0.001, "threshold_twice": 0.005}
 
 PRESETS: Mapping[str, Mapping[str, Preset]] = MappingProxyType(  # by name, then by scene
     {
         FIRST_PRESET: {
-            # By `displacement` alone outlines of crown and chin would stay polygons: edges there
-            # are long and turn little. `border` would make an opened mouth rounder, but lids and
-            # pursed lips uneven.
+            # With `displacement` alone the outlines of crown and chin would stay polygons: edges
+            # there are long and turn little. `border` would make an open mouth rounder, but lids
+            # and pursed lips uneven.
             "face": Preset(
                 options=_for_both({"scheme": "cubic", "criterion": "displacement+rest"})
             ),
@@ -70,7 +70,7 @@ PRESETS: Mapping[str, Mapping[str, Preset]] = MappingProxyType(  # by name, then
 
 
 def words_of_presets(option: str) -> list[str]:
-    """All words that presets set this option to, for any refiner."""
+    """All words that presets have for this option, for any refiner."""
     presets = [preset for by_scene in PRESETS.values() for preset in by_scene.values()]
     every = [options for preset in presets for options in preset.options.values()]
     return [options[option] for options in every if option in options]
@@ -82,7 +82,7 @@ class Refinement:
 
     preset: str = FIRST_PRESET
     refiner: str | None = None  # None: the preset's own
-    options: Mapping[str, Any] = field(default_factory=dict)  # in place of the preset's
+    options: Mapping[str, Any] = field(default_factory=dict)  # replace the preset's
 
     def on(self, scene: str) -> tuple[str, dict[str, Any]]:
         """The refiner's name and all its options, for the scene of this name."""
@@ -91,11 +91,11 @@ class Refinement:
         return name, {**preset.options_for(name), **self.options}
 
     def has_thresholds(self, scene: str) -> bool:
-        """Whether the criterion is PAPERS_CRITERION, or contains it: then THRESHOLDS count."""
+        """Whether the criterion is or contains PAPERS_CRITERION; then THRESHOLDS count."""
         return PAPERS_CRITERION in self.criterion_on(scene).split("+")
 
     def check(self, scene: str) -> None:
-        """Raise UserError for options that would do nothing on the scene of this name."""
+        """Raise UserError for options without an effect on the scene of this name."""
         unused = [name for name in THRESHOLDS if name in self.options]
         if unused and not self.has_thresholds(scene):
             raise UserError(

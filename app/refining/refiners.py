@@ -1,4 +1,4 @@
-"""Refiners for scenes: bound as a preset has them, and options as words of the command line."""
+"""Refiners for scenes, bound with a preset's options; options as words of the command line."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from .presets import PAPERS_CRITERION, PRESETS, STATIC, THRESHOLDS, Refinement, 
 
 Splits = npt.NDArray[np.uint8]
 
-DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
+DETAIL = "detail"  # the only scheme that needs a finer mesh, see `finer_mesh`
 NO_ATTRIBUTES: Mapping[str, npt.NDArray[np.float32]] = MappingProxyType({})
-OF = "."  # between a criterion and its option
+OF = "."  # mark between a criterion and its option
 SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
@@ -34,9 +34,9 @@ def refiner_for(
 ) -> refine.Refiner:
     """Bind the refiner of a refinement to the scene's mesh.
 
-    `splits`: of each edge in all frames, shape (E,), in place of a criterion. `attributes`: values
-    of vertices at rest by name, left out for a refiner that takes none. Raises UserError if it
-    refuses an option, and PlugInError if code of another package fails.
+    `splits`: those of each edge in all frames, shape (E,); they replace a criterion. `attributes`:
+    values of vertices at rest by name, left out for a refiner without attributes. Raises UserError
+    if it refuses an option, and PlugInError if code of another package fails.
     """
     name, options = refinement.on(scene.name)
     plug_ins = plug_ins_of(name, options)
@@ -70,7 +70,7 @@ def refiner_for(
 
 
 def _presets_share(refinement: Refinement, options: Mapping[str, Any]) -> str:
-    """Words for the options that come from the preset: a user may not know of them."""
+    """Words about options that come from the preset: a user may not know them."""
     settings = [
         f"{name}={('off', 'on')[value] if isinstance(value, bool) else value}"
         for name, value in options.items()
@@ -81,10 +81,10 @@ def _presets_share(refinement: Refinement, options: Mapping[str, Any]) -> str:
 
 
 def options_of(refiner: str, criterion: str) -> dict[str, refine.Option]:
-    """The options that can be set by words and sliders: those of a refiner, then of its criterion.
+    """The options for words and sliders: those of a refiner, then those of its criterion.
 
-    A criterion's are named after it, as `rest.levels`. Those that the refiner has itself count
-    there. Raises ValueError for a refiner that cannot be loaded.
+    A criterion's options have its name, such as `rest.levels`. Options that the refiner also has
+    count as the refiner's. Raises ValueError for a refiner that cannot be loaded.
     """
     found = {option.name: option for option in refine.parameters(refiner)}
     if "criterion" in found:
@@ -97,7 +97,7 @@ def options_of(refiner: str, criterion: str) -> dict[str, refine.Option]:
 
 
 def _check(refiner: str, options: Mapping[str, Any], criterion: str) -> None:
-    """Raise UserError for an option that can be set neither in the refiner nor its criterion."""
+    """Raise UserError for an option that neither the refiner nor its criterion has."""
     there_are = options_of(refiner, criterion)
     for option in options:
         if option not in there_are:
@@ -106,7 +106,7 @@ def _check(refiner: str, options: Mapping[str, Any], criterion: str) -> None:
 
 
 def with_criteria(options: Mapping[str, Any]) -> dict[str, Any]:
-    """The options as `refine.create` takes them: criteria that have options become objects.
+    """The options for `refine.create`: criteria with options become objects.
 
     Raises ValueError for a value that a criterion refuses.
     """
@@ -120,14 +120,14 @@ def with_criteria(options: Mapping[str, Any]) -> dict[str, Any]:
         for option in refine.criteria.options(part) if own else ():
             if option.name in own:
                 replace(option, name=f"{start}{option.name}").check(own[option.name])
-        if own and part == PAPERS_CRITERION:  # whose thresholds are options of the refiner
+        if own and part == PAPERS_CRITERION:  # its thresholds are options of the refiner
             own |= {name: plain[name] for name in THRESHOLDS if name in plain}
         made.append(refine.criteria.make(part, **own) if own else part)
     return {**plain, "criterion": made}
 
 
 def help_of_options(refiner: str) -> str:
-    """All options of a refiner, and of all criteria that it may have, a line each."""
+    """All options of a refiner and of all its possible criteria, a line each."""
     every = "+".join(refine.criteria.available())
     lines = [
         f"  {name:<24}{option.wanted:<34}{_in_words(option):<14}{option.help}".rstrip()
@@ -137,7 +137,7 @@ def help_of_options(refiner: str) -> str:
 
 
 def _in_words(option: refine.Option) -> str:
-    """The default of an option, as it is written."""
+    """The default of an option, as users write it."""
     if option.kind == "choice":
         same = (word for word, value in option.choices.items() if value == option.default)
         return next(same, "")
@@ -147,12 +147,12 @@ def _in_words(option: refine.Option) -> str:
 
 
 def _takes_own_schemes(refiner: str) -> bool:
-    """Whether the option `scheme` of a refiner is a word, or an object, instead of a choice."""
+    """Whether the option `scheme` of a refiner takes any name or object, not a fixed choice."""
     return any(each.name == "scheme" and each.kind == "word" for each in refine.parameters(refiner))
 
 
 def can_detail(scene: Drawable) -> bool:
-    """Whether the scene's head comes with a finer mesh."""
+    """Whether the scene's head has a finer mesh."""
     return scene.face is not None and isinstance(scene.face.head, assets.Head)
 
 
@@ -168,8 +168,8 @@ def finer_mesh(scene: Drawable) -> tuple[Floats64, Integers32] | None:
 def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any]:
     """The options that `--option NAME=VALUE ...` sets for a refiner (None: the preset's).
 
-    Numbers, on and off, or words. Raises UserError for an unknown refiner, and where the mesh is
-    drawn as it is.
+    Values are numbers, on and off, or words. Raises UserError for an unknown refiner, and if the
+    mesh is drawn unrefined.
     """
     if refiner is not None and refiner not in refine.refiners.available():
         there_are = ", ".join(refine.refiners.available())
@@ -179,7 +179,7 @@ def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any
             f"--option {settings[0]}: --refiner none draws the mesh as it is and has no options"
         )
     options: dict[str, Any] = {}
-    largest_number = 1e30  # in an option: in single precision it is still finite
+    largest_number = 1e30  # in an option: single precision still holds it
     for setting in settings:
         name, equals, text = setting.partition("=")
         if not (name and equals and text):
@@ -196,7 +196,7 @@ def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any
 def parse_comparison(names: str | None, refinement: Refinement) -> tuple[Refinement, ...]:
     """The looks and refiners that `--compare NAME,...` sets beside a refinement, left to right.
 
-    None is nothing. Raises UserError for a name that is neither, and where two would be the same.
+    None means no comparison. Raises UserError for an unknown name, and for two equal ones.
     """
     beside: list[Refinement] = []
     for name in [] if names is None else names.split(","):

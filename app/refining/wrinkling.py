@@ -1,4 +1,4 @@
-"""Wrinkles that come from the physics: how far the simulated skin is shortened, so far it folds.
+"""Wrinkles from the physics: the simulated skin folds as far as it is shortened.
 
     simulated mesh ─> refine.Shortening ─> amount at each vertex ─> refine: rows ┐
     assets: map of furrows over the texture ─────────────────────────────────────┴> render
@@ -25,10 +25,10 @@ Points = npt.NDArray[np.float64]
 
 
 class Wrinkling(NamedTuple):
-    """How far the skin wrinkles, and which way its furrows run, in one frame.
+    """Wrinkles of the skin in one frame: amounts, and directions of furrows.
 
-    amounts: of each vertex in either slot, 0 to 1, shape (V, 2).
-    gradients: of texture coordinates u and v along the skin [1/mm], shape (U, 6).
+    amounts: those of each vertex in either slot, 0 to 1, shape (V, 2).
+    gradients: those of texture coordinates u and v along the skin [1/mm], shape (U, 6).
     """
 
     amounts: Amounts
@@ -36,7 +36,7 @@ class Wrinkling(NamedTuple):
 
 
 class Compression:
-    """How far the skin of a scene that has wrinkles is compressed across them."""
+    """Compression of a scene's skin across its wrinkles."""
 
     def __init__(self, scene: Drawable) -> None:
         wrinkles = scene.skin.wrinkles
@@ -49,23 +49,23 @@ class Compression:
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
 
     def measure(self, positions: Points) -> Wrinkling | None:
-        """Wrinkles of the skin where its vertices are now, shape (V, 3); None: there are none."""
+        """Wrinkles of the skin with these vertices, shape (V, 3); None without wrinkles."""
         amounts = self.amounts(positions)
         if not amounts.any():
             return None
         return Wrinkling(amounts, self._gradients.measure(positions))
 
     def amounts(self, positions: Points) -> Amounts:
-        """How far each vertex wrinkles in either slot, 0 (not at all) to 1, shape (V, 2).
+        """Wrinkling of each vertex in either slot, 0 (none) to 1, shape (V, 2).
 
-        It begins and ends without a kink: nothing pops.
+        The amount begins and ends smoothly, so nothing pops.
         """
         lost = self._shortening.measure(positions)
-        # Chosen by eye. Skin gives way a little before it folds, and a fold does not deepen for
-        # ever.
+        # Chosen by eye. Skin yields a little before it folds, and a fold does not deepen without
+        # limit.
         onset = 0.015  # loss of length at which furrows begin
         beyond = np.square(np.maximum(self._readiness * lost - onset, 0.0))
-        half_depth_loss = 0.09  # loss of length at which they are half as deep as they can be
+        half_depth_loss = 0.09  # loss of length at which they have half of their greatest depth
         amounts = beyond / (beyond + (half_depth_loss - onset) ** 2)
         # Gain of length at which furrows of age are half as deep: taut skin has none.
         half_depth_gain = 0.1

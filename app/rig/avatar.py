@@ -34,11 +34,14 @@ GLTF = (".glb", ".gltf")
 class RigRequest:
     """Options of a rig.
 
-    kinds: of shapes, as in `poses.KINDS`. eyes: "nodes", "targets", or None as suits the file.
-    corrections: of the roles of pieces. adds_parts: built-in eyes, teeth and tongue are added where
-    the file has none. correctives: shapes of pairs, at most. progress: a bar is shown.
-    take: on which sums of ARKit's shapes are compared with the simulation; None: on none.
-    chooses_by_take: correctives are those that pay most on the take, not on all skin.
+    kinds: those of shapes, as in `poses.KINDS`.
+    eyes: "nodes", "targets", or None for the file's usual one.
+    corrections: those of the roles of pieces.
+    adds_parts: whether missing eyes, teeth and tongue are added.
+    correctives: largest number of shapes of pairs.
+    progress: whether a bar is shown.
+    take: the take on which sums of ARKit's shapes are compared with the simulation, or None.
+    chooses_by_take: whether the take decides on correctives, not all skin.
     """
 
     kinds: tuple[str, ...] = ("arkit",)
@@ -59,7 +62,7 @@ class RigRequest:
 
 @dataclass(frozen=True)
 class FileHead:
-    """A head of a file: its own bytes, which are written again, and the face that moves it.
+    """A head from a file: its own bytes, which are written again, and the face that moves it.
 
     painted: colours and pictures of the file; None for a glTF file, which is copied.
     stored: the meshes of a glTF file, see `stored_pieces`; none for others.
@@ -77,8 +80,9 @@ class FileHead:
 class Avatar:
     """A head with its named shapes.
 
-    file: of a file; None: the built-in head or a person. shapes: the file's body or the skin first.
-    names: of the shapes, those of `pairs` last. sums: how far sums of shapes are off.
+    file: that of a user's head; None: the built-in head or a person. shapes: the file's body or the
+        skin first.
+    names: those of the shapes; those of `pairs` come last. sums: errors of sums of shapes.
     """
 
     scene: FaceScene
@@ -103,9 +107,9 @@ Say = Callable[[str], None]
 
 
 def avatar_of(head: FittedHead | None, request: RigRequest, say: Say) -> Avatar:
-    """The avatar of a head, None for the built-in one; lines on it go to `say`.
+    """The avatar of a head (None: the built-in one); lines about it go to `say`.
 
-    A head that was read from a file comes with the pieces of this file.
+    The avatar of a head from a file includes the pieces of this file.
     """
     file = None
     if head is not None and head.files:
@@ -155,7 +159,7 @@ def _without_sums(shaped: Shaped, pairs: list[tuple[str, str]], names: tuple[str
 def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
     """The file of a fitted head, and its pieces.
 
-    Raises AssetError for files that cannot be used, and UserError for wrong options.
+    Raises AssetError for unusable files, and UserError for wrong options.
     """
     path = head.files[0]
     is_gltf = path.suffix.lower() in GLTF
@@ -191,20 +195,20 @@ def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
 def _names_of_vertices(
     count: int, painted: PaintedMesh | None, stored: Sequence[StoredPiece]
 ) -> npt.NDArray[np.object_]:
-    """The name of the file's object or group that each vertex belongs to, empty for none, (V,)."""
+    """The name of each vertex's object or group in the file, empty for none, (V,)."""
     names = np.full(count, "", object)
     start = 0
     for piece in stored:
         names[start : start + piece.count] = piece.name
         start += piece.count
     if painted is not None:
-        labels = np.array([*painted.parts, ""], object)  # the last for those without a name
+        labels = np.array([*painted.parts, ""], object)  # the last is for vertices without a name
         names[painted.mesh.faces] = labels[painted.part][:, None]
     return names
 
 
 def _is_as_fitted(rest: Floats64, head: FittedHead) -> bool:
-    """Whether a file's vertices [mm] are those that the head was made of, to 0.001 mm."""
+    """Whether a file's vertices [mm] are those of the fitted head, to 0.001 mm."""
     fitted = head.file_vertices
     if len(fitted) and fitted.max() >= len(rest):
         return False
@@ -212,7 +216,7 @@ def _is_as_fitted(rest: Floats64, head: FittedHead) -> bool:
 
 
 def _missing(file: FileHead) -> set[str]:
-    """The names of built-in parts that a file has nothing like."""
+    """The names of built-in parts that a file lacks."""
     roles = {piece.role for piece in file.pieces}
     found: set[str] = set()
     if not roles & {"eye_left", "eye_right"}:

@@ -1,4 +1,4 @@
-"""Bodies: the meshes of an avatar, each of which knows where its vertices are in a pose."""
+"""Bodies: the meshes of an avatar, which give their vertices in a pose."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ..stopping import cleaned_up_if_stopped
 from .poses import CRANIUM, Pose, moved_part, rest_in, settings_of
 
 EYES = ("eye_left", "eye_right")  # names of bones
-LEAST = 0.01  # [mm] a way that nobody sees: such vertices of a shape stand still
+LEAST = 0.01  # [mm], invisible: vertices of a shape that move less stand still
 
 
 class Body(Protocol):
@@ -35,11 +35,11 @@ class Body(Protocol):
     def faces(self) -> Integers32: ...
 
     def at(self, pose: Pose) -> Floats64:
-        """Where its vertices are in a pose, as the node finds them that it hangs on, (V, 3)."""
+        """Its vertices in a pose, relative to the node that it hangs on, (V, 3)."""
         ...
 
     def normals_at(self, points: Floats64) -> Floats64:
-        """Unit normals where its vertices are at `points`, shape (V, 3) each."""
+        """Unit normals for vertices at `points`, shape (V, 3) each."""
         ...
 
 
@@ -62,7 +62,8 @@ class Skin:
 class PartBody:
     """A part of a scene: an eyeball, teeth, hair.
 
-    bone: of the node that it hangs on: the cranium, or the part's own, which moves it as a whole.
+    bone: name of the node that it hangs on: the cranium, or the part's own bone, which moves it as
+    a whole.
     """
 
     part: Any
@@ -106,8 +107,8 @@ def bodies_of_parts(
 class Shaped:
     """A body with its named shapes.
 
-    targets, bends: changes of vertices [mm] and of unit normals by each shape, (K, V, 3) float32;
-    K is 0 for a body that none of them moves.
+    targets, bends: changes of vertices [mm] and of unit normals by each shape, (K, V, 3) float32; K
+    is 0 for a body without motion.
     """
 
     body: Body
@@ -117,7 +118,7 @@ class Shaped:
 
 
 def moving(bodies: Iterable[Body], poses: Mapping[str, tuple[Pose, Pose]]) -> list[Shaped]:
-    """Bodies with a shape for each pair of a pose and the pose that it is counted from."""
+    """Bodies with a shape for each pair of a pose and its reference pose."""
     return [_shaped(body, poses) for body in bodies]
 
 
@@ -142,7 +143,7 @@ def _shaped(body: Body, poses: Mapping[str, tuple[Pose, Pose]]) -> Shaped:
 
 
 def bent_normals(body: Body, moved: Floats64, before: Floats64) -> Floats64:
-    """How unit normals change between two places of the vertices, shape (V, 3)."""
+    """Changes of unit normals between two places of the vertices, shape (V, 3)."""
     bent = body.normals_at(moved) - body.normals_at(before)
     bent[np.linalg.norm(bent, axis=1) < 0.005] = 0.0  # a third of a degree
     return bent
@@ -151,13 +152,13 @@ def bent_normals(body: Body, moved: Floats64, before: Floats64) -> Floats64:
 def poses_of(
     scene: FaceScene, names: Sequence[str], *, progress: bool
 ) -> Iterator[tuple[str, tuple[Pose, Pose]]]:
-    """The pose of each shape at 1, and the one that it is counted from, under a progress bar."""
+    """The pose of each shape at 1, and its reference pose, with a progress bar."""
     bases: dict[tuple[str, ...], Pose] = {}
     bar = tqdm(names, "Shapes", unit="shape", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):
         for name in bar:
             values, base = settings_of(scene, name)
-            tally.frames += 1  # which a window shows as progress
+            tally.frames += 1  # a window shows this as progress
             key = tuple(base)
             if key not in bases:
                 bases[key] = rest_in(scene, base)

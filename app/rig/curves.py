@@ -1,7 +1,7 @@
-"""Curves of ARKit's shapes over time, by which a sum of named shapes follows a simulated face.
+"""Curves of ARKit's shapes over time, for sums of named shapes that follow a simulated face.
 
 Muscles, eyes and head follow their controls late, each with its own delay. The shapes of an avatar
-follow at once, so their curves are so much later.
+follow at once, so their curves are later by these delays.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ..scenes import Scene
 
 
 def as_seen(times: Floats64, curves: Mapping[str, Floats64]) -> dict[str, Floats64]:
-    """Values of controls, (N,) each at these times [s], as late as the face shows them."""
+    """Values of controls, (N,) each at these times [s], delayed as in the visible face."""
     return {
         name: np.interp(times - lead_of(name, LEAD), times, values)
         for name, values in curves.items()
@@ -34,7 +34,7 @@ def shape_curves(
     activations: Mapping[str, Floats64],
     controls: Mapping[str, Floats64],
 ) -> Floats64:
-    """How far each of ARKit's shapes is seen in N frames, in Apple's order, shape (N, 52).
+    """Visible amount of each of ARKit's shapes in N frames, in Apple's order, shape (N, 52).
 
     activations, controls: the sums and the set values of controls, (N,) each. Raises UserError for
     a scene without muscles.
@@ -45,16 +45,16 @@ def shape_curves(
 
 
 def nearest_weights(targets: Floats32, ways: Floats64, curves: Floats64) -> Floats64:
-    """The weights from 0 to 1, (N, K), with which the targets come nearest to a motion.
+    """The weights from 0 to 1, (N, K), that bring targets nearest to a motion.
 
-    Many mixtures of shapes come equally near. Of these the one next to the curves is taken, so
-    that a weight still says what its name says.
+    Many mixtures of shapes are equally near. The one nearest to the curves is taken, so that
+    weights keep the meaning of their names.
 
-    targets: shape (K, V, 3). ways: of the vertices from rest in each frame, shape (N, V, 3), in
-    the same unit. curves: the weights that are expected, shape (N, K).
+    targets: shape (K, V, 3). ways: displacements of the vertices from rest in each frame, shape (N,
+    V, 3), in the same unit. curves: the expected weights, shape (N, K).
     """
-    # Of the mean square of a target. A tenth of it lets weights wander by 0.6 from the curves;
-    # ten times as much costs a fifth of the nearness.
+    # Share of the mean square of a target. With a tenth of it, weights stray by 0.6 from the
+    # curves; with ten times as much, the fit is a fifth worse.
     trust = 0.03
     rows = targets.reshape(len(targets), -1).astype(np.float64)
     products = rows @ rows.T

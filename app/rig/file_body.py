@@ -1,8 +1,8 @@
-"""The mesh of a file as one body: every vertex follows the simulated skin, a bone, or stands still.
+"""The mesh of a file as one body: every vertex follows the simulated skin or a bone, or rests.
 
-The skin of a scene has the file's own vertices, so these have exactly the places of the scene. A
-bag behind the lips, which is not simulated, is stretched between their edge and both jaws: it is
-harmonic, as a soap film.
+The skin of a scene has the file's own vertices, so these have exactly the scene's places. A bag
+behind the lips is not simulated; it is stretched between the edge of the lips and both jaws,
+harmonic like a soap film.
 
 Source: for the bag, the Laplace equation with uniform weights on the mesh's edges.
 """
@@ -30,19 +30,17 @@ from .bodies import EYES
 from .pieces import FilePiece
 from .poses import CRANIUM, Pose
 
-LIP_HEIGHT = (
-    10.0  # [mm] of the mouth in which what lies between the jaws goes from one to the other
-)
-ROOTED = 1.5  # [mm] that roots of lashes may be farther from the skin than the nearest one
+LIP_HEIGHT = 10.0  # [mm] of the mouth in which motion changes from one jaw to the other
+ROOTED = 1.5  # [mm] by which roots of lashes may be farther from the skin than the nearest one
 TONGUE = "tongue"  # name of a part
-TONGUE_COLOUR = (0.75, 0.42, 0.4)  # sRGB; a tongue of the file has its own
+TONGUE_COLOUR = (0.75, 0.42, 0.4)  # sRGB, for a tongue without a colour in the file
 
 
 class FileBody:
     """All vertices of a file [mm], in its order.
 
-    pivots: where the eyeballs turn, name of the bone -> (3,) [mm]. in_bag: which vertices lie
-    behind the lips and are not simulated, shape (n,).
+    pivots: centres of the eyeballs, name of the bone -> (3,) [mm]. in_bag: vertices behind the lips
+    that are not simulated, shape (n,).
     """
 
     name = "head"
@@ -72,7 +70,7 @@ class FileBody:
             role = f"eye_{eye.name}"
             layers = [self.rest[piece.vertices] for piece in pieces if piece.role == role]
             balls = [sphere_of(points, eye.centre, eye.radius) for points in layers]
-            if balls:  # of which an iris is a smaller one
+            if balls:  # an iris is a smaller ball
                 self.pivots[role] = max(balls, key=lambda ball: ball[1])[0]
         piece = pieces_of(self.faces, len(self.rest))
         own = piece == piece[same[head.file_vertices[head.landmarks[0]]]]
@@ -85,7 +83,7 @@ class FileBody:
         self._lashes = self._attached(head) if "on_skin" in self._pieces else None
 
     def at(self, pose: Pose) -> Floats64:
-        """Where the vertices are in a pose, shape (V, 3)."""
+        """The vertices in a pose, shape (V, 3)."""
         moved = self.rest.copy()
         moved[self._skin] = pose.skin[self._place[self._skin]]
         mandible = pose.matrices["mandible"]
@@ -111,14 +109,12 @@ class FileBody:
         return spread
 
     def normals_at(self, points: Floats64) -> Floats64:
-        """Unit normals where the vertices are at `points` (V, 3)."""
+        """Unit normals for vertices at `points` (V, 3)."""
         normals: Floats64 = vertex_normals(points, self.faces)[self._same]
         return normals
 
     def _between_jaws(self, numbers: Integers, mandible: Floats64) -> Floats64:
-        """Where vertices are that go with the jaw the more, the lower they lie in the mouth, and
-        the farther from the throat.
-        """
+        """Vertices between the jaws: low ones far from the throat follow the mandible more."""
         points = self.rest[numbers]
         share = np.clip((self._lip_height - points[:, 1]) / LIP_HEIGHT + 0.5, 0.0, 1.0)
         depth = points[:, 2] - points[:, 2].min()
@@ -145,7 +141,7 @@ class FileBody:
 
 
 class _Bag:
-    """Skin that is not simulated, behind the lips: its deep half goes with the jaws."""
+    """Skin behind the lips that is not simulated: its deep half moves with the jaws."""
 
     def __init__(self, numbers: Integers, faces: Integers32, rest: Floats64) -> None:
         depth = rest[numbers, 2]
@@ -165,7 +161,7 @@ class _Bag:
             self._solver = scipy.sparse.linalg.splu(laplacian[:, self._free].tocsc())
 
     def stretch(self, moved: Floats64, rest: Floats64) -> None:
-        """Write where the other half is, between all that is in its place in `moved` (V, 3)."""
+        """Write the other half into `moved` (V, 3), between the vertices that are placed."""
         if self._solver is not None:
             ways = (moved - rest)[self._others]
             moved[self._free] = rest[self._free] - self._solver.solve(self._to_others @ ways)
@@ -191,9 +187,9 @@ def places_in_skin(head: FittedHead, same: Integers) -> Integers:
 def with_own_tongue(
     head: FittedHead, rest: Floats64, numbers: Integers, faces: Integers32
 ) -> tuple[Part, ...]:
-    """The parts of a head, its tongue that of the file: so it is bent as the built-in one is.
+    """The parts of a head, with the tongue of the file, which bends like the built-in one.
 
-    rest: all vertices of the file [mm]. numbers: those of the tongue. faces: of the file.
+    rest: all vertices of the file [mm]. numbers: those of the tongue. faces: those of the file.
     """
     place = np.full(len(rest), -1, np.int32)
     place[numbers] = np.arange(len(numbers))

@@ -1,8 +1,8 @@
-"""A mesh file that is no glTF, OBJ or PLY say, as a glTF file: its vertices in their order.
+"""A mesh file other than glTF, such as OBJ or PLY, as a glTF file: its vertices in their order.
 
-A vertex with several texture coordinates or normals is several in glTF: the first keeps its number,
-the others follow behind the last. Coordinates keep the file's numbers; the root node brings them to
-metres, y up. Polygons are the triangles that they were read as.
+A vertex with several texture coordinates or normals becomes several in glTF: the first keeps its
+number, and the others follow after the last. Coordinates keep the file's numbers; the root node
+converts them to metres, y up. Polygons are written as triangles.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from .bodies import Shaped
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb, picture_kind
 from .surface import METRES
 
-# Units that files have [mm], and how far off one may seem where a face is large or small.
+# Units of files [mm], and the tolerance of a unit for large and small faces.
 UNITS = (1.0, 10.0, 25.4, 100.0, 304.8, 1000.0)
 MOST_OFF = 1.25
 CLAMP_TO_EDGE = 33071
-SHORT = 65535  # the greatest number of 16 bits, which glTF keeps for no vertex
+SHORT = 65535  # the greatest number of 16 bits, which no glTF vertex may have
 
 
 @dataclass(frozen=True)
 class SplitVertices:
-    """The vertices of a file as glTF has them; n of them, the first V as in the file.
+    """The n vertices of a file in glTF; the first V are those of the file.
 
     vertex: number in the file, shape (n,). uv, normal: numbers, -1 for none, shape (n,).
-    corners: of the triangles, shape (F, 3).
+    corners: those of the triangles, shape (F, 3).
     """
 
     vertex: Integers
@@ -47,7 +47,7 @@ class SplitVertices:
 
 
 def split_vertices(painted: PaintedMesh) -> SplitVertices:
-    """Split vertices where texture coordinates or normals do not agree."""
+    """Split vertices whose texture coordinates or normals differ."""
     mesh = painted.mesh
     count = len(mesh.vertices)
     columns = (mesh.faces.ravel(), painted.face_uv.ravel(), painted.face_normals.ravel())
@@ -78,7 +78,7 @@ class FileMeshWriter:
         self._materials: dict[int, int] = {}
 
     def add(self, names: tuple[str, ...], chosen: npt.NDArray[np.bool_]) -> int:
-        """Add the mesh with those of its triangles that are chosen, (F,); return its number."""
+        """Add the mesh with the chosen triangles, (F,); return its number."""
         attributes = self._attributes()
         targets = self._targets()
         more = {"targets": targets} if targets else {}
@@ -90,7 +90,7 @@ class FileMeshWriter:
         return self._glb.add("meshes", mesh)
 
     def add_rigid(self, name: str, chosen: npt.NDArray[np.bool_], pivot: Floats64) -> int:
-        """Add a mesh of chosen triangles (F,) alone, around a pivot (3,) of the file's."""
+        """Add a mesh of chosen triangles (F,), around a pivot (3,) in the file's coordinates."""
         split = self._split
         corners = split.corners[chosen]
         used, number = np.unique(corners, return_inverse=True)
@@ -111,7 +111,7 @@ class FileMeshWriter:
         chosen: npt.NDArray[np.bool_],
         more: dict[str, Any],
     ) -> list[dict[str, Any]]:
-        """A primitive for each material of chosen triangles; corners: theirs, (n, 3)."""
+        """A primitive for each material of chosen triangles; corners: those of these, (n, 3)."""
         short = np.uint16 if corners.max(initial=0) < SHORT else np.uint32
         materials = self._painted.material[chosen]
         primitives = []
@@ -123,7 +123,7 @@ class FileMeshWriter:
         return primitives
 
     def _attributes(self) -> dict[str, int]:
-        """The vertices at rest: places, normals, and what paints them."""
+        """The vertices at rest: places, normals, and paint."""
         split = self._split
         points = self._painted.mesh.vertices[split.vertex]
         return {
@@ -144,11 +144,11 @@ class FileMeshWriter:
                 length > 1e-6, own / np.maximum(length, 1e-6), normals[has_own]
             )
         length = np.linalg.norm(normals, axis=1)
-        normals[length < 0.5] = (0.0, 0.0, 1.0)  # of vertices without a triangle
+        normals[length < 0.5] = (0.0, 0.0, 1.0)  # for vertices without a triangle
         return unit_vectors(normals)
 
     def _paint(self, chosen: Integers) -> dict[str, int]:
-        """Texture coordinates, v down, and colours of chosen vertices, where the file has any."""
+        """Texture coordinates, v down, and colours of chosen vertices, if the file has any."""
         painted = self._painted
         split = self._split
         found = {}
@@ -195,7 +195,7 @@ class FileMeshWriter:
         rough["baseColorFactor"] = [*source.look.colour, source.look.opacity]
         if source.picture is None:
             return
-        # What tints a picture in old programs is no colour of the material, but often black.
+        # Old programs may write black as the colour of a material with a picture: it is ignored.
         rough["baseColorFactor"] = [1.0, 1.0, 1.0, source.look.opacity]
         content, name = source.picture
         kind = picture_kind(content)
@@ -239,7 +239,7 @@ def root_matrix(to_millimetres: Similarity) -> Floats64:
 
 
 def unit_of(scale: float) -> float:
-    """The unit of a file [mm] of which a face of usual size makes `scale`."""
+    """The unit of a file [mm]; `scale`: its size by a face of usual size [mm]."""
     unit = min(UNITS, key=lambda each: abs(np.log(scale / each)))
     return unit if max(scale / unit, unit / scale) < MOST_OFF else scale
 

@@ -1,4 +1,4 @@
-"""A binary glTF file (.glb): one chunk of JSON, one of numbers, and how numbers are named in it.
+"""A binary glTF file (.glb): one chunk of JSON, and one of numbers that the JSON refers to.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.6 (buffers, accessors) and 4 (GLB).
 """
@@ -29,8 +29,8 @@ ALIGNMENT = 4  # [bytes] of chunks, and of the arrays in them
 class Glb:
     """The content of one file, in the order in which it is added.
 
-    parts: the document of a file that exists, which is added to, and its binary chunk;
-    None for a new one. times: of the keyframes [s], shape (N,); values change evenly between them.
+    parts: the document of an existing file, to be extended, and its binary chunk; None for a new
+    file. times: those of the keyframes [s], shape (N,); values are linear between them.
     """
 
     def __init__(
@@ -68,9 +68,9 @@ class Glb:
     def accessor(
         self, values: npt.NDArray[Any], target: int | None = None, *, is_bounded: bool = False
     ) -> int:
-        """Add an array whose rows are numbers, vectors or matrices (their columns first).
+        """Add an array with rows of numbers, vectors or matrices (by columns).
 
-        is_bounded: add the least and greatest values, which positions and times need.
+        is_bounded: whether to add the least and greatest values; positions and times need these.
         """
         accessor: dict[str, Any] = {
             "bufferView": self._view(np.ascontiguousarray(values).tobytes(), target),
@@ -84,12 +84,12 @@ class Glb:
         return self.add("accessors", accessor)
 
     def sparse(self, vectors: npt.NDArray[np.float32]) -> int:
-        """Add vectors (V, 3) of which most are 0, so that the others alone take room."""
+        """Add mostly zero vectors (V, 3), so that only the others take room."""
         count = len(vectors)
         places = np.flatnonzero(vectors.any(axis=1))
         if not len(places):
             return self._nothing(count)
-        if len(places) > 0.8 * count:  # numbers of places would take more room than they save
+        if len(places) > 0.8 * count:  # the numbers of places would take more room
             return self.accessor(vectors, ARRAY_BUFFER, is_bounded=True)
         short = np.uint16 if count <= 65535 else np.uint32
         numbers = places.astype(short)
@@ -109,7 +109,7 @@ class Glb:
         return self.add("accessors", accessor)
 
     def _nothing(self, count: int) -> int:
-        """An array of this many vectors that are 0, the same for all that ask for it."""
+        """An array of this many zero vectors; equal requests share it."""
         if count not in self._zeros:
             self._zeros[count] = self.add(
                 "accessors",
@@ -128,7 +128,7 @@ class Glb:
 
         Returns the reference to it for a material.
 
-        kind: "png" where every bit counts.
+        kind: "png" if every bit counts.
         """
         file = io.BytesIO()
         # Quality by eye: no blocks in skin, a sixth of the PNG.
@@ -136,7 +136,7 @@ class Glb:
         return {"index": self.add("textures", {"source": self.image(file.getvalue(), kind)})}
 
     def image(self, content: bytes, kind: str) -> int:
-        """Add the content of a picture's file, "png" or "jpeg", as it is; return its number."""
+        """Add the unchanged content of a picture's file, "png" or "jpeg"; return its number."""
         view = self._view(content, None)
         return self.add("images", {"bufferView": view, "mimeType": f"image/{kind}"})
 
@@ -152,7 +152,7 @@ class Glb:
         self._tracks["channels"].append(channel)
 
     def to_bytes(self, title: str, roots: Sequence[int]) -> bytes:
-        """The whole file; title: of its motion. roots: nodes, added here, that hang on no other."""
+        """The whole file; title: that of its motion. roots: added nodes without a parent."""
         if self._input is not None:
             self.add("animations", {"name": title, **self._tracks})
         if "scenes" not in self.parts:
@@ -177,7 +177,7 @@ class Glb:
 
 
 def picture_kind(content: bytes) -> str | None:
-    """The kind of a picture's file by its first bytes, as in "image/png"; None for others."""
+    """The kind of a picture's file by its first bytes, such as "image/png"; None for others."""
     if content.startswith(b"RIFF") and content[8:12] == b"WEBP":
         return "webp"
     kinds = {b"\x89PNG": "png", b"\xff\xd8": "jpeg", b"\xabKTX 20": "ktx2"}

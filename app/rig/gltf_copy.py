@@ -1,8 +1,8 @@
-"""A glTF file as it was, with named shapes appended to its meshes.
+"""A glTF file, unchanged except for named shapes that are appended to its meshes.
 
-Nodes, skins, materials, other meshes, animations, extras and extensions stay as they are. Data that
-lie in other files or in text are taken into the one binary chunk. If a file has weights for its own
-shapes, ours are added with weight 0.
+Nodes, skins, materials, other meshes, animations, extras and extensions stay unchanged. Data in
+other files or in text move into the one binary chunk. If a file has weights for its own shapes,
+ours are added with weight 0.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.7.2.2 (morph targets) and 4 (GLB).
 """
@@ -26,13 +26,13 @@ from risorius.geometry.arrays import Floats32, Integers
 from .bodies import Shaped
 from .glb import Glb, picture_kind
 
-TAKEN = ".risorius"  # behind names that the file has already
+TAKEN = ".risorius"  # ending of names that the file already has
 
 
 def read_document(content: bytes, folder: Path) -> tuple[dict[str, Any], bytes]:
-    """The document of a glTF file, all of whose data lie in its only buffer, and these data.
+    """The document of a glTF file with all data in one buffer, and these data.
 
-    folder: in which other files of it lie. Raises AssetError for those that are missing.
+    folder: the one with its other files. Raises AssetError for missing ones.
     """
     text, data = chunks_of(content)
     document: dict[str, Any] = json.loads(text.decode("utf-8-sig"))
@@ -45,7 +45,7 @@ def read_document(content: bytes, folder: Path) -> tuple[dict[str, Any], bytes]:
 
 
 def _gathered(document: dict[str, Any], binary: bytes, folder: Path) -> bytes:
-    """All data of a document one behind the other; its views and pictures name their places."""
+    """All data of a document one after another; its views and pictures get these places."""
     data = bytearray()
     starts = []
     for buffer in document.get("buffers", []):
@@ -74,7 +74,7 @@ def _gathered(document: dict[str, Any], binary: bytes, folder: Path) -> bytes:
 
 @dataclass(frozen=True)
 class _Changes:
-    """What our shapes change of one primitive, in the numbers of its file, (K, n, 3) each."""
+    """Changes of one primitive by our shapes, in its file's coordinates, (K, n, 3) each."""
 
     places: Floats32
     normals: Floats32
@@ -86,7 +86,7 @@ class GltfShapes:
     def __init__(
         self, glb: Glb, shaped: Shaped, to_millimetres: Similarity, cut: LipCut | None
     ) -> None:
-        """cut: between the lips, whose vertices the shapes have, too."""
+        """cut: the one between the lips; shapes include its vertices."""
         doubled = np.zeros(0, np.int64) if cut is None else cut.sources
         count = len(shaped.body.rest) - len(doubled)
         self._sources = np.append(np.arange(count), doubled)  # vertices of the file
@@ -104,7 +104,7 @@ class GltfShapes:
     ) -> None:
         """Add the shapes to all meshes that they move.
 
-        pieces: where their vertices are. vertices: of each piece, see `vertices_of`.
+        pieces: places of their vertices. vertices: those of each piece, see `vertices_of`.
         """
         changes: dict[int, dict[int, _Changes]] = {}
         for piece, own in zip(pieces, vertices, strict=True):
@@ -117,7 +117,7 @@ class GltfShapes:
                 self._append_to(mesh, of_mesh, names, extras)
 
     def _changes(self, piece: StoredPiece, own: Integers) -> _Changes:
-        """The shapes of a piece as its primitive has them."""
+        """The shapes of a piece in its primitive's form."""
         turn = self._to_file.rotation
         matrices = np.broadcast_to(piece.to_scene, (piece.count, 3, 3))
         matrices = matrices[self._sources[own] - own[0]]
@@ -139,7 +139,7 @@ class GltfShapes:
         names: Sequence[str],
         extras: Mapping[str, Any],
     ) -> None:
-        """Add the shapes to all primitives of a mesh, which must have the same number of them."""
+        """Add the shapes to all primitives of a mesh; all must have the same number of shapes."""
         mesh = self._document["meshes"][number]
         old = max(len(each.get("targets", [])) for each in mesh["primitives"])
         for place, primitive in enumerate(mesh["primitives"]):
@@ -165,7 +165,7 @@ class GltfShapes:
         self._weigh_nodes(number, old, len(names))
 
     def _weigh_nodes(self, mesh: int, old: int, added: int) -> None:
-        """Give nodes, and animations, that weigh a mesh's shapes a weight of 0 for each new one."""
+        """Add zero weights for new shapes to nodes and animations with weights of a mesh."""
         nodes = [
             place for place, node in enumerate(self._document["nodes"]) if node.get("mesh") == mesh
         ]
@@ -189,7 +189,7 @@ class GltfShapes:
                     sampler["output"] = wide
 
     def _widened(self, accessor: int, old: int, added: int) -> int:
-        """Weights of `old` shapes at each time, with zeros behind those of each."""
+        """Weights of `old` shapes at each time, followed by `added` zeros."""
         found = self._document["accessors"][accessor]
         view = self._document["bufferViews"][found["bufferView"]]
         kind = np.dtype(COMPONENTS[found["componentType"]])

@@ -1,7 +1,7 @@
-"""A glTF file whose lips are sealed: its primitives with the vertices that the cut doubles.
+"""A glTF file with sealed lips: its primitives with the vertices that the cut doubles.
 
-All attributes of a doubled vertex are those of the one that it doubles, and so are the changes of
-the file's own shapes. A primitive that is cut gets arrays of its own.
+A doubled vertex has all attributes of its original, and the changes of the file's own shapes. A cut
+primitive gets its own arrays.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def cut_primitives(
 ) -> None:
     """Double the vertices of the primitives that a cut crosses.
 
-    file: the same document, read. vertices: of each piece, see `vertices_of`.
+    file: the same document, read. vertices: those of each piece, see `vertices_of`.
     """
     done = set()
     for piece, numbers in zip(pieces, vertices, strict=True):
@@ -64,13 +64,13 @@ def cut_primitives(
         triangles[is_below] = new[triangles[is_below]]
         kind = np.uint16 if len(rows) <= np.iinfo(np.uint16).max else np.uint32
         primitive["indices"] = glb.accessor(triangles.astype(kind).ravel(), ELEMENT_ARRAY_BUFFER)
-        primitive["mode"] = 4  # triangles, also where it was a strip or a fan
+        primitive["mode"] = 4  # triangles, even if it was a strip or a fan
 
 
 def _rows_of(glb: Glb, file: GltfFile, accessor: int, rows: Integers, name: str) -> int:
     """A new accessor with some rows of one; names of bones stay whole numbers."""
     values = file.values(accessor)[rows]
-    if values.shape[1] == 1:  # a scalar, as an attribute of a program's own may be
+    if values.shape[1] == 1:  # a scalar: an attribute of some program
         values = values[:, 0]
     if not name.startswith("JOINTS"):
         values = values.astype(np.float32)

@@ -1,7 +1,8 @@
-"""How far sums of shapes are from the simulation, and pairs that are worth a shape of their own.
+"""Errors of sums of shapes against the simulation, and pairs that are worth their own shape.
 
-Programs add shapes up. Skin does not: an open mouth puckers less, and a shut lid is not shut again.
-A corrective shape of two corrects this: it is added times the product of their weights.
+Programs add shapes up, but skin does not: an open mouth puckers less, and a shut lid cannot shut
+again. A corrective shape of two shapes corrects this: it is added with the product of their
+weights.
 
 Source: for correctives, Lewis, Anjyo, Rhee, Zhang, Pighin, Deng 2014, "Practice and theory of
 blendshape facial models", section 4 (combination shapes).
@@ -25,22 +26,22 @@ from ..stopping import cleaned_up_if_stopped
 from .bodies import Shaped
 from .poses import Pose, rest_in
 
-PAIRS = (  # in each of which two motions share skin
+PAIRS = (  # in each, two motions share skin
     ("jawOpen", "mouthPucker"),
     ("jawOpen", "mouthSmileLeft", "mouthSmileRight"),
     ("eyeBlinkLeft", "eyeLookDownLeft"),
     ("noseSneerLeft", "mouthUpperUpLeft"),
 )
-TRIED = 4  # pairs that are simulated for each one that is taken
+TRIED = 4  # simulated pairs for each chosen one
 OPPOSITE = (("jawLeft", "jawRight"), ("mouthLeft", "mouthRight"))
 
 
 @dataclass(frozen=True)
 class Difference:
-    """How far a sum of shapes is from the simulation [mm].
+    """Error of a sum of shapes against the simulation [mm].
 
-    names: of the shapes. most: of any vertex. mean: root of the mean square over skin that the
-    simulation moves.
+    names: those of the shapes. most: largest error of a vertex. mean: root mean square over skin
+    that the simulation moves.
     """
 
     names: tuple[str, ...]
@@ -54,7 +55,7 @@ class Difference:
 class Sums:
     """Sums of the shapes of a scene's skin, compared with its simulation.
 
-    corrected: pairs whose correctives are added; `poses` has those of the pairs, too.
+    corrected: pairs whose correctives are added; `poses` includes their poses.
     """
 
     def __init__(
@@ -72,7 +73,7 @@ class Sums:
 
     @property
     def pairs(self) -> list[tuple[str, str]]:
-        """Pairs of shapes that may be made at once.
+        """Pairs of shapes that may occur together.
 
         Opposites, such as an eye that looks up and down, and shapes that are shares of others, are
         left out.
@@ -88,7 +89,7 @@ class Sums:
         return self._difference(tuple(names), self.sum(dict.fromkeys(names, 1.0)), way)
 
     def sum(self, weights: Mapping[str, float]) -> Floats64:
-        """The ways of the skin's vertices that weights add up to, shape (V, 3)."""
+        """Displacements of the skin's vertices for weights of shapes, shape (V, 3)."""
         total = np.zeros_like(self._scene.rest_positions)
         for name, weight in weights.items():
             total += weight * self._ways[name]
@@ -107,7 +108,7 @@ class Sums:
         return Difference(names, float(off.max(initial=0.0)), float(np.sqrt(square)))
 
     def shared(self, first: str, second: str) -> float:
-        """How much skin both shapes move, a number to compare pairs by [mm4]."""
+        """Amount of skin that both shapes move, a number for comparing pairs [mm4]."""
         lengths = [np.linalg.norm(self._ways[name], axis=1) for name in (first, second)]
         return float((self._areas * lengths[0] * lengths[1]).sum())
 
@@ -117,7 +118,7 @@ def table(
     poses: Mapping[str, tuple[Pose, Pose]],
     corrected: Sequence[tuple[str, str]] = (),
 ) -> list[Difference]:
-    """The differences of PAIRS, as far as there are such shapes; arguments as of `Sums`."""
+    """The differences of PAIRS, as far as their shapes exist; arguments as in `Sums`."""
     sums = Sums(scene, poses, corrected)
     return [sums.difference(names) for names in PAIRS if set(names) <= set(poses)]
 
@@ -125,9 +126,9 @@ def table(
 def worth_correcting(
     scene: FaceScene, poses: Mapping[str, tuple[Pose, Pose]], count: int, *, progress: bool
 ) -> list[tuple[str, str]]:
-    """The pairs of shapes whose sums are farthest off, at most `count`, farthest first.
+    """The pairs of shapes with the largest errors of sums, at most `count`, largest first.
 
-    It simulates TRIED pairs for each wanted one: those that share the most skin.
+    For each wanted pair, TRIED pairs are simulated: those that share the most skin.
     """
     sums = Sums(scene, poses)
     tried = sorted(sums.pairs, key=lambda pair: -sums.shared(*pair))[: TRIED * count]
@@ -150,7 +151,7 @@ def corrective_poses(
 
 
 def corrected(shaped: Shaped, pairs: Sequence[tuple[str, str]], names: Sequence[str]) -> Shaped:
-    """A body whose last shapes, those of pairs, are the differences from sums of two shapes."""
+    """A body whose last shapes, those of pairs, become differences from sums of two shapes."""
     if not len(shaped.targets):
         return shaped
     targets = shaped.targets.copy()
@@ -164,7 +165,7 @@ def corrected(shaped: Shaped, pairs: Sequence[tuple[str, str]], names: Sequence[
 
 
 def _are_opposite(first: str, second: str) -> bool:
-    """Whether nobody makes both at once, or both are the sides of one that hardly meet."""
+    """Whether two shapes exclude each other, or are two sides of one that hardly meet."""
     if (first, second) in OPPOSITE or (second, first) in OPPOSITE:
         return True
     if twin_of(first) == second and not first.startswith("mouth"):

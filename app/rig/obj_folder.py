@@ -1,10 +1,10 @@
-"""An avatar as a folder of OBJs, one a shape, for programs that make targets of meshes.
+"""An avatar as a folder of OBJs, one per shape, for programs that make targets of meshes.
 
-All have the same vertices in the same order: `neutral.obj` at rest, and each other where its shape
-is at 1. An OBJ that was brought keeps its lines, but for those of vertices that a shape moves, and
-of polygons that a cut between sealed lips touches; its material libraries and their pictures come
-along. Any other head is written as triangles, body by body: in the unit of its file, the built-in
-one in metres.
+All have the same vertices in the same order: `neutral.obj` at rest, and every other one with its
+shape at 1. A user's OBJ keeps its lines, except those of vertices that a shape moves, and of
+polygons at a cut between sealed lips; its material libraries and their pictures are copied. Any
+other head is written as triangles, body by body: in the unit of its file, or, for the built-in
+head, in metres.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ VERTEX = re.compile(rb"(?m)^[ \t]*v[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)")
 
 
 def write_obj_folder(avatar: Avatar, folder: Path) -> None:
-    """Write all of them."""
+    """Write all files."""
     file = avatar.file
     text = None
     if file is not None and file.path.suffix.lower() == ".obj":
@@ -49,7 +49,7 @@ def write_obj_folder(avatar: Avatar, folder: Path) -> None:
 
 
 def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats64]]]:
-    """Each file's name, and how far the vertices of each body are from rest [mm], (V, 3)."""
+    """Each file's name, and the displacements of each body's vertices from rest [mm], (V, 3)."""
     still = [np.zeros_like(shaped.body.rest) for shaped in avatar.shapes]
     yield "neutral", still
     for number, name in enumerate(avatar.names):
@@ -63,19 +63,19 @@ def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats64]]]:
 
 
 def _has_plain_lines(content: bytes, file: FileHead) -> bool:
-    """Whether an OBJ's lines can stay: none goes on in the next, and none is of UTF-16."""
+    """Whether an OBJ's lines can stay: none continues in the next one, and none is in UTF-16."""
     is_continued = re.search(rb"\\[ \t]*\r?\n", content) is not None
     return not is_continued and len(VERTEX.findall(content)) == _count_of(file)
 
 
 def _count_of(file: FileHead) -> int:
-    """How many vertices an OBJ has that was brought."""
+    """Number of vertices of a user's OBJ."""
     cut = file.head.lip_cut
     return len(file.body.rest) - (0 if cut is None else len(cut.sources))
 
 
 def _own_text(content: bytes, file: FileHead) -> bytes:
-    """The text of an OBJ that was brought; a cut between its lips doubles vertices in it."""
+    """The text of a user's OBJ; a cut between its lips doubles vertices in it."""
     cut = file.head.lip_cut
     return content if cut is None else _with_lips_cut(content, cut, _count_of(file))
 
@@ -83,8 +83,8 @@ def _own_text(content: bytes, file: FileHead) -> bytes:
 def _copy_materials(file: FileHead, folder: Path, *, is_kept: bool) -> None:
     """Copy the material libraries of an OBJ, and their pictures, to the same places in a folder.
 
-    is_kept: as the bytes that they are; else as UTF-8. Pictures that are missing, or lie outside
-    the mesh's folder, stay where they are.
+    is_kept: whether bytes are copied unchanged; else as UTF-8. Pictures that are missing, or lie
+    outside the mesh's folder, are not copied.
     """
     assert file.painted is not None
     source = file.path.parent
@@ -100,16 +100,17 @@ def _copy_materials(file: FileHead, folder: Path, *, is_kept: bool) -> None:
 
 
 def _write_beside(folder: Path, name: str, content: bytes) -> None:
-    """Write a file under the name that another one has for it."""
+    """Write a file under the name that another file uses for it."""
     path = folder / os.path.normpath(PureWindowsPath(name).as_posix())
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(content)
 
 
 def _with_lips_cut(text: bytes, cut: LipCut, count: int) -> bytes:
-    """An OBJ of this many vertices, those that a cut doubles behind the last of them.
+    """An OBJ of this many vertices, with the doubled vertices of a cut after the last one.
 
-    Polygons of the lower lip take the new ones. One that the cut crosses becomes triangles.
+    Polygons of the lower lip take the new vertices. A polygon that the cut crosses becomes
+    triangles.
     """
     below = set(map(tuple, cut.below.tolist()))
     new = {int(source): count + place for place, source in enumerate(cut.sources)}
@@ -140,9 +141,9 @@ def _with_lips_cut(text: bytes, cut: LipCut, count: int) -> bytes:
 def _cut_polygons(
     corners: Sequence[int], below: Collection[tuple[int, ...]], new: Mapping[int, int]
 ) -> list[list[tuple[int, int]]]:
-    """A polygon after the cut, or its triangles if that crosses it: places in it and vertices.
+    """A polygon after the cut, or its triangles if the cut crosses it: places in it and vertices.
 
-    below: triangles of the lower lip, the least number first. new: vertices that these take.
+    below: triangles of the lower lip, the least number first. new: vertices that these take over.
     """
     pieces = []
     becomes: dict[int, set[int]] = {}
@@ -162,7 +163,7 @@ def _cut_polygons(
 
 
 def _rewritten(text: bytes, file: FileHead, change: Floats64) -> bytes:
-    """An OBJ with other coordinates for the vertices that are moved [mm], (V, 3)."""
+    """An OBJ with new coordinates for the moved vertices [mm], (V, 3)."""
     assert file.painted is not None
     moved = file.head.to_millimetres.inverse.vectors(change)
     points = file.painted.mesh.vertices + moved
@@ -180,7 +181,7 @@ def _rewritten(text: bytes, file: FileHead, change: Floats64) -> bytes:
 
 
 def _triangles(avatar: Avatar, changes: list[Floats64]) -> str:
-    """All bodies as one OBJ, a group each."""
+    """All bodies as one OBJ, each as a group."""
     lines = []
     first = 1
     file = avatar.file

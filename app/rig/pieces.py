@@ -1,8 +1,8 @@
 """The pieces of a head's file: connected triangles, and the role of each.
 
-A piece is an eyeball, teeth, the tongue, lashes, hair, a body. The skin, which the landmarks lie
-on, is none of them. A piece is known by its place: eyeballs are round and lie behind the lids;
-what lies in the mouth is where the built-in teeth and tongue were fitted.
+A piece is an eyeball, teeth, the tongue, lashes, hair, a body. The skin, on which the landmarks
+lie, is none of these. A piece is recognised by its place: eyeballs are round and lie behind the
+lids; pieces in the mouth lie where the built-in teeth and tongue were fitted.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from risorius.geometry.arrays import Floats64, Integers32
 
 from ..errors import UserError
 
-ROLES = {  # of a piece, and how it moves
+ROLES = {  # role of a piece -> its motion
     "eye_left": "eyeball, turns with the left eye",
     "eye_right": "eyeball, turns with the right eye",
     "upper_teeth": "upper teeth or gums, still with the cranium",
@@ -33,9 +33,9 @@ ROLES = {  # of a piece, and how it moves
     "hair": "hair or a helmet, still with the cranium",
     "body": "body or clothes, still",
 }
-IN_MOUTH = ("teeth", "gums", "tongue")  # how names of built-in parts begin
+IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of built-in parts
 FACE = slice(17, 68)  # landmarks, without the jaw line
-BESIDE = 12.0  # [mm] about these, in which lashes and brows are looked for
+BESIDE = 12.0  # [mm] about these, in which lashes and brows may lie
 CHIN = 8  # landmark
 LOWER_LIP = 57  # landmark, below its middle
 NOSE_BRIDGE = 27  # landmark
@@ -45,8 +45,9 @@ NOSE_BRIDGE = 27  # landmark
 class FilePiece:
     """Connected vertices of a file, and their role.
 
-    number: by which an option names it. vertices: their numbers, shape (n,). role: of ROLES.
-    middle: of its box [mm], shape (3,). name: of its object or group in the file, or empty.
+    number: its number in options. vertices: their numbers, shape (n,). role: one of ROLES.
+    middle: that of its box [mm], shape (3,). name: that of its object or group in the file, or
+        empty.
     """
 
     number: int
@@ -63,10 +64,10 @@ def find_pieces(
     head: FittedHead,
     names: npt.NDArray[np.object_],
 ) -> list[FilePiece]:
-    """The pieces of a file beside the one that the skin belongs to, in the order of the file.
+    """The pieces of a file except the one with the skin, in the order of the file.
 
     rest: all vertices [mm], shape (V, 3). faces: shape (F, 3). skin: vertices of the skin.
-    names: of the object or group of each vertex, shape (V,).
+    names: that of each vertex's object or group, shape (V,).
     """
     piece = pieces_of(faces, len(rest))
     order = np.argsort(piece, kind="stable")
@@ -93,7 +94,7 @@ def find_pieces(
 def _role_of(
     points: Floats64, middle: Floats64, head: FittedHead, near: scipy.spatial.cKDTree
 ) -> str:
-    """What a piece is taken for. points: its vertices [mm], shape (n, 3)."""
+    """The role of a piece. points: its vertices [mm], shape (n, 3)."""
     for eye in head.eyes:
         if is_eyeball(points, eye.centre, eye.radius):
             return f"eye_{eye.name}"
@@ -106,7 +107,7 @@ def _role_of(
         _is_on_face(points, middle, distance, landmarks) or _is_beard(points, middle, landmarks)
     ):
         return "on_skin"
-    # A collar reaches up to the chin; long hair hangs down from above it.
+    # A collar reaches up to the chin; long hair hangs down from above the chin.
     if points[:, 1].max() < landmarks[CHIN, 1]:
         return "body"
     return "hair"
@@ -115,17 +116,17 @@ def _role_of(
 def _is_on_face(
     points: Floats64, middle: Floats64, distance: Floats64, landmarks: Floats64
 ) -> bool:
-    """Whether a piece is a lash, a brow or the like. distance: of its points from the skin [mm]."""
+    """Whether a piece is a lash, a brow or the like. distance: from its points to the skin [mm]."""
     face = landmarks[FACE]
     is_on_face = (middle > face.min(axis=0) - BESIDE) & (middle < face.max(axis=0) + BESIDE)
-    # Glasses span both eyes and hang before them.
+    # Glasses span both eyes and hang in front of them.
     is_before = np.ptp(points[:, 0]) > 60.0 and np.median(distance) > 5.0
-    # A lash ends 20 mm off the lid.
+    # A lash ends within 20 mm of the lid.
     return bool(is_on_face.all() and distance.max() < 20.0 and not is_before)
 
 
 def _is_beard(points: Floats64, middle: Floats64, landmarks: Floats64) -> bool:
-    """Whether a piece lies around the mouth or on the chin, below the eyes and before the ears."""
+    """Whether a piece lies around mouth or chin, below the eyes and in front of the ears."""
     low = points.min(axis=0)
     high = points.max(axis=0)
     jaw_line = landmarks[:17]
@@ -136,12 +137,12 @@ def _is_beard(points: Floats64, middle: Floats64, landmarks: Floats64) -> bool:
 
 
 def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str | None:
-    """What a piece is that lies where the built-in teeth and tongue do; None for others."""
+    """The role of a piece at the place of the built-in teeth and tongue; None for others."""
     parts = {part.name: part.vertices for part in head.parts if part.name.startswith(IN_MOUTH)}
     if not {"teeth_upper", "teeth_lower", "tongue"} <= set(parts):
         return None
     around = np.vstack([*parts.values()])
-    # Roots of teeth reach far up and down, a throat far back; ahead are lips.
+    # Roots of teeth reach far up and down, a throat reaches far back, and lips lie in front.
     low = around.min(axis=0) - np.array([6.0, 12.0, 25.0])
     high = around.max(axis=0) + np.array([6.0, 12.0, 2.0])
     is_in = ((points > low) & (points < high)).all(axis=1)
@@ -149,10 +150,11 @@ def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str 
         return None
     between = 0.5 * (parts["teeth_upper"][:, 1].min() + parts["teeth_lower"][:, 1].max())
     width, height, depth = np.ptp(points, axis=0)
-    # A row of teeth is hollow in its middle, where a tongue and a palate have their bodies.
+    # A row of teeth is hollow in its middle; a tongue and a palate are not.
     is_middle = np.abs(points[:, 0] - middle[0]) < 0.15 * width
     is_filled = _extent(points[is_middle, 2]) > 0.6 * depth
-    # Walls of a mouth go around the gums; a tongue that reaches into the throat is as high.
+    # Walls of a mouth go around the gums; a tongue that reaches into the throat has the same
+    # height.
     if width > 0.85 * np.ptp(around[:, 0]) and height > 35.0:
         return "mouth"
     if width > 20.0 and depth > 25.0 and is_filled:
@@ -163,14 +165,14 @@ def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str 
 
 
 def _extent(values: Floats64) -> float:
-    """From the least to the greatest of some numbers; 0 for none."""
+    """Difference between the greatest and the least of some numbers; 0 for none."""
     return float(np.ptp(values)) if len(values) else 0.0
 
 
 def corrected(pieces: Sequence[FilePiece], corrections: Sequence[str]) -> list[FilePiece]:
     """Pieces with the roles that options give them: "NUMBER=ROLE", "FIRST-LAST=ROLE", "NAME=ROLE".
 
-    Raises UserError for a number, a name or a role that there is not.
+    Raises UserError for an unknown number, name or role.
     """
     roles: dict[int, str] = {}
     for text in corrections:
@@ -186,7 +188,7 @@ def corrected(pieces: Sequence[FilePiece], corrections: Sequence[str]) -> list[F
 
 
 def _numbers_in(text: str, count: int) -> range:
-    """The numbers of "3" or "4-20", UserError for those beyond 1 to `count` and for all else."""
+    """The numbers of "3" or "4-20"; UserError for numbers outside 1 to `count`, and other text."""
     written = re.fullmatch(r"(\d{1,6})(?:-(\d{1,6}))?", text)
     first = int(written[1]) if written else 0
     last = int(written[2] or first) if written else 0
@@ -225,7 +227,7 @@ def described(pieces: Sequence[FilePiece]) -> list[str]:
 
 
 def _names_in(group: Sequence[FilePiece]) -> str:
-    """The names of some pieces in brackets, at most three of them; empty where none has one."""
+    """The names of some pieces in brackets, at most three; empty if none has a name."""
     names = list(dict.fromkeys(piece.name for piece in group if piece.name))
     if len(names) > 3:
         names[2:] = [f"{len(names) - 2} more"]

@@ -1,4 +1,4 @@
-"""Poses in which a face rests, and the names of the shapes that are made of them."""
+"""Poses in which a face rests, and the names of shapes made of them."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from ..recordings.names import ARKIT, VISEMES
 from ..scenes import FaceScene
 
 KINDS = ("arkit", "units", "visemes", "expressions")
-STILL = 0.001  # [mm] in a step: a face that moves less rests
+STILL = 0.001  # [mm] in a step: a face with less motion rests
 CRANIUM = "cranium"  # name of a bone
 HEAD_CONTROLS = frozenset(("head_yaw", "head_pitch", "head_roll"))
 
 
 @dataclass(frozen=True)
 class Pose:
-    """A face at one moment, seen from its cranium [mm].
+    """A face at one moment, relative to its cranium [mm].
 
-    skin: its vertices, shape (V, 3). matrices: of the bones, name -> (4, 4), for columns.
-    parts: the vertices of each part as its bone finds them, name -> (n, 3).
+    skin: its vertices, shape (V, 3). matrices: those of the bones, name -> (4, 4), for columns.
+    parts: the vertices of each part relative to its bone, name -> (n, 3).
     """
 
     skin: Floats64
@@ -36,7 +36,7 @@ class Pose:
 
 
 def pose_of(scene: FaceScene) -> Pose:
-    """The pose that a scene has now."""
+    """The present pose of a scene."""
     bones = scene.bone_transforms()
     to_cranium = np.linalg.inv(bones[CRANIUM])
     share = scene.face.head_weight
@@ -48,7 +48,7 @@ def pose_of(scene: FaceScene) -> Pose:
 
 
 def without_head_pose(skin: Floats64, cranium: Floats64, share: Floats64) -> Floats64:
-    """The skin (V, 3) as it is before the bone of the head, of which it has shares (V,), turns."""
+    """The skin (V, 3) before the turn by the head's bone, which it follows by shares (V,)."""
     if np.array_equal(cranium, np.eye(4)):
         return skin
     turns = np.eye(3) + share[:, None, None] * (cranium[:3, :3] - np.eye(3))
@@ -66,21 +66,21 @@ def rest_in(scene: FaceScene, values: Mapping[str, float]) -> Pose:
     scene.simulation.jump(scene.values)
     before = np.array(scene.positions)
     calm = 0
-    for _ in range(120):  # after a fifth of these most faces rest
+    for _ in range(120):  # most faces rest after a fifth of these steps
         scene.step(1.0 / 60.0)
         moved = float(np.abs(scene.positions - before).max())
         calm = calm + 1 if moved < STILL else 0
-        if calm == 3:  # a face that turns back stands still for one step
+        if calm == 3:  # a face that reverses stands still for one step
             break
         before[:] = scene.positions
     return pose_of(scene)
 
 
 def shape_names(scene: FaceScene, kinds: Sequence[str]) -> tuple[str, ...]:
-    """The controls that become shapes, in the order of `kinds`; ARKit's as Apple counts them.
+    """The controls that become shapes, in the order of `kinds`; ARKit's have Apple's order.
 
-    Turns of the head are left out: they are those of the node "cranium". Raises UserError for a
-    kind that there is not.
+    Turns of the head are left out: the node "cranium" has them. Raises UserError for an unknown
+    kind.
     """
     found: list[str] = []
     for kind in kinds:
@@ -99,9 +99,10 @@ def shape_names(scene: FaceScene, kinds: Sequence[str]) -> tuple[str, ...]:
 
 
 def settings_of(scene: FaceScene, name: str) -> tuple[dict[str, float], dict[str, float]]:
-    """The controls of a shape, and those of the pose that it is counted from.
+    """The controls of a shape, and those of its reference pose.
 
-    A control that is a share of another, as `mouthClose` of `jawOpen`, adds to that one at 1.
+    A control that is a share of another one, such as `mouthClose` of `jawOpen`, adds to that
+    control at 1.
     """
     whole = scene.simulation.controls.tables.share_of.get(name)
     base: dict[str, float] = {} if whole is None else {whole: 1.0}
@@ -109,6 +110,6 @@ def settings_of(scene: FaceScene, name: str) -> tuple[dict[str, float], dict[str
 
 
 def moved_part(part: Any, pose: Pose) -> Floats64:
-    """Where the vertices of a part are in a pose, seen from the cranium, shape (n, 3)."""
+    """The vertices of a part in a pose, relative to the cranium, shape (n, 3)."""
     points = pose.parts[part.name].astype(np.float64)
     return moved_points(pose.matrices[part.bone], points)

@@ -28,7 +28,7 @@ def surface_of(scene: FaceScene, shaped: Shaped) -> MovingSurface:
 
 
 def add_pieces(glb: Glb, scene: Scene, pieces: list[Piece], skeleton: Skeleton) -> list[int]:
-    """Add pieces to a file, below the nodes of their bones; return those that hang on none."""
+    """Add pieces to a file, below the nodes of their bones; return the nodes without a bone."""
     roots = []
     for piece in pieces:
         node: dict[str, Any] = {"name": piece.surface.name}

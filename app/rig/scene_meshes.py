@@ -23,11 +23,11 @@ from .surface import METRES, MovingSurface
 class Piece:
     """A surface with its morph targets.
 
-    bone: moves the whole of it; None: no bone, or the skin's own weights.
-    normals: at rest, of unit length, shape (V, 3).
-    names: of the targets, K of them.
+    bone: the one that moves it as a whole; None: no bone, or the skin's own weights.
+    normals: unit normals at rest, shape (V, 3).
+    names: those of the K targets.
     targets, bends: changes of vertices [mm] and normals by each target, shape (K, V, 3).
-    weights: of each target in each frame, shape (N, K).
+    weights: those of each target in each frame, shape (N, K).
     """
 
     surface: MovingSurface
@@ -42,7 +42,7 @@ class Piece:
 def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats64, share: Floats64 | None) -> int:
     """Add a mesh whose vertices are relative to `origin`; return its number.
 
-    share: of each vertex, how far it goes with the head, shape (V,); None: there is no head.
+    share: how far each vertex follows the head, shape (V,); None without a head.
     """
     surface = piece.surface
     faces: npt.NDArray[Any] = surface.faces
@@ -71,13 +71,13 @@ def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats64, share: Floa
     if surface.colours is not None:
         attributes["COLOR_0"] = of_vertices(to_linear(surface.colours))
     if share is not None:
-        # Refinement adds shares up, and rounding leaves their limits.
+        # Refinement sums shares, and rounding may exceed their limits.
         share = np.clip(share, 0.0, 1.0)
         none = np.zeros_like(share)
         joints = np.column_stack([none, share > 0.0, none, none]).astype(np.uint8)
         attributes["JOINTS_0"] = of_vertices(joints)
         attributes["WEIGHTS_0"] = of_vertices(np.column_stack([1.0 - share, share, none, none]))
-    # 16 bits can number so many vertices.
+    # 16 bits can number this many vertices.
     short = np.uint16 if len(vertices) <= 65535 else np.uint32
     primitive: dict[str, Any] = {
         "attributes": attributes,
@@ -91,13 +91,13 @@ def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats64, share: Floa
             for moved, bent in zip(piece.targets, piece.bends, strict=True)
         ]
         mesh["weights"] = [0.0] * len(piece.targets)
-        mesh["extras"] = {"targetNames": list(piece.names)}  # where all readers look for names
+        mesh["extras"] = {"targetNames": list(piece.names)}  # all readers look for names here
     return glb.add("meshes", mesh)
 
 
 def _add_material(glb: Glb, scene: Scene, surface: MovingSurface) -> int:
     """Add the material of a surface; return its number."""
-    rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.55}  # by eye
+    rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.55}  # chosen by eye
     material: dict[str, Any] = {"name": surface.name, "pbrMetallicRoughness": rough}
     if surface.colours is not None:
         # Roughness, chosen by eye; parts go from dull to wet by their shine.
@@ -119,7 +119,7 @@ def _add_material(glb: Glb, scene: Scene, surface: MovingSurface) -> int:
 
 
 def _normal_map(surface: MovingSurface, fine: assets.FineShape) -> npt.NDArray[np.uint8]:
-    """Normals of the fine shape (H, W, 3): along u, across it in the surface, and out of that."""
+    """Normals of the fine shape (H, W, 3): components along u, across u, and out of the surface."""
     assert surface.uv is not None and surface.face_uv is not None
     places = surface.uv[surface.face_uv]
     texels = Texels.within(places.astype(np.float64), fine.slopes.shape[:2], margin=1.0)

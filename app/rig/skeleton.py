@@ -1,4 +1,4 @@
-"""Bones of a scene as nodes of a glTF file, each of which stands where its bone turns.
+"""Bones of a scene as nodes of a glTF file; each node is at the pivot of its bone.
 
     neck ── cranium ─┬─ eye_left, eye_right ── eyeballs
                      ├─ mandible
@@ -27,9 +27,9 @@ MANDIBLE = "mandible"  # name of a bone
 
 
 class Skeleton:
-    """The nodes of the bones that something hangs on.
+    """The nodes of the bones that carry surfaces.
 
-    roots: numbers of the nodes that hang on no other.
+    roots: numbers of the nodes without a parent.
     skin: number of the glTF skin of a face, None for a scene without a face.
     """
 
@@ -42,8 +42,8 @@ class Skeleton:
         *,
         skins: bool = True,
     ) -> None:
-        """used: bones that something hangs on. motion: the matrices of each bone, (N, 4, 4);
-        None: they stand still. skins: whether a surface is bent by cranium and neck.
+        """used: bones that carry surfaces. motion: the matrices of each bone, (N, 4, 4); None: they
+        stand still. skins: whether cranium and neck bend a surface.
         """
         self._glb = glb
         still = np.eye(4)[None]
@@ -60,7 +60,7 @@ class Skeleton:
         self._pivots = {NECK: pivots[CRANIUM], **pivots}
         self.roots = [self._add(NECK, None)]
         head = self._add(CRANIUM, NECK)
-        # Nothing of the head hangs on the mandible: shapes move it. A beard may.
+        # No part of the head hangs on the mandible, because shapes move it; a beard may.
         for bone in sorted((used | {MANDIBLE}) - {CRANIUM, NECK}):
             self._add(bone, CRANIUM)
         if not skins:
@@ -72,7 +72,7 @@ class Skeleton:
         self.skin = glb.add("skins", joints)
 
     def pivot(self, bone: str | None) -> Floats64:
-        """Where a bone's node stands at rest [mm], shape (3,); the origin for None."""
+        """Place of a bone's node at rest [mm], shape (3,); the origin for None."""
         return np.zeros(3) if bone is None else self._pivots.get(bone, np.zeros(3))
 
     def hang(self, node: int, bone: str) -> None:
@@ -84,7 +84,7 @@ class Skeleton:
         self._nodes[bone]["extras"] = extras
 
     def _add(self, bone: str, parent: str | None) -> int:
-        """Add a bone's node, with its motion against the parent's."""
+        """Add a bone's node, with its motion relative to the parent."""
         local = self._places(bone)
         if parent is not None:
             local = np.linalg.inv(self._places(parent)) @ local
@@ -99,7 +99,7 @@ class Skeleton:
             canonical=True
         )
         if np.abs(rotations[:, :3]).max() > still_motion:
-            # q and -q turn alike, but values between two keyframes do not.
+            # q and -q are the same turn, but values between two keyframes differ.
             is_opposite = (rotations[1:] * rotations[:-1]).sum(axis=1) < 0.0
             rotations[1:] *= np.cumprod(np.where(is_opposite, -1.0, 1.0))[:, None]
             self._glb.animate(node, "rotation", rotations)

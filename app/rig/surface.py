@@ -1,4 +1,4 @@
-"""One triangle mesh of a scene over time, as writers of files take it. Lengths are millimetres."""
+"""One triangle mesh of a scene over time, for writers of files. Lengths are millimetres."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.transforms import moved_points
 
-METRES = 0.001  # a millimetre; programs for animation take bare numbers for metres
+METRES = 0.001  # a millimetre; programs for animation read plain numbers as metres
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class MovingSurface:
     """One triangle mesh of a clip over all of its N frames; vertices and triangles never change.
 
     name: unique within the clip: "skin", or that of the part.
-    rest: vertices where nothing moves, shape (V, 3), float64.
+    rest: vertices at rest, shape (V, 3), float64.
     faces: counter-clockwise from the visible side, shape (F, 3), int32.
     shapes: vertices in each frame, before `matrices`, shape (N, V, 3), float32; None: as at rest.
     matrices: move the whole of it in each frame, shape (N, 4, 4), float64; None: not moved.
@@ -39,21 +39,21 @@ class MovingSurface:
     shine: float = 0.0
 
     def at(self, frame: int) -> Floats64:
-        """Where the vertices are in a frame, shape (V, 3)."""
+        """The vertices in a frame, shape (V, 3)."""
         points = self.rest if self.shapes is None else self.shapes[frame].astype(np.float64)
         if self.matrices is None:
             return points
         return moved_points(self.matrices[frame], points)
 
     def normals_of(self, points: Floats64, frame: int | None) -> Floats64:
-        """Unit normals of the vertices, shape (V, 3), where they are at `points` in a frame.
+        """Unit normals, shape (V, 3), of vertices at `points` in a frame.
 
         frame: None at rest.
         """
         return vertex_normals(points, self.faces)
 
     def carried(self, values: Floats64) -> Floats64:
-        """Values of the vertices of the scene's mesh, shape (n,), at these vertices, (V,)."""
+        """Carry values of the scene's mesh, shape (n,), to these vertices, (V,)."""
         return values
 
     @property
@@ -64,9 +64,9 @@ class MovingSurface:
 
 @dataclass(frozen=True)
 class RefinedSurface(MovingSurface):
-    """A surface that was refined, with the normals of its refiner.
+    """A refined surface, with the normals of its refiner.
 
-    rest_normals: where nothing moves, shape (V, 3). normals: in each frame, shape (N, V, 3).
+    rest_normals: those at rest, shape (V, 3). normals: those in each frame, shape (N, V, 3).
     sources: the triangle of the scene's mesh that each triangle is part of, shape (F,).
     origins: where each vertex lies on the scene's mesh. refiner: refines the scene's mesh into
     these triangles.
@@ -84,7 +84,7 @@ class RefinedSurface(MovingSurface):
         return normals.astype(np.float64)
 
     def carried(self, values: Floats64) -> Floats64:
-        """Values of the vertices of the scene's mesh, shape (n,), at these vertices, (V,)."""
+        """Carry values of the scene's mesh, shape (n,), to these vertices, (V,)."""
         return np.asarray((values[self.origins.vertices] * self.origins.weights).sum(axis=1))
 
     @property

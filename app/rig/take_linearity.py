@@ -1,7 +1,7 @@
-"""How far sums of shapes are from the simulation while a take plays, as a tracker would weigh them.
+"""Errors of sums of shapes against the simulation of a take, with a tracker's weights.
 
-The weights are the curves of ARKit's shapes, those that `risorius export -o take.csv` writes. So
-this is the distance of an avatar that plays a take from the face that it was made of.
+The weights are the curves of ARKit's shapes that `risorius export -o take.csv` writes. So this is
+the distance between an avatar and its face while both play a take.
 """
 
 from __future__ import annotations
@@ -24,15 +24,16 @@ from .curves import shape_curves
 from .linearity import TRIED, Difference, Sums
 from .poses import Pose, pose_of, rest_in
 
-FRAMES_PER_SECOND = 15.0  # few of a take are as good as all
+FRAMES_PER_SECOND = 15.0  # this share of a take is as good as all
 
 
 @dataclass(frozen=True)
 class PlayedTake:
     """A take on a face.
 
-    title: of it. ways: how far the skin's vertices are from rest in each frame [mm], (N, V, 3).
-    curves: of ARKit's shapes, (N, 52).
+    title: that of the take. ways: displacements of the skin's vertices from rest in each frame
+        [mm], (N, V, 3).
+    curves: those of ARKit's shapes, (N, 52).
     """
 
     title: str
@@ -41,7 +42,7 @@ class PlayedTake:
 
 
 def played_take(scene: FaceScene, script: Script) -> PlayedTake:
-    """Play a take on a face; raises UserError if the face lacks a control of it."""
+    """Play a take on a face; raises UserError if the face lacks one of its controls."""
     script.check(scene.limits)
     moved = scene.simulation.controls
     times = []
@@ -70,10 +71,10 @@ def worth_correcting_on(
     *,
     progress: bool,
 ) -> list[tuple[str, str]]:
-    """The pairs of ARKit's shapes whose correctives bring sums nearest to a take, at most `count`.
+    """The pairs of ARKit's shapes, at most `count`, whose correctives bring sums nearest to a take.
 
-    Those are simulated that the take plays at once on the same skin. The one that takes the most
-    of what is left of the squares is chosen, again and again, as long as one takes any.
+    Only pairs that the take plays together on the same skin are simulated. The pair that reduces
+    the remaining squares most is chosen, repeatedly, as long as one reduces them.
     """
     weights = dict(zip(ARKIT, take.curves.T, strict=True))
     sums = Sums(scene, {name: poses[name] for name in ARKIT})
@@ -94,7 +95,7 @@ def worth_correcting_on(
     shares = np.sqrt(vertex_areas(scene.rest_positions, scene.faces))[:, None]
     columns = np.stack([(shares * way).ravel() for way in ways], axis=1)
     products = np.stack([weights[first] * weights[second] for first, second in tried], axis=1)
-    along = np.zeros(products.shape)  # what is left of each frame, along each way
+    along = np.zeros(products.shape)  # remainder of each frame along each way
     for frame, way in enumerate(take.ways):
         at_once = {name: float(curve[frame]) for name, curve in weights.items()}
         along[frame] = (shares * (way - sums.sum(at_once))).ravel() @ columns
@@ -108,10 +109,10 @@ def _greediest(
     lengths: Floats64,
     count: int,
 ) -> list[tuple[str, str]]:
-    """The pairs that take the most of the squares, one after the other.
+    """The pairs that reduce the squares most, one after another.
 
-    products: weights of the pairs in each frame, (N, K). along: what is left of each frame, along
-    the way of each pair, (N, K). lengths: of ways, along each other, (K, K).
+    products: weights of the pairs in each frame, (N, K). along: remainder of each frame along the
+    way of each pair, (N, K). lengths: products of ways with each other, (K, K).
     """
     left = along.copy()
     found: list[tuple[str, str]] = []
@@ -132,9 +133,9 @@ def difference_on(
     poses: Mapping[str, tuple[Pose, Pose]],
     pairs: Sequence[tuple[str, str]] = (),
 ) -> Difference:
-    """How far sums are from a take: at most, and the root mean square over frames and skin.
+    """Errors of sums on a take: the largest, and the root mean square over frames and skin.
 
-    poses: of ARKit's shapes, and of the pairs whose correctives are added.
+    poses: those of ARKit's shapes, and of the pairs whose correctives are added.
     """
     sums = Sums(scene, poses, pairs)
     areas = vertex_areas(scene.rest_positions, scene.faces)

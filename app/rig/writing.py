@@ -25,13 +25,14 @@ from .scene_file import add_pieces, piece_of
 from .skeleton import Skeleton
 from .surface import METRES
 
-LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")  # of each eye, by its side
+LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")  # shapes of each eye, by its side
 
 
 def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -> tuple[int, int]:
     """Write an avatar, whole or not at all.
 
-    Return the size of its files [bytes], and how many meshes the file has, or files the folder.
+    Return the size of its files [bytes], and the number of meshes in the file or files in the
+    folder.
     """
     if is_folder:
         with folder_atomically(output, OWN, overwrite=False) as folder:
@@ -45,13 +46,13 @@ def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -
 
 
 def make_avatar(head: FittedHead | None, output: Path, request: RigRequest, say: Say) -> None:
-    """Make the avatar of a head, None for the built-in one, and write it."""
+    """Make the avatar of a head (None: the built-in one) and write it."""
     title = head.files[0].stem if head is not None and head.files else output.stem
     write_avatar(avatar_of(head, request, say), output, title, is_folder=False)
 
 
 def avatar_glb(avatar: Avatar, title: str) -> bytes:
-    """The whole file. title: of the head."""
+    """The whole file. title: that of the head."""
     if avatar.file is not None and avatar.file.painted is None:
         return _copied(avatar, avatar.file, title)
     glb = Glb()
@@ -68,7 +69,7 @@ def avatar_glb(avatar: Avatar, title: str) -> bytes:
 
 
 def _copied(avatar: Avatar, file: FileHead, title: str) -> bytes:
-    """A glTF file as it was, with the shapes, and built-in parts where these are wanted."""
+    """An unchanged glTF file with the shapes, and, on request, built-in parts."""
     content = file.path.read_bytes()
     glb = Glb(None, *read_document(content, file.path.parent))
     cut = file.head.lip_cut
@@ -105,7 +106,7 @@ def _add_file(glb: Glb, avatar: Avatar, file: FileHead, title: str) -> int:
 
 
 def _add_file_mesh(glb: Glb, avatar: Avatar, file: FileHead) -> list[int]:
-    """Add the mesh of a file, its eyeballs as nodes of their own; return the nodes."""
+    """Add the mesh of a file, with its eyeballs as separate nodes; return the nodes."""
     assert file.painted is not None
     writer = FileMeshWriter(glb, file.painted, file.head.to_millimetres, avatar.shapes[0])
     faces = file.body.faces
@@ -149,9 +150,9 @@ def _add_parts(glb: Glb, avatar: Avatar, file: FileHead) -> int:
 
 
 def looks_of(avatar: Avatar, eye: str, turn: Floats64) -> dict[str, Any]:
-    """How the node of an eye turns for each of its shapes at 1: quaternions x, y, z, w.
+    """Turns of an eye's node for each of its shapes at 1: quaternions x, y, z, w.
 
-    turn: from the face's axes to those of the node, a matrix (3, 3).
+    turn: matrix (3, 3) from the face's axes to those of the node.
     """
     side = eye.removeprefix("eye_").capitalize()
     found = {}

@@ -17,35 +17,35 @@ from risorius.geometry.read_only import read_only
 
 
 class DenseSkin:
-    """The vertices of a skin as a simulation of fewer carries them.
+    """The vertices of a skin that a simulation with fewer vertices carries.
 
-    rest_positions: at rest [mm], shape (V, 3), read only for others.
+    rest_positions: those at rest [mm], shape (V, 3), read only.
     """
 
     def __init__(self, vertices: Floats64, faces: Integers32, simulation: sim.Simulation) -> None:
         """Bind vertices (V, 3) of triangles (F, 3), at rest, to the mesh of `simulation`."""
-        from risorius.refine import Embedding  # which few heads need
+        from risorius.refine import Embedding  # few heads need it
 
         self.rest_positions = vertices
-        # By its normal an upper lip's vertex stays with the upper lip.
+        # Normals keep vertices of the upper lip with the upper lip.
         normals = _smooth_normals(vertices, faces)
         self._embedding = Embedding(
             simulation.faces, simulation.rest_positions, vertices, normals=normals
         )
         self._positions = vertices.copy()
         self._shown = read_only(self._positions)
-        self._wanted: Floats64 | None = None  # where the simulated vertices are, if not followed
+        self._wanted: Floats64 | None = None  # simulated vertices that are not yet followed
 
     def follow(self, simulated: Floats64) -> None:
-        """Go where the simulated vertices are, shape (K, 3), as soon as somebody looks.
+        """Follow simulated vertices, shape (K, 3), when `positions` is read next.
 
-        A frame has several steps of the simulation, and only after the last of them one looks.
+        A frame has several steps of the simulation, and positions are read only after the last.
         """
         self._wanted = simulated
 
     @property
     def positions(self) -> Floats64:
-        """Now [mm], shape (V, 3), read only for others; a view that stays the same."""
+        """Present positions [mm], shape (V, 3), read only; always the same view."""
         if self._wanted is not None:
             moved = self._embedding.evaluate(self._wanted, with_normals=False).positions
             self._positions[:] = moved
@@ -53,7 +53,7 @@ class DenseSkin:
         return self._shown
 
     def carry(self, values: Floats64) -> Floats64:
-        """Values of simulated vertices, shape (K,), at those of the skin, shape (V,)."""
+        """Carry values of simulated vertices, shape (K,), to those of the skin, shape (V,)."""
         return self._embedding.carry(values)
 
     def clone(self) -> DenseSkin:
@@ -68,11 +68,11 @@ class DenseSkin:
 def _smooth_normals(vertices: Floats64, faces: Integers32) -> Floats64:
     """Sums of unit normals around vertices, shape (V, 3).
 
-    A scan has folds of single triangles, where a vertex looks into the face: its neighbours do not.
+    A scan has folds of single triangles, where the normal of one vertex points into the face.
     """
     normals = vertex_normals(vertices, faces)
     corners = faces.ravel()
-    rounds = 2  # each takes the neighbours of neighbours in
+    rounds = 2  # each includes one more ring of neighbours
     for _ in range(rounds):
         sums = np.repeat(normals[faces].sum(axis=1), 3, axis=0)
         columns = [np.bincount(corners, each, len(vertices)) for each in sums.T]

@@ -1,6 +1,6 @@
-"""A drawable: a triangle mesh whose vertices move, images over it, and parts beside it.
+"""A drawable: a triangle mesh whose vertices move, images over it, and further parts.
 
-Drawing needs no more. What moves the mesh, and by which controls, is a scene's (scene.py).
+Drawing needs no more. A scene (scene.py) moves the mesh by controls.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ Pixels = npt.NDArray[np.uint8]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SkinImages:
-    """The images over a mesh, by its texture coordinates, and where it ends.
+    """The images over a mesh, by its texture coordinates, and the fade at its end.
 
     uv: texture coordinates, (U, 2). face_uv: which of them each corner has, (F, 3).
-    albedo: sRGB, (H, W, 3). in_tone: albedos by their individual typology angle [deg].
-    ambient_occlusion: over the albedo, (H, W); None: light gets everywhere.
-    fine_shape: of the skin, which its triangles do not hold. wrinkles: where skin wrinkles.
+    albedo: sRGB, (H, W, 3). in_tone: makes the albedo for an individual typology angle [deg].
+    ambient_occlusion: over the albedo, (H, W); None: no shade.
+    fine_shape: form of the skin beyond its triangles. wrinkles: the furrows of the skin.
     fade: of each vertex, (V, 2): the share that shows, 0 to 1, also beyond; and a number below 0
         where the inner side does not show. None: all of it shows.
     """
@@ -61,11 +61,11 @@ class Framing:
 
 
 class Drawable:
-    """A mesh as drawing sees it.
+    """A mesh for drawing.
 
-    name: of the scene, by which looks choose their options.
+    name: that of the scene, by which looks choose options.
     faces: (F, 3). rest_positions: (V, 3) [mm].
-    called: whose head it is, if it is one. face: what muscles move, if they do.
+    called: name of the head, if it is one. face: the simulated face, if there is one.
     """
 
     called = ""
@@ -88,7 +88,7 @@ class Drawable:
 
     @property
     def positions(self) -> Points:
-        """The vertices now [mm], shape (V, 3); read only for others."""
+        """The present vertices [mm], shape (V, 3), read only."""
         return self._positions_now
 
     def place(self, positions: Points) -> None:
@@ -97,18 +97,18 @@ class Drawable:
 
     @property
     def parts(self) -> tuple[Any, ...]:
-        """The parts that move with bones or the skin, as they are now: eyes, teeth, lashes, ..."""
+        """The present parts that move with bones or the skin: eyes, teeth, lashes, ..."""
         return ()
 
     def rims(self, point_count: int) -> Mapping[str, Rim]:
-        """The openings of its skin as they are now, by names of `openings.opening_before`.
+        """The present openings of its skin, by names of `openings.opening_before`.
 
-        point_count: of each rim, even.
+        point_count: number of points of each rim, even.
         """
         return {}
 
     def bone_transforms(self) -> Mapping[str, Points]:
-        """Where the rigid parts are now: a (4, 4) matrix for each bone."""
+        """Present places of the rigid parts: a (4, 4) matrix for each bone."""
         return {}
 
     def step(self, seconds: float) -> None:

@@ -25,9 +25,9 @@ from .openings import Rim, rims_of
 from .scene import Scene
 from .skin_part import SkinPart
 
-BUILT_IN = "built-in"  # how the head that comes along is called
-OWN = "own"  # how a user's head is called
-LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
+BUILT_IN = "built-in"  # name of the included head
+OWN = "own"  # name of a user's head
+LONGEST_STEP = 1.0 / 60.0  # [s] between poses for the simulation, at any rate of a film
 
 
 class FaceScene(Scene):
@@ -41,7 +41,7 @@ class FaceScene(Scene):
         head: assets.Head | FittedHead | None = None,
         face: Face | None = None,
     ) -> None:
-        """Simulate `head`, the built-in one by default; face: of it, if there is one."""
+        """Simulate `head`, by default the built-in one; face: an existing face of this head."""
         self.head = assets.load("head") if head is None else head
         face = face or Face.of(self.head)
         self.simulation = face.simulation
@@ -51,7 +51,7 @@ class FaceScene(Scene):
         self.landmarks = self.head.landmarks
         self.called = _name_of(self.head)
         self._parts = _parts_of(self.head, rest, faces)
-        self._are_bent = False  # parts, as the face is now
+        self._are_bent = False  # whether parts have the face's present shape
         self.framing = self._framing()
         controls = self.simulation.controls
         self.groups = controls.groups
@@ -91,7 +91,7 @@ class FaceScene(Scene):
         self._follow()
 
     def _follow(self) -> None:
-        """Take note that the simulation has moved."""
+        """Note that the simulation has moved."""
         self.face.follow()
         self._are_bent = False
 
@@ -101,7 +101,7 @@ class FaceScene(Scene):
 
     @property
     def parts(self) -> tuple[Any, ...]:
-        """Bent when they are asked for: a picture may show several steps at once."""
+        """Parts, which bend at this call: a picture may show several steps at once."""
         if not self._are_bent:
             self._are_bent = True
             tongue = self.simulation.anatomy.tongue()
@@ -127,7 +127,7 @@ class FaceScene(Scene):
         return self.simulation.bones.transforms()
 
     def moved_by(self, name: str) -> Mapping[str, float]:
-        """The lowest controls that a control at its most moves, and how far."""
+        """The lowest controls that a control at its limit moves, and how far."""
         controls = self.simulation.controls
         if name not in self._moved_by:
             at_most = self.limits.pose({name: self.limits[name][1]})
@@ -138,14 +138,14 @@ class FaceScene(Scene):
 
 
 def _on_skin(part: Any, rest_positions: Floats64, faces: Any) -> Any:
-    """A part, such that it follows the skin if it lies on that."""
+    """The part, or a part that follows the skin if it lies on it."""
     if part.name == MASK:
         return Mask(part, rest_positions)
     return part if part.roots is None else SkinPart(part, rest_positions, faces)
 
 
 def _images_of(head: assets.Head | FittedHead) -> SkinImages:
-    """What is on the skin of a head."""
+    """The images on the skin of a head."""
     person = head if isinstance(head, Person) else None
     in_tone = None if person is None else person.in_tone
     return SkinImages(
@@ -165,13 +165,13 @@ def _parts_of(
     rest_positions: Floats64,
     faces: Integers32,
 ) -> tuple[Any, ...]:
-    """The parts of a head, some of which can bend, and the hair of the built-in one."""
+    """The parts of a head, some of which can bend, with the hair of the built-in head."""
     parts = tuple(_on_skin(part, rest_positions, faces) for part in shaded_mouth(head.parts))
     return (*parts, *built_in_hair(head)) if isinstance(head, assets.Head) else parts
 
 
 def _name_of(head: assets.Head | FittedHead) -> str:
-    """How the user calls a head."""
+    """The user's name for a head."""
     if isinstance(head, assets.Head):
         return BUILT_IN
     return head.called or OWN

@@ -1,7 +1,7 @@
 """The head under a skin: its simulation, and the skin that muscles move.
 
-A head of more triangles than can be moved in time has a simplified mesh, which is simulated. Its
-own vertices follow that one (dense_skin.py).
+A head with too many triangles to move in time has a simplified mesh, which is simulated. Its own
+vertices follow this mesh (dense_skin.py).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .dense_skin import DenseSkin
 
 @dataclass(frozen=True, eq=False)
 class Face:
-    """A head, its simulation, and its skin where that is denser than the simulated mesh."""
+    """A head, its simulation, and its skin if that is denser than the simulated mesh."""
 
     head: assets.Head | FittedHead
     simulation: sim.Simulation
@@ -30,7 +30,7 @@ class Face:
 
     @classmethod
     def of(cls, head: assets.Head | FittedHead) -> Face:
-        """A face of this head, at rest. Raises ValueError for one that cannot be simulated."""
+        """A face of this head at rest. Raises ValueError for a head that cannot be simulated."""
         simplified = head.simplified if isinstance(head, FittedHead) else None
         simulation = sim.create(simplified or head)
         if simplified is None:
@@ -63,9 +63,9 @@ class Face:
 
     @property
     def positions(self) -> Floats64:
-        """The vertices of the skin now [mm], shape (V, 3); a view that stays the same.
+        """The present vertices of the skin [mm], shape (V, 3); always the same view.
 
-        A dense skin moves there when this is asked for.
+        A dense skin moves when this is read.
         """
         simulated: Floats64 = self.simulation.positions
         return simulated if self.dense_skin is None else self.dense_skin.positions
@@ -78,19 +78,19 @@ class Face:
 
     @property
     def marked(self) -> Floats64:
-        """Where the rig's 68 landmarks are now [mm], shape (68, 3)."""
+        """The rig's 68 landmarks in their present places [mm], shape (68, 3)."""
         return np.asarray(self.positions[self.head.landmarks])
 
     @cached_property
     def annotation(self) -> Annotation:
-        """Where annotators of pictures put the 68 points."""
+        """The places where annotators of pictures put the 68 points."""
         return annotation_of(self.head)
 
     def follow(self) -> None:
-        """Let the skin go where the simulated mesh is now."""
+        """Let the skin follow the present simulated mesh."""
         if self.dense_skin is not None:
             self.dense_skin.follow(self.simulation.positions)
 
     def bone_transforms(self) -> Mapping[str, Floats64]:
-        """Where its bones are now: a (4, 4) matrix for each."""
+        """Present places of its bones: a (4, 4) matrix for each."""
         return self.simulation.bones.transforms()

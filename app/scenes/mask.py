@@ -1,4 +1,4 @@
-"""A mask on a face: it goes with both jaws, and gives way where skin comes out against it."""
+"""A mask on a face: it follows both jaws, and yields where skin pushes against it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .mouth import BentPart, drawn_attributes
 
 
 class Mask(BentPart):
-    """A mask before the mouth, drawn as any other part."""
+    """A mask in front of the mouth, drawn like any other part."""
 
     def __init__(self, part: Any, skin: Floats64) -> None:
         """The mask that lies on a skin at rest, (V, 3)."""
@@ -32,15 +32,15 @@ class Mask(BentPart):
         self._outward = smooth.reshape(-1, 3)
         self._near = scipy.spatial.cKDTree(skin).query(sheet, k=24)[1]
         self._resting_heights = self._heights(skin, sheet)
-        # The inner side and the loops go with the sheet: the loops less, the nearer to the ear.
+        # The inner side and the loops follow the sheet; the loops follow less near the ear.
         distances, self._held_by = scipy.spatial.cKDTree(sheet).query(self._rest)
         reach = 60.0  # [mm]
         self._held = np.clip(1.0 - distances / reach, 0.0, 1.0)[:, None]
 
     def follow(self, skin: Floats64, cranium: Floats64, mandible: Floats64) -> None:
-        """Lie on the skin as it is now, (V, 3).
+        """Lie on the present skin, (V, 3).
 
-        cranium: where that is, a matrix (4, 4). mandible: how it has moved, seen from the cranium.
+        cranium: its place, a matrix (4, 4). mandible: its motion, relative to the cranium.
         """
         moved = stretched_walls(self._rest, self._shares, mandible)
         there = (skin - cranium[:3, 3]) @ np.linalg.inv(cranium[:3, :3]).T
@@ -49,7 +49,7 @@ class Mask(BentPart):
         pushed = np.minimum(heights + clearance, heights - self._resting_heights).max(axis=1)
         least = np.maximum(pushed, 0.0).reshape(SHAPE)
         push = least
-        for _ in range(40):  # a sheet makes a tent over what pushes it
+        for _ in range(40):  # a sheet forms a tent over a push
             around = np.pad(push, 1, mode="edge")
             mean = around[:-2, 1:-1] + around[2:, 1:-1] + around[1:-1, :-2] + around[1:-1, 2:]
             push = np.maximum(least, 0.25 * mean)
@@ -57,9 +57,9 @@ class Mask(BentPart):
         self.take_shape(moved + self._held * away[self._held_by])
 
     def _heights(self, skin: Floats64, sheet: Floats64) -> Floats64:
-        """How far skin around each vertex of the sheet lies outside it, (n, 24) [mm].
+        """Heights of skin around each vertex of the sheet above it, (n, 24) [mm].
 
-        Skin bends away beside its vertices, as on a ball.
+        Skin bends away beside its vertices, like a ball.
         """
         apart = skin[self._near] - sheet[:, None]
         outside = (apart * self._outward[:, None]).sum(axis=-1)

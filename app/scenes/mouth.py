@@ -1,5 +1,5 @@
-"""The inside of the mouth: darker toward the back, where less light from all around gets in; a
-tongue that bends, out of the dark; and walls that stretch between both jaws.
+"""The inside of the mouth: darker toward the back, where less light arrives; a tongue that bends
+out of the dark; and walls that stretch between both jaws.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.read_only import read_only
 
-IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
+IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names; the cavity is painted dark
 
 
 class Gloom(NamedTuple):
-    """How colours (sRGB) get lost toward the back of the mouth."""
+    """Loss of colours (sRGB) toward the back of the mouth."""
 
     begins: float  # [mm] behind the front teeth
     ends: float
-    lost: float  # share from there on
-    powers: tuple[float, float, float] = (1.0, 1.0, 1.0)  # of red, green, blue in the rest
+    lost: float  # lost share from there on
+    powers: tuple[float, float, float] = (1.0, 1.0, 1.0)  # factors of red, green, blue in the rest
 
 
-# Chosen by eye. What light reaches a molar has met red flesh before. It is little that gets lost:
-# dark ones look like broken teeth, and rows that end before the corner of the mouth.
+# Chosen by eye. Light that reaches a molar has met red flesh before. Little of it is lost: dark
+# molars would look like broken teeth, or like rows that end in front of the corner of the mouth.
 REDDENED = (0.9, 1.2, 1.25)
 GUMS = Gloom(2.0, 34.0, 0.2)
 TONGUE = Gloom(-5.0, 53.0, 0.48, (0.92, 1.25, 1.3))
@@ -40,7 +40,7 @@ LOWER_TEETH = Gloom(2.0, 36.0, 0.25, REDDENED)
 
 @dataclass(eq=False, kw_only=True)
 class BentPart:
-    """A part that changes its shape; drawn as any other (render/parts.py)."""
+    """A part that changes its shape; drawn like any other (render/parts.py)."""
 
     name: str
     vertices: Floats32
@@ -55,21 +55,21 @@ class BentPart:
     roots: None = None
 
     def take_shape(self, vertices: Floats64) -> None:
-        """Have these vertices, shape (n, 3), and the normals that follow from them."""
+        """Take these vertices, shape (n, 3), and compute their normals."""
         self.vertices = read_only(vertices.astype(np.float32))
         self.normals = read_only(vertex_normals(vertices, self.faces).astype(np.float32))
 
 
 @dataclass(eq=False, kw_only=True)
 class Tongue(BentPart):
-    """The tongue, which is darker the farther back it is."""
+    """The tongue, which is darker toward the back."""
 
     unlit: Floats32  # its colours in full light
     front: float  # z of the front teeth [mm]
-    shape: Floats64 | None = None  # taken last
+    shape: Floats64 | None = None  # the last one
 
     def bend(self, vertices: Floats64) -> None:
-        """Take another shape (n, 3), lit as it is in its place; nothing for the same array."""
+        """Take another shape (n, 3), with light for its place; do nothing for the same array."""
         if vertices is self.shape:
             return
         self.shape = vertices
@@ -84,12 +84,12 @@ class MouthWalls(BentPart):
     shares: Floats32  # how far each vertex goes with the mandible, shape (n,)
     rest: Floats32
     resting_normals: Floats32
-    jaw: tuple[float, ...] = ()  # its values when the walls were stretched last
+    jaw: tuple[float, ...] = ()  # its values at the last stretch
 
     def stretch(self, jaw: tuple[float, ...], mandible: Floats64) -> None:
-        """Go with the mandible; nothing for the same values of the jaw.
+        """Follow the mandible; do nothing for the same values of the jaw.
 
-        mandible: how it has moved, seen from the cranium, a matrix (4, 4).
+        mandible: its motion relative to the cranium, a matrix (4, 4).
         """
         if jaw == self.jaw:
             return
@@ -108,11 +108,11 @@ def drawn_attributes(part: Any) -> dict[str, Any]:
 
 
 def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
-    """The parts, those of the mouth the darker the farther back they are; some can bend."""
+    """The parts; those of the mouth are darker toward the back, and some can bend."""
     front = max((part.vertices[:, 2].max() for part in parts if "teeth" in part.name), default=0.0)
 
     def shaded(part: Any) -> Any:
-        """The part itself where it is not of the mouth."""
+        """A darkened part of the mouth; any other part unchanged."""
         if part.name == "tongue":
             unlit = read_only(_painted_tongue(part))
             colours = read_only(_shaded(part.vertices, unlit, front, TONGUE))
@@ -159,7 +159,7 @@ def _painted_tongue(part: Any) -> Floats32:
 def _shaded(
     points: npt.NDArray[Any], colours: npt.NDArray[Any], front: float, gloom: Gloom
 ) -> Floats32:
-    """Colours (n, 3) as they are seen behind the front teeth."""
+    """Colours (n, 3), darkened behind the front teeth."""
     behind = (front - points[:, 2] - gloom.begins) / (gloom.ends - gloom.begins)
     share = np.clip(behind, 0.0, 1.0)
     light = 1.0 - gloom.lost * share * share * (3.0 - 2.0 * share)

@@ -1,6 +1,6 @@
-"""The openings of a face, between lids and between lips, as they are now.
+"""The present openings of a face, between lids and between lips.
 
-Light gets in through them, to the eyeballs and into the mouth. Their rims run through the rig's
+Light passes through them to the eyeballs and into the mouth. Their rims run through the rig's
 landmarks: a lid is the cubic curve through its four.
 """
 
@@ -14,14 +14,14 @@ import numpy as np
 from risorius.geometry.arrays import Floats64
 
 LIPS = slice(60, 68)  # landmarks of the inner edges of the lips
-LIDS = {"eye_right": slice(36, 42), "eye_left": slice(42, 48)}  # by the eyeball's bone
-BEHIND_LIPS = ("teeth", "gums", "tongue", "oral_cavity")  # parts, by how their names begin
+LIDS = {"eye_right": slice(36, 42), "eye_left": slice(42, 48)}  # landmarks by the eyeball's bone
+BEHIND_LIPS = ("teeth", "gums", "tongue", "oral_cavity")  # beginnings of names of parts
 
 
 class Rim(NamedTuple):
     """The rim of an opening, shape (n, 3) [mm]: the upper half first, clockwise from outside.
 
-    is_filled: by what shows in it.
+    is_filled: whether the part in it comes up to the rim.
     """
 
     points: Floats64
@@ -29,9 +29,9 @@ class Rim(NamedTuple):
 
 
 def rims_of(landmarks: Floats64, point_count: int) -> dict[str, Rim]:
-    """The openings by the bones of the eyeballs, and "mouth"; landmarks: now, shape (68, 3).
+    """The openings by the bones of the eyeballs, and "mouth"; landmarks: present, shape (68, 3).
 
-    point_count: of each rim, even.
+    point_count: number of points of each rim, even.
     """
     of_lids = _through(6, point_count)
     of_lips = _through(8, point_count)
@@ -40,7 +40,7 @@ def rims_of(landmarks: Floats64, point_count: int) -> dict[str, Rim]:
 
 
 def opening_before(name: str, bone: str) -> str:
-    """The opening through which a part is seen; empty where it is seen otherwise."""
+    """The opening through which a part is visible; empty for other parts."""
     if name.startswith(BEHIND_LIPS):
         return "mouth"
     return bone if name.startswith("eyeball") else ""
@@ -48,7 +48,7 @@ def opening_before(name: str, bone: str) -> str:
 
 @cache
 def _through(count: int, point_count: int) -> Floats64:
-    """Weights of landmarks around an opening in the points of its rim, (point_count, count).
+    """Weights of an opening's landmarks in the points of its rim, (point_count, count).
 
     Both halves begin and end in its corners: each is the polynomial through its landmarks.
     """

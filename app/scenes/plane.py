@@ -19,13 +19,13 @@ from .scene import Scene
 class PlaneScene(Scene):
     """The paper's plane: 154 triangles under a strong travelling sine (Fig. 9 and Table 1).
 
-    The wave runs along the diagonals of the cells, so that every edge bends: across one along the
-    plane a third of the edges would stay straight and never be split. `amplitude` 1 lifts the
-    crests by HEIGHT; `phase` moves the wave along by that many wavelengths.
+    The wave runs along the diagonals of the cells, so that every edge bends: a wave along the plane
+    would leave a third of the edges straight and unsplit. `amplitude` 1 lifts the crests by HEIGHT;
+    `phase` moves the wave by this number of wavelengths.
     """
 
     name = "plane"
-    WAVES = 1.5  # wavelengths in a length of the plane (chosen by eye, with HEIGHT)
+    WAVES = 1.5  # wavelengths per length of the plane (chosen by eye, like HEIGHT)
     HEIGHT = 0.2  # crest above the middle, in lengths of the plane
 
     groups = MappingProxyType({"Wave": ("amplitude", "phase")})
@@ -45,7 +45,7 @@ class PlaneScene(Scene):
         self._positions[:] = self.waved(self.rest_positions)[0]
 
     def waved(self, points: Floats64) -> tuple[Floats64, Floats64]:
-        """Where points of the flat plane z = 0 lie now, and the wave's normals there, (n, 3)."""
+        """Present places of points of the plane z = 0, and the wave's normals there, (n, 3)."""
         height = self.values["amplitude"] * self.HEIGHT * self._length
         frequency = 2.0 * np.pi * self.WAVES / self._length
         along = points.sum(axis=1) / np.sqrt(2.0)

@@ -12,9 +12,8 @@ from .drawable import Drawable, Framing
 class Scene(Drawable):
     """Anything that moves the vertices of one triangle mesh.
 
-    groups: all controls, by the heading that a panel shows. values: what each control is set to.
-    actions: what controls do, where that is known. expressions: whole faces, without those of a
-    side.
+    groups: all controls, by headings of a panel. values: the set value of each control.
+    actions: effects of controls, if known. expressions: whole faces, without one-sided ones.
     """
 
     framing: Framing
@@ -25,9 +24,9 @@ class Scene(Drawable):
     expressions: tuple[str, ...] = ()
 
     def pose(self, channels: Mapping[str, float]) -> None:
-        """Set controls, each cut off at its limits; what is not named becomes 0.
+        """Set controls, each cut off at its limits; unnamed ones become 0.
 
-        Raises UserError on a name that is no control.
+        Raises UserError for an unknown name.
         """
         self.take(self.limits.pose(channels))
 
@@ -36,11 +35,11 @@ class Scene(Drawable):
         self.values = values
 
     def reset(self) -> None:
-        """Back to rest, at once."""
+        """Return to rest at once."""
         self.values = self.limits.pose({})
 
     def moved_by(self, name: str) -> Mapping[str, float]:
-        """The lowest controls that a control moves: itself, or what a layer's control adds to.
+        """The lowest controls that a control moves: itself, or targets of a layer's control.
 
         With each, the amount by which it changes when the control is at its most, without a sign.
         """

@@ -1,7 +1,7 @@
 """Parts on the skin: lashes, and the tears along the lids, which move with it.
 
-All that hangs on a root keeps the root's place over the triangle that was nearest to it at rest,
-and turns with the skin there (refine.Embedding).
+All vertices of a root keep the root's place over its nearest triangle at rest, and turn with the
+skin there (refine.Embedding).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from risorius.geometry.read_only import read_only
 
 
 class SkinPart:
-    """A part that changes its shape with the skin; drawn as any other (render/parts.py)."""
+    """A part that changes its shape with the skin; drawn like any other (render/parts.py)."""
 
     is_enclosed = True
     striation = None
@@ -26,8 +26,8 @@ class SkinPart:
     normals: Floats32
 
     def __init__(self, part: Any, skin: Floats64, faces: Integers32) -> None:
-        """A part with `roots`, as it stands on the skin at rest, (V, 3) with triangles (F, 3)."""
-        from risorius.refine import Embedding  # which lists of controls need not load
+        """A part with `roots`, on the skin at rest, (V, 3) with triangles (F, 3)."""
+        from risorius.refine import Embedding  # lists of controls do not need it
 
         self.name = part.name
         self.bone = part.bone
@@ -40,17 +40,17 @@ class SkinPart:
         rest = part.vertices.astype(np.float64)
         normals = part.normals.astype(np.float64)
         roots, root_of = np.unique(part.roots, return_inverse=True)  # a vertex's among roots
-        # Files have needles without an area, on which nothing can stand.
+        # Files have triangles without an area, which cannot carry roots.
         least_area = 1e-6  # [mm2], doubled
         faces = faces[np.linalg.norm(cross_products(skin, faces), axis=1) > least_area]
-        # What stands there points out of the skin; what lies there has the skin's normal.
+        # Upright parts point out of the skin; flat parts have the skin's normal.
         ahead = np.zeros((len(roots), 3))
         np.add.at(ahead, root_of, rest - rest[roots][root_of] + 1e-3 * normals)
         feet = nearest_on(rest[roots], unit_vectors(ahead), skin, faces)
-        # Only the triangles around them matter, also to the normals there.
+        # Only the triangles around roots matter, also for the normals there.
         is_around = np.isin(faces, feet.corners).any(axis=1)
         self._near, around = np.unique(faces[is_around], return_inverse=True)  # vertices of skin
-        number = np.cumsum(is_around) - 1  # of triangles, among those around
+        number = np.cumsum(is_around) - 1  # numbers of triangles, among those around
         self._embedding = Embedding(
             around.reshape(-1, 3),
             skin[self._near],
@@ -61,7 +61,7 @@ class SkinPart:
         )
 
     def follow(self, skin: Floats64, bone: Floats64) -> None:
-        """Stand on the skin as it is now, (V, 3), seen from the part's bone, a matrix (4, 4)."""
+        """Stand on the present skin, (V, 3), relative to the part's bone, a matrix (4, 4)."""
         there = (skin[self._near] - bone[:3, 3]) @ np.linalg.inv(bone[:3, :3]).T
         moved = self._embedding.evaluate(there)
         assert moved.normals is not None

@@ -1,9 +1,9 @@
 """Animation scripts: keyframes of controls over time, in a TOML file.
 
-A script is a list of poses and, beside them, tracks that are added to these: of single controls,
-for a blink, a glance, or a whole recording; `docs/scripts.md` is the page on the file.
-Before its first key a channel keeps that key's value, after its last key the last one's.
-This module holds poses, tracks of keys, and their values at any time.
+A script is a list of poses, with tracks of single controls that are added to the poses: for a
+blink, a glance, or a whole recording. `docs/scripts.md` describes the file. A channel keeps the
+value of its first key before it, and of its last key after it. This module holds poses, tracks of
+keys, and their values at any time.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from .easings import ALLOWED, Easing, easing_named, easing_names, hermite, share
 
 Easings = npt.NDArray[np.uint8]  # rows of easings.Easing
 
-DECIMALS = 6  # of numbers that come from sliders and clocks
+DECIMALS = 6  # of numbers from sliders and clocks
 LONGEST_FILE = 2**25  # [bytes]; three quarters of an hour of capture, and /dev/zero has no end
 POSE_SECONDS = 1.0  # duration of a script that is one pose
-LARGEST = 86_400.0  # of any number in a script; as a time [s] it is a day
+LARGEST = 86_400.0  # largest number in a script; as a time [s] it is a day
 Number = Annotated[float, Within(-LARGEST, LARGEST)]
 Moment = Annotated[float, Within(0.0, LARGEST)]
 EasingName = Annotated[str, OneOf(easing_names, ALLOWED)]
@@ -51,10 +51,10 @@ class Key(Record):
 class Channel:
     """The keys of one control, at least one, in the order of time.
 
-    A recorded take has half a million keys, so they are kept in arrays, which nobody may write.
+    A recorded take has half a million keys, so they are kept in read-only arrays.
 
-    times: of the keys [s], shape (K,). values: at these times, shape (K,). easings: how each key is
-    approached, a row of `Easing` each, shape (K, 3), or the name of one easing for all.
+    times: those of the keys [s], shape (K,). values: those at these times, shape (K,). easings: the
+    way to each key, a row of `Easing` each, shape (K, 3), or the name of one easing for all.
     """
 
     times: Floats64
@@ -72,14 +72,14 @@ class Channel:
             ("easings", easings, np.uint8),
         ):
             own = np.asarray(part, kind)
-            if own.flags.writeable:  # somebody else might write it
+            if own.flags.writeable:  # its owner might write it
                 own = own.copy()
                 own.flags.writeable = False
             object.__setattr__(self, name, own)
 
     @classmethod
     def of(cls, keys: Iterable[Key]) -> Channel:
-        """The channel that has these keys, which are in the order of time."""
+        """The channel with these keys, which are in the order of time."""
         keys = tuple(keys)
         return cls(
             [key.time for key in keys],
@@ -89,17 +89,17 @@ class Channel:
 
     @property
     def keys(self) -> tuple[Key, ...]:
-        """The keys one by one, made anew at each call: for a few of them, or few channels."""
+        """The keys one by one, made at each call: use it for few keys or channels."""
         parts = zip(self.times.tolist(), self.values.tolist(), self.easing_rows(), strict=True)
         return tuple(Key(time, value, easing.name) for time, value, easing in parts)
 
     def easing(self, number: int) -> Easing:
-        """How the key of this number is approached."""
+        """The easing of the key with this number."""
         start, end, is_held = self.easings[number].tolist()
         return Easing(start, end, bool(is_held))
 
     def easing_rows(self) -> list[Easing]:
-        """How each key is approached."""
+        """The easings of all keys."""
         return [Easing(start, end, bool(held)) for start, end, held in self.easings.tolist()]
 
     def __len__(self) -> int:
@@ -116,7 +116,7 @@ class Channel:
 
     @functools.cached_property
     def _parts(self) -> tuple[array[float], array[float], bytes]:
-        """The same numbers in sequences of Python's own, which are quicker to look into."""
+        """The same numbers in Python sequences, which are faster to read."""
         times = array("d", self.times.tobytes())
         values = array("d", self.values.tobytes())
         return times, values, self.easings.tobytes()
@@ -141,7 +141,7 @@ class Channel:
         return Channel(self.times, np.where(chosen, higher, self.values), self.easings)
 
     def values_at(self, times: Floats64) -> Floats64:
-        """The same at each of many times [s]; both of shape (N,)."""
+        """The values at many times [s]; both of shape (N,)."""
         after = np.searchsorted(self.times, times, "right")
         before = np.maximum(after - 1, 0)
         following = np.minimum(after, len(self) - 1)
@@ -155,8 +155,8 @@ class Channel:
     def outline(self, start: float, end: float, count: int) -> tuple[Floats64, Floats64]:
         """Times [s] and values of points that draw the curve between two times.
 
-        As true as `count` columns can show it: with every key and every jump where these are
-        fewer than the columns, else with the lowest and the highest key of each. Shape (N,).
+        It is as exact as `count` columns can show: with every key and jump if these are fewer than
+        the columns, else with the lowest and the highest key of each column. Shape (N,).
         """
         edges = np.linspace(start, end, count + 1)
         first, last = np.searchsorted(self.times, (start, end))
@@ -182,7 +182,7 @@ class Pose(Record):
     time: Moment
     values: Annotated[Mapping[str, Number], called(REST)] = field(default_factory=dict)
     easing: EasingName = "smooth"
-    name: str | None = None  # one that has a name gets a picture on a contact sheet
+    name: str | None = None  # a named pose gets a picture on a contact sheet
 
     def raised(self, names: Iterable[str], amount: float, limits: Limits) -> Pose:
         """The pose with some values raised, within their limits."""
@@ -199,14 +199,14 @@ class Script:
 
     title: str
     duration: float
-    source: str = field(compare=False)  # the file it came from, for error texts
+    source: str = field(compare=False)  # its file, for error texts
     scene: str = "face"
     camera: str | None = None
     sound: Path | None = None  # the whole path of its sound file
     poses: tuple[Pose, ...] = ()  # in the order of time
     tracks: dict[str, Channel] = field(default_factory=dict)
-    preface: str = ""  # the lines of comment with which the file begins
-    is_converted: bool = field(default=False, compare=False)  # source is a recording, no script
+    preface: str = ""  # the comments at the beginning of the file
+    is_converted: bool = field(default=False, compare=False)  # whether source is a recording
 
     @functools.cached_property
     def posed_names(self) -> tuple[str, ...]:
@@ -215,7 +215,7 @@ class Script:
 
     @functools.cached_property
     def names(self) -> tuple[str, ...]:
-        """All controls that it moves: those that poses name, then those of tracks alone."""
+        """All controls that it moves: those of poses, then those of tracks alone."""
         return tuple(dict.fromkeys((*self.posed_names, *self.tracks)))
 
     @functools.cached_property
@@ -229,7 +229,7 @@ class Script:
 
     @functools.cached_property
     def _placed_tracks(self) -> tuple[tuple[int, Channel], ...]:
-        """Which of the `names` each track adds to."""
+        """For each track, the place in `names` that it adds to."""
         return tuple((self.names.index(name), track) for name, track in self.tracks.items())
 
     def posed(self, time: float) -> dict[str, float]:
@@ -247,7 +247,7 @@ class Script:
         return posed
 
     def posed_channel(self, name: str) -> Channel:
-        """How the poses alone move a control, which is as a track of these keys would."""
+        """The channel by which the poses alone move a control."""
         keys = (Key(each.time, each.values.get(name, 0.0), each.easing) for each in self.poses)
         return Channel.of(keys)
 
@@ -273,10 +273,10 @@ class Script:
         return sums
 
     def check(self, limits: Limits) -> None:
-        """Raise UserError for controls that the scene lacks, and for values beyond any effect.
+        """Raise UserError for controls that the scene lacks, and for values beyond any use.
 
-        Values of tracks may be negative, since they are cut off only after they are added to poses;
-        but no single key may be further from 0 than can have an effect.
+        Values of tracks may be negative, because they are cut off only after they are added to
+        poses. But no single key may be further from 0 than an effect can be.
         """
         for name in (*self.posed_names, *self.tracks):
             if name not in limits:
@@ -301,9 +301,9 @@ class Script:
 
 
 def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
-    """Which of the times are before and after `time` [s], and the share of the way between them.
+    """The times before and after `time` [s], as numbers, and the share of the way between them.
 
-    Before the first and after the last both are that one.
+    Before the first and after the last, both are this one.
     """
     after = bisect.bisect_right(times, time)
     if after in (0, len(times)):
@@ -315,7 +315,7 @@ def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
 
 
 def within(values: npt.ArrayLike, amount: float, low: float, high: float) -> Floats64:
-    """Values higher by an amount, within limits; values beyond these already may stay there."""
+    """Values raised by an amount within limits; values already beyond them may stay."""
     now = np.asarray(values, np.float64)
     higher = np.clip(now + amount, np.minimum(now, low), np.maximum(now, high))
     return np.round(higher, DECIMALS)

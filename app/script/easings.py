@@ -1,7 +1,7 @@
 """Easings: the way of a value from one key to the next, by its slopes at both ends.
 
 The way is the cubic Hermite curve from 0 to 1 with these slopes. No slope is above 3 mean speeds,
-so no curve turns back. A way may also be held: it stays at the previous key, then jumps.
+so no curve turns back. A way may also hold: the value stays at the previous key, then jumps.
 
 Source: Fritsch and Carlson, "Monotone piecewise cubic interpolation", 1980.
 """
@@ -22,7 +22,7 @@ STEEPEST_TENTHS = 30  # of a slope
 
 
 class Easing(NamedTuple):
-    """The slopes at the previous and at this key, in tenths of the mean speed; or a held way."""
+    """The slopes at the previous key and this one, in tenths of the mean speed; or a held way."""
 
     start: int
     end: int
@@ -47,7 +47,7 @@ class Easing(NamedTuple):
 
 EASINGS = {
     "linear": Easing(10, 10),  # constant speed
-    "smooth": Easing(0, 0),  # the default, since no muscle starts or stops at once
+    "smooth": Easing(0, 0),  # the default, because no muscle starts or stops at once
     "ease-in": Easing(0, 20),  # starts softly, arrives at speed
     "ease-out": Easing(20, 0),  # starts at speed, arrives softly
     "hold": Easing(0, 0, True),

@@ -1,8 +1,8 @@
 """Changes of a script's keys: set, move, copy, delete, rename. Each gives a new script.
 
-A key is known by its track and its time. The whole poses count as one track; no track has two keys
-at one time, so a key that arrives where another is takes its place. Tracks that are not changed are
-shared by both scripts.
+A key is known by its track and its time. The whole poses count as one track. No track has two keys
+at one time, so a key that arrives at another replaces it. Tracks that are not changed are shared by
+both scripts.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from . import DECIMALS, LARGEST, Channel, Key, Pose, Script, rounded
 from .easings import easing_named
 from .places import Places, among
 
-POSES = ""  # the track of whole poses; any other is called as its control is
-FRAME = 1.0 / 30.0  # [s] to which times are rounded, as in the films that the window makes
+POSES = ""  # the track of whole poses; any other has its control's name
+FRAME = 1.0 / 30.0  # [s] to which times are rounded, like frames of the window's films
 SAME = 1e-6  # of a value or a time [s]: no difference
 
-# The keys of a track, an entry each in arrays: times [s], then values and easings, or the poses.
+# The keys of a track as arrays: times [s], then values and easings, or the poses.
 Columns = tuple[npt.NDArray[Any], ...]
 Values = Mapping[str, float]
-Placed = tuple[Script, Places]  # a script, and where some of its keys are now
+Placed = tuple[Script, Places]  # a script, and places of some of its keys
 
 
 def places_of(script: Script) -> Places:
-    """Where all keys of a script are; the poses come first."""
+    """The places of all keys of a script; the poses come first."""
     poses = {POSES: np.array([pose.time for pose in script.poses])}
     return Places(poses | {name: track.times for name, track in script.tracks.items()})
 
@@ -42,13 +42,13 @@ def on_frame(time: float) -> float:
 
 
 def key_time(script: Script, time: float) -> float:
-    """Where a key set at `time` goes: to one that is less than half a frame away, or a frame."""
+    """The time for a key set at `time`: that of a key within half a frame, or of a frame."""
     near = places_of(script).near(time, 0.5 * FRAME)
     return near.first if near else on_frame(time)
 
 
 def time_beyond(script: Script, time: float, direction: int) -> float:
-    """The next time at which the script has a key, or with -1 the one before; else `time` [s]."""
+    """The next time with a key, or with -1 the previous one; else `time` [s]."""
     all_times = places_of(script).times.values()
     if direction > 0:
         later = (times[np.searchsorted(times, time + SAME, "right") :][:1] for times in all_times)
@@ -66,9 +66,9 @@ def pose_at(script: Script, time: float) -> Pose | None:
 
 
 def moved(script: Script, places: Places, seconds: float, source: Script | None = None) -> Placed:
-    """The script with keys later by `seconds` (none before 0), and where they are then.
+    """The script with keys later by `seconds` (none before 0), and their new places.
 
-    source: whose keys are copied, while its own stay; None moves them.
+    source: the script whose keys are copied; None: the keys are moved.
     """
     shift = max(seconds, -places.first) if places else 0.0
     changed = {}
@@ -101,11 +101,11 @@ def without(script: Script, places: Places) -> Script:
 
 
 def eased(script: Script, places: Places, easing: str) -> Script:
-    """The script with these keys approached in another way."""
+    """The script with another easing for these keys."""
     changed = {}
     for name, columns in _columns(script, places).items():
         is_chosen = among(columns[0], places.times[name])
-        last = columns[-1].copy()  # the easings, or the poses, which have their own
+        last = columns[-1].copy()  # the easings, or the poses with theirs
         if name == POSES:
             last[is_chosen] = [replace(pose, easing=easing) for pose in last[is_chosen]]
         else:
@@ -117,7 +117,7 @@ def eased(script: Script, places: Places, easing: str) -> Script:
 def raised(
     script: Script, places: Places, amount: float, limits: Limits, posed: Iterable[str]
 ) -> Script:
-    """The script with these keys higher, within limits; of poses, in the controls `posed`."""
+    """The script with these keys raised within limits; poses only in the controls `posed`."""
     poses = script.poses
     tracks = dict(script.tracks)
     for name, times in places.times.items():
@@ -126,7 +126,7 @@ def raised(
             poses = tuple(p.raised(posed, amount, limits) if p.time in at else p for p in poses)
         else:
             low, high = limits[name]
-            if name in script.posed_names:  # to which a track may add anything
+            if name in script.posed_names:  # a track may add anything to these
                 low, high = low - high, high - low
             track = tracks[name]
             tracks[name] = track.raised(among(track.times, times), amount, low, high)
@@ -134,7 +134,7 @@ def raised(
 
 
 def lasting(script: Script, seconds: float) -> Script:
-    """The script with another duration, which leaves out no named pose."""
+    """The script with another duration, which still includes all named poses."""
     ends = [pose.time for pose in script.key_poses]
     return replace(script, duration=min(max(on_frame(seconds), FRAME, *ends), LARGEST))
 
@@ -148,9 +148,9 @@ def differing(script: Script, time: float, values: ControlValues) -> list[str]:
 def keyed(script: Script, time: float, values: ControlValues) -> Script:
     """The script with a key that shows these values at `time` [s].
 
-    The key is a pose: the values less those of the tracks. Where a pose cannot reach a value (a
-    track closes the eye, and it shall be open) the track gets a key, too. In a script of tracks
-    alone, such as a recording, tracks that differ get keys; all of them where none differs.
+    The key is a pose: the values minus those of the tracks. If a pose cannot reach a value (a track
+    closes the eye, but it shall be open), the track also gets a key. In a script of tracks alone,
+    such as a recording, tracks that differ get keys, or all tracks if none differs.
     """
     time = rounded(time)
     plain = script.posed(time)
@@ -179,8 +179,8 @@ def keyed_alone(script: Script, time: float, values: ControlValues, names: Itera
     """The script with keys of these controls alone, which show their values at `time` [s].
 
     A pose at this time takes the controls that no track moves. The others get a key in a track,
-    which is added to the poses. A new track is 0 at the poses before and after, so that what the
-    poses beyond them show stays as it is.
+    which is added to the poses. A new track is 0 at the poses before and after, so that the motion
+    beyond them does not change.
     """
     time = rounded(time)
     posed = script.posed(time)
@@ -206,7 +206,7 @@ def keyed_alone(script: Script, time: float, values: ControlValues, names: Itera
 
 
 def _with_track_keys(script: Script, time: float, values: Values) -> Script:
-    """The script with a key in each of these tracks, which are made where they are not there."""
+    """The script with a key in each of these tracks; missing ones are made."""
     changed = {}
     for name, value in values.items():
         track = script.tracks.get(name, Channel([], []))
@@ -221,15 +221,15 @@ def _with_track_keys(script: Script, time: float, values: Values) -> Script:
 
 
 def _easing_at(poses: Iterable[Pose], time: float) -> str:
-    """How a new pose is approached: as the one after it is."""
+    """The easing of a new pose: that of the pose after it."""
     return next((pose.easing for pose in poses if pose.time > time), "smooth")
 
 
-# How they are made
+# Construction
 
 
 def _columns(script: Script, places: Places) -> dict[str, Columns]:
-    """All keys of the tracks that any of these places is in."""
+    """All keys of the tracks with any of these places."""
     columns = {POSES: _pose_columns(script.poses)} if POSES in places.times else {}
     return columns | {
         name: _channel_columns(track)
@@ -263,7 +263,7 @@ def _joined(there: Columns, arriving: Columns) -> Columns:
 
 
 def _with(script: Script, changed: Mapping[str, Columns]) -> Script:
-    """The script with other keys in some tracks; a track without any is none."""
+    """The script with other keys in some tracks; a track without keys is removed."""
     poses = script.poses
     tracks = dict(script.tracks)
     for name, columns in changed.items():
@@ -278,5 +278,5 @@ def _with(script: Script, changed: Mapping[str, Columns]) -> Script:
 
 
 def _reaching(script: Script, *times: float) -> Script:
-    """The script, made longer where it ends before one of these times [s]."""
+    """The script, extended if it ends before one of its keys."""
     return replace(script, duration=max([script.duration, *times]))

@@ -1,4 +1,4 @@
-"""Places of keys in a script: sets of them, which a take of half a million keys makes no slower."""
+"""Sets of places of keys in a script, fast even for a take of half a million keys."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ NOTHING: Times = np.empty(0)
 
 
 class KeyPlace(NamedTuple):
-    """Where a key is: the track, and the time [s] in it."""
+    """Place of a key: the track, and the time [s] in it."""
 
     track: str
     time: float
 
 
 class Places(Set[KeyPlace]):
-    """A set of places that never changes: of each track that is in it, the times of its keys."""
+    """A constant set of places: for each of its tracks, the times of its keys."""
 
     def __init__(self, times: Mapping[str, Times]) -> None:
         """times: by the name of the track; rising, each time once."""
