@@ -77,18 +77,18 @@ def opened_jaws(axis: Floats64, rig: Mapping[str, Any]) -> list[Floats64]:
 
 
 def within_skin(
-    part: Part, fitted: FittedSkin, mouth: Similarity, jaws: Sequence[Floats64]
-) -> Part:
-    """A part, moved toward the middle of the mouth until it lies `wall_depth` behind all skin.
+    parts: Sequence[Part], fitted: FittedSkin, mouth: Similarity, jaws: Sequence[Floats64]
+) -> list[Part]:
+    """Parts, moved toward the middle of the mouth until they lie `wall_depth` behind all skin.
 
     mouth: takes the built-in mouth to that of the head. jaws: motions of its mandible, which the
     skin follows by its weight. An open jaw also opens the throat of a mask, so the border of the
     skin counts as closed only at rest.
     """
-    walls = part.vertices.astype(np.float64)
-    shares: ShareArray = np.full(len(walls), 1.0 if part.bone == "mandible" else 0.0)
-    if part.mandible_shares is not None:
-        shares = part.mandible_shares
+    if not parts:
+        return []
+    walls = np.concatenate([part.vertices for part in parts]).astype(np.float64)
+    shares: ShareArray = np.concatenate([_mandible_shares(part) for part in parts])
     middle = mouth.points((0.0, -71.0, 63.0))  # between the teeth and the throat
     skins = [_closed(fitted, mouth)]
     for mandible in jaws:
@@ -104,7 +104,16 @@ def within_skin(
         np.minimum.at(room, ray, distance - wall_depth / np.maximum(cosine, least_cosine))
         nearer = np.clip(room / length, 0.0, 1.0)
         walls = middle + nearer[:, None] * (walls - middle)
-    return replace(part, vertices=walls.astype(np.float32))
+    ends = np.cumsum([len(part.vertices) for part in parts])[:-1]
+    placed = zip(parts, np.split(walls.astype(np.float32), ends), strict=True)
+    return [replace(part, vertices=vertices) for part, vertices in placed]
+
+
+def _mandible_shares(part: Part) -> ShareArray:
+    """How far each vertex of a part goes with the mandible, 0 to 1, shape (n,)."""
+    if part.mandible_shares is not None:
+        return part.mandible_shares
+    return np.full(len(part.vertices), 1.0 if part.bone == "mandible" else 0.0)
 
 
 def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integers32]:

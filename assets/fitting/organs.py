@@ -161,9 +161,11 @@ def place_parts(
             placed = part
         else:
             placed = _bent(part, warp)
-        if part.name.startswith(WALLS):
-            placed = within_skin(placed, fitted, mouth, jaws)
         parts.append(placed)
+    walls = [number for number, part in enumerate(parts) if part.name.startswith(WALLS)]
+    placed_walls = within_skin([parts[number] for number in walls], fitted, mouth, jaws)
+    for number, wall in zip(walls, placed_walls, strict=True):
+        parts[number] = wall
     return tuple(parts)
 
 

@@ -2,6 +2,7 @@
 
 arrays.py       types of arrays
 closest.py      the closest points of a triangle mesh
+distances.py    distances of all points of one set from all of another
 gradients.py    gradients of texture coordinates along a surface
 normals.py      cross products of triangles, normals of vertices
 polylines.py    the way along polylines

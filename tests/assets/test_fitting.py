@@ -8,6 +8,7 @@ import pytest
 import trimesh
 from numpy.linalg import norm
 from pytest import approx
+from scipy.interpolate import RBFInterpolator
 
 from risorius import assets, sim
 from risorius.assets import AssetError
@@ -314,6 +315,25 @@ def test_landmarks_on_two_pieces_are_named(other):
     numbers = np.array(_numbers(other, _45=count), dtype=np.int32)
     with pytest.raises(AssetError, match="landmark 45 lies on another piece of the mesh"):
         fit(mesh, numbers)
+
+
+def test_the_warp_is_the_interpolant_of_scipy(generator):
+    """Through points, and beside points that give; at places in several blocks, and at none."""
+    source = generator.normal(0.0, 50.0, (60, 3))
+    target = source + generator.normal(0.0, 4.0, (60, 3))
+    places = generator.normal(0.0, 60.0, (300, 3))
+    for give in (0.0, 0.2, np.linspace(0.0, 2.0, 60)):
+        wanted = RBFInterpolator(source, target, smoothing=give, kernel="linear", degree=1)
+        warp = ThinPlateSpline(source, target, give)
+        assert warp.points(places) == approx(wanted(places), abs=1e-9)
+        assert warp.points(np.zeros((0, 3))).shape == (0, 3)
+
+
+def test_no_warp_starts_from_a_plane(generator):
+    """Nothing would say where its other side goes."""
+    source = generator.normal(0.0, 50.0, (60, 3)) * [1.0, 1.0, 0.0]
+    with pytest.raises(np.linalg.LinAlgError, match="plane"):
+        ThinPlateSpline(source, source)
 
 
 def test_warp_meets_its_points_and_keeps_similarities(generator):
