@@ -205,7 +205,7 @@ def _skull(
         weight = np.zeros(surface.vertex_count)
         condyles = np.array([[-1.0, 0, 0], [1.0, 0, 0]])
     # Lips clamped to one bone open like a letter box; skin between the bones rounds the mouth.
-    weight = np.clip(surface.smoothed(weight, rig.jaw.softness), 0.0, 1.0)
+    weight = np.clip(surface.smoother(rig.jaw.softness)(weight), 0.0, 1.0)
     least_mandible = 1e-4  # share of the jaw's motion that counts as none
     weight[weight < least_mandible] = 0.0
     return Skull(condyles, weight, balls, rig.jaw, rig.eyes, rig.head)

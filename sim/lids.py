@@ -24,6 +24,7 @@ from the visible lid margins.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -38,6 +39,7 @@ from .skull import Eyeball
 from .state import State
 from .surface import SkinSurface
 
+Smooth = Callable[[Floats64], Floats64]
 COLUMNS = 41  # places along the opening where its height is known
 
 
@@ -69,8 +71,10 @@ def place_lids(
     """
     eyes = rig.eyes
     axes = [_up_and_forward(landmarks, ball) for ball in eyeballs]
+    evened_area = 10.0  # mm2
+    even = surface.smoother(evened_area)
     parts = [
-        _one_eye(eyes, surface, landmarks, ball, *axis)
+        _one_eye(eyes, surface, landmarks, ball, *axis, even)
         for ball, axis in zip(eyeballs, axes, strict=True)
     ]
     joined = _OneEye(*(np.concatenate(column) for column in zip(*parts, strict=True)))
@@ -183,6 +187,7 @@ def _one_eye(
     ball: Eyeball,
     up: Floats64,
     forward: Floats64,
+    even: Smooth,
 ) -> _OneEye:
     """Find the lids of one eye and the turn of each of their vertices."""
     side = lid_side(surface, landmarks, ball.side)
@@ -217,7 +222,7 @@ def _one_eye(
     closing += weight * (meeting - rises)
     margins = _margin(upper, 1.0, column, angle) | _margin(lower, -1.0, column, angle)
     closing[margins] = (meeting - angle)[margins]
-    closing = _evened(surface, closing, np.minimum(upper.distance, lower.distance), margins)
+    closing = _evened(even, closing, np.minimum(upper.distance, lower.distance), margins)
     before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is not lid
     corner_share = 0.5  # of the open lid's motion remains at the corners: their ligaments stretch
     rounded = np.sin(np.pi * np.clip(column, 0.0, 1.0))
@@ -272,9 +277,7 @@ def _margin(lid: _OneLid, sign: float, column: Floats64, angle: Floats64) -> Fla
     return within
 
 
-def _evened(
-    surface: SkinSurface, closing: Floats64, distance: Floats64, margins: Flags
-) -> Floats64:
+def _evened(even: Smooth, closing: Floats64, distance: Floats64, margins: Flags) -> Floats64:
     """The turn [rad] of each vertex, smoothed beyond the margins, because skin is a sheet.
 
     Without this, neighbours beside the corners turn by half as much, and a closed lid is a box with
@@ -282,12 +285,10 @@ def _evened(
 
     distance: from the nearest front edge [mm], shape (V,).
     """
-    evened_area = 10.0  # mm2
     begins = 0.8  # mm from the front edge
     ends = 1.8
     share = np.where(margins, 0.0, smoothstep((distance - begins) / (ends - begins)))
-    even: Floats64 = closing + share * (surface.smoothed(closing, evened_area) - closing)
-    return even
+    return closing + share * (even(closing) - closing)
 
 
 def _pressed_turn(opening: Floats64, least_opening: float) -> Floats64:

@@ -9,20 +9,18 @@ per vertex and one spring per edge.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 import scipy
-from scipy import sparse
 from scipy.sparse import csgraph
-from scipy.sparse import linalg as sparse_linalg
 
 from ..geometry.arrays import Floats64, Integers32, Integers64
 from ..geometry.normals import cross_products, vertex_areas, vertex_normals
-from ..geometry.read_only import read_only
-from ..geometry.sides import different_pairs, sides_of
+from .skin_graph import SkinGraph, graph_of
 
 
 @dataclass(frozen=True)
@@ -31,12 +29,17 @@ class SkinSurface:
 
     positions: Floats64  # (V, 3) mm
     faces: Integers32  # (F, 3)
-    edges: Integers32  # (E, 2), sorted, the lower vertex first
+    graph: SkinGraph
     lengths: Floats64  # (E,) mm
     edge_stiffness: Floats64  # (E,) sum of adjacent triangle areas / length2, dimensionless
     areas: Floats64  # (V,) mm2
     normals: Floats64  # (V, 3) unit, smoothed
-    laplacian: sparse.csc_array  # (V, V) of edge_stiffness
+
+    @property
+    def edges(self) -> Integers32:
+        """The ends of each edge, shape (E, 2), sorted, the lower vertex first."""
+        edges: Integers32 = self.graph.edges
+        return edges
 
     @property
     def vertex_count(self) -> int:
@@ -54,9 +57,8 @@ class SkinSurface:
 
     def distances_from(self, vertices: Integers64) -> Floats64:
         """Shortest way along edges [mm] from some vertices, shape (V,); inf on other components."""
-        i, j = self.edges.T
-        graph = sparse.csr_array((self.lengths, (i, j)), shape=(self.vertex_count,) * 2)
-        distance = csgraph.dijkstra(graph, directed=False, indices=vertices, min_only=True)
+        graph = self.graph.matrix(self.lengths)
+        distance = csgraph.dijkstra(graph, indices=vertices, min_only=True)
         return np.asarray(distance, dtype=np.float64)
 
     def way_through(self, vertices: npt.ArrayLike, hindrance: Floats64) -> Integers32:
@@ -67,10 +69,16 @@ class SkinSurface:
         """
         stops = np.asarray(vertices, dtype=np.int64)
         i, j = self.edges.T
-        lengths = self.lengths * (1.0 + (hindrance[i] + hindrance[j]) / 2.0)
-        shape = (self.vertex_count, self.vertex_count)
-        graph = sparse.csr_array((lengths, (i, j)), shape=shape)
-        _, before = csgraph.dijkstra(graph, directed=False, indices=stops, return_predecessors=True)
+        graph = self.graph.matrix(self.lengths * (1.0 + (hindrance[i] + hindrance[j]) / 2.0))
+        apart = np.linalg.norm(np.diff(self.positions[stops], axis=0), axis=1)
+        # [mm] that the search goes: further costs time, and is seldom needed.
+        near = 5.0 * float(apart.max(initial=0.0))
+        for limit in (near, np.inf):
+            costs, before = csgraph.dijkstra(
+                graph, indices=stops, return_predecessors=True, limit=limit
+            )
+            if np.isfinite(costs[np.arange(len(stops) - 1), stops[1:]]).all():
+                break
         way = [int(stops[0])]
         for start, end, steps in zip(stops[:-1], stops[1:], before[:-1], strict=True):
             back = [int(end)]
@@ -80,9 +88,9 @@ class SkinSurface:
             way += forward[1:]
         return np.array(way, dtype=np.int32)
 
-    def smoothed(self, field: Floats64, extent: float) -> Floats64:
-        """A field (V,) without details smaller than about sqrt(`extent`); `extent` is in mm2."""
-        return _smooth(field, extent, self.areas, self.laplacian)
+    def smoother(self, extent: float) -> Callable[[Floats64], Floats64]:
+        """Takes details smaller than about sqrt(`extent`) [mm2] out of fields (V,)."""
+        return _smoother(self.graph, self.edge_stiffness, self.areas, extent)
 
     def harmonic(
         self, vertices: npt.ArrayLike, values: npt.ArrayLike, *, hold: float = 1e4
@@ -95,8 +103,8 @@ class SkinSurface:
         np.add.at(right, seeds, hold * np.asarray(values, dtype=np.float64))
         # Pulls components without a seed to zero instead of leaving them undefined.
         seed_floor = 1e-6
-        system = (self.laplacian + sparse.diags_array(weight + seed_floor * self.areas)).tocsc()
-        field: Floats64 = sparse_linalg.spsolve(system, right)
+        diagonal = weight + seed_floor * self.areas
+        field: Floats64 = self.graph.solver(self.edge_stiffness, diagonal)(right)
         return field
 
 
@@ -107,40 +115,25 @@ def build_surface(positions: Floats64, faces: Integers32) -> SkinSurface:
     least_area = 0.01  # mm2 per vertex: keeps isolated vertices and slivers from having no mass
     areas: Floats64 = np.maximum(vertex_areas(positions, faces), least_area)
 
-    edges, edge_of_side = _edges_of(faces.tobytes())
-    i, j = edges.T
+    graph = graph_of(faces, count)
+    i, j = graph.edges.T
     lengths = np.linalg.norm(positions[j] - positions[i], axis=1)
     # In mm per edge: bounds the stiffness of collapsed edges (Van Gelder's is 1/l2).
     least_length = 0.05
     lengths = np.maximum(lengths, least_length)
-    areas_beside = np.bincount(edge_of_side, np.tile(face_areas, 3), minlength=len(edges))
+    areas_beside = np.bincount(graph.edge_of_side, np.tile(face_areas, 3), minlength=len(lengths))
     stiffness = areas_beside / lengths**2
 
-    both = (np.concatenate([i, j]), np.concatenate([j, i]))
-    weights = sparse.coo_array((np.tile(stiffness, 2), both), shape=(count, count)).tocsr()
-    degree = np.asarray(weights.sum(axis=1)).ravel()
-    laplacian = (sparse.diags_array(degree) - weights).tocsc()
     normal_smoothing = 25.0  # mm2: tissue direction is the normal of the surface at some 5 mm scale
-    smooth = _smooth(vertex_normals(positions, faces), normal_smoothing, areas, laplacian)
+    smooth = _smoother(graph, stiffness, areas, normal_smoothing)(vertex_normals(positions, faces))
     length = np.linalg.norm(smooth, axis=1, keepdims=True)
     directions = np.where(length > 1e-9, smooth / np.maximum(length, 1e-9), [0.0, 0.0, 1.0])
-    return SkinSurface(positions, faces, edges, lengths, stiffness, areas, directions, laplacian)
+    return SkinSurface(positions, faces, graph, lengths, stiffness, areas, directions)
 
 
-@lru_cache(maxsize=4)
-def _edges_of(faces: bytes) -> tuple[Integers32, Integers64]:
-    """Edges (E, 2), sorted, and the edge of each side of `sides_of`; persons share their faces."""
-    sides = np.sort(sides_of(np.frombuffer(faces, np.int32).reshape(-1, 3)), axis=1)
-    pairs, edge_of_side = different_pairs(sides)
-    edges: Integers32 = pairs.astype(np.int32)
-    return read_only(edges), read_only(edge_of_side)
-
-
-def _smooth(
-    field: Floats64, extent: float, areas: Floats64, laplacian: sparse.csc_array
-) -> Floats64:
+def _smoother(
+    graph: SkinGraph, stiffness: Floats64, areas: Floats64, extent: float
+) -> Callable[[Floats64], Floats64]:
     """One implicit diffusion step: details much smaller than sqrt(`extent`) [mm2] vanish."""
-    system = (sparse.diags_array(areas) + extent * laplacian).tocsc()
-    right = areas.reshape(-1, *[1] * (field.ndim - 1)) * field
-    result: Floats64 = sparse_linalg.splu(system).solve(right)
-    return result
+    solve = graph.solver(extent * stiffness, areas)
+    return lambda field: solve(areas.reshape(-1, *[1] * (field.ndim - 1)) * field)

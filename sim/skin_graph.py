@@ -1,0 +1,104 @@
+"""The edges of a triangle mesh: all that meshes with the same triangles share.
+
+Persons have the triangles of the built-in head. What follows from these alone is found once: edges,
+the places of matrices that are not zero, and an order of the vertices in which elimination fills
+few others.
+
+Source: George, Liu 1989, "The evolution of the minimum degree ordering algorithm".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse import linalg as sparse_linalg
+
+from ..geometry.arrays import Floats64, Integers32, Integers64
+from ..geometry.read_only import read_only
+from ..geometry.sides import different_pairs, sides_of
+
+
+@dataclass(frozen=True, eq=False)
+class SkinGraph:
+    """The edges of a mesh of V vertices; made by `graph_of`."""
+
+    edges: Integers32  # (E, 2), sorted, the lower vertex first
+    edge_of_side: Integers64  # (3 F,) of each side of `sides_of`
+    order: Integers64  # (V,) of the vertices, for elimination
+    neighbours: sparse.csr_array  # (V, V) number of the edge between two vertices
+    ordered: sparse.csr_array  # the same in that order, and E + i on the diagonal at vertex i
+
+    def matrix(self, values: Floats64) -> sparse.csr_array:
+        """Values of edges (E,) as a symmetric matrix (V, V)."""
+        known = self.neighbours
+        parts = values[known.data], known.indices, known.indptr
+        return sparse.csr_array(parts, shape=known.shape)
+
+    def solver(self, stiffness: Floats64, diagonal: Floats64) -> Callable[[Floats64], Floats64]:
+        """Solves (diagonal + L) x = right, L the Laplacian of the edges' stiffness, for x.
+
+        stiffness: of edges, shape (E,), 0 and above; diagonal: of vertices, shape (V,), above 0.
+        right, x: shape (V,) or (V, k).
+        """
+        known = self.ordered
+        degrees = np.bincount(self.edges.ravel(), np.repeat(stiffness, 2), len(diagonal))
+        values = np.concatenate([-stiffness, degrees + diagonal])
+        # Symmetric, so that rows may stand for columns.
+        parts = values[known.data], known.indices, known.indptr
+        factors = sparse_linalg.splu(
+            sparse.csc_array(parts, shape=known.shape),
+            permc_spec="NATURAL",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+
+        def solve(right: Floats64) -> Floats64:
+            found = np.empty_like(right)
+            found[self.order] = factors.solve(right[self.order])
+            return found
+
+        return solve
+
+
+def graph_of(faces: Integers32, vertex_count: int) -> SkinGraph:
+    """The graph of triangles (F, 3); that of the last few meshes is known."""
+    return _graph_of(faces.tobytes(), vertex_count)
+
+
+@lru_cache(maxsize=4)
+def _graph_of(faces: bytes, vertex_count: int) -> SkinGraph:
+    sides = np.sort(sides_of(np.frombuffer(faces, np.int32).reshape(-1, 3)), axis=1)
+    pairs, edge_of_side = different_pairs(sides)
+    edges: Integers32 = pairs.astype(np.int32)
+    neighbours = _numbered(edges, np.zeros(0, np.int32), vertex_count)
+    pattern = sparse.csc_array((np.ones(neighbours.nnz), neighbours.indices, neighbours.indptr))
+    pattern.resize((vertex_count, vertex_count))
+    degrees = np.diff(neighbours.indptr)
+    # Only the order is wanted, which does not depend on values.
+    system = (sparse.diags_array(degrees + 1.0) - pattern).tocsc()
+    place = sparse_linalg.splu(
+        system,
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    ).perm_c
+    order = np.argsort(place).astype(np.int64)
+    diagonal = np.arange(vertex_count, dtype=np.int32)
+    ordered = _numbered(place[edges], place[diagonal], vertex_count)
+    return SkinGraph(read_only(edges), read_only(edge_of_side), order, neighbours, ordered)
+
+
+def _numbered(edges: Integers32, diagonal: Integers32, vertex_count: int) -> sparse.csr_array:
+    """A symmetric matrix that has the number of each edge, and E + i at i's place (n,)."""
+    i, j = edges.T
+    places = np.concatenate([i, j, diagonal]), np.concatenate([j, i, diagonal])
+    numbers = np.arange(len(edges) + len(diagonal))
+    values = np.concatenate([numbers[: len(edges)], numbers])
+    shape = (vertex_count, vertex_count)
+    matrix = sparse.coo_array((values, places), shape=shape).tocsr()
+    matrix.sort_indices()
+    return matrix
