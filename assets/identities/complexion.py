@@ -39,6 +39,7 @@ from .hair import CUTS, HAIR, OWN_CUT, Fall, hair_of, scalp_of
 from .larynx import larynx_of
 from .lids import EYES, fold_of, shaded
 from .long_hair import falling_hair, tied_hair
+from .painted_hair import MOST_COVER, fringe_of, grown_over, shrunk_strands
 from .person import Person
 from .population import DARKEST, LIGHTEST
 from .relief import with_reliefs
@@ -91,6 +92,7 @@ def recoloured(
     blood: float = 1.0,
     features: Features = PLAIN,
     haired_as: float | None = None,
+    fringe: float = 0.0,
     shrink: int = 1,
 ) -> Image:
     """The skin of the built-in head in a tone, laid out as its `albedo`, (H, W, 3), uint8.
@@ -98,7 +100,8 @@ def recoloured(
     angle: ITA [deg], DARKEST to LIGHTEST; else ValueError. blood: as a share of what such skin has;
     0.7 is pale, 1.3 flushed. haired_as: ITA of the skin with which hair goes that stands on
     it, so that no scalp shines through; None: hair is painted alone, from the built-in hairline on.
-    shrink: this many texels of the albedo, each way, become one, a power of 2 up to 16.
+    fringe: how much its hem is single hairs, 0 to 1. shrink: this many texels, each way, become
+    one, a power of 2 up to 16.
     """
     if not DARKEST <= angle <= LIGHTEST:
         raise ValueError(f"angle is {angle}; it must be {DARKEST:g} (dark) to {LIGHTEST:g} (light)")
@@ -109,13 +112,13 @@ def recoloured(
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
     kept = _kept_hair(tints, features, shrink)
     behind = None if haired_as is None else _behind(tints, features)
+    hairs = fringe * shrunk_strands(shrink * len(kept), shrink) if fringe else 0.0 * kept
     root_light = 0.5  # share between hairs where they are dense
     picture = np.empty_like(tints.light, np.uint8)
     lips = features.lips * BLOOD - features.pale_lips * np.maximum(density, 0.0)
-    beard = features.beard * SHADOW
     # In double precision it takes twice as long.
     density, redness, hair, skin, lips, beard = np.array(
-        [density, redness, hair, skin, lips, beard], dtype=np.float32
+        [density, redness, hair, skin, lips, features.beard * SHADOW], dtype=np.float32
     )
     for first in range(0, len(picture), BAND):
         rows = slice(first, first + BAND)
@@ -126,8 +129,9 @@ def recoloured(
         covered = shaded = np.zeros((), np.float32)
         if behind is not None:
             haired = np.where(on_scalp, np.float32(0.0), haired)
-            covered = _grown_over(behind[rows])
+            covered = grown_over(behind[rows])
             shaded = 1.0 - (1.0 - root_light) * covered
+            covered += hairs[rows] * covered * (MOST_COVER - covered)
         for channel in range(3):
             lost = density[channel] * tints.melanin[rows] + redness[channel] * tints.blood[rows]
             lost -= relief
@@ -175,14 +179,6 @@ def _shrunk_stubble(size: int, shrink: int) -> Floats32:
     return shrunk(stubble(size), shrink)
 
 
-def _grown_over(behind: Floats32) -> Floats32:
-    """Share of texels that hair covers; behind: their distance behind the hairline [mm]."""
-    most_cover = np.float32(0.99)  # share that dense hair covers
-    dense_depth = np.float32(22.0)  # [mm] behind the hairline, where hair is dense
-    t = np.clip(behind / dense_depth, np.float32(0.0), np.float32(1.0))
-    return np.asarray(most_cover * t * t * (np.float32(3.0) - np.float32(2.0) * t), np.float32)
-
-
 def coloured(
     person: Person,
     *,
@@ -203,7 +199,14 @@ def coloured(
     parts = beside_skin(parts, person.eyes, _beside_light_skin(angle))
     behind = _behind(_tints(), features)
     known = load("head").fine_shape
-    in_tone = partial(recoloured, blood=blood, features=features, haired_as=angle, shrink=shrink)
+    in_tone = partial(
+        recoloured,
+        blood=blood,
+        features=features,
+        haired_as=angle,
+        fringe=fringe_of(CUTS[person.identity.cut]),
+        shrink=shrink,
+    )
     return replace(
         person,
         albedo=in_tone(angle),
@@ -250,7 +253,7 @@ def _haired_segments(features: Features, behind: Floats32) -> Image:
     found = load("head").segments.copy()
     texels = found.reshape(-1)
     haired = _texels_of(Segment.HAIR)
-    texels[haired[_grown_over(behind.reshape(-1)[haired]) < 0.5]] = Segment.SKIN
+    texels[haired[grown_over(behind.reshape(-1)[haired]) < 0.5]] = Segment.SKIN
     if features.brows is not None:
         texels[_texels_of(Segment.RIGHT_BROW, Segment.LEFT_BROW)] = Segment.SKIN
         hairs = painted(features.brows, len(found))

@@ -173,7 +173,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     sinking = 0.3  # [mm] down per mm, from 4 mm in front of the hairline on
     off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
     points = points + off[:, None] * normals
-    uneven = 2.0 * np.sin(0.22 * radius * angle) + 1.5 * np.sin(0.57 * radius * angle + 1.0)
+    uneven = 1.0 * np.sin(0.22 * radius * angle) + 0.8 * np.sin(0.57 * radius * angle + 1.0)
     hem_depth = 20.0  # [mm] behind the hairline, up to dense hair
     bare_depth = 5.0  # [mm] the same for hair that is drawn back
     dense = np.minimum(

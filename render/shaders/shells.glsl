@@ -54,10 +54,11 @@ layout(location = 0) out vec4 pixel_colour;
 layout(location = 1) out vec4 pixel_surface;
 
 const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks of them
+const float LEAN = 0.6;                  // [mm] for each one along them, between strands of locks
 const float LONG = 11.0;                 // [mm] after which a strand is another one
 const float TILT = 0.10, UNEVEN = 0.45;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
-const vec2 SIDEWAYS = vec2(0.6, 0.85);  // facing, from which on single strands are seen
+const vec2 SIDEWAYS = vec2(0.6, 0.85);   // facing, from which on single strands are seen
 const vec2 RAGGED = vec2(0.4, 0.08);     // of density, by strands: so hems are no lines
 const vec2 CRISP = vec2(1.1, 1.6);       // how abruptly hems end: where locks are seen, and single strands
 const float DARK = 0.45;                 // of the light, at roots
@@ -85,8 +86,11 @@ void main() {
     float single = smoothstep(SIDEWAYS.x, SIDEWAYS.y, surface.facing);
     float outline = outline_place(layers) + SHARP;
     if (single == 0.0 && surface.layer > outline + SHARP) discard;  // at once: it takes less time
-    // Smooth between neighbours.
-    vec2 at = surface.strand.x / vec2(THIN, THICK), number = floor(at), place = at - number;
+    // Strands of a lock lean alike, over those beside it. They are smooth between neighbours.
+    float lock = floor(surface.strand.x / THICK);
+    float lean = LEAN * (fract(0.31831 * lock * lock) - 0.5) * surface.strand.y;
+    vec2 at = vec2(surface.strand.x + lean, surface.strand.x) / vec2(THIN, THICK);
+    vec2 number = floor(at), place = at - number;
     vec2 tones = share * (mix(reach(number), reach(number + 1.0), smoothstep(0.0, 1.0, place)) - 0.5);
     float seen = seen_share(surface.facing);
     vec2 apart = vec2(0.5, 0.4) * clamp(surface.dense, 0.25, 1.0);  // where hems begin no teeth
@@ -94,7 +98,7 @@ void main() {
     // Toward hems there are fewer strands, and shorter ones; where they are finer than a pixel, a veil.
     float dense = surface.dense / seen + dot(RAGGED, tones);
     float there = clamp(mix(CRISP.x, CRISP.y, share.x) * (dense - 0.5) + 0.5, 0.0, 1.0);
-    float far = tall * smoothstep(0.0, 1.0, dense);
+    float far = tall * smoothstep(0.0, mix(0.5, 1.0, single), dense);
     float cover = clamp((far - surface.layer) / mix(SHARP, SOFT, single) + 0.5, 0.0, 1.0) * there;
     if (cover < 0.08) discard;
     float uneven = 0.6 * tones.x + 0.4 * tones.y;

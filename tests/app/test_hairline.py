@@ -1,6 +1,7 @@
 """The hairline of the built-in head, as a picture shows it."""
 
 import numpy as np
+import pytest
 
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
@@ -28,9 +29,10 @@ def forehead(scene):
         return surface.read() @ np.array([0.2126, 0.7152, 0.0722])
 
 
-def test_the_front_is_no_saw_and_throws_no_hard_patch(scene):
+@pytest.mark.parametrize("person", [None, 40])
+def test_the_front_is_no_saw_and_throws_no_hard_patch(scene, person):
     """Its edge goes up and down by little from pixel to pixel, and the forehead below is clean."""
-    light = forehead(scene)
+    light = forehead(scene if person is None else FaceScene(person_called(person)))
     columns = slice(160, 320)
     skin = np.median(light[240:280, columns])
     edge = 280 - np.argmax(light[279::-1, columns] < 0.5 * skin, axis=0)

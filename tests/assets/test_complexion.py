@@ -172,6 +172,21 @@ def test_a_hairline_is_moved_on_the_scalp_alone():
     assert (_behind(tints, Features(hairline=line)) == wanted).all()
 
 
+def test_the_hem_of_painted_hair_is_single_hairs():
+    """They stand out of its mean near the hairline, on skin and dense hair they change nothing."""
+    behind = _behind(_tints(), Features())
+    plain, fringed = (
+        recoloured(40.0, haired_as=40.0, fringe=fringe).astype(int).sum(axis=2)
+        for fringe in (0.0, 1.0)
+    )
+    change = fringed - plain
+    hem = (behind > 3.0) & (behind < 9.0)
+    assert change[hem].std() > 30.0
+    assert abs(change[hem].mean()) < 0.2 * change[hem].std()
+    assert not change[behind <= 0.0].any()
+    assert np.abs(change[behind >= 22.0]).max() <= 3
+
+
 def test_eyes_go_with_dark_skin():
     """Flesh at the corners, wet edges and whites are darker, irises as they are."""
     person = make_person(sample_identity(1))
