@@ -43,6 +43,7 @@ from .painted_hair import MOST_COVER, fringe_of, grown_over, shrunk_strands
 from .person import Person
 from .population import DARKEST, LIGHTEST
 from .relief import with_reliefs
+from .sternomastoid import sternomastoids_of
 
 GREY_HAIR = (0.54, 0.52, 0.49)
 LOCKS_LIGHTER = 1.2  # than painted hair: no other hair shades them
@@ -221,11 +222,12 @@ def coloured(
 
 
 def _own_shape(person: Person) -> FineShape:
-    """The fine shape of the built-in head, with lids and larynx of a person."""
+    """The fine shape of the built-in head, with lids, larynx and sternomastoids of a person."""
     known = load("head").fine_shape
     size = len(known.slopes)
     lids = [fold_of(person, side, size) for side in EYES]
-    return with_reliefs(known, [*lids, larynx_of(person, size)])
+    neck = larynx_of(person, size), *sternomastoids_of(person, size)
+    return with_reliefs(known, [*lids, *neck])
 
 
 def _own_wrinkles(person: Person, shrink: int) -> Wrinkles:

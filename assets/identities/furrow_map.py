@@ -32,6 +32,7 @@ from .furrows import (
     frown_lines,
 )
 from .lines import Lines
+from .relief import add_to
 
 FINER = 10  # of so many parts of a step a texel takes the nearest
 FULL_DEPTH = 0.8  # [mm] of a furrow at which the map is darkest
@@ -105,20 +106,14 @@ def with_lines(known: Wrinkles, lines: Lines, shrink: int = 1) -> Wrinkles:
     ):
         drawn = draw(lines, np.random.default_rng([lines.seed, number]))
         near = found[region.rows, region.columns, :3]
-        _add(near, _bytes_of(region, drawn, len(found) / known.steepest))
+        add_to(near, _bytes_of(region, drawn, len(found) / known.steepest))
     random = np.random.default_rng([lines.seed, 4])
     for fold in places.folds:
         near = found[fold.rows, fold.columns, :3]
         more = (lines.fold_depth - 1.0 + random.uniform(-0.1, 0.1)) * fold.cover
-        _add(near, more[..., None] * (near - LEVEL))
+        add_to(near, more[..., None] * (near - LEVEL))
     found.flags.writeable = False
     return replace(known, map=found)
-
-
-def _add(near: Image, more: Floats32) -> None:
-    changed = near + more
-    np.rint(changed, out=changed)
-    near[...] = np.clip(changed, 0.0, 255.0, out=changed)
 
 
 def _bytes_of(region: _Region, drawn: Sequence[Line], per_slope: float) -> Floats32:

@@ -9,7 +9,8 @@ import numpy as np
 
 from risorius.geometry.texels import Texels
 
-from ...geometry.arrays import Floats64
+from ...geometry.arrays import Floats32, Floats64
+from ..data_files import Image
 from ..model import FineShape
 
 
@@ -39,14 +40,21 @@ def relief_of(texels: Texels, heights: Floats64, light: Floats64) -> Relief:
     return found
 
 
+def add_to(part: Image, more: Floats32) -> None:
+    """Add to bytes of a map, which keep their bounds; both of one shape."""
+    changed = part + more
+    np.rint(changed, out=changed)
+    part[...] = np.clip(changed, 0.0, 255.0, out=changed)
+
+
 def with_reliefs(known: FineShape, reliefs: Sequence[Relief]) -> FineShape:
     """A fine shape with reliefs in maps of its size."""
     slopes = known.slopes.copy()
     height, width = slopes.shape[:2]
     for relief in reliefs:
-        down, across = np.gradient(relief.heights)
-        added = np.stack([across * width, -down * height], axis=2) * (127.0 / known.steepest)
-        near = slopes[relief.rows, relief.columns]
-        near[...] = np.clip(np.rint(near + added), 0.0, 255.0).astype(np.uint8)
+        down, across = np.gradient(relief.heights.astype(np.float32))
+        steep = np.float32(127.0 / known.steepest)
+        added = np.stack([across * (steep * width), down * (-steep * height)], axis=2)
+        add_to(slopes[relief.rows, relief.columns], added)
     slopes.flags.writeable = False
     return FineShape(slopes, known.steepest)

@@ -80,6 +80,7 @@ class Identity:
     hooding: how much less of it is seen at the outer corner [mm].
     smile: which muscles join in it.
     larynx: how far it stands out [mm].
+    sternomastoid: how far it stands out beside the built-in head's, in a face of usual width [mm].
     lines: those of expression; None: the built-in head's.
     """
 
@@ -97,6 +98,7 @@ class Identity:
     hooding: float = 0.0
     smile: Smile = USUAL_SMILE
     larynx: float = 0.0
+    sternomastoid: float = 0.0
     lines: Lines | None = None
 
     def scaled(self, share: float) -> Identity:
@@ -260,6 +262,7 @@ def sample_identity(
         smile=drawn_smile(is_woman, random),
         larynx=float(random.uniform(*((0.0, 0.8) if is_woman else (1.5, 5.0)))),
         lines=drawn_lines(not is_woman, age, random),
+        sternomastoid=float(-0.35 + 0.25 * late + 0.4 * np.clip(random.normal(), -2.0, 2.0)),
     )
 
 

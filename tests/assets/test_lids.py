@@ -1,4 +1,4 @@
-"""Folds of lids, and the larynx: in the maps where the identity says, and nowhere else."""
+"""Folds of lids, and the neck: in the maps where the identity says, and nowhere else."""
 
 from dataclasses import replace
 
@@ -8,6 +8,7 @@ import pytest
 from risorius.assets.identities import Person, Sex, coloured, make_person, sample_identity
 from risorius.assets.identities.larynx import larynx_of
 from risorius.assets.identities.lids import fold_of
+from risorius.assets.identities.sternomastoid import height_of, sternomastoids_of
 from risorius.assets.loading import load
 
 
@@ -56,7 +57,9 @@ def test_hooding_lowers_the_outer_half_alone(person):
 def test_maps_differ_at_the_lids_alone_and_small_pictures_share_one(person):
     """All else is the built-in head's; a map with fewer texels has the same shade."""
     head = load("head")
-    drawn = coloured(folded(person, seen_lid=2.0, larynx=0.0), angle=50.0)
+    lean = height_of(folded(person, sternomastoid=0.0))
+    plain_neck = folded(person, seen_lid=2.0, larynx=0.0, sternomastoid=-lean)
+    drawn = coloured(plain_neck, angle=50.0)
     changed = (drawn.fine_shape.slopes != head.fine_shape.slopes).any(axis=2)
     rows, columns = np.nonzero(changed)
     size = len(changed)
@@ -94,3 +97,28 @@ def test_the_larynx_stands_out_as_far_as_the_identity_says(person):
     for sex, least, most in ((Sex.MAN, 1.5, 5.0), (Sex.WOMAN, 0.0, 0.8)):
         drawn = [sample_identity(seed, sex=sex).larynx for seed in range(20)]
         assert least <= min(drawn) < max(drawn) <= most
+
+
+def test_sternomastoids_stand_out_of_lean_and_old_necks(person):
+    """Ridges on both sides, as high as the identity says, higher in the old and the lean."""
+    even = folded(person, sternomastoid=0.0)
+    lean = height_of(even)
+    raised, sunk = (
+        sternomastoids_of(folded(person, sternomastoid=own - lean), 1024) for own in (1.5, -0.5)
+    )
+    for found, mirrored in (raised, raised[::-1]):
+        assert 1.4 < found.heights.max() < 2.1
+        assert np.abs(found.heights[0]).max() < 0.05
+        np.testing.assert_allclose(found.heights.max(), mirrored.heights.max(), atol=0.02)
+        assert found.columns.start + mirrored.columns.stop == pytest.approx(1024, abs=2)
+    assert min(found.heights.min() for found in sunk) == pytest.approx(-0.5, abs=0.05)
+    assert max(found.heights.max() for found in sunk) < 0.01
+    young, old = (
+        np.mean([sample_identity(seed, age=age).sternomastoid for seed in range(60)])
+        for age in (25.0, 70.0)
+    )
+    assert old > young + 0.6
+    cheeks = [person.anatomy[f"zygion_{side}"] for side in ("left", "right")]
+    vertices = person.vertices.copy()
+    vertices[cheeks] *= [1.04, 1.0, 1.0]
+    assert height_of(replace(even, vertices=vertices)) > lean + 0.1

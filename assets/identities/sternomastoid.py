@@ -1,0 +1,76 @@
+"""The sternomastoids of a person, which run from behind the ears down to the breastbone.
+
+The map of fine shape has them as most people show them. Here they are raised where fat and skin
+are thin, or sunk into the neck. Cheekbones are wide beside the jaw in lean faces (Coetzee and
+others 2010, "Deciphering faces: quantifiable visual cues to weight", Perception 39:51-61). How much
+more they show in the lean and the old is chosen by eye.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from risorius.geometry.texels import Texels
+
+from ..loading import load
+from ..smooth import smooth_step
+from .person import Person
+from .relief import Relief, relief_of
+
+# Where the built-in head's run: a height [mm], and the angle around the neck [deg], 90 in front.
+COURSE = np.array(
+    [(-165, 60), (-150, 45), (-140, 33), (-130, 22), (-120, 13), (-110, 8), (-100, 3), (-60, -14)]
+)
+
+
+def height_of(person: Person) -> float:
+    """How far muscles stand out beside the built-in head's [mm]."""
+    measures = person.measures
+    usual_ratio = 1.27  # of the widths of cheekbones and jaw
+    lean = measures["zy-zy"] / measures["go-go"] - usual_ratio
+    return float(np.clip(person.identity.sternomastoid + 3.5 * lean, -0.7, 1.8))
+
+
+def sternomastoids_of(person: Person, size: int) -> tuple[Relief, ...]:
+    """Both muscles in a map of this many texels each way."""
+    height = height_of(person)
+    tendon = max(height, 0.0)  # no skin hides what the built-in head does not show
+    return tuple(
+        belly._replace(heights=height * belly.heights + tendon * front.heights)
+        for belly, front in (_raised(size, side) for side in (1.0, -1.0))
+    )
+
+
+@lru_cache(maxsize=4)
+def _raised(size: int, side: float) -> tuple[Relief, Relief]:
+    """The belly of a muscle, and its tendon with the hollow before it, both 1 mm high.
+
+    side: 1 the left, -1 the right.
+    """
+    head = load("head")
+    x, y, z = head.vertices[head.faces].transpose(2, 0, 1)
+    is_near = (side * x >= 0.0).all(axis=1) & ((y < -60.0) & (z < 80.0) & (z > -60.0)).any(axis=1)
+    corners = head.uv[head.face_uv].astype(np.float64)
+    corners[~is_near] = -1.0  # outside the map
+    texels = Texels.within(corners, (size, size))
+    x, y, z = texels.interpolate(head.vertices[head.faces]).T
+    axis_depth = -8.0  # [mm] of the neck
+    angle = np.arctan2(z - axis_depth, side * x)
+    middle = np.radians(np.interp(y, *COURSE.T))
+    off = np.hypot(x, z - axis_depth) * (angle - middle)  # [mm] before the middle
+    belly_width = 8.5  # [mm]
+    belly = np.exp(-((off / belly_width) ** 2))
+    # The tendon lies at its front edge, toward the breastbone.
+    tendon = 0.7 * np.exp(-(((off - 6.5) / 3.4) ** 2)) * smooth_step(-108.0, -140.0, y)
+    hollow = 0.5 * np.exp(-(((off - 14.5) / 5.0) ** 2)) * smooth_step(-100.0, -125.0, y)
+    inside = smooth_step(-62.0, -92.0, y) * smooth_step(75.0, 60.0, z)
+    inside *= smooth_step(-24.0, -14.0, off) * smooth_step(-158.0, -148.0, y)
+    kept = inside * (belly + np.abs(tendon - hollow)) > 2e-3
+    rows, columns = texels.rows[kept], texels.columns[kept]
+    texels = Texels(rows, columns, texels.faces[kept], texels.weights[kept])
+    light = np.ones(len(rows))
+    raised = (inside * each for each in (belly, tendon - hollow))
+    first, second = (relief_of(texels, heights[kept], light) for heights in raised)
+    return first, second
