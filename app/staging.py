@@ -1,8 +1,8 @@
-"""A folder beside a file, in which the file is made before it takes its place.
+"""A folder beside a file, in which the file is made before it moves to its place.
 
-It goes when the work ends. Where the process was killed it stays: one that works in the same place
-sweeps it away when nothing in it has changed for a day; a run that works changes something every
-few minutes.
+The folder is removed when the work ends. If the process is killed, the folder stays. A later
+process that works in the same place removes it when nothing in it has changed for a day; a running
+process changes something every few minutes.
 """
 
 import contextlib
@@ -18,8 +18,8 @@ from typing import IO, Any
 if sys.platform != "win32":
     import fcntl
 
-OLD = 86_400.0  # [s] since the last change in a folder that is swept away
-_swept: set[Path] = set()  # where this process has looked for what others left
+OLD = 86_400.0  # [s] since the last change in a folder before its removal
+_swept: set[Path] = set()  # folders that this process has swept
 
 
 class StagingFolder:
@@ -45,13 +45,13 @@ class StagingFolder:
         self.remove()
 
     def remove(self) -> None:
-        """Take it away with all that is in it; nothing the second time."""
+        """Remove it with its content; a second call does nothing."""
         if self._folder is not None:
             shutil.rmtree(self._folder, ignore_errors=True)
 
 
 def is_staging_folder(path: Path) -> bool:
-    """Whether a path is such a folder, and no link to one."""
+    """Whether a path is such a folder, and not a link to one."""
     name_pattern = re.compile(r"\.risorius-[0-9a-f]{12}")
     return bool(name_pattern.fullmatch(path.name)) and path.is_dir() and not path.is_symlink()
 
@@ -67,9 +67,9 @@ def sweep(parent: Path) -> None:
 
 
 def locked(path: Path) -> IO[Any] | None:
-    """The file, made if need be, which nobody else can lock until it is closed.
+    """The file, made if missing; no other process can lock it until it is closed.
 
-    None where somebody has locked it. Raises OSError if it cannot be opened.
+    None if another process has locked it. Raises OSError if it cannot be opened.
     """
     file = open(path, "ab", opener=_without_waiting)
     try:
@@ -88,5 +88,5 @@ def locked(path: Path) -> IO[Any] | None:
 
 
 def _without_waiting(path: str, flags: int) -> int:
-    """Open a file; a pipe in its place, for which one would wait, is an OSError, as is a link."""
+    """Open a file; a pipe, which might block, is an OSError, and so is a link."""
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0), 0o666)

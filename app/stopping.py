@@ -1,7 +1,8 @@
-"""Ctrl-C, a closed terminal, `kill`: half-written files are removed, and the process ends there.
+"""Ctrl-C, a closed terminal, `kill`: half-written files are removed, and the process ends.
 
-The handlers raise nothing. An exception at a moment nobody chose is lost where C code calls Python
-and drops its errors, so that the signal has no effect, and it crashes moderngl while it compiles.
+The handlers raise no exception. An exception at an arbitrary moment is lost where C code calls
+Python and drops its errors, so the signal would have no effect; and it crashes moderngl during a
+compilation.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ def cleaned_up_if_stopped(clean_up: Callable[[], object]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def done_whole() -> Iterator[None]:
-    """A signal that comes inside this block ends the process after it; keep it short."""
+    """A signal inside this block ends the process after the block; keep it short."""
     global _is_postponing
     _is_postponing = True
     try:
@@ -41,8 +42,8 @@ def done_whole() -> Iterator[None]:
 
 
 def handle_signals() -> None:
-    """Let signals end this process as described above; those that are ignored stay ignored."""
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # Windows has not the last
+    """Let signals end this process as described above; ignored signals stay ignored."""
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # Windows lacks the last
         number = getattr(signal, name, None)
         usual = (signal.SIG_DFL, signal.default_int_handler)
         if number is not None and signal.getsignal(number) in usual:
@@ -55,14 +56,14 @@ def _stop(number: int, _: object) -> None:
         return
     signal.signal(number, signal.SIG_DFL)  # once more: at once
     for clean_up in reversed(_cleanups):
-        with contextlib.suppress(Exception):  # the others have their turn
+        with contextlib.suppress(Exception):  # the others still run
             clean_up()
-    with contextlib.suppress(Exception):  # streams may be closed, or in the middle of a word
+    with contextlib.suppress(Exception):  # streams may be closed, or in use
         if number == signal.SIGINT:
             print("risorius: stopped", file=sys.stderr)
         sys.stderr.flush()
     with contextlib.suppress(Exception):
         sys.stdout.flush()
-    # As if nobody had listened: a shell that runs us in a loop ends the loop, too.
+    # End as without a handler: a shell that runs us in a loop then also ends the loop.
     signal.raise_signal(number)
-    os._exit(128 + number)  # where systems do not end a process so
+    os._exit(128 + number)  # for systems that do not end a process this way

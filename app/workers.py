@@ -1,9 +1,9 @@
-"""Work in processes of their own, here or on a Dask cluster; one that dies costs one attempt.
+"""Work in separate processes, here or on a Dask cluster; a death costs one attempt.
 
-A process is started anew for each piece of work and never forked: one that was forked after OpenGL
-was opened hangs. It is in a session of its own, so that Ctrl-C is for the process that started it.
-Work is a function at the top of a module; its arguments and its messages are pickled. When the
-process that started it ends, for any reason, it ends, too, and half-written files go.
+A new process is started for each piece of work and never forked: a process forked after OpenGL was
+opened hangs. It has its own session, so that only its parent gets Ctrl-C. Work is a function at the
+top of a module; its arguments and messages are pickled. When the parent ends, for any reason, the
+process also ends, and half-written files are removed.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ from .text import as_text, in_one_line
 
 Send = Callable[[object], None]  # sends a message to the process that started the work
 """Each takes as many threads as there are cores, in each process: OpenGL, BLAS and refinement."""
-ATTEMPTS = 3  # at work whose process dies
-GRACE = 5.0  # [s] for a process to clean up, until it is killed
+ATTEMPTS = 3  # attempts at work whose process dies
+GRACE = 5.0  # [s] for a process to clean up before it is killed
 
 
 class Kind(Enum):
-    """Kinds of answers of a process: messages of its work, then how the work ended."""
+    """Kinds of answers of a process: messages of its work, then the end of the work."""
 
     MESSAGE = 1
     FAILED = 2
@@ -48,7 +48,7 @@ class DiedError(Exception):
 
 
 class Worker:
-    """A process that does one piece of work, as the process that started it sees it."""
+    """A process that does one piece of work, in the view of its parent."""
 
     def __init__(
         self,
@@ -59,8 +59,7 @@ class Worker:
     ) -> None:
         """Begin `work(*arguments, send)`.
 
-        threads: of each of LIBRARIES. log: the file that its prints are added to; None: the error
-        stream.
+        threads: number for each of LIBRARIES. log: the file for its output; None: the error stream.
         """
         code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve()"
         with contextlib.ExitStack() as stack:
@@ -100,7 +99,7 @@ class Worker:
             return
 
     def close(self) -> None:
-        """Wait for its end, and force it if need be."""
+        """Wait for its end, and force it if necessary."""
         try:
             self.process.wait(GRACE)
         except subprocess.TimeoutExpired:
@@ -109,26 +108,26 @@ class Worker:
 
 
 def serve() -> None:
-    """In such a process: read the work from the standard input, and do it."""
+    """In a worker's process: read the work from the standard input, and do it."""
     requests = os.fdopen(os.dup(0), "rb")
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    os.dup2(2, 1)  # prints are no messages
+    os.dup2(2, 1)  # prints must not mix with messages
     handle_signals()
-    faulthandler.enable()  # for a fault in a driver, the log gets its place
+    faulthandler.enable()  # the log gets the place of a driver's fault
     try:
         request = pickle.load(requests)
-    except EOFError:  # the process that began this one was stopped
+    except EOFError:  # the parent was stopped
         return
 
     def end_with_parent() -> None:
         os.read(requests.fileno(), 1)
         os.kill(os.getpid(), signal.SIGTERM)
 
-    waiting: queue.Queue[bytes] = queue.Queue(4)  # messages that nobody has taken
+    waiting: queue.Queue[bytes] = queue.Queue(4)  # messages not yet sent
 
     def hand_over() -> None:
-        """Write waiting messages while the next is made; where nobody reads, end the process."""
+        """Write waiting messages while the next is made; end the process if nobody reads them."""
         try:
             while content := waiting.get():
                 answers.write(content)
@@ -148,7 +147,7 @@ def serve() -> None:
 def _done(
     work: Callable[..., object], arguments: Sequence[Any], *, send: Send
 ) -> tuple[Kind, tuple[str, str]]:
-    """Do the work, and return how it ended: why it failed in a line, and the traceback."""
+    """Do the work, and return its end: a failure's reason in a line, and the traceback."""
     try:
         work(*arguments, send)
     except Exception as error:
@@ -164,7 +163,7 @@ class WorkerPool:
     """The processes of one run; they end with it, and threads of this process wait for them."""
 
     def __init__(self, jobs: int = 1) -> None:
-        """jobs: how many there will be at once; they share the cores."""
+        """jobs: number of simultaneous processes, which share the cores."""
         self._threads = max(1, share_of_cores() // jobs)
         self._workers = list[Worker]()
         self._is_over = False
@@ -177,9 +176,9 @@ class WorkerPool:
         log: Path | None = None,
         attempts: int = ATTEMPTS,
     ) -> None:
-        """Do work in a process, again if the process dies; on_message: is called with each message.
+        """Do work in a process, again if the process dies; on_message: takes each message.
 
-        Raises UserError for an error in the work, for its last death, and where all is stopped.
+        Raises UserError for an error in the work, for its last death, and after `stop`.
         """
         why = ""
         for attempt in range(attempts):
@@ -187,7 +186,7 @@ class WorkerPool:
                 break
             worker = Worker(work, *arguments, threads=self._threads, log=log)
             self._workers.append(worker)
-            if self._is_over:  # stopped while it was started
+            if self._is_over:  # stopped during its start
                 worker.process.terminate()
             try:
                 for message in worker.messages():
@@ -229,8 +228,8 @@ def run_all(
 ) -> Iterator[Any]:
     """Do `work(share, send)` for all shares at once; yield their messages as they come.
 
-    A share whose process died is begun anew. A caller that stops early, or is stopped, ends all.
-    Raises UserError for the first that failed.
+    A share whose process died begins again. If the caller stops early, or is stopped, all end.
+    Raises UserError for the first failure.
     """
     pool = WorkerPool(max(len(shares), 1))
     messages = queue.SimpleQueue[Any]()
@@ -260,13 +259,13 @@ def run_all(
 
 
 class Task:
-    """Work that plays frames in a process; the one that waits stays free."""
+    """Work that plays frames in a process, while the calling process stays free."""
 
     def __init__(self, work: Callable[[], object], frame_count: int, wake: Callable[[], None]):
-        """Begin; wake: called when it has ended, from a thread."""
+        """Begin; wake: a thread calls it when the work has ended."""
         self._frame_count = frame_count
         self._frames = 0
-        self._pool = WorkerPool(share_of_cores())  # one of them: the others are the window's
+        self._pool = WorkerPool(share_of_cores())  # one of them; the window keeps the others
         thread = ThreadPoolExecutor(1)
         self._end = thread.submit(
             self._pool.run, count_frames, work, on_message=self._count, attempts=1
@@ -280,7 +279,7 @@ class Task:
 
     @property
     def share(self) -> float:
-        """How much of it is done, 0..1; 0 where it is stopped."""
+        """Finished share of the work, 0..1; 0 if it is stopped."""
         return 0.0 if self.is_stopped else min(self._frames / self._frame_count, 1.0)
 
     @property
@@ -298,7 +297,7 @@ class Task:
         self._end.result()
 
     def stop(self, *, waits: bool) -> None:
-        """End it at once; it removes half-written files, which takes a while."""
+        """End the work at once; removing half-written files takes a while."""
         if self._stopping is None:
             self._stopping = threading.Thread(target=self._pool.stop)
             self._stopping.start()
@@ -307,7 +306,7 @@ class Task:
 
 
 def count_frames(work: Callable[[], object], send: Send) -> None:
-    """In that process: do it, and send the number of played frames again and again."""
+    """In the process: do the work, and repeatedly send the number of played frames."""
     is_done = threading.Event()
     give_way(5)
 
@@ -325,16 +324,17 @@ def count_frames(work: Callable[[], object], send: Send) -> None:
 
 
 def give_way(niceness: int) -> None:
-    """In a process: let the one that started it go first, by this much, 1 to 19."""
+    """In a process: lower its priority below its parent's, by 1 to 19."""
     if hasattr(os, "nice"):
         os.nice(niceness)
-    # Where Linux shares time by sessions, niceness counts inside one, and each process has its own.
+    # Where Linux shares time between sessions, niceness only counts within one, and each process
+    # has its own session.
     with contextlib.suppress(OSError):
         Path("/proc/self/autogroup").write_text(str(niceness))
 
 
 def share_of_cores() -> int:
-    """How many cores are for one command: `LP_NUM_THREADS`, which limits OpenGL, limits all."""
+    """Number of cores for one command: `LP_NUM_THREADS`, which limits OpenGL, limits all."""
     limit = os.environ.get("LP_NUM_THREADS", "")
     if limit.isdecimal():
         return max(int(limit), 1)

@@ -25,7 +25,7 @@ class Places(Set[KeyPlace]):
     """A constant set of places: for each of its tracks, the times of its keys."""
 
     def __init__(self, times: Mapping[str, Times]) -> None:
-        """times: by the name of the track; rising, each time once."""
+        """times: name of the track -> its times, rising, each once."""
         self.times = {name: each for name, each in times.items() if len(each)}
 
     @classmethod
@@ -55,7 +55,7 @@ class Places(Set[KeyPlace]):
         return min(float(each[0]) for each in self.times.values())
 
     def latest_in(self, edges: Times, names: Iterable[str]) -> Times:
-        """The latest time between each two of the times `edges` with any in these tracks [s]."""
+        """The latest time of a key in these tracks between each two of the times `edges` [s]."""
         latest = np.full(len(edges) - 1, -np.inf)
         for times in (self.times[name] for name in names if name in self.times):
             after = np.searchsorted(times, edges)
@@ -114,7 +114,7 @@ NOWHERE = Places({})
 
 
 def among(times: Times, others: Times, reach: float = 0.0) -> Flags:
-    """Whether each of the times is within `reach` [s] of one of the others."""
+    """Flags of times that are within `reach` [s] of one of the others."""
     if not len(others):
         return np.zeros(len(times), np.bool_)
     after = np.minimum(np.searchsorted(others, times - reach), len(others) - 1)

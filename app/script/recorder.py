@@ -1,7 +1,7 @@
-"""Movements of controls over time, put into the script that played meanwhile.
+"""Recorded movements of controls, added to the script that played meanwhile.
 
-A control is taken from the moment on in which it leaves the script, until the recording ends.
-Controls that were not moved, and all keys before and after, stay as they are.
+A control is recorded from the moment when it leaves the script until the recording ends. Controls
+that were not moved, and all keys before and after, do not change.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from . import Channel, Key, Script, rounded
 from .keyframes import FRAME, differing
 from .thinning import thinned
 
-RELEASE = 0.1  # [s] at the recording's end in which a control goes back to where the script has it
+RELEASE = 0.1  # [s] at the recording's end in which a control returns to the script
 
 
 class Recorder:
-    """Takes the value of every control at every step, from a time of a script on.
+    """Records the value of every control at every step, from a time of a script on.
 
-    held: values that the user holds against the script; the caller sets it.
+    held: values that the user holds against the script; the caller sets them.
     """
 
     def __init__(
@@ -32,11 +32,11 @@ class Recorder:
         """played: moves the controls that the user does not. start: [s]. held: values before it."""
         self._played = played
         self.held = dict(held or {})
-        self._kept = dict[str, float]()  # values that are recorded of those held
+        self._kept = dict[str, float]()  # recorded ones of the held values
         self.start = self.time = rounded(start)
-        # Of each control that has moved: times [s] and values of its track, from the last key on.
+        # For each moved control: times [s] and values of its track, from the last key on.
         self.samples: dict[str, tuple[array[float], array[float]]] = {}
-        thinned([0.0, 1.0], [0.0, 1.0])  # if this must be compiled, then before anything moves
+        thinned([0.0, 1.0], [0.0, 1.0])  # compiled now, before anything moves
 
     def add(self, time: float, values: ControlValues) -> None:
         """The controls are at `values` at a time [s], unless that is recorded already."""
@@ -112,8 +112,8 @@ def _along(track: Channel, first: float, last: float) -> list[Key]:
     value = track.value(last) if len(track) else 0.0
     end = Key(last, value, easing)
     if easing in ("linear", "hold") or {first, last} <= set(track.times.tolist()):
-        return [end]  # a part of such a way is eased as all of it
-    # Straight lines between so many samples of an eased way are off by 0.0002.
+        return [end]  # a part of such a way has the easing of the whole
+    # Straight lines between this many samples of an eased way have errors of 0.0002.
     times = np.linspace(first, last, 64 + 1)
     along = thinned(times, [track.value(time) for time in times.tolist()])
     return [*along.keys[1:-1], replace(end, easing="linear")]

@@ -1,8 +1,8 @@
-"""A script file -> a Script, or the file and the line or key that is wrong; and back into a file.
+"""From a script file to a Script, or to an error that names the line or key; and back.
 
-A written script reads back as the same. Tracks of a few keys are written as tables, which
-explain themselves, those of more keys as lines, which are short and quickly read. A pose by itself
-is a script with one [[pose]] at time 0.
+A written script reads back unchanged. Tracks with few keys are written as tables, which explain
+themselves; tracks with more keys are written as lines, which are short and fast to read. A single
+pose is a script with one [[pose]] at time 0.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from .easings import ALLOWED, Easing, easing_named
 
 
 def _channel(entries: Any) -> Channel:
-    """A channel of a list of tables, or of lines of text."""
+    """A channel from a list of tables, or from lines of text."""
     if isinstance(entries, str) and entries.strip():
         return _channel_of_lines(entries)
     if not isinstance(entries, list) or not entries:
@@ -61,7 +61,7 @@ def _channel(entries: Any) -> Channel:
 def _channel_of_lines(text: str) -> Channel:
     """A channel from lines of a time, a value and, where it is not linear, an easing.
 
-    A take has half a million of them: numbers are put into arrays, and checked there.
+    A take has half a million lines, so numbers are put into arrays and checked there.
     """
     times = array("d")
     values = array("d")
@@ -116,7 +116,7 @@ class _File(Record):
 def load_script(path: Path) -> Script:
     """Read a script file. Raises UserError with the file and the line or key that is wrong."""
     text = read_text(path, what="script", longest=LONGEST_FILE)
-    # A longer script takes a while to read, so a line says so.
+    # A longer script takes a while to read, so a line reports it.
     if len(text) > 2**20 and sys.stderr.isatty():
         click.echo(f"... reading {in_one_line(path)}, {len(text) >> 20} MB", err=True)
     return parse_script(text, source=str(path))
@@ -164,7 +164,7 @@ def parse_script(text: str, *, source: str) -> Script:
 
 
 def preface_of(text: str) -> str:
-    """The lines of comment with which a file begins; programs that write it anew keep them."""
+    """The comments at the beginning of a file; programs that rewrite the file keep them."""
     comments = itertools.takewhile(lambda line: line.startswith("#"), text.split("\n"))
     return "\n".join(comments)
 
@@ -184,12 +184,12 @@ def save_script(target: Path, script: Script) -> None:
 
 
 def script_text(script: Script, folder: Path | None = None) -> str:
-    """The TOML text of a script; folder: of the file, for paths relative to it.
+    """The TOML text of a script; folder: the file's, for relative paths.
 
-    Raises UserError for a sound whose name is no UTF-8, as TOML is.
+    Raises UserError for a sound whose name is not UTF-8, which TOML requires.
     """
     head = [as_text(script.preface)] if script.preface else []
-    if script.title:  # else it is called as its file is
+    if script.title:  # else it has its file's name
         head.append(f"title = {_quoted(script.title)}")
     head.append(f"scene = {_quoted(script.scene)}")
     if script.camera is not None:
@@ -224,9 +224,10 @@ def is_pose(script: Script) -> bool:
 
 
 def _as_seen_from(folder: Path | None, file: Path) -> str:
-    """How a script in `folder` names a file, so that both may move together.
+    """A script's name for a file, relative to `folder`, so that both may move together.
 
-    By its whole path where it is neither in the folder nor near it: then only the script moves.
+    It is the whole path if the file is neither in the folder nor near it: then only the script may
+    move.
     """
     if folder is not None:
         with contextlib.suppress(ValueError):  # another drive
@@ -261,7 +262,7 @@ def _track(name: str, channel: Channel) -> str:
 
 @functools.cache
 def _ending(easing: Easing) -> str:
-    """The end of a line for a key approached so; none for a linear way."""
+    """The end of a key's line for an easing; "" for a linear one."""
     return "" if easing.name == "linear" else f" {easing.name}"
 
 

@@ -12,20 +12,20 @@ from risorius.jit import njit
 
 from . import DECIMALS, Channel
 
-TOLERANCE = 2e-3  # of a value: the largest error of a line between keys; it is invisible
+TOLERANCE = 2e-3  # of a value: the largest, invisible error of a line between keys
 
 
 def thinned(times: npt.ArrayLike, values: npt.ArrayLike, tolerance: float = TOLERANCE) -> Channel:
-    """Linear keys at some of the samples, off from none of them by more than `tolerance`.
+    """Linear keys at some of the samples, with errors of at most `tolerance` at all.
 
-    times: of the samples [s], shape (T,), T at least 1, rising. They are rounded to microseconds,
-    and a sample that comes no later than the one before it is left out. values: shape (T,), finite.
-    Those of keys are rounded, by a twentieth of the tolerance at most, so that files stay short.
-    tolerance: above 0, of a value.
+    times: those of the samples [s], shape (T,), T at least 1, rising. They are rounded to
+    microseconds, and a sample no later than the one before it is left out. values: shape (T,),
+    finite. Those of keys are rounded by at most a twentieth of the tolerance, to keep files short.
+    tolerance: that of a value, above 0.
 
-    From each key the next is the farthest sample found that a straight line can lead to, as in
-    Imai and Iri, "Computational-geometric methods for polygonal approximations of a curve" (1986);
-    one pass, in which the directions that are still possible become fewer.
+    The next key is the farthest sample that a straight line can reach, as in Imai and Iri,
+    "Computational-geometric methods for polygonal approximations of a curve" (1986). One pass
+    narrows the possible directions.
     """
     moments = np.array(times, np.float64).round(DECIMALS)
     is_later = np.diff(moments, prepend=-np.inf) > 0.0
@@ -39,7 +39,7 @@ def thinned(times: npt.ArrayLike, values: npt.ArrayLike, tolerance: float = TOLE
 
 @njit
 def _corners(times: Floats64, values: Floats64, ends: Floats64, tolerance: float) -> Flags:
-    """Which samples are keys, shape (T,); a key has the value in `ends`."""
+    """Flags of the samples that become keys, shape (T,); a key has the value in `ends`."""
     count = len(times)
     is_corner = np.zeros(count, np.bool_)
     start = 0

@@ -1,1 +1,1 @@
-"""Sound beside a script: read from a file, and played in step with the picture."""
+"""The sound of a script: read from a file, and played in time with the picture."""

@@ -1,6 +1,6 @@
-"""A sound file -> its samples. Any file that ffmpeg hears something in: WAV, MP3, a film.
+"""From a sound file to its samples: any file with a sound for ffmpeg, such as WAV, MP3, a film.
 
-Films go through the same ffmpeg, which `imageio_ffmpeg` brings along.
+Films go through the same ffmpeg, which `imageio_ffmpeg` includes.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ..files import read_bytes
 if TYPE_CHECKING:
     from ..script import Script
 
-RATE = 48_000  # [samples/s] of sounds; devices and films have it, too
+RATE = 48_000  # [samples/s] of sounds, also on devices and in films
 PATIENCE = 300.0  # [s] for ffmpeg to read a file
 
 
@@ -45,9 +45,9 @@ class Sound:
 
 
 class Peaks:
-    """How far a sound swings, of all channels together; made once, asked often at any zoom."""
+    """The swings of a sound, of all channels together; made once for reading at any zoom."""
 
-    BLOCK = 512  # samples of which the lowest and the highest are known
+    BLOCK = 512  # samples with a stored lowest and highest value
 
     def __init__(self, sound: Sound) -> None:
         self._rate = sound.rate
@@ -62,11 +62,11 @@ class Peaks:
     def between(self, start: float, end: float, count: int) -> tuple[Floats64, Floats64]:
         """The lowest and highest value in each of `count` equal stretches of a time [s].
 
-        Each (count,), from -1 to 1, which is as far as the sound ever swings: a quiet recording is
-        seen, too. 0 where there is no sound. start: not below 0.
+        Each has shape (count,), from -1 to 1, the sound's own largest swing, so a quiet recording
+        is visible, too. Values are 0 where there is no sound. start: not below 0.
         """
         edges = np.linspace(start, end, count + 1) * self._rate
-        # Stretches of four blocks and more have right edges; of shorter ones samples are read.
+        # Stretches of four blocks or more have exact edges; for shorter ones samples are read.
         length = self.BLOCK if edges[-1] - edges[0] >= count * 4 * self.BLOCK else 1
         low, high = self._levels[length]
         places = np.floor(edges / length).astype(np.int64)
@@ -85,7 +85,7 @@ class Peaks:
 
 
 def ffmpeg() -> str:
-    """The ffmpeg that is used here; raises UserError if there is none."""
+    """The path of ffmpeg; raises UserError if it is missing."""
     imageio_ffmpeg = needed("imageio_ffmpeg", "film or sound", "films", package="imageio-ffmpeg")
     try:
         return str(imageio_ffmpeg.get_ffmpeg_exe())
@@ -96,9 +96,9 @@ def ffmpeg() -> str:
 
 
 def sound_form() -> tuple[str, ...]:
-    """Options for a sound at `RATE`; of both sides, where it has them.
+    """Options for a sound at `RATE`, in stereo if it has two channels.
 
-    A sound that begins late in its file (that of a film, say) begins as late here.
+    A sound that begins late in its file, such as a film, begins equally late here.
     """
     form = f"aformat=sample_rates={RATE}:channel_layouts=mono|stereo"
     return "-af", f"aresample=async=1:first_pts=0,{form}"
@@ -111,10 +111,10 @@ def sound_input(file: Path, seconds: float, begin: float = 0.0) -> tuple[str, ..
 
 
 def load_sound(file: Path) -> Sound:
-    """Read a sound file, or the sound of a film; raises UserError, with the reason, for none."""
+    """Read a sound file, or the sound of a film; raises UserError with the reason of a failure."""
     read_bytes(file, what="sound file", longest=2**40, first=0)
     name = ffmpeg()
-    longest = 3600.0  # [s]; all of it is held in memory, 690 MB for so long in stereo
+    longest = 3600.0  # [s]; memory holds all of it: 690 MB in stereo
     source = sound_input(Path(os.path.abspath(file)), longest + 1.0)
     form = ["-map", "0:a:0", *sound_form(), "-f", "wav", "-c", "pcm_s16le"]
     try:
@@ -152,7 +152,7 @@ def _samples(wav: bytes) -> npt.NDArray[np.int16]:
 
 
 def with_sound(script: Script, file: Path | None) -> Script:
-    """The script with this sound file beside it; None keeps its own. UserError for no file."""
+    """The script with this sound file; None keeps its own. UserError for a missing file."""
     if file is None:
         return script
     load_sound(file)

@@ -1,8 +1,8 @@
-"""Sound out of a device, and how far it has been heard.
+"""Sound from a device, and the time that has been heard.
 
-Through miniaudio: MIT, wheels of half a megabyte for Linux, macOS and Windows, for each Python that
-we support, with nothing to install beside them (sounddevice needs PortAudio on Linux, pygame and
-pyglet bring windows of their own, soundcard knows PulseAudio alone there). It asks for samples when
+The library is miniaudio: MIT licence, wheels of half a megabyte for Linux, macOS and Windows and
+each supported Python, and no further packages (sounddevice needs PortAudio on Linux, pygame and
+pyglet have their own windows, soundcard only supports PulseAudio there). It requests samples when
 the device needs them. So the requested samples count the time of the device's own clock, which the
 picture can follow, and a jump to another place is an answer with other samples.
 """
@@ -28,23 +28,23 @@ try:
 except ImportError:  # no wheel for this machine; everything else works without
     miniaudio = None
 
-PERIOD = 0.04  # [s] of samples that are asked for at once
-PERIODS = 3  # that the device holds: new samples are heard after these
+PERIOD = 0.04  # [s] of samples in one request
+PERIODS = 3  # periods in the device: new samples are heard after these
 Samples = npt.NDArray[np.int16]
 
 
 class NoDeviceError(Exception):
-    """Nothing can be heard on this machine; the text says why."""
+    """This machine has no sound device; the text has the reason."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """A part to play: from a time of the sound [s] on, at a speed, to another time [s]."""
+    """A part to play: from one time of the sound [s] to another [s], at a speed."""
 
     start: float
     speed: float
     end: float
-    since: float  # when that was wanted [s]
+    since: float  # time of the request [s]
 
 
 class Player:
@@ -56,43 +56,43 @@ class Player:
         self._clock = clock
         self._device = open_device(sound.rate, sound.samples.shape[1])
         self._part: _Part | None = None
-        # When the device asked last, for which part, and how much of it was given before [s].
+        # Time of the device's last request, its part, and the length given before [s].
         self._asked: tuple[float, _Part | None, float] = 0.0, None, 0.0
 
     @property
     def speed(self) -> float:
-        """How fast it plays; 0 if it does not."""
+        """The speed; 0 if nothing plays."""
         return self._part.speed if self._part is not None else 0.0
 
     @property
     def position(self) -> float:
-        """The time of the sound that is heard just now [s]; between two requests by the clock."""
+        """The present time in the sound [s]; the clock interpolates between two requests."""
         part = self._part
         (when, asked_for, given) = self._asked
         if part is None or asked_for is not part:
             return part.start if part is not None else 0.0
-        since = min(self._clock() - when, 2.0 * PERIOD)  # a device that hangs stays where it is
+        since = min(self._clock() - when, 2.0 * PERIOD)  # a device that hangs keeps its place
         heard = given - (PERIODS - 1) * PERIOD + since
         return part.start + max(heard, 0.0) * part.speed
 
     @property
     def is_stuck(self) -> bool:
-        """Whether the device requests no more samples, as an unplugged one."""
+        """Whether the device requests no more samples, for example when unplugged."""
         part = self._part
         when = self._asked[0]
-        # A device that asks for nothing for so long [s] is taken for lost.
+        # A device without a request for this long [s] counts as lost.
         return part is not None and self._clock() - max(when, part.since) > 0.5
 
     @property
     def is_heard(self) -> bool:
-        """Whether it plays, and is not at the end."""
+        """Whether it plays, before the end of the sound."""
         part = self._part
         return part is not None and self.position < part.end and not self.is_stuck
 
     def play(self, start: float, speed: float = 1.0, seconds: float = math.inf) -> None:
-        """Play from a time of the sound [s] on, in place of the part that plays now.
+        """Play from a time of the sound [s] on, instead of the present part.
 
-        speed: other than 1 it is higher or lower, as a tape would be. seconds: for so long at most.
+        speed: a speed other than 1 changes the pitch, like a tape. seconds: longest duration.
         """
         end = min(start + seconds * speed, self._sound.duration)
         self._part = _Part(start, speed, end, self._clock())
@@ -103,7 +103,7 @@ class Player:
                 self._device.start(samples)
 
     def stop(self) -> None:
-        """Be silent; the device runs on, to begin again at once."""
+        """Be silent; the device keeps running, to restart at once."""
         self._part = None
 
     def rest(self) -> None:
@@ -131,7 +131,7 @@ class Player:
             count = yield chunk
 
     def _chunk(self, part: _Part | None, first: int, count: int) -> Samples:
-        """So many frames of a part from its `first` on, (count, C); silence where there is none."""
+        """Frames `first` to `first + count` of a part, (count, C); silence outside the sound."""
         sound = self._sound.samples
         rate = self._sound.rate
         chunk = np.zeros((count, sound.shape[1]), np.int16)
@@ -161,10 +161,10 @@ def open_device(rate: int, channels: int) -> Any:
 
 
 def backends() -> list[Any]:
-    """The ways to a device that this system has, in miniaudio's own order."""
+    """The system's interfaces to devices, in miniaudio's order."""
     kinds = miniaudio.Backend
-    unwanted = {kinds.NULL, kinds.CUSTOM, kinds.JACK}  # a server that is rarely the only way
+    unwanted = {kinds.NULL, kinds.CUSTOM, kinds.JACK}  # a server that is rarely the only interface
     if sys.platform == "linux" and not os.path.exists("/dev/snd"):
-        unwanted.add(kinds.ALSA)  # like JACK it would complain at length of missing devices
+        unwanted.add(kinds.ALSA)  # like JACK it prints long complaints about missing devices
     found = miniaudio.get_enabled_backends() - unwanted
     return sorted(found, key=lambda backend: int(backend.value))

@@ -1,4 +1,4 @@
-"""The window: a face that answers to sliders, keys, the mouse and a script.
+"""The window: a face that sliders, keys, the mouse and a script move.
 
 window/     both modes and the loop (window.py: start reading here), menus, splash screen
 context.py  the objects that the parts share
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def __getattr__(name: str) -> Any:
-    """`Viewer`, imported when it is asked for: the window opens before (splash_screen.py)."""
+    """`Viewer`, imported at its first use: the window opens before that (splash_screen.py)."""
     if name != "Viewer":
         raise AttributeError(name)
     from .window.window import Viewer

@@ -25,7 +25,7 @@ class ApplicationContext:
     """The session and its picture, the messages and dialogs, and the commands for files."""
 
     def __init__(self, session: Session, settings: Settings, surface: render.WindowSurface) -> None:
-        """surface: of the window, which is open and has nothing in it yet."""
+        """surface: that of the window, which is open and still empty."""
         self.session = session
         self.settings = settings
         self.surface = surface
@@ -42,7 +42,7 @@ class ApplicationContext:
             stack.callback(self.portraits.close)
             self.close = stack.pop_all().close  # called with the window's end
         self.view = SceneView(session, settings, surface)
-        self.wanted_tab = ""  # of the panel, to be brought to the front, by its title
+        self.wanted_tab = ""  # title of the panel to bring to the front
         self.question = Question(session)
         self.scripts = ScriptCommands(session, self.files, self.question, settings.note_recent)
         self.exporter = Exporter(session, settings, self.stage, self.view)

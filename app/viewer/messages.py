@@ -1,4 +1,4 @@
-"""Messages of one line in the window; errors that a user can mend become such messages."""
+"""Messages of one line in the window; errors that a user can correct become messages."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from ..control_names import sentence
 from ..errors import UserError
 from ..text import as_text
 
-Message = str | None  # to be shown; None for nothing to say
+Message = str | None  # a text to show, or None
 Task = Callable[[], Message]  # an action of the user; it may raise UserError or OSError
 
 
 @dataclass
 class Messages:
-    """One line at a time, over the picture; one that stays does so until the next command.
+    """One line at a time over the picture; a lasting one stays until the next command.
 
-    Keys stand in it as in hints, see `Gui.with_keys`: by the labels of commands, in brackets.
+    It names keys as hints do (`Gui.with_keys`): by the labels of commands, in brackets.
     """
 
     text: str = ""
@@ -26,11 +26,11 @@ class Messages:
     seconds_left: float = 0.0
 
     def say(self, text: str, *, error: bool = False, stays: bool = False) -> None:
-        """Show a line in place of the one before; an error stays."""
+        """Show a line instead of the one before; an error stays."""
         self.text = sentence(as_text(text))
         self.is_error = error
         self.stays = error or stays
-        self.seconds_left = 6.0  # for which a line stays
+        self.seconds_left = 6.0  # time for which a line stays
 
     def attempt(self, task: Task, *, stays: bool = False) -> None:
         """Run a task, and show the message that it returns or the error that it raises."""
@@ -43,14 +43,14 @@ class Messages:
             self.say(line, stays=stays)
 
     def carry_out(self, command: Task) -> None:
-        """The same for a command of the user; it takes the message before it away."""
+        """The same for a command of the user; it removes the message before it."""
         self.text = ""
         self.attempt(command)
 
     def age(self, seconds: float) -> None:
-        """Let time pass since the last frame: a line goes away unless it stays."""
+        """Let time pass since the last frame: a line disappears unless it is lasting."""
         if not self.stays:
-            # [s] that counts for a message: a frame that took longer showed nothing.
+            # [s] of a frame that count at most for a message: a longer frame did not show it.
             longest_frame = 0.25
             self.seconds_left -= min(seconds, longest_frame)
         if self.seconds_left <= 0.0:
@@ -58,5 +58,5 @@ class Messages:
 
     @property
     def is_fading(self) -> bool:
-        """Whether it goes away by itself."""
+        """Whether the line disappears by itself."""
         return bool(self.text) and not self.stays

@@ -1,8 +1,8 @@
 """The settings that the window remembers, each with its allowed values.
 
-They are one JSON file in the user's configuration folder, replaced whole or not at all. Each value
-is checked by itself: the default takes the place of an unusable value, the others stay, and the
-window names the unusable one in one line.
+They are one JSON file in the user's configuration folder, which is replaced as a whole or not at
+all. Each value is checked by itself: the default replaces an unusable value, the others stay, and
+the window names the unusable one in one line.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ RENDER_BACKGROUNDS = ("light", "dark", "white", "black")
 BACKGROUNDS = {
     "theme": None,
     **{name: getattr(render, name.upper()) for name in RENDER_BACKGROUNDS},
-    "map": None,  # of the light; the theme's where a lamp lights the scene
+    "map": None,  # the light's map; under a lamp the theme's background
 }
 # Individual typology angles [degrees], see assets/identities/complexion.py; None: the person's own.
 TONES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}
@@ -56,7 +56,7 @@ FRAMES_KIND = "frames"  # pictures in a folder
 
 
 class Kind(NamedTuple):
-    """One kind of file. suffix: of its name, "" for a folder. fastest: [frames/s]."""
+    """One kind of file. suffix: that of its name, "" for a folder. fastest: [frames/s]."""
 
     title: str
     suffix: str
@@ -82,67 +82,67 @@ def _option(value: Any) -> Any:
 
 
 def _refiners() -> list[str | None]:
-    """The names of all refiners that refine and can be used here; None: that of the look."""
+    """The names of all usable refiners that split triangles; None: the look's."""
     return [None, *(name for name in refine.refiners.available() if name != STATIC)]
 
 
 _Pair = Annotated[tuple[int, int], Within(*SIDES_SHOWN)]
 Size = Annotated[tuple[int, int] | None, MadeFrom(_Pair, tuple)]
 Share = Annotated[float, Within(0.0, 1.0)]
-Option = Annotated[Any, MadeFrom(Any, _option)]  # of a refiner, which knows more about it
+Option = Annotated[Any, MadeFrom(Any, _option)]  # value of an option; the refiner checks it further
 
 
 @dataclass
 class Display(Record):
-    """How the scene is shown; the names are those that panels show."""
+    """Display settings of the scene; their names are those in panels."""
 
     look: Annotated[str, OneOf(PRESETS)] = FIRST_PRESET
     refiner: Annotated[str | None, OneOf(_refiners, "a refiner")] = None  # None: the look's
-    # Options that replace those of the look, by the names of refiners.
+    # Options that replace those of the look, by names of refiners.
     options: dict[str, dict[str, Option]] = field(default_factory=dict)
     is_refined: Flag = True
-    compare: Annotated[str, OneOf(COMPARISONS)] = "off"  # what is beside it, and refined
-    beside: Annotated[str, OneOf((STATIC, *PRESETS))] = STATIC  # a look, or the mesh as it is
+    compare: Annotated[str, OneOf(COMPARISONS)] = "off"  # the kind of comparison
+    beside: Annotated[str, OneOf((STATIC, *PRESETS))] = STATIC  # a look, or the unrefined mesh
     divider: Share = 0.5  # of a wipe, of the picture's width
     shading: Annotated[str, OneOf([each.value for each in render.Shading])] = "pixel"
     wireframe: Flag = False
-    splits: Flag = False  # colour triangles by them
-    wires: Flag = False  # outline the triangles that are split more than at rest
+    splits: Flag = False  # colour triangles by their splits
+    wires: Flag = False  # outline triangles with more splits than at rest
     skin: Annotated[str, OneOf(SKINS)] = "textured"
     skin_maps: Flag = True  # fine shape, and less light in folds, from maps over the skin
-    wrinkles: Share = 1.0  # how deep they are where skin is compressed
+    wrinkles: Share = 1.0  # their depth where skin is compressed
     light: Annotated[str, OneOf(render.LIGHTS)] = "studio"
     background: Annotated[str, OneOf(BACKGROUNDS)] = "theme"
     tone: Annotated[str, OneOf(TONES)] = "own"  # of textured skin
     has_hair: Flag = True  # on the head, with textured skin
     overlays: list[Annotated[str, OneOf(STRUCTURES)]] = field(default_factory=list)
-    # Of the skin over muscles and skull, and on which side of the face it lets them show.
+    # Opacity of the skin over muscles and skull, and the side of the face that shows them.
     skin_opacity: Share = OPACITY
     dissect: Annotated[str, OneOf(SIDES)] = "both"
 
     @property
     def anatomy(self) -> AnatomyView:
-        """The anatomy that is shown under the skin."""
+        """The anatomy to show under the skin."""
         structures = tuple(name for name in STRUCTURES if name in self.overlays)
         return AnatomyView(structures, self.skin_opacity, self.dissect, self.has_hair)
 
     def as_at_first(self) -> Display:
-        """As at first, but for the scene that is drawn."""
+        """The default display, with the present scene's settings."""
         of_scene = ("light", "background", "tone", "has_hair")
         return Display(**{name: getattr(self, name) for name in of_scene})
 
     def choose_preset(self, name: str) -> None:
-        """Refine by a look, and by nothing but it."""
+        """Refine by a look, without changes of it."""
         self.look = name
         self.refiner = None
         self.options = {}
 
     def refiner_on(self, scene: Drawable) -> str:
-        """The name of the refiner that is chosen for this scene."""
+        """The name of the chosen refiner for this scene."""
         return Refinement(self.look, self.refiner).on(scene.name)[0]
 
     def choose_refiner(self, scene: Drawable, name: str) -> None:
-        """Refine by another refiner, or by that of the look again."""
+        """Refine by another refiner, or again by the look's."""
         self.refiner = None if name == PRESETS[self.look][scene.name].refiner else name
 
     def preset_as_changed(self, scene: Drawable) -> str:
@@ -151,18 +151,18 @@ class Display(Record):
         return self.look if asked == Refinement(self.look) else f"{self.look}{CHANGED}"
 
     def refinement_on(self, scene: Drawable) -> Refinement:
-        """How this scene is refined."""
+        """The refinement of this scene."""
         options = self.options.get(self.refiner_on(scene), {})
         return Refinement(self.look, self.refiner, dict(options))
 
     @property
     def refinement_beside(self) -> Refinement:
-        """How the left side of a comparison is refined."""
+        """The refinement of a comparison's left side."""
         return Refinement(refiner=STATIC) if self.beside == STATIC else Refinement(self.beside)
 
     @property
     def share(self) -> float:
-        """The share of the picture's width at the left of the line in a comparison."""
+        """The share of the picture's width left of the line in a comparison."""
         return self.divider if self.compare == "wipe" else 0.5
 
     def toggle_overlay(self, name: str) -> None:
@@ -171,7 +171,7 @@ class Display(Record):
         self.overlays = others if name in self.overlays else [*others, name]
 
     def remove_missing_overlays(self, scene: Drawable) -> None:
-        """Hide the overlays that this scene has no data for."""
+        """Hide the overlays without data in this scene."""
         self.overlays = [] if scene.face is None else self.overlays
 
 
@@ -190,19 +190,19 @@ class ExportChoices(Record):
 
 @dataclass
 class Settings(Record):
-    """Everything that is remembered."""
+    """All remembered settings."""
 
     ZOOMS = 0.6, 3.0  # least and most of the size of words
 
     size: Size = None  # of the window [screen units]
     theme: Annotated[str, OneOf(THEMES)] = "light"
     zoom: Annotated[float, Within(*ZOOMS)] = 1.0  # of all words and sliders
-    is_linked: Flag = True  # sliders of both sides
-    is_alive: Flag = True  # the face, where nobody moves it
-    # [letters' heights]; layout.py has the limits of a screen.
+    is_linked: Flag = True  # whether sliders of both sides are linked
+    is_alive: Flag = True  # whether the face has idle life
+    # In heights of letters; layout.py has the limits of a screen.
     panel_width: Annotated[float, Within(0.0, 1000.0)] = 22.5
     shows_curves: Flag = False  # of keys, instead of rows
-    folds: dict[str, Flag] = field(default_factory=dict)  # which headings are open, by title
+    folds: dict[str, Flag] = field(default_factory=dict)  # whether a heading is open, by title
     recent: list[str] = field(default_factory=list)  # files, latest first
     display: Display = field(default_factory=Display)
     export: ExportChoices = field(default_factory=ExportChoices)
@@ -219,7 +219,7 @@ class Settings(Record):
 
 
 def switch(part: object, name: str, value: object = True, other: object = False) -> None:
-    """Give a field of a part this value, or the other if it has it already."""
+    """Set a field of a part to `value`, or to `other` if it has this value already."""
     setattr(part, name, other if getattr(part, name) == value else value)
 
 
@@ -231,7 +231,7 @@ def display_of(
     splits: bool,
     **style: Any,
 ) -> Display:
-    """How the scene of this name is shown as the command line asks for; style: further fields."""
+    """The command line's display of the scene with this name; style: further fields."""
     display = Display(
         look=refinement.preset,
         splits=splits,
@@ -250,17 +250,17 @@ def display_of(
 
 
 def settings_path() -> Path:
-    """Where a user's settings are kept."""
+    """The path of a user's settings."""
     return configuration_folder() / "viewer.json"
 
 
 def load_settings(path: Path) -> tuple[Settings, str]:
     """The stored settings, and a line that names the unusable values in the file, "" for none.
 
-    The file is written anew on closing.
+    The file is rewritten when the window closes.
     """
     try:
-        longest_file = 2**20  # [bytes] of settings; those that we write have two thousand
+        longest_file = 2**20  # [bytes] of settings; ours have two thousand
         stored = parsed_json(read_text(path, what="file of settings", longest=longest_file))
     except NoSuchFileError:
         return Settings(), ""
@@ -279,9 +279,9 @@ def load_settings(path: Path) -> tuple[Settings, str]:
 
 
 def save_settings(path: Path, settings: Settings) -> None:
-    """Write the file; raises UserError if that cannot be."""
+    """Write the file; raises UserError if this fails."""
     stored = asdict(settings)
-    for table in (stored, stored["display"]):  # a value that is not chosen is left out
+    for table in (stored, stored["display"]):  # default values are left out
         for name in [name for name, value in table.items() if value is None]:
             del table[name]
     save_text(path, json.dumps(stored, indent=1))

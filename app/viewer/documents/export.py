@@ -1,6 +1,6 @@
 """Screenshots, and exports: the files that `risorius capture` and `export` write.
 
-An export goes on in a process of its own, with script and view as they were; the window stays free.
+An export runs in its own process, with script and view at its start; the window stays free.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from .file_dialogs import FileDialogs
 
 @dataclass
 class ExportJob:
-    """An export that is being made."""
+    """A running export."""
 
     target: Path
     task: Task
@@ -58,7 +58,7 @@ class Exporter:
 
     @property
     def choices(self) -> ExportChoices:
-        """The kind, size and rate of the export."""
+        """The chosen kind, size and rate."""
         return self._settings.export
 
     @property
@@ -83,7 +83,7 @@ class Exporter:
 
     @property
     def head(self) -> FittedHead | None:
-        """The head of the session; None for the built-in one, and where there is none."""
+        """The head of the session; None for the built-in one, and without a head."""
         face = self.session.scene.face
         return face.head if face is not None and isinstance(face.head, FittedHead) else None
 
@@ -97,7 +97,7 @@ class Exporter:
         ask(suffixes=(".glb",), proposed=f"{as_text(name)}-avatar.glb")
 
     def start_avatar(self, target: Path) -> Message:
-        """Begin to write the head with named shapes, with the parts that its file has not.
+        """Begin to write the head with named shapes, and with parts that its file lacks.
 
         UserError if the file cannot be written.
         """
@@ -108,7 +108,7 @@ class Exporter:
         check_file(target)
         request = RigRequest(adds_parts=True, progress=False)
         work = partial(make_avatar, head, target, request, _say_nothing)
-        written = 8  # shapes that take as long as comparing and writing
+        written = 8  # number of shapes that take as long as comparing and writing
         self.job = ExportJob(target, Task(work, len(ARKIT) + written, wake_up))
         return None
 
@@ -167,7 +167,7 @@ class Exporter:
         return True
 
     def poll(self) -> Message:
-        """Look whether it is done, and say so; raises UserError if it failed."""
+        """Return a message if the export is done; raises UserError if it failed."""
         job = self.job
         if job is None or not job.task.is_done:
             return None
@@ -180,14 +180,14 @@ class Exporter:
         return f"Written to {job.target}"
 
     def close(self) -> None:
-        """End the export at once; a file that is half written is removed."""
+        """End the export at once; a half-written file is removed."""
         job, self.job = self.job, None
         if job is not None:
             job.task.stop(waits=True)
 
 
 def _say_nothing(_: str) -> None:
-    """Leave out the lines on a head, which the command prints."""
+    """Leave out the lines about a head, which the command prints."""
 
 
 Value = TypeVar("Value")
@@ -207,7 +207,7 @@ class ExportDialog:
         self._view = view
         label_width = 7.5  # [em] of words at the left
         self._rows = LabelledRows(gui, label_width / self.DIALOG_WIDTH, {})
-        self._was_focused = False  # in the frame before: no list was open over it
+        self._was_focused = False  # in the frame before: whether no list was open over it
 
     def draw(self) -> Message:
         """Draw the dialog, or the progress of an export."""
@@ -261,7 +261,7 @@ class ExportDialog:
             self._gui.remember(f"export: {label}")
 
     def _draw_end(self, choices: ExportChoices) -> None:
-        """Draw how much will be written, and the buttons; the first one asks for a name."""
+        """Draw the size of the output, and the buttons; the first one asks for a name."""
         exporter = self._exporter
         duration = self._exporter.session.script.duration
         imgui.separator()
@@ -275,7 +275,7 @@ class ExportDialog:
         imgui.same_line()
         is_over = button(self._gui, "Cancel", name="export: Cancel", width=em(self.BUTTON_WIDTH))
         was_focused, self._was_focused = self._was_focused, imgui.is_window_focused()
-        # Enter is for the widget that Tab has come to, unless that is a line of text.
+        # Enter presses the widget that Tab has reached, unless that is a line of text.
         io = imgui.get_io()
         is_enter = imgui.is_key_pressed(imgui.Key.enter)
         is_enter = is_enter and (io.want_text_input or not io.nav_visible)

@@ -22,17 +22,17 @@ ENTER_KEYS = imgui.Key.enter, imgui.Key.keypad_enter
 
 @dataclass
 class FileRequest:
-    """A question for a file, the task for the answer, and the present state of the dialog."""
+    """A request for a file, the task for the answer, and the present state of the dialog."""
 
     title: str
     is_saving: bool
-    suffixes: tuple[str, ...]  # how the names of such files end
+    suffixes: tuple[str, ...]  # ends of the names of such files
     then: Callable[[Path], Message]
     folder: Path
     name: str = ""  # in the line, as text
     complaint: str = ""
-    warned: Path | None = None  # a file that is there already, as a line said
-    wants_focus: bool = True  # of the line: on opening, and after each answer that was none
+    warned: Path | None = None  # an existing file that a line has warned of
+    wants_focus: bool = True  # of the line: on opening, and after each invalid answer
     found: list[str] = field(default_factory=list)  # folders, which end in "/", then files
 
     def enter(self, folder: Path) -> None:
@@ -53,7 +53,7 @@ class FileRequest:
 
     @property
     def target(self) -> Path:
-        """The path that the line stands for."""
+        """The path in the line."""
         written = self.name.strip().strip("'\"")
         is_written = (name for name in self.found if as_text(name) == written)
         target = self.folder / Path(next(is_written, written)).expanduser()
@@ -62,7 +62,7 @@ class FileRequest:
         return target
 
     def confirmed(self) -> Path | None:
-        """The file in the line, unless it is a folder, is missing or would be lost unasked."""
+        """The file in the line, unless it is a folder, is missing, or would be replaced unasked."""
         target = self.target
         if target.is_dir():
             self.enter(target)
@@ -82,7 +82,7 @@ class FileDialogs:
 
     def __init__(self) -> None:
         self.request: FileRequest | None = None
-        self._folder: Path | None = None  # where the last file was
+        self._folder: Path | None = None  # folder of the last file
 
     @property
     def is_waiting(self) -> bool:
@@ -98,7 +98,7 @@ class FileDialogs:
         proposed: str = "",
         suffixes: tuple[str, ...] = (SCRIPT_SUFFIX,),
     ) -> None:
-        """Open the dialog; `then` is called with the file in a later frame, or never."""
+        """Open the dialog; a later frame calls `then` with the file, or none does."""
         target = (self._folder or Path.cwd()) / proposed
         folder = target.parent if proposed else target
         self.request = FileRequest(title, saving, suffixes, then, folder)
@@ -106,7 +106,7 @@ class FileDialogs:
         self.request.name = as_text(target.name) if proposed else ""
 
     def draw(self, gui: Gui) -> Message:
-        """Draw the dialog while it is needed, and go on with the file that it gives."""
+        """Draw the open dialog, and pass the chosen file on."""
         request = self.request
         chosen = None
         if request is None:
@@ -147,7 +147,7 @@ def _draw_places(gui: Gui, request: FileRequest) -> None:
 
 
 def _draw_listing(gui: Gui, request: FileRequest) -> Path | None:
-    """Draw the files of the folder; returns the file that was clicked twice, if any."""
+    """Draw the files of the folder; returns a double-clicked file, if any."""
     chosen = None
     room = 2.2 * imgui.get_frame_height_with_spacing()
     borders = imgui.ChildFlags_.borders | imgui.ChildFlags_.nav_flattened
@@ -155,7 +155,7 @@ def _draw_listing(gui: Gui, request: FileRequest) -> Path | None:
     for name in request.found:
         kind = "folder" if name.endswith("/") else "file"
         text = as_text(name)
-        label = text.replace("##", "# #")  # of which imgui would hide the rest
+        label = text.replace("##", "# #")  # imgui would hide the rest
         twice = imgui.SelectableFlags_.allow_double_click
         is_clicked, _ = imgui.selectable(f"{label}###{kind} {text}", text == request.name, twice)
         gui.remember(f"{kind} {text.removesuffix('/')}")
@@ -174,7 +174,7 @@ def _draw_listing(gui: Gui, request: FileRequest) -> Path | None:
 
 
 def _is_confirmed(gui: Gui, request: FileRequest) -> bool:
-    """The line to type in and the button below it; whether one was confirmed, or Enter pressed."""
+    """Draw the line and the button below it; whether the button or Enter was pressed."""
     if request.wants_focus:
         imgui.set_keyboard_focus_here()
         request.wants_focus = False

@@ -25,14 +25,14 @@ LANDMARKS_SUFFIX = ".json"
 
 
 def sorted_out(paths: Sequence[Path]) -> dict[str, Path]:
-    """Files by their kind: mesh, landmarks, sound, or else script, also for pose or recording.
+    """Files by their kind: mesh, landmarks, sound, or else script (a pose or recording, too).
 
-    The kind follows from names; JSON may be a recording, and is read. UserError for several of
+    The name decides on the kind; JSON may be a recording, so it is read. UserError for several of
     one kind.
     """
     found: dict[str, Path] = {}
     for path in paths:
-        end = Path(path.name.lower().removesuffix(".gz")).suffix  # whose reader reports the fault
+        end = Path(path.name.lower().removesuffix(".gz")).suffix  # its reader reports the fault
         kind = "mesh" if end in MESH_SUFFIXES else "sound" if end in SOUND_SUFFIXES else "script"
         if end == LANDMARKS_SUFFIX and not is_recording(path):
             kind = "landmarks"
@@ -44,7 +44,7 @@ def sorted_out(paths: Sequence[Path]) -> dict[str, Path]:
 
 
 class FileDrop:
-    """Opens dropped files; a head, which takes seconds, is made in a thread meanwhile."""
+    """Opens dropped files; a thread makes a head, which takes seconds."""
 
     def __init__(
         self,
@@ -53,10 +53,10 @@ class FileDrop:
         show_scene: Callable[[Scene], None],
         read: Callable[[Path, Path | None], Task],
     ) -> None:
-        """show_scene: puts a scene with another head in place of the present one.
+        """show_scene: replaces the present scene by one with another head.
 
-        read: runs in a thread; returns a task that has the landmarks of a mesh marked, or those
-        that a file lacks.
+        read: runs in a thread; returns a task that lets the user mark the landmarks of a mesh, or
+        those that a file lacks.
         """
         self._files = files
         self._scripts = scripts
@@ -64,7 +64,7 @@ class FileDrop:
         self._read = read
         self.making: Future[Task] | None = None  # makes the task that shows a head
         self._action = ""  # in words
-        self._begun = 0.0  # when [s]
+        self._begun = 0.0  # start time [s]
         self._shown_seconds = 0
 
     def open(self, paths: Sequence[str]) -> Message:
@@ -87,7 +87,7 @@ class FileDrop:
         return None
 
     def show_person(self, who: int | str | None) -> None:
-        """Begin to make a head by number or name, in place of this one; None: the built-in."""
+        """Begin to make a head by number or name, to replace this one; None: the built-in one."""
 
         def make() -> Task:
             head = None if who is None else called_head(who)
@@ -96,7 +96,7 @@ class FileDrop:
         self._begin(f"Making {'the built-in head' if who is None else head_in_words(who)}", make)
 
     def _begin(self, action: str, make: Callable[[], Task]) -> None:
-        """Make the task that shows a head in a thread; the result of one before is dropped."""
+        """Make the task that shows a head in a thread; the result of an earlier one is dropped."""
         self._action = action
         self._begun = time.monotonic()
         self._shown_seconds = -1
@@ -107,13 +107,13 @@ class FileDrop:
 
     @property
     def has_news(self) -> bool:
-        """Whether the head is made, or another second has passed."""
+        """Whether the head is ready, or another second has passed."""
         making = self.making
         seconds = int(time.monotonic() - self._begun)
         return making is not None and (making.done() or seconds > self._shown_seconds)
 
     def poll(self) -> Message:
-        """Show the head if it is made; until then the message says for how long it has taken."""
+        """Show the head if it is ready; until then the message has the elapsed time."""
         making = self.making
         if making is not None and making.done():
             self.making = None
@@ -130,7 +130,7 @@ class FileDrop:
             scene = build_scene("face", own_head(mesh, landmarks))
             show = partial(self._show_scene, scene)
             remark = f" with {mesh.name}"
-        except UnfinishedError as error:  # it is marked further
+        except UnfinishedError as error:  # the user goes on marking it
             complaint = str(error) if isinstance(error, MisfitError) else ""
         except assets.AssetError as error:
             raise UserError(str(error)) from None
@@ -149,10 +149,10 @@ class FileDrop:
         return self._scripts.set_sound(found["sound"]) if "sound" in found else line
 
     def ask_head(self) -> None:
-        """Ask for a mesh; show it with the landmarks beside it, or have them marked."""
+        """Ask for a mesh; show it with the landmark file beside it, or open its marking."""
 
         def go_on(mesh: Path) -> Message:
-            """Take the landmarks that bear the mesh's name."""
+            """Use landmarks with the mesh's name."""
             own = (
                 mesh.with_suffix(end) for end in (LANDMARKS_SUFFIX, f".landmarks{LANDMARKS_SUFFIX}")
             )

@@ -1,6 +1,6 @@
 """The manual in the window: the pages of docs/ as one document, with its contents and a search.
 
-The pages come along with an installed program, so it needs no network. Pictures are left out.
+An installed program includes the pages, so it needs no network. Pictures are left out.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ FIRST_PAGE = "viewer.md"
 
 
 class Manual:
-    """A window over the picture with a text to read, which can be moved, and closed by Escape."""
+    """A window with a text over the picture; it can be moved, and Escape closes it."""
 
     def __init__(self, gui: Gui) -> None:
         self._gui = gui
         self.is_open = False
-        self._wants_focus = False  # for its keys
+        self._wants_focus = False  # of the keyboard, for its keys
         self._title = ""
         self._text = ""
         self._pages = ""
@@ -51,7 +51,7 @@ class Manual:
         self._wants_focus = True
 
     def draw(self, area: tuple[float, float, float, float]) -> None:
-        """Draw what is shown. area: of the picture, left, top, width, height [window units]."""
+        """Draw the text. area: that of the picture, left, top, width, height [window units]."""
         self._gui.is_reading = False
         if not self.is_open:
             return
@@ -74,20 +74,20 @@ class Manual:
             rich_md.render_document(self._title, self._text, options=options)
         is_focused = imgui.is_window_focused(imgui.FocusedFlags_.child_windows)
         self._gui.is_reading = is_focused and self.is_open
-        is_writing = imgui.get_io().want_text_input  # a word to look for; Escape ends that first
+        is_writing = imgui.get_io().want_text_input  # a search; Escape first ends that
         if is_focused and not is_writing and imgui.is_key_pressed(imgui.Key.escape):
             self.is_open = False
         imgui.end()
 
     def close(self) -> None:
-        """Give back what the text was drawn with; the GUI must still be there."""
+        """Release the resources of the text; the GUI must still exist."""
         if self._context is not None:
             rich_md.destroy_context(self._context)
             self._context = None
 
 
 def _options() -> rich_md.MarkdownOptions:
-    """Options of the text: a second font has what the first one lacks, as arrows and powers."""
+    """Options of the text: a second font has characters that the first lacks, such as arrows."""
     rich_md.set_assets_folder(str(Path(imgui_bundle.__file__).parent / "assets"))
     options = rich_md.MarkdownOptions()
     options.font_options.merge_fonts = ["fonts/Inconsolata-Medium.ttf"]
@@ -95,13 +95,13 @@ def _options() -> rich_md.MarkdownOptions:
 
 
 def pages() -> dict[str, str]:
-    """The pages, by their names in docs/, in the order in which one may read them.
+    """The pages, by their names in docs/, in an order for reading.
 
     UserError if they are neither in a checkout nor installed.
     """
     folder = _folder()
     names = [path.relative_to(folder).as_posix() for path in sorted(folder.glob("**/*.md"))]
-    is_left_out = ("reference/", "gallery")  # for the site; pictures alone
+    is_left_out = ("reference/", "gallery")  # pages for the site, and of pictures only
     present = [name for name in names if not name.startswith(is_left_out)]
     start = (folder / "index.md").read_text(encoding="utf-8")
     linked = re.findall(r"\]\(([\w/]+\.md)", start)
@@ -110,7 +110,7 @@ def pages() -> dict[str, str]:
 
 
 def _folder() -> Path:
-    """The folder of the pages: docs/ of a checkout, else where the installer has put them."""
+    """The folder of the pages: docs/ of a checkout, else the installer's folder."""
     checkout = Path(risorius.__file__).resolve().parents[1] / "docs"
     if (checkout / FIRST_PAGE).is_file():
         return checkout
@@ -125,7 +125,7 @@ def one_document(texts: Mapping[str, str]) -> str:
 
     texts: Markdown, by the names of the pages.
     """
-    places: dict[tuple[str, str], str] = {}  # of a heading, by page and anchor
+    places: dict[tuple[str, str], str] = {}  # name of a heading, by page and anchor
     counts: Counter[str] = Counter()
     for page, text in texts.items():
         for number, heading in enumerate(_headings(text)):
@@ -140,10 +140,10 @@ def one_document(texts: Mapping[str, str]) -> str:
 
 
 def _linked(text: str, page: str, places: Mapping[tuple[str, str], str]) -> str:
-    """A page without pictures, whose links lead to headings of the document."""
+    """A page without pictures, with links to headings of the document."""
 
     def link(found: re.Match[str]) -> str:
-        """The link within the document; words alone if it leads out of the document."""
+        """The link within the document; only its words if it leads out of the document."""
         words = found[1]
         target = found[2]
         if "://" in target:
@@ -158,7 +158,7 @@ def _linked(text: str, page: str, places: Mapping[tuple[str, str], str]) -> str:
 
 
 def _headings(text: str) -> Iterator[str]:
-    """The headings of a page, without what only looks so in blocks of code."""
+    """The headings of a page, without similar lines in blocks of code."""
     is_code = False
     for line in text.splitlines():
         if line.lstrip().startswith("```"):
@@ -173,7 +173,7 @@ def slug_of(heading: str) -> str:
 
 
 def _anchor(heading: str) -> str:
-    """The name by which pages call a heading: the same in ASCII, with single hyphens."""
+    """A heading's name in links of pages: the same in ASCII, with single hyphens."""
     plain = unicodedata.normalize("NFKD", heading).encode("ascii", "ignore").decode("ascii")
     return re.sub(r"-+", "-", slug_of(plain))
 

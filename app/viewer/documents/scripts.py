@@ -24,7 +24,7 @@ from .file_dialogs import SCRIPT_SUFFIX, FileDialogs
 
 SOUND_SUFFIXES = (
     *(".wav", ".mp3", ".m4a", ".aac", ".flac", ".ogg", ".opus", ".aif", ".aiff", ".wma"),
-    *(".mov", ".mp4", ".mkv", ".webm"),  # films that are heard: a phone's, beside its take
+    *(".mov", ".mp4", ".mkv", ".webm"),  # films with a sound, such as a phone's
 )
 
 
@@ -36,17 +36,17 @@ class Unsaved(Protocol):
         """The work that would be lost, in words; "" for nothing."""
 
     def save(self, then: Task) -> Message:
-        """Save it, and go on."""
+        """Save it, and continue with `then`."""
 
 
 class Question:
-    """The question before unsaved work is lost: save it, lose it, or go back."""
+    """The question before unsaved work is lost: save it, discard it, or cancel."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self.task: Task | None = None  # which waits for the answer
-        self.verb = ""  # for it, as "Close"
-        self.other: Unsaved | None = None  # whose work is in danger, in place of the session's
+        self.task: Task | None = None  # the task that waits for the answer
+        self.verb = ""  # its word, such as "Close"
+        self.other: Unsaved | None = None  # other work in danger, instead of the session's
 
     @property
     def is_open(self) -> bool:
@@ -59,7 +59,7 @@ class Question:
         return (self.other or self._session.work).unsaved
 
     def before(self, verb: str, task: Task, other: Unsaved | None = None) -> Message:
-        """Run `task` at once, or when unsaved work was saved or given up."""
+        """Run `task` at once, or after unsaved work was saved or discarded."""
         self.other = other
         if not self.unsaved:
             return task()
@@ -71,7 +71,7 @@ class Question:
 class ScriptCommands:
     """Opens and saves the session's script and pose; opens a dialog if that needs an answer.
 
-    A command's `then` is a task to run after saving; it does not run where nothing was saved.
+    A command's `then` is a task to run after saving; it does not run if nothing was saved.
     """
 
     def __init__(
@@ -81,14 +81,14 @@ class ScriptCommands:
         question: Question,
         note_recent: Callable[..., object],
     ) -> None:
-        """note_recent: is called with files that were opened together, or saved."""
+        """note_recent: a call that takes files that were opened together, or saved."""
         self._session = session
         self._files = files
         self._question = question
         self.note_recent = note_recent
 
     def new(self) -> Message:
-        """Begin with an empty script; ask first where the script or a recording would be lost."""
+        """Begin with an empty script; ask first if the script or a recording would be lost."""
 
         def begin() -> Message:
             """Begin an empty script."""
@@ -128,7 +128,7 @@ class ScriptCommands:
         return self._question.before("Open", show)
 
     def _check(self, script: Script) -> None:
-        """UserError says why a script or pose cannot be opened here."""
+        """Raise UserError with the reason if a script or pose cannot be opened here."""
         here = self._session.script.scene
         if script.scene != here:
             raise UserError(
@@ -180,18 +180,18 @@ class ScriptCommands:
         self._files.ask("Save pose", write, saving=True, proposed="pose.toml")
 
     def ask_sound(self) -> None:
-        """Ask for a sound file, and put it beside the script."""
+        """Ask for a sound file, and add it to the script."""
         self._files.ask("Open sound", self.set_sound, saving=False, suffixes=SOUND_SUFFIXES)
 
     def set_sound(self, path: Path) -> Message:
-        """Put a sound file beside the script; raises UserError if nothing is heard in it."""
+        """Add a sound file to the script; raises UserError if it has no sound."""
         self._session.edit(with_sound(self._session.script, path))
         self.note_recent(path)
         return f"{path.name}: opened; Space plays it with the script"
 
     @property
     def has_sound(self) -> bool:
-        """Whether a sound is beside the script."""
+        """Whether the script has a sound."""
         return self._session.script.sound is not None
 
     def remove_sound(self) -> None:
@@ -218,7 +218,7 @@ def draw_question(
     other = question.other
     if task is None:
         return None
-    again = partial(question.before, verb, task, other)  # there may be more to save
+    again = partial(question.before, verb, task, other)  # there may be more unsaved work
     choices: dict[str, Task] = {}
     if other is not None:
         choices["Save landmarks"] = partial(other.save, again)

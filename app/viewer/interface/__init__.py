@@ -1,1 +1,1 @@
-"""The means by which all panels are drawn: Dear ImGui in the window, commands, small widgets."""
+"""Tools for all panels: Dear ImGui in the window, commands, small widgets."""

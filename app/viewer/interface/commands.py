@@ -1,4 +1,4 @@
-"""Commands, which menus and keys carry out: the menu bar, and the answer to pressed keys."""
+"""Commands of menus and keys: the menu bar, and the response to pressed keys."""
 
 from __future__ import annotations
 
@@ -20,35 +20,35 @@ _KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
 class Command:
     """One command: its menu, label and key, its action, and whether it is switched on."""
 
-    menu: str  # "" for none: keys alone do it
+    menu: str  # "" for none: only keys run it
     label: str
     key: str  # "" for none; several with ", " between
     run: Task
     is_on: Callable[[], bool] | None = None
     can_run: Callable[[], bool] = lambda: True
-    submenu: Callable[[], Iterable[Command]] | None = None  # in place of doing something
+    submenu: Callable[[], Iterable[Command]] | None = None  # a submenu instead of an action
     begins_section: bool = False  # of its menu, with a line above it
-    words: str = ""  # by which the search of controls finds it, too
+    words: str = ""  # by which the search of controls also finds it
 
     @property
     def displayed_keys(self) -> str:
-        """All keys, in the words of a keyboard."""
+        """All keys, in a keyboard's words."""
         return self.key.replace("Equal", "=").replace("Minus", "-").replace("Keypad", "Num ")
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """All keys that do it."""
+        """All keys that run it."""
         return tuple(filter(None, self.key.split(", ")))
 
 
 def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> None:
     """Carry out the commands whose keys were pressed in this frame."""
-    if gui.has_popup:  # whose keys they are
+    if gui.has_popup:  # the popup gets these keys
         return
     is_writing = imgui.get_io().want_text_input or gui.is_reading
-    # Ctrl keys that a line of text takes for itself while one writes.
+    # Ctrl keys that a line of text uses itself during typing.
     text_keys = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
-    # Menus of commands that wait until the mouse lets go.
+    # Menus with commands that wait until the mouse button is released.
     changing_menus = ("Edit", "Keys", "")
     for command in commands:
         for key in command.keys:
@@ -61,18 +61,18 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
 
 
 def chord(key: str) -> int:
-    """A key as imgui counts it."""
+    """A key in imgui's numbers."""
     *modifiers, last = key.split("+")
     return sum((int(_MODIFIERS[each]) for each in modifiers), start=int(_KEYS[last]))
 
 
 class MenuBar:
-    """Draws menus and runs the commands that are chosen in them."""
+    """Draws menus and runs the chosen commands."""
 
     def __init__(
         self, gui: Gui, messages: Messages, commands: Sequence[Command], unsaved: Callable[[], str]
     ) -> None:
-        """unsaved: the work that would be lost now, in words; "" for none."""
+        """unsaved: the work that would now be lost, in words; "" for none."""
         self._gui = gui
         self._messages = messages
         self._commands = commands
@@ -130,7 +130,7 @@ def command_button(
     meaning: str = "",
     is_wanted: bool = False,
 ) -> None:
-    """Draw a button that carries out a command, and is lit while that is on, or wanted.
+    """Draw a button that runs a command; it is lit while the command is on, or wanted.
 
     label, meaning: its text and its hint, by default the command's label and keys.
     name, width: see `button`.

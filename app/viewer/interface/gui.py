@@ -1,9 +1,8 @@
 """Dear ImGui in the GLFW window: set up, themes, one frame, shut down.
 
-imgui-bundle brings GLFW of its own and must be imported before `glfw` is, so that both speak to
-the same library; this module is therefore imported before a window is opened. It was chosen among
-the bindings because its own C++ backends draw in the window that moderngl draws in, without
-PyOpenGL.
+imgui-bundle has its own GLFW and must be imported before `glfw`, so that both use the same library.
+So this module is imported before a window is opened. We chose this binding because its own C++
+backends draw in moderngl's window, without PyOpenGL.
 """
 
 from __future__ import annotations
@@ -35,19 +34,19 @@ LEFT = 0
 RIGHT = 1
 MIDDLE = 2
 MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
-# Of a window that is a note over the picture: as large as its words, and it takes no keys.
+# Flags of a note over the picture: it has the size of its words, and takes no keys.
 NOTE_FLAGS = (
     imgui.WindowFlags_.always_auto_resize
     | imgui.WindowFlags_.no_decoration
     | imgui.WindowFlags_.no_focus_on_appearing
 )
 
-_drop_callbacks: list[Any] = []  # to which GLFW holds no reference
+_drop_callbacks: list[Any] = []  # GLFW holds no references to these
 
 
 @dataclass(frozen=True)
 class Theme:
-    """Colours of the panels (sRGB), and the background behind the face that goes with them."""
+    """Colours of the panels (sRGB), and the matching background behind the face."""
 
     background: render.Background
     is_dark: bool
@@ -89,37 +88,37 @@ THEMES = {
 class Gui:
     """The Dear ImGui context of one window; `places` has the area of each item, for tests."""
 
-    MOUSE_BUTTON_KEY = -1  # in place of a key: one of the mouse was pressed
+    MOUSE_BUTTON_KEY = -1  # instead of a key: a mouse button was pressed
 
     def __init__(self, window: Any) -> None:
         self._window = window
         self._title = ""
         self._context = imgui.create_context()
-        self.double_click_time = 0.3  # [s] in which the second press comes
-        self.has_popup = False  # a menu, a list or a dialog, as the turn began
-        self.is_reading = False  # a text has the keyboard, as a line to type in would
-        self._presses: list[tuple[int, int | None]] = []  # how many events before, and which key
-        self._looked = time.perf_counter()  # when events were taken in last [s]
-        self._shown = self._looked - 1.0 / 60.0  # when that was for the last frame [s]
-        self._blind = 0.0  # [s] for which nobody looked before: an event may be as old as that
+        self.double_click_time = 0.3  # [s] until the second press
+        self.has_popup = False  # whether a menu, a list or a dialog was open at the turn's start
+        self.is_reading = False  # whether a text has the keyboard, like a line to type in
+        self._presses: list[tuple[int, int | None]] = []  # number of earlier events, and the key
+        self._looked = time.perf_counter()  # last reading of events [s]
+        self._shown = self._looked - 1.0 / 60.0  # the same for the last frame [s]
+        self._blind = 0.0  # [s] without a reading before: largest age of an event
         self.places: dict[str, tuple[float, float, float, float]] = {}
         self.keys: dict[str, str] = {}  # of commands, by their labels
         self.theme = THEMES["light"]
         self._dressed: object = None
         io = imgui.get_io()
-        io.set_ini_filename("")  # settings.py remembers the panel's width and folds
+        io.set_ini_filename("")  # settings.py stores the panel's width and folds
         if FONT.exists():
             io.fonts.add_font_from_file_ttf(str(FONT), FONT_SIZE)
         address = ctypes.cast(window, ctypes.c_void_p).value
         if address is None:
             raise RuntimeError("the window is closed already")
-        glfw.set_key_callback(window, self._note_key)  # which ImGui calls before its own
+        glfw.set_key_callback(window, self._note_key)  # ImGui calls it before its own
         glfw.set_mouse_button_callback(window, self._note_button)
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
 
     def set_theme(self, theme: str, zoom: float) -> None:
-        """Take on a theme; everything is `zoom` times as large, and more on a dense screen."""
+        """Apply a theme; everything is `zoom` times as large, and larger on a dense screen."""
         scale = zoom * self._screen_scale()
         if self._dressed == (theme, scale):
             return
@@ -131,7 +130,7 @@ class Gui:
         style.font_scale_main = scale
 
     def _screen_scale(self) -> float:
-        """How much larger than its pixels a dense screen wants things, where GLFW leaves it to us.
+        """The scale of a dense screen, where GLFW does not apply it.
 
         On macOS a window unit is two pixels and imgui knows; on Windows and X11 it is one.
         """
@@ -142,7 +141,7 @@ class Gui:
         )
 
     def set_title(self, title: str) -> None:
-        """Give the window a title, if it has another one."""
+        """Set the window's title, if it differs."""
         if title != self._title:
             self._title = title
             glfw.set_window_title(self._window, as_text(title))
@@ -155,7 +154,7 @@ class Gui:
 
     @property
     def is_minimised(self) -> bool:
-        """Whether nothing of the window is to be seen."""
+        """Whether the window is minimised, so that it is invisible."""
         return bool(glfw.get_window_attrib(self._window, glfw.ICONIFIED))
 
     def restore(self) -> None:
@@ -187,7 +186,7 @@ class Gui:
             io.mouse_single_click_delay = longest + 0.1
 
     def turns(self) -> Iterator[None]:
-        """Turns of the GUI, a `frame` each, until all that the user did is answered."""
+        """Turns of the GUI, a `frame` each, until all input of the user is answered."""
         io = imgui.get_io()
         queue = self._context.input_events_queue
         waiting = type(queue)()
@@ -196,7 +195,7 @@ class Gui:
         queue.clear()
         cuts = [(0, None), *self._presses, (waiting.size(), 0)]
         self._presses = []
-        focus_turns = 3  # turns of the GUI in which a window that a press opened gets the focus
+        focus_turns = 3  # turns of the GUI until a newly opened window gets the focus
         for (start, pressed), (end, following) in pairwise(cuts):
             for index in range(start, end):
                 queue.push_back(waiting[index])
@@ -221,18 +220,18 @@ class Gui:
 
     @contextlib.contextmanager
     def frame(self, *, is_visible: bool = True) -> Iterator[None]:
-        """Draw everything that this block draws with imgui over the present picture.
+        """Draw all imgui drawings of this block over the present picture.
 
-        is_visible: False only answers the user; nothing is drawn.
+        is_visible: False: input is answered, but nothing is drawn.
         """
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
         io = imgui.get_io()
-        # Events count by when they were taken in, not by when there is time to answer them.
+        # Events count at the time of their reading, not of their answer.
         io.delta_time = max(self._looked - self._shown, 1e-6)
         self._shown = self._looked
         self.has_popup = self._context.open_popup_stack.size() > 0
-        # By Tab and arrows, which else do other things.
+        # Navigation by Tab and arrows, which otherwise have other functions.
         walks = imgui.ConfigFlags_.nav_enable_keyboard
         io.config_flags = io.config_flags | walks if self.has_popup else io.config_flags & ~walks
         imgui.new_frame()
@@ -245,24 +244,24 @@ class Gui:
                 imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
 
     def with_keys(self, text: str) -> str:
-        """A text with the keys of commands, in place of their labels in brackets."""
+        """A text with the keys of commands instead of their labels in brackets."""
         return re.sub(r"\[(.+?)\]", lambda found: self.keys.get(found[1]) or found[0], text)
 
     def remember(self, name: str) -> None:
-        """Keep where the item drawn last is."""
+        """Store the place of the last drawn item."""
         low = imgui.get_item_rect_min()
         high = imgui.get_item_rect_max()
         self.places[name] = (low.x, low.y, high.x, high.y)
 
     def close(self) -> None:
-        """Give back all resources of the GUI; the window stays."""
+        """Release all resources of the GUI; the window stays."""
         imgui.backends.opengl3_shutdown()
         imgui.backends.glfw_shutdown()
         imgui.destroy_context(self._context)
 
 
 def wait_for_event(seconds: float) -> None:
-    """Sleep until the user does something, or this long, in a window that has no GUI yet."""
+    """Sleep until input of the user, or this long, in a window without a GUI yet."""
     glfw.wait_events_timeout(seconds)
 
 
@@ -275,10 +274,10 @@ def on_drop(window: Any, open_files: Callable[[Sequence[str]], None]) -> None:
     """Call `open_files` with the paths of files that are dropped onto the window."""
 
     def call(_: Any, count: int, names: Any) -> None:
-        """Take a call of GLFW; its own wrapper knows no names but those in UTF-8."""
+        """Receive a call of GLFW; its own wrapper only accepts names in UTF-8."""
         open_files([os.fsdecode(names[number]) for number in range(count)])
 
-    library: Any = glfw  # its stubs leave out the functions that its wrapper calls
+    library: Any = glfw  # its stubs lack functions that its wrapper calls
     callback = library._GLFWdropfun(call)
     _drop_callbacks.append(callback)
     library._glfw.glfwSetDropCallback(window, callback)
@@ -288,13 +287,13 @@ def on_drop(window: Any, open_files: Callable[[Sequence[str]], None]) -> None:
 def fixed_panel(
     name: str, place: tuple[float, float], size: tuple[float, float], *, resizes: bool = False
 ) -> Iterator[None]:
-    """A panel that stays where it is; its edges may be dragged if it resizes."""
+    """A panel at a fixed place; its edges may be dragged if it resizes."""
     imgui.set_next_window_pos(place)
     imgui.set_next_window_size((max(size[0], 1.0), max(size[1], 1.0)))
     flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_scroll_with_mouse
     flags |= imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_move
     flags |= imgui.WindowFlags_.no_scrollbar if resizes else imgui.WindowFlags_.no_resize
-    flags |= imgui.WindowFlags_.no_background  # which the surface was filled with
+    flags |= imgui.WindowFlags_.no_background  # the surface is already filled with it
     imgui.begin(name, None, flags | imgui.WindowFlags_.no_bring_to_front_on_focus)
     try:
         yield
@@ -303,8 +302,8 @@ def fixed_panel(
 
 
 def em(count: float = 1.0) -> float:
-    """The height of this many letters [window units]: the measure of all widths."""
-    return count * int(FONT_SIZE * imgui.get_style().font_scale_main + 0.5)  # as imgui in a frame
+    """The height of this many letters [window units], the unit of all widths."""
+    return count * int(FONT_SIZE * imgui.get_style().font_scale_main + 0.5)  # like imgui in a frame
 
 
 def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:
@@ -318,9 +317,9 @@ def ink_of(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
 
 
 def _set_colours(style: Any, theme: Theme) -> None:
-    """Set quiet colours for the panels: the user looks at the face."""
+    """Set calm colours for the panels, because the user looks at the face."""
     fresh = imgui.Style()
-    for name in dir(fresh):  # every size anew, or scaling would add up
+    for name in dir(fresh):  # reset every size, or scaling would add up
         size = getattr(fresh, name)
         if isinstance(size, (float, imgui.ImVec2)) and not name.startswith("font"):
             setattr(style, name, size)
@@ -344,7 +343,7 @@ def _set_colours(style: Any, theme: Theme) -> None:
             style.set_color_(index, colour(value))
     for index in (which.button_hovered, which.button_active, which.slider_grab_active):
         style.set_color_(index, colour(theme.accent, 0.55))
-    style.set_color_(which.slider_grab, colour(theme.accent, 0.45))  # its number stands over it
+    style.set_color_(which.slider_grab, colour(theme.accent, 0.45))  # its number is drawn over it
     for index in (which.resize_grip, which.resize_grip_hovered, which.resize_grip_active):
-        style.set_color_(index, colour(theme.panel, 0.0))  # an edge shows it, too
+        style.set_color_(index, colour(theme.panel, 0.0))  # an edge also shows it
     style.set_color_(which.modal_window_dim_bg, colour((0.0, 0.0, 0.0), 0.3))

@@ -1,4 +1,4 @@
-"""Small things that panels are made of: headings, buttons, sliders, hints, words that fit."""
+"""Small parts of panels: headings, buttons, sliders, hints, shortened words."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class SliderState(NamedTuple):
 
     value: float
     is_changed: bool
-    is_done: bool  # let go, or typed: a change is complete
+    is_done: bool  # released or typed: a change is complete
     is_hovered: bool
-    is_right_clicked: bool = False  # where the slider leaves that to its caller
+    is_right_clicked: bool = False  # if the slider leaves this to its caller
 
 
 def slider(
@@ -40,7 +40,7 @@ def slider(
 ) -> SliderState:
     """Draw the slider `name`; a double or Ctrl click types a number, a right click resets.
 
-    mark: the text at its beginning. has_menu: a right click is reported, and changes nothing.
+    mark: the text at its beginning. has_menu: whether a right click is only reported.
     """
     io = imgui.get_io()
     label = f"##{name}"
@@ -70,7 +70,7 @@ def slider(
 
 
 def _draw_bar(gui: Gui, value: float, limits: tuple[float, float], mark: str, digits: int) -> None:
-    """The slider drawn last as a bar that is filled from 0, with its number at the end."""
+    """Draw the last slider as a bar that is filled from 0, with its number at the end."""
     theme = gui.theme
     paper = imgui.get_window_draw_list()
     padding = em(0.3)
@@ -92,17 +92,18 @@ def _draw_bar(gui: Gui, value: float, limits: tuple[float, float], mark: str, di
     paper.pop_clip_rect()
 
 
-# Headings that are open as long as nobody has folded them.
+# Headings that are open until a user folds them.
 OPEN_HEADINGS = frozenset({"Expressions", "Wave", "Refinement", "Style", "Anatomy"})
 
 
 def heading(
     gui: Gui, folds: dict[str, bool], title: str, label: str = "", *, must_open: bool = False
 ) -> bool:
-    """Draw a heading, which stays folded or open as it was left; whether it is open.
+    """Draw a heading, which keeps its fold; return whether it is open.
 
-    folds: which headings are open, by title, where somebody has opened or folded them.
-    label: its text, if that is more than the title. must_open: for now, as in a search.
+    folds: whether a heading is open, by title, if a user has opened or folded it.
+    label: its text, if different from the title. must_open: opens it for now, for example in a
+        search.
     """
     was_open = must_open or folds.get(title, title in OPEN_HEADINGS)
     imgui.set_next_item_open(was_open)
@@ -122,10 +123,10 @@ def button(
     meaning: str = "",
     highlight: Any = None,
 ) -> bool:
-    """Draw a button; whether it was clicked.
+    """Draw a button; return whether it was clicked.
 
-    name: under which its place is remembered, where that is not its label. width: [window units],
-    0 for as much as the label takes. meaning: a hint, see `Gui.with_keys`.
+    name: the name for its stored place, by default its label. width: [window units], 0 for the
+    label's width. meaning: a hint, see `Gui.with_keys`.
     highlight: its colour while it is on.
     """
     if highlight is not None:
@@ -140,9 +141,9 @@ def button(
 
 @contextlib.contextmanager
 def dialog(title: str, width: float = 0.0, height: float = 0.0) -> Iterator[bool]:
-    """A dialog in the middle of the window, for the block to draw into, if it is there yet.
+    """A dialog in the middle of the window for this block to draw into, if it is open.
 
-    The block ends it by `imgui.close_current_popup`. width, height: [em], 0 for as needed.
+    The block ends it by `imgui.close_current_popup`. width, height: [em], 0 for the content's size.
     """
     display = imgui.get_io().display_size
     if not imgui.is_popup_open(title):
@@ -162,7 +163,7 @@ def dialog(title: str, width: float = 0.0, height: float = 0.0) -> Iterator[bool
 
 
 def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | None:
-    """Draw a list to choose from, as wide as imgui was set to; the choice made in this frame."""
+    """Draw a list with imgui's present width; return the choice of this frame."""
     chosen = None
     flags = imgui.ComboFlags_.height_largest
     is_open = imgui.begin_combo(f"##{label}", readable(present), flags)
@@ -177,17 +178,17 @@ def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | 
 
 
 class LabelledRows:
-    """Rows of a panel: labels with hints in a column, and beside each a list, a slider or else."""
+    """Rows of a panel: a column of labels with hints, each with a list, a slider or the like."""
 
     def __init__(self, gui: Gui, share: float, hints: Mapping[str, str]) -> None:
-        """share: of the panel, that labels take. hints: by label."""
+        """share: part of the panel's width for labels. hints: label -> hint."""
         self._gui = gui
         self._share = share
         self.hints = dict(hints)
 
     @property
     def second(self) -> float:
-        """Where the second column begins, from the left edge of the panel [window units]."""
+        """Left end of the second column, from the left edge of the panel [window units]."""
         return float(self._share * imgui.get_window_width())
 
     def begin(self, label: str) -> None:
@@ -199,11 +200,11 @@ class LabelledRows:
         imgui.set_next_item_width(-1.0)
 
     def end(self, label: str) -> None:
-        """Give the item drawn last the hint of its label."""
+        """Give the last item the hint of its label."""
         hint(self._gui.with_keys(self.hints.get(label, "")))
 
     def choose(self, label: str, present: str, choices: Iterable[str]) -> str | None:
-        """Draw a row with a list; the choice made in this frame."""
+        """Draw a row with a list; return the choice of this frame."""
         self.begin(label)
         return choose(self._gui, label, present, choices)
 
@@ -217,7 +218,7 @@ class LabelledRows:
         *,
         digits: int = 2,
     ) -> float:
-        """Draw a row with a slider; its value now."""
+        """Draw a row with a slider; return its value."""
         self.begin(label)
         slid = slider(self._gui, name, value, limits, width=-1.0, neutral=neutral, digits=digits)
         return slid.value if slid.is_changed else value
@@ -229,7 +230,7 @@ def button_width(label: str) -> float:
 
 
 def hint(text: str) -> None:
-    """Show a hint on the item drawn last while the mouse is on it."""
+    """Show a hint for the last drawn item while the mouse is on it."""
     if text and imgui.is_item_hovered(imgui.HoveredFlags_.allow_when_disabled):
         imgui.begin_tooltip()
         imgui.push_text_wrap_pos(em(24))
@@ -239,12 +240,12 @@ def hint(text: str) -> None:
 
 
 def muted(gui: Gui, text: str) -> None:
-    """Draw text of less weight."""
+    """Draw text in a fainter colour."""
     imgui.text_colored(colour(gui.theme.muted), as_text(text))
 
 
 def shortened(text: str, room: float, *, keeps_end: bool = False) -> str:
-    """The text, or as much of its beginning (or end) as fits into the room [window units]."""
+    """The text, or the part of its beginning (or end) that fits into the room [window units]."""
     cut = text = as_text(text)
     for lost in range(1, len(text) + 1):
         if imgui.calc_text_size(cut).x <= room:
@@ -254,7 +255,7 @@ def shortened(text: str, room: float, *, keeps_end: bool = False) -> str:
 
 
 def stay_in_line(width: float) -> None:
-    """Go on beside the item drawn last, if the next one has room there."""
+    """Continue beside the last item, if the next one has room there."""
     spacing = imgui.get_style().item_spacing.x
     right = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
     if imgui.get_item_rect_max().x + spacing + width <= right:

@@ -1,7 +1,7 @@
-"""A mesh whose landmarks are being marked: where they are so far, undo, its file.
+"""A mesh during the marking of its landmarks: present places, undo, its file.
 
-This module knows nothing of windows. Places are in the mesh's own coordinates; `placing` takes them
-to the space of the picture: upright and in millimetres as soon as all marks are there.
+This module is independent of windows. Places are in the mesh's own coordinates; `placing` takes
+them to the space of the picture, which is upright and in millimetres as soon as all marks exist.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ Colour = tuple[float, float, float]  # sRGB
 class Group:
     """Landmarks that follow each other.
 
-    lines: of numbers, as they are joined.
+    lines: numbers of landmarks that a line joins.
     """
 
     title: str
@@ -74,7 +74,7 @@ ORDER = tuple(GROUP_OF)
 
 @dataclass(frozen=True)
 class Marks:
-    """Where landmarks are, as far as they are placed; `guessed` are those that nobody moved."""
+    """Places of landmarks, as far as they exist; `guessed` has those that nobody moved."""
 
     places: Mapping[int, Place]
     guessed: frozenset[int] = frozenset()
@@ -96,38 +96,38 @@ class Marks:
 
     @property
     def is_complete(self) -> bool:
-        """Whether all 68 are there."""
+        """Whether all 68 exist."""
         return len(self.places) == LANDMARK_COUNT
 
     @property
     def asked(self) -> int | None:
-        """The first point that must be marked next; None if the rest can be guessed."""
+        """The point that must be marked next; None if the rest can be guessed."""
         return next((number for number in FIRST if number not in self.places), None)
 
 
 class Marking:
-    """Marks on one mesh. `current` is the landmark that is asked for, or was chosen."""
+    """Marks on one mesh. `current` is the requested or chosen landmark."""
 
     LANDMARKS_SUFFIX = ".json"
 
     def __init__(self, path: Path, files: FileDialogs) -> None:
-        """Read a mesh; raises UserError if no marks can make a head of it."""
+        """Read a mesh; raises UserError if it cannot be a head with any marks."""
         self.path = path
         self._files = files
         with _for_users():
             self.mesh = mesh = read_mesh(path)
         with _for_users(f"{path.name}: "):
             check_pieces(mesh.faces, len(mesh.vertices))
-        self.file: Path | None = None  # in which the marks are kept
+        self.file: Path | None = None  # file of the marks
         self.marks = self._saved = Marks({})
         self.current = FIRST[0]
-        self.seen_mesh = Drawable("face", mesh.faces, mesh.vertices)  # as it is placed now
-        radius = 140.0  # [mm] of the mesh, as long as nobody knows how large a head is in it
+        self.seen_mesh = Drawable("face", mesh.faces, mesh.vertices)  # in its present place
+        radius = 140.0  # [mm] of the mesh, while the head's size in it is unknown
         self._place(centred(mesh.vertices, radius))
         self._upright: Similarity | None = None
         self.history = History((self.marks, self.placing))
 
-    # Where the mesh is seen
+    # Place of the mesh
 
     def _place(self, placing: Similarity) -> None:
         self.placing = placing
@@ -135,29 +135,29 @@ class Marking:
         seen.place(placing.points(self.mesh.vertices))
         self._normals = vertex_normals(seen.positions, seen.faces)
         off = seen.positions - seen.positions.mean(axis=0)
-        if float((self._normals * off).sum()) < 0.0:  # it faces inward throughout
+        if float((self._normals * off).sum()) < 0.0:  # all of it faces inward
             seen.faces = np.ascontiguousarray(seen.faces[:, ::-1])
             self._normals = -self._normals
         self._nearest = scipy.spatial.cKDTree(self.positions)
 
     @property
     def positions(self) -> Floats64:
-        """The vertices as they are seen, shape (V, 3)."""
+        """The visible places of vertices, shape (V, 3)."""
         return self.seen_mesh.positions
 
     def turn(self, rotation: Floats64) -> None:
-        """Turn the mesh by a matrix (3, 3), as long as the marks do not show which way is up."""
+        """Turn the mesh by a matrix (3, 3), while the marks do not show the upward direction."""
         now = self.placing
         self._place(Similarity(now.scale, rotation @ now.rotation, rotation @ now.shift))
         self._note()
 
     @property
     def is_upright(self) -> bool:
-        """Whether the marks have shown which way is up, and the mesh stands so."""
+        """Whether the marks have shown the upward direction, and the mesh is upright."""
         return self.placing is self._upright
 
     def _stand_up(self, known: Mapping[int, Place]) -> None:
-        """Turn the mesh upright, once, as large as a head; AssetError for marks of no face."""
+        """Turn the mesh upright and scale it to a head, once; AssetError for marks of no face."""
         upright = placing(known)
         if not self.is_upright:
             self._upright = upright
@@ -169,7 +169,7 @@ class Marking:
         chosen = list(numbers)
         places = [self.marks.places[number] for number in chosen]
         points = self.placing.points(np.reshape(places, (-1, 3)))
-        # Vertices: the nearest one alone may be behind a lid's edge, and look aside.
+        # Several vertices: the nearest one may be behind a lid's edge and face sideways.
         neighbour_count = 4
         nearest = range(1, min(neighbour_count, len(self.positions)) + 1)
         normals = self._normals[self._nearest.query(points, nearest)[1]]
@@ -180,15 +180,15 @@ class Marking:
     # Changes of the marks
 
     def put(self, number: int, point: Floats64) -> None:
-        """Place a landmark at a point of the mesh as it is seen; `note` completes the change."""
+        """Place a landmark at a visible point of the mesh; `note` completes the change."""
         self.marks = self.marks.placed(number, self.placing.inverse.points(point))
 
     def note(self) -> Message:
-        """Note a complete change, to be undone; guess the other marks if it is possible."""
+        """Note a complete change for undo; guess the other marks if possible."""
         can_guess = self.marks.asked is None and not self.marks.is_complete
         try:
             return self.guess() if can_guess else None
-        finally:  # marks that are no face's are there to be mended
+        finally:  # wrong marks stay, so that users can correct them
             self._note()
 
     def _note(self) -> None:
@@ -196,7 +196,7 @@ class Marking:
         self.undo(0)
 
     def guess(self) -> Message:
-        """Place all that were not placed by hand; raises UserError if the marks are no face's."""
+        """Place all marks that were not placed by hand; raises UserError for marks of no face."""
         with _for_users(cure="; drag points, or undo"):
             found = guess(self.mesh, self.marks.by_hand)
         self._stand_up(self.marks.by_hand)
@@ -209,7 +209,7 @@ class Marking:
         self.current = ORDER[(ORDER.index(self.current) + step) % len(ORDER)]
 
     def undo(self, changes: int = 1) -> None:
-        """Undo this many changes, turns of the mesh among them; -1 redoes one."""
+        """Undo this many changes, including turns of the mesh; -1 redoes one."""
         self.marks, placing = self.history.go(self.history.place - changes)
         if placing is not self.placing:
             self._place(placing)
@@ -220,11 +220,11 @@ class Marking:
 
     @property
     def unsaved(self) -> str:
-        """The name of the work that would be lost, in words; "" for nothing."""
+        """The unsaved work in words; "" for none."""
         return "" if self.marks == self._saved else f"the landmarks of {self.path.name}"
 
     def open(self, path: Path) -> Message:
-        """Continue with the marks of a file; raises UserError if it has none of this mesh."""
+        """Continue with the marks of a file; raises UserError if it has none for this mesh."""
         with _for_users():
             places, guessed = read_marks(path, self.mesh)
         marks = Marks({})
@@ -238,13 +238,13 @@ class Marking:
         return self.note() or f"{path.name}: {len(places)} landmarks"
 
     def ask_open(self) -> None:
-        """Ask for a landmark file, and go on with it."""
+        """Ask for a landmark file, and continue with it."""
         self._files.ask(
             "Open landmarks", self.open, saving=False, suffixes=(self.LANDMARKS_SUFFIX,)
         )
 
     def save(self, then: Task = lambda: None) -> Message:
-        """Write the marks to their file, all or as many as there are, or ask for one first."""
+        """Write the existing marks to their file, or ask for a file first."""
         if self.file is not None:
             return self._write(then, self.file)
         proposed = str(self.path.with_suffix(self.LANDMARKS_SUFFIX).absolute())
@@ -263,7 +263,7 @@ class Marking:
 
 @contextlib.contextmanager
 def _for_users(subject: str = "", cure: str = "") -> Iterator[None]:
-    """Report faults of a mesh or of marks as a UserError: users can mend them."""
+    """Report faults of a mesh or of marks as a UserError: users can correct them."""
     try:
         yield
     except AssetError as error:

@@ -1,4 +1,4 @@
-"""A mesh that is marked in place of the face: its picture, panel, mouse and commands together."""
+"""The marking of a mesh instead of the face: its picture, panel, mouse and commands."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .picture import MarkingMouse, MarkingView
 
 
 class MarkingMode:
-    """A mesh that is marked, in the window; see `Mode` of the window."""
+    """The marking of a mesh in the window; see `Mode` of the window."""
 
     draws_over_picture = True  # the marks
     is_at_rest = True
@@ -37,7 +37,7 @@ class MarkingMode:
         open_files: Callable[[Sequence[str]], Message],
         leave: Callable[[], None],
     ) -> None:
-        """others: the window's own commands. leave: goes back to the face."""
+        """others: the window's own commands. leave: returns to the face."""
         self.marking = marking
         self._question = app.question
         self._open_files = open_files
@@ -65,11 +65,11 @@ class MarkingMode:
 
     @property
     def unsaved(self) -> str:
-        """The landmarks that no file has, in words; "" for none."""
+        """The unsaved landmarks, in words; "" for none."""
         return self.marking.unsaved
 
     def paint(self, elapsed: float) -> bool:
-        """Draw the mesh if it has changed; from the front if it stands in another way now."""
+        """Draw the mesh if it has changed; from the front if it has been turned."""
         if self.marking.placing is not self._placing:
             self._placing = self.marking.placing
             self.view.fit_scene()
@@ -80,10 +80,10 @@ class MarkingMode:
         self._panel.draw(self.view)
 
     def rest(self) -> None:
-        """Nothing sounds while a mesh is marked."""
+        """Do nothing: no sound plays during the marking."""
 
     def drop(self, paths: Sequence[str]) -> Message:
-        """Take landmarks of a file; for other files, leave first."""
+        """Open landmarks of a file; for other files, leave first."""
         if [Path(path).suffix for path in paths] == [LANDMARKS_SUFFIX]:
             return self.marking.open(Path(paths[0]))
         return self.leave(partial(self._open_files, paths))
@@ -96,7 +96,7 @@ class MarkingMode:
         return self._open_files([str(marking.path), str(marking.file)])
 
     def leave(self, then: Task = lambda: None) -> Message:
-        """Go back to the face, and run `then`; if marks would be lost, ask first."""
+        """Return to the face, and run `then`; if marks would be lost, ask first."""
 
         def go() -> Message:
             """Show the face, then run `then`."""
@@ -106,21 +106,21 @@ class MarkingMode:
         return self._question.before("Leave", go, other=self.marking)
 
     def _step(self, direction: int) -> None:
-        """Go to another landmark; if its side is turned away, the camera goes there."""
+        """Go to another landmark; if its side is hidden, the camera turns there."""
         self.marking.go(direction)
         number = self.marking.current
         camera = self.view.camera
         if number not in self.view.places():
-            side_view_yaw = 40.0  # [degrees] from which a landmark is seen that the front hides
+            side_view_yaw = 40.0  # [degrees], for a landmark that the front view hides
             aside = 0.0 if MIRRORED[number] == number else side_view_yaw
             camera.yaw = float(np.copysign(aside, self.marking.seen([number])[0][0, 0]))
             camera.pitch = 0.0
 
     def _turn(self) -> None:
-        """Make the side that is seen the front; if it is so already, turn it by a right angle."""
+        """Make the visible side the front; if it is already, turn it by a right angle."""
         seen = np.array(self.view.camera.axes())
         turn = max(axes_turned(), key=lambda turn: float((turn * seen).sum()))
-        # Of the picture, about the line of sight.
+        # Turn of the picture about the line of sight.
         quarter_turn = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
         self.marking.turn(quarter_turn if np.array_equal(turn, np.eye(3)) else turn)
 

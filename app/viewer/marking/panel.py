@@ -1,4 +1,4 @@
-"""The panel beside a mesh that is marked: the task, the guide, buttons; and the marks over it."""
+"""The panel of the marking: the task, the guide, buttons; and the marks over the mesh."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .picture import MarkingView, Spot
 
 DARK = (0.08, 0.08, 0.10)
 WHITE = (1.0, 1.0, 1.0)
-POINT_NAMES = {  # of the first points
+POINT_NAMES = {  # names of the first points
     **{36: "Outer corner of the right eye", 45: "Outer corner of the left eye"},
     **{30: "Tip of the nose", 48: "Right corner of the mouth", 54: "Left corner of the mouth"},
 }
@@ -136,7 +136,7 @@ class MarkingPanel:
 def _draw_points(
     pen: imgui.ImDrawList, at: Mapping[int, Spot], current: int, *, joined: bool
 ) -> None:
-    """Draw points with a dark border, joined by the lines of groups, a ring around one."""
+    """Draw points with a dark border, the lines of groups, and a ring around one point."""
     for group in GROUPS if joined else ():
         for a, b in (pair for line in group.lines for pair in pairwise(line)):
             if a in at and b in at:

@@ -1,4 +1,4 @@
-"""The picture of a mesh that is marked, and the mouse in it."""
+"""The picture of the marking, and the mouse in it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Spot = tuple[float, float]  # [window units]
 
 
 class MarkingView(SceneView):
-    """How the mesh is seen: as clay, by a camera that frames all of it."""
+    """The view of the mesh: clay, and a camera that frames all of it."""
 
     def __init__(self, marking: Marking, settings: Settings, surface: render.WindowSurface) -> None:
         self._marking = marking
@@ -35,7 +35,7 @@ class MarkingView(SceneView):
     def fit_scene(self) -> None:
         marking = self._marking
         self.camera = render.OrbitCamera.framing(marking.positions)
-        if marking.is_upright:  # all of the face, however much there is of hair and shoulders
+        if marking.is_upright:  # all of the face, whatever the size of hair and shoulders
             self.camera.fit(marking.seen(marking.marks.places)[0], 0.14)
 
     @property
@@ -54,7 +54,7 @@ class MarkingView(SceneView):
         to_eye = self.camera.eye - points
         toward = np.einsum("nki,ni->nk", normals, to_eye).max(axis=1)
         toward /= np.linalg.norm(to_eye, axis=1)
-        least_facing_cosine = 0.15  # cosine to the line of sight beyond which a mark is seen
+        least_facing_cosine = 0.15  # cosine to the line of sight above which a mark is visible
         faces = toward > least_facing_cosine
         return {n: spots[index] for index, n in enumerate(numbers) if faces[index]}
 
@@ -62,7 +62,7 @@ class MarkingView(SceneView):
 def places_in(
     area: tuple[float, float, float, float], camera: render.OrbitCamera, points: npt.ArrayLike
 ) -> list[Spot]:
-    """Where a camera that fills an area of the window sees points (n, 3) [window units]."""
+    """Places of points (n, 3) for a camera that fills an area of the window [window units]."""
     left, top, width, height = area
     seen = CameraLabels.of(camera, (width, max(height, 1.0))).project(np.asarray(points))
     return [(left + x, top + y) for x, y in seen.tolist()]
@@ -107,7 +107,7 @@ class MarkingMouse(CameraMouse):
         self.forget()
 
     def _put(self, io: Any) -> bool:
-        """Place the current mark under the mouse; whether there is skin on which it is seen."""
+        """Place the current mark under the mouse; return whether visible skin is there."""
         marking = self._marking
         before = self._marking.marks
         point = self._skin_under(io)
@@ -119,11 +119,11 @@ class MarkingMouse(CameraMouse):
         return is_seen
 
     def _mark_under(self, io: Any) -> int | None:
-        # Of marks in one place, as on lips that touch, the current one is meant.
+        # Of marks in one place, such as those of touching lips, the current one is taken.
         off = {
             number: math.dist(spot, io.mouse_pos) - em(0.3) * (number == self._marking.current)
             for number, spot in self._seen.places().items()
         }
         nearest = min(off, key=lambda number: off[number], default=0)
-        mark_reach = 0.8  # [em] around a mark in which the mouse takes it
+        mark_reach = 0.8  # [em] around a mark in which the mouse grabs it
         return nearest if off.get(nearest, math.inf) < em(mark_reach) else None

@@ -1,1 +1,1 @@
-"""The panels around the picture: each file is one panel, drawn anew in every frame."""
+"""The panels around the picture: each file is one panel, which is drawn in every frame."""

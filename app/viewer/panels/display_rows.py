@@ -34,13 +34,13 @@ class DisplayRows(LabelledRows):
         self._messages = app.messages
 
     def switch(self, label: str) -> None:
-        """A checkbox for a field of the display."""
+        """Draw a checkbox for a field of the display."""
         display = self._settings.display
         name = FIELDS[label]
         self.check(label, getattr(display, name), partial(switch, display, name))
 
     def check(self, label: str, is_on: bool, switch: Callable[[], None]) -> None:
-        """A checkbox that calls `switch`."""
+        """Draw a checkbox that calls `switch`."""
         is_clicked, _ = imgui.checkbox(readable(label), is_on)
         self._gui.remember(label)
         self.end(label)
@@ -48,7 +48,7 @@ class DisplayRows(LabelledRows):
             switch()
 
     def pick(self, label: str, choices: Sequence[str]) -> None:
-        """A row with a list for a field of the display."""
+        """Draw a row with a list for a field of the display."""
         display = self._settings.display
         name = FIELDS[label]
         self.put(label, getattr(display, name), choices, partial(setattr, display, name))
@@ -56,7 +56,7 @@ class DisplayRows(LabelledRows):
     def put(
         self, label: str, present: str, choices: Sequence[str], put: Callable[[str], Message]
     ) -> None:
-        """A row with a list to choose from; `put` gets the choice."""
+        """Draw a row with a list; `put` gets the choice."""
         chosen = self.choose(label, present, choices)
         if chosen is not None:
             self._messages.carry_out(partial(put, chosen))

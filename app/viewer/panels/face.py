@@ -1,6 +1,6 @@
 """The controls of the face: a group for each layer and region, in it rows of bars.
 
-A row is a control, or one of each side: its name, and a bar for each that it has.
+A row is one control, or one for each side: its name, and a bar for each.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ from ..timeline.keys import KeySelection, listed, movers_of
 
 @dataclass(frozen=True)
 class Row:
-    """One line: the name that its controls share, and the controls that have bars.
+    """One line: the shared name of its controls, and the controls with bars.
 
-    names: of both sides at once before each side, the subject's right before the left. sides: two
+    names: a control for both sides comes first, then the subject's right, then the left. sides: two
     controls that can be linked, or (); with is_linked the left one's bar moves both.
     """
 
@@ -52,9 +52,9 @@ class Row:
         values: Mapping[str, float],
         linked: bool,
     ) -> Row:
-        """A row for both sides: one bar where they are linked and agree.
+        """A row for both sides, with one bar if they are linked and agree.
 
-        whole: the control that stands for both, "" for none; it has a bar, too, where it is in use.
+        whole: the control for both sides, or ""; it also has a bar if it is in use.
         """
         is_linked = linked and values[sides[0]] == values[sides[1]]
         apart = sides if not is_linked else sides[1:] if values[sides[1]] or not whole else ()
@@ -65,8 +65,8 @@ class Row:
 def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) -> list[Row]:
     """The rows of a group.
 
-    linked: both sides share a bar as long as they agree. A control for both sides at once (AU12
-    beside AU12_left and AU12_right) stands for them, unless one of them is in use.
+    linked: whether both sides share a bar as long as they agree. A control for both sides (AU12 for
+    AU12_left and AU12_right) replaces them, unless one of them is in use.
     """
     known = set(names)
     rows = []
@@ -75,7 +75,7 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
         twin = twin_of(name)
         if not side:
             sides = (f"{name}_right", f"{name}_left")
-            if parted(twin)[0] == name != twin:  # of one side by itself, as a wink
+            if parted(twin)[0] == name != twin:  # one-sided, such as a wink
                 rows.append(Row(name, (twin, name)))
             elif not known.issuperset(sides):
                 rows.append(Row(name, (name,)))
@@ -84,7 +84,7 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
         elif base in OPPOSITE or twin not in known:
             rows.append(Row(name, (name,)))
         elif base not in known and side in ("_left", "Left"):
-            whole = base if values.get(base) else ""  # of no group; by a script
+            whole = base if values.get(base) else ""  # in no group; set by a script
             rows.append(Row.of_sides(base, (twin, name), whole, values, linked))
     return rows
 
@@ -94,7 +94,7 @@ def search_rows(
 ) -> list[Row]:
     """The rows in which all words of the query occur.
 
-    Words are looked for in names, groups, actions of controls, and synonyms.
+    Words are searched in names, groups, actions of controls, and synonyms.
     """
     return [row for row in rows if is_found(query, _text_of(row, group, actions), row.names)]
 
@@ -110,7 +110,7 @@ class ControlRows:
     """Draws rows of controls, and sets controls as the user moves their bars."""
 
     def __init__(self, app: ApplicationContext, selection: KeySelection) -> None:
-        """selection: of keys, which the menu of a bar changes."""
+        """selection: the selected keys, which the menu of a bar changes."""
         self._gui = app.gui
         self._session = app.session
         self._settings = app.settings
@@ -121,7 +121,7 @@ class ControlRows:
         self._rows: dict[tuple[str, ...], list[Row]] = {}
 
     def of(self, names: tuple[str, ...]) -> list[Row]:
-        """The rows of these controls as they are now, or as they were when a drag began."""
+        """The present rows of these controls, or those at the beginning of a drag."""
         if names not in self._rows or not imgui.is_any_item_active():
             current = self._session.current
             linked = self._settings.is_linked
@@ -129,9 +129,9 @@ class ControlRows:
         return self._rows[names]
 
     def draw(self, row: Row, *, number: int = 0, is_marked: bool = False) -> None:
-        """Draw one row; of an expression the name is a button, too.
+        """Draw one row; the name of an expression is also a button.
 
-        number: of the key that shows it, 0 for none. is_marked: it was asked for.
+        number: that of the key that shows it, 0 for none. is_marked: whether it was requested.
         """
         session = self._session
         names = row.names
@@ -143,7 +143,7 @@ class ControlRows:
         label_room = room if is_narrow else min(0.5 * room, em(15.0))
         is_lit = is_marked or any(current[name] for name in names)
         pointed = names if self._draw_label(row, label_room, number, is_lit=is_lit) else ()
-        if is_narrow:  # nearer to its own name than to the next
+        if is_narrow:  # nearer to its own name than to the next one
             imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - spacing.y)
         else:
             imgui.same_line(left + label_room)
@@ -206,7 +206,7 @@ class ControlRows:
         self._session.note()
 
     def _draw_label(self, row: Row, room: float, number: int, *, is_lit: bool) -> bool:
-        """Code and name; whether the mouse is on it."""
+        """Draw code and name; return whether the mouse is on them."""
         theme = self._gui.theme
         session = self._session
         padding = imgui.get_style().frame_padding
@@ -252,14 +252,14 @@ class FacePanel:
         self._commands = [command for command in commands if command.words]
         self.rows = ControlRows(app, selection)
         self.search = ""
-        self._selected: str | None = None  # to be scrolled to
+        self._selected: str | None = None  # name of a control to scroll to
         self._flash = 0
 
     def select(self, name: str) -> None:
         """Open the group of a control, scroll to it and mark it."""
         self.search = ""
         self._selected = name
-        self._flash = 90  # frames for which the slider is marked
+        self._flash = 90  # frames of the slider's mark
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
@@ -274,8 +274,8 @@ class FacePanel:
         self._flash = max(self._flash - 1, 0)
 
     def _draw_commands(self) -> bool:
-        """Draw buttons of the commands that are looked for; whether there are any."""
-        least_length = 3  # letters: fewer are in words of everything
+        """Draw buttons of searched commands; return whether there are any."""
+        least_length = 3  # letters: fewer occur in too many words
         if len(self.search) < least_length:
             return False
         found = [each for each in self._commands if is_found(self.search, each.words, ())]
@@ -306,7 +306,7 @@ class FacePanel:
         gui.remember("search")
 
     def _draw_group(self, title: str, names: Sequence[str]) -> int:
-        """Draw a group under its heading; how many rows it has that are asked for."""
+        """Draw a group under its heading; return the number of its rows in the search."""
         session = self._session
         folds = self._settings.folds
         current = self._session.current
@@ -325,7 +325,7 @@ class FacePanel:
         return len(rows)
 
     def _draw_row(self, row: Row) -> None:
-        # A muscle whose halves act together may have but one bar for both.
+        # A muscle whose halves act together may have only one bar.
         whole = (self._selected or "").removesuffix("_left").removesuffix("_right")
         is_selected = bool({self._selected, whole} & {*row.names, *row.sides})
         if is_selected:

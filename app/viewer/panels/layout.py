@@ -1,4 +1,4 @@
-"""Where everything stands: menus above, controls at the left, time below, the picture in the rest.
+"""The layout: menus above, controls at the left, time below, the picture in the rest.
 
 A message stands in a line at the upper edge of the picture.
 """
@@ -18,7 +18,7 @@ from ..timeline.timeline import Timeline
 
 
 def draw_message(gui: Gui, messages: Messages, view: SceneView) -> None:
-    """Draw the line, if there is one; a click or Escape takes it away."""
+    """Draw the line, if there is one; a click or Escape removes it."""
     if not messages.text:
         return
     left, top, width, _ = view.area
@@ -51,7 +51,7 @@ class Layout:
         tabs: Mapping[str, Callable[[], None]],
         timeline: Timeline,
     ) -> None:
-        """tabs: draw the panels at the left, by their titles, or label###title."""
+        """tabs: calls that draw the panels at the left, by title or label###title."""
         self._app = app
         self._gui = app.gui
         self._settings = app.settings
@@ -64,7 +64,7 @@ class Layout:
         view.pointed = {}
         display = imgui.get_io().display_size
         top = self._menus.draw()
-        panel_widths = 12.0, 60.0  # [em] between which the left panel may be drawn wider
+        panel_widths = 12.0, 60.0  # [em]: least and greatest width of the left panel
         least, most = panel_widths
         wanted = em(min(max(self._settings.panel_width, least), most))
         left = round(min(wanted, 0.45 * display.x))

@@ -1,4 +1,4 @@
-"""A face that is sent while it moves: its sender, and how its shapes are used."""
+"""The panel of a live face: its sender, and the use of its shapes."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class LivePanel:
         self._draw_listening()
         label = "Stop listening" if live.is_on else "Listen"
         command_button(gui, messages, self._commands["Listen"], label, name="listen", width=-1.0)
-        face = live.face  # which the button may have begun or ended
+        face = live.face  # the button may have begun or ended it
         imgui.push_text_wrap_pos(0.0)
         is_received = face is not None and face.state is State.RECEIVING
         ink = gui.theme.accent if is_received else gui.theme.text
@@ -92,7 +92,7 @@ class LivePanel:
         live.wanted = wanted
 
     def _draw_taken(self, face: LiveFace) -> None:
-        """Whether left and right change places, and how strongly all counts."""
+        """Draw the switch of left and right, and the gain of all shapes."""
         imgui.same_line()
         _, mirror = imgui.checkbox("Mirror##live", face.calibration.mirror)
         self._gui.remember("mirror live")
@@ -102,7 +102,7 @@ class LivePanel:
         face.calibration = replace(before, mirror=mirror, default_gain=gain)
 
     def _draw_channels(self, face: LiveFace) -> None:
-        """Bars of the channels that have come, as the face takes them; angles are numbers."""
+        """Draw bars of the received channels after calibration; angles are numbers."""
         taken = face.calibration.apply(face.channels)
         for name, value in sorted(taken.items()):
             self._rows.begin(name)
@@ -133,7 +133,7 @@ def state_in_words(face: LiveFace | None) -> str:
 
 
 def advice_in_words(face: LiveFace, own_address: str) -> str:
-    """The user's next step while nothing is received; else the number of unusable packets."""
+    """The user's next step while no face is received; else the number of unusable packets."""
     if face.state is not State.WAITING or face.received:
         unusable = f", of no use: {face.unusable}" if face.unusable else ""
         return f"packets: {face.received}{unusable}"

@@ -23,7 +23,7 @@ from ..session.physics import PHASES
 from ..settings import COMPARISONS, SKINS, Display
 from .display_rows import DisplayRows
 
-# Hints for the mouse on a label, or on the item that has the label.
+# Hints for the mouse on a label, or on its item.
 HINTS = {
     "Refine": "draw the refined mesh, or the simulated one as it is ([Refine])",
     "Look": "smooth: the best picture; paper: the paper's own rule ([Paper's look]). A look sets "
@@ -47,7 +47,7 @@ NUMBERS = ("integer", "number")  # kinds of options that are sliders
 
 
 class MechanismPanel:
-    """Everything about how the mesh becomes a picture."""
+    """The panel for the way from mesh to picture."""
 
     def __init__(self, app: ApplicationContext) -> None:
         self._gui = app.gui
@@ -82,7 +82,7 @@ class MechanismPanel:
         imgui.end_child()
 
     def _draw_reset(self) -> None:
-        """A button that resets all; right after that, it takes the reset back."""
+        """Draw a button that resets all; right after a reset, it undoes the reset."""
         at_first = self._display.as_at_first()
         is_first = self._display == at_first
         if not is_first:
@@ -131,13 +131,13 @@ class MechanismPanel:
             self._rows.switch("Skin maps")
 
     def _options(self) -> dict[str, refine.Option]:
-        """The options of the refiner and its criterion; none of one that cannot be loaded."""
+        """The options of the refiner and its criterion; none if it cannot be loaded."""
         scene = self._stage.scene
         display = self._display
         criterion = display.refinement_on(scene).criterion_on(scene.name)
         try:
             return options_of(display.refiner_on(scene), criterion)
-        except (ValueError, TypeError):  # which was reported
+        except (ValueError, TypeError):  # already reported
             return {}
 
     def _draw_option(self, name: str, option: refine.Option) -> None:
@@ -230,7 +230,7 @@ class MechanismPanel:
 
 
 def choices_of(option: str) -> tuple[str, ...]:
-    """The words that an option of a refiner may be, those of looks and from outside among them."""
+    """The words for an option of a refiner, including those of looks and of other packages."""
     registered = {"scheme": refine.schemes.available, "criterion": refine.criteria.available}
     if option not in registered:
         return ()

@@ -1,4 +1,4 @@
-"""The list of persons: each with a picture, a name, sex and age."""
+"""The list of persons, each with a picture, a name, sex and age."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class PeopleList:
     """A button with the present person, which opens the list."""
 
     def __init__(self, app: ApplicationContext, file_drop: FileDrop, rows: DisplayRows) -> None:
-        """rows: in which the button stands."""
+        """rows: those with the button."""
         self._gui = app.gui
         self._messages = app.messages
         self._portraits = app.portraits
@@ -27,10 +27,10 @@ class PeopleList:
         self._rows = rows
 
     def draw(self, called: str) -> None:
-        """Draw the row; called: the name or number of the head that is seen."""
+        """Draw the row; called: the name or number of the visible head."""
         present = int(called) if called.isdecimal() else called
         people: list[int | str] = [BUILT_IN, COARSE, *NAMED]
-        people += range(20)  # and some of those without names
+        people += range(20)  # and some without names
         if present not in (*people, OWN):
             people.append(present)
         self._portraits.begin(people)
@@ -44,7 +44,7 @@ class PeopleList:
         left = imgui.get_item_rect_min().x
         imgui.set_next_window_pos((left, imgui.get_item_rect_max().y))
         cell = em(11.5), height
-        most_columns = 4  # so the list is no higher than a small screen
+        most_columns = 4  # so that the list fits on a small screen
         room = imgui.get_io().display_size.x - left - em(2.0)
         columns = min(max(int(room / (cell[0] + em(0.5))), 1), most_columns)
         if imgui.begin_popup("people"):
@@ -55,7 +55,7 @@ class PeopleList:
             imgui.end_popup()
 
     def _draw_choice(self, who: int | str, present: int | str, cell: tuple[float, float]) -> None:
-        """A person of the list, to be clicked; cell: width and height [window units]."""
+        """Draw a person of the list, as a button; cell: width and height [window units]."""
         is_clicked, _ = imgui.selectable(f"##{who}", who == present, 0, cell)
         self._gui.remember(f"Person: {in_words(who)}")
         self._fill(who)
@@ -64,7 +64,7 @@ class PeopleList:
             self._messages.carry_out(partial(self._file_drop.show_person, shown))
 
     def _fill(self, who: int | str) -> None:
-        """Put picture and words of a person over the item drawn last."""
+        """Draw picture and words of a person over the last item."""
         low = imgui.get_item_rect_min()
         high = imgui.get_item_rect_max()
         side = high.y - low.y
@@ -93,5 +93,5 @@ class PeopleList:
 
 
 def in_words(who: int | str) -> str:
-    """A head as the list has it: "Person 7, woman, about 60"."""
+    """A head's words in the list: "Person 7, woman, about 60"."""
     return "Own head" if who == OWN else "Built-in" if who == BUILT_IN else head_in_words(who)

@@ -1,4 +1,4 @@
-"""The scene: its light and background, the person and hair in it, and the lens that sees it."""
+"""The panel of the scene: light and background, the person and hair, and the lens."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ HINTS = {
 
 
 class ScenePanel:
-    """Everything in front of the camera but the face's motion."""
+    """The panel for everything in front of the camera except the face's motion."""
 
     def __init__(self, app: ApplicationContext, file_drop: FileDrop) -> None:
         self._stage = app.stage
@@ -35,7 +35,7 @@ class ScenePanel:
         self._people = PeopleList(app, file_drop, self._rows)
 
     def draw(self) -> None:
-        """Draw everything, inside the window's panel; of a plane only its rows."""
+        """Draw everything, inside the window's panel; for a plane only its rows."""
         imgui.begin_child("scene")
         rows = self._rows
         scene = self._stage.scene

@@ -1,7 +1,7 @@
 """The mouse in the picture: drag the skin, click a muscle, turn the camera, drag the divider.
 
-Left on the skin drags it, left beside it orbits, right orbits anywhere, middle or Shift pans, the
-wheel zooms to where the mouse is. A finger's effect on the skin is in skin.py.
+The left button drags skin, and orbits beside it. The right button orbits anywhere, the middle one
+or Shift pans, and the wheel zooms to the mouse. skin.py has a finger's effect on the skin.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class CameraMouse:
         self.forget()
 
     def forget(self) -> None:
-        """End every drag: the picture under the mouse is another one."""
+        """End every drag, because the picture under the mouse has changed."""
         self._doing = ""  # orbit, pan, or the left button's action
         self._pressed_at = (0.0, 0.0)
 
@@ -60,10 +60,10 @@ class CameraMouse:
                 self._zoom(io)
 
     def _hover(self, io: Any) -> None:
-        """Answer the mouse over the picture while it holds nothing."""
+        """Respond to the mouse over the picture while no button is pressed."""
 
     def _take(self, io: Any) -> str:
-        """The action of the left button, pressed here."""
+        """The action of the left button pressed here."""
         return "orbit"
 
     def _press(self, io: Any, button: int) -> None:
@@ -91,11 +91,11 @@ class CameraMouse:
 
     def _has_moved(self, io: Any) -> bool:
         x, y = self._pressed_at
-        click_distance = 4.0  # [window units] a press that moves less is a click, not a drag
+        click_distance = 4.0  # [window units]: a press with less motion is a click
         return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > click_distance)
 
     def _ray(self, io: Any) -> Ray:
-        """The ray through the mouse, in the viewport under it."""
+        """The ray through the mouse in the viewport under it."""
         width, height = self._stage.surface.size
         x = io.mouse_pos.x * width / max(io.display_size.x, 1.0)
         y = height - io.mouse_pos.y * height / max(io.display_size.y, 1.0)
@@ -104,18 +104,18 @@ class CameraMouse:
         return Ray.through(self._view.camera, under[-1].area, (x, y))
 
     def _skin_under(self, io: Any) -> Floats64 | None:
-        """The point of the mesh that the mouse is on."""
+        """The point of the mesh under the mouse."""
         scene = self._stage.scene
         return skin_under(self._ray(io), scene.positions, scene.faces)
 
     def _zoom(self, io: Any) -> None:
-        """Zoom so that the point under the mouse stays there: on skin, or as far as the target."""
+        """Zoom so that the point under the mouse stays: on skin, or at the target's distance."""
         camera = self._view.camera
         point = self._skin_under(io)
         before = self._view.camera.distance
         if point is None:
             point = self._ray(io).at_depth_of(camera.target, camera.axes()[2])
-        closest = 0.15 * camera.scene_radius  # lest a moving head comes too near
+        closest = 0.15 * camera.scene_radius  # so that a moving head stays far enough away
         room = float(np.linalg.norm(camera.eye - point)) / closest
         zoom_per_notch = 1.1
         camera.zoom(min(zoom_per_notch**io.mouse_wheel, max(room, 1.0)))
@@ -130,7 +130,7 @@ class Mouse(CameraMouse):
     def __init__(
         self, view: SceneView, stage: Stage, messages: Messages, grab: Grab, select_muscle: Select
     ) -> None:
-        """grab: makes a finger. select_muscle: called with the name of one that was clicked."""
+        """grab: makes a finger. select_muscle: takes the name of a clicked muscle."""
         super().__init__(view, stage)
         self._messages = messages
         self._grab = grab
@@ -138,7 +138,7 @@ class Mouse(CameraMouse):
 
     def forget(self) -> None:
         super().forget()
-        if self.skin_drag is not None:  # or the skin would hang there
+        if self.skin_drag is not None:  # or the skin would stay pulled
             self.skin_drag.drop()
         self.skin_drag = None
 
@@ -155,7 +155,7 @@ class Mouse(CameraMouse):
             self._view.hovered = self._muscle_under(io)
 
     def _muscle_under(self, io: Any) -> str | None:
-        """The muscle under the mouse, which a pull would take first; None beside the skin."""
+        """The muscle under the mouse, the first one for a pull; None beside the skin."""
         face = self._stage.scene.face
         point = None if face is None else self._skin_under(io)
         if face is None or point is None:

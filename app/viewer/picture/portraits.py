@@ -1,7 +1,7 @@
 """Small pictures of persons, to choose from: a process of low priority draws them, once.
 
-The window goes on meanwhile, and shows names until a picture comes. Pictures are kept in the user's
-cache, for the program as it is now.
+The window goes on meanwhile, and shows names until a picture comes. The user's cache keeps pictures
+for the present state of the program.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ from ...pictures import Image, save_png
 from ...scenes import BUILT_IN, build_face, called_head
 from ...workers import Send, WorkerPool, give_way, share_of_cores
 
-SIDE = 128  # of a picture [pixels]
+SIDE = 128  # of a square picture [pixels]
 
 
 class Portraits:
     """The pictures of a window."""
 
     def __init__(self, gl: moderngl.Context, wake: Callable[[], None]) -> None:
-        """gl: of the window. wake: called from a thread when a picture has come."""
+        """gl: the window's context. wake: a thread calls it when a picture has come."""
         self._gl = gl
         self._wake = wake
         self._pool = WorkerPool(share_of_cores())
@@ -46,7 +46,7 @@ class Portraits:
         self._textures: dict[int | str, moderngl.Texture] = {}
 
     def begin(self, people: Sequence[int | str]) -> None:
-        """Have pictures of these persons read or drawn, in this order, unless that has begun."""
+        """Begin to read or draw pictures of these persons in this order, unless this has begun."""
         if self._is_begun:
             return
         self._is_begun = True
@@ -55,7 +55,7 @@ class Portraits:
         thread.shutdown(wait=False)
 
     def _find(self, people: Sequence[int | str]) -> None:
-        """In a thread: take the pictures that are kept, and have the others drawn."""
+        """In a thread: take stored pictures, and let a process draw the others."""
         missing = []
         for who in people:
             image = kept_portrait(who)
@@ -65,7 +65,7 @@ class Portraits:
                 self._take((who, image))
         if not missing:
             return
-        # Without pictures there still are names: how the process ends matters to nobody.
+        # Names suffice without pictures, so the end of the process does not matter.
         self._pool.run(draw_portraits, missing, on_message=self._take, attempts=1)
 
     def _take(self, drawn: tuple[int | str, Image]) -> None:
@@ -93,29 +93,29 @@ class Portraits:
         return None if drawn is None else imgui.ImTextureRef(drawn.glo)
 
     def close(self) -> None:
-        """Draw no more."""
+        """Stop drawing."""
         self._pool.stop()
 
 
 def draw_portraits(people: Sequence[int | str], send: Send) -> None:
     """In a process: draw each person at rest, keep the picture, and send it with name or number."""
-    give_way(10)  # for the window to go on as fast
+    give_way(10)  # so that the window stays fast
     _remove_stale()
     for who in people:
         scene = build_face(None if who == BUILT_IN else called_head(who))
         with Capture(scene, CaptureOptions((SIDE, SIDE))) as capture:
             image = capture.draw_image()
-        with contextlib.suppress(UserError):  # it is drawn anew the next time
+        with contextlib.suppress(UserError):  # it is drawn again the next time
             save_png(_file_of(who), image)
         send((who, image))
 
 
 def kept_portrait(who: int | str) -> Image | None:
-    """The picture of a person that was kept, shape (SIDE, SIDE, 3); None if there is none."""
+    """The stored picture of a person, shape (SIDE, SIDE, 3); None if there is none."""
     try:
         with PIL.Image.open(_file_of(who)) as picture:
             image = np.asarray(picture.convert("RGB"))
-    except (OSError, SyntaxError, ValueError):  # missing, or no whole picture
+    except (OSError, SyntaxError, ValueError):  # missing, or incomplete
         return None
     return image if image.shape == (SIDE, SIDE, 3) else None
 
@@ -126,12 +126,12 @@ def _file_of(who: int | str) -> Path:
 
 @cache
 def _program() -> str:
-    """A digest of the program as it is installed: where a file of it changes, so may pictures."""
+    """A digest of the installed program: if one of its files changes, pictures may, too."""
     digest = hashlib.sha256(risorius.__version__.encode())
     for package in (risorius, app, assets, refine, render, sim):
         for folder in map(Path, package.__path__):
             for file in sorted(folder.rglob("[!.]*.*")):
-                if file.suffix == ".pyc":  # which Python makes
+                if file.suffix == ".pyc":  # Python makes these
                     continue
                 status = file.stat()
                 name = file.relative_to(folder)
@@ -140,7 +140,7 @@ def _program() -> str:
 
 
 def _remove_stale() -> None:
-    """Remove the pictures that another state of the program drew."""
+    """Remove pictures from another state of the program."""
     present = _file_of(BUILT_IN).parent
     for folder in present.parent.glob("portraits-*"):
         if folder != present:

@@ -1,7 +1,7 @@
-"""The skin under the mouse: where that is, which muscle is there, and a finger that pulls it.
+"""The skin under the mouse: its place, its muscle, and a finger that pulls it.
 
-Muscles and jaw alone bring the skin as near to the mouse as they can (sim.Pull): so it stays where
-it is seen when it is let go. Skin that is only pulled hangs on springs.
+Muscles and jaw alone bring the skin as near to the mouse as they can (sim.Pull), so it keeps its
+visible place after its release. Skin that is only pulled hangs on springs.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Ray:
 def skin_under(ray: Ray, positions: Floats64, faces: npt.NDArray[Any]) -> Floats64 | None:
     """The nearest point of the mesh that the ray meets from outside, or None.
 
-    Only triangles whose corners lie around the ray are asked.
+    Only triangles whose corners lie around the ray are tested.
     """
     axes = np.linalg.svd(ray.direction[None])[2][1:]  # across the ray
     # A ray that meets an edge must not slip between its two triangles by the last bit.
@@ -81,7 +81,7 @@ class SkinDrag:
     def __init__(
         self, session: Session, settings: Settings, point: Floats64, sight: Floats64, poses: bool
     ) -> None:
-        """sight: direction in which the point is seen. poses: whether muscles shall hold it."""
+        """sight: direction of the view to the point. poses: whether muscles shall hold the skin."""
         self._session = session
         self._sight = sight
         self.point = point
@@ -98,27 +98,27 @@ class SkinDrag:
         self.offset = np.zeros(3)
         self._solved = np.zeros(3)
         self._due = 0.0
-        self._line: Message = None  # of the last answer; shown as long as the finger is there
-        poses = poses and not session.live_override.is_on  # which poses the face itself
+        self._line: Message = None  # of the last answer; shown while the finger is there
+        poses = poses and not session.live_override.is_on  # a live face sets the pose itself
         rest = self._simulation.rest_positions[self._vertices]
         is_aside = abs(rest[:, 0].mean() - session.scene.framing.focus[0]) > finger_radius
         self._candidates = (
             _candidates(session, linked=settings.is_linked, is_aside=is_aside) if poses else []
         )
-        self._own: dict[str, float] = {}  # values of solved controls before
-        self._pull: sim.Pull | None = None  # from the first motion on: a click need not wait
+        self._own: dict[str, float] = {}  # former values of solved controls
+        self._pull: sim.Pull | None = None  # made at the first motion: a click need not wait
 
     def to(self, point: Floats64) -> Message:
-        """Drag to a point, or toward it if that is too far; once in each frame."""
+        """Drag to a point, or toward a point too far away; once in each frame."""
         self.offset = offset = point - self.point
         if not self._candidates:
             length = float(np.linalg.norm(offset))
-            most_drag_distance = 45.0  # [mm] that a finger drags, lest the skin turns inside out
+            most_drag_distance = 45.0  # [mm] of a drag: more would turn the skin inside out
             shortened = most_drag_distance * np.tanh(length / most_drag_distance)
             offset = offset * (shortened / max(length, 1e-9))
             self._simulation.touch.drag(self._vertices, self._from + offset, self._firmness)
             return None
-        # A dense head takes long: at least half of the time is for the picture.
+        # A dense head takes long, so at least half of the time is reserved for the picture.
         begin = time.perf_counter()
         if begin < self._due or np.array_equal(offset, self._solved):
             return self._line
@@ -131,7 +131,7 @@ class SkinDrag:
         return muscle_at(self._simulation, self.point)
 
     def let_go(self) -> Message:
-        """End the drag: skin stays where muscles hold it, or swings back; the solved controls."""
+        """End the drag: muscles hold the skin, or it swings back; return the solved controls."""
         self.drop()
         if self._pull is None:
             return None
@@ -155,7 +155,7 @@ class SkinDrag:
         pull.targets = self._at_rest + self.offset
         pull.solve()
         solved = {name: value for names, value in pull.changes.items() for name in names}
-        present = self._session.values  # others may move meanwhile, by a script that is recorded
+        present = self._session.values  # a recorded script may move others meanwhile
         self._own = {name: present[name] for name in solved} | self._own
         for name, value in {**self._own, **solved}.items():
             if value != present[name]:
@@ -167,14 +167,14 @@ class SkinDrag:
 
 
 def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple[str, ...]]:
-    """The controls that a finger on the skin may move, in one tuple those that go together.
+    """The controls that a finger on the skin may move; a tuple holds those that move together.
 
-    Beside the middle (`is_aside`) linked sides move alike, so nothing goes to one of them.
+    Beside the middle (`is_aside`) linked sides move alike, so no control moves to one side.
     """
     found = list[tuple[str, ...]]()
     values = session.values
     lowest = session.scene.simulation.controls.lowest  # type: ignore[attr-defined]
-    # Of controls that no finger on the skin moves.
+    # Groups of controls that no finger on the skin moves.
     unpulled_prefixes = ("gaze_", "head_", "tongue_", "lips_closed")
     for name in lowest:
         twin = twin_of(name)

@@ -1,11 +1,11 @@
-"""The scene in the window: its camera, viewports, colours and overlays, and when it is drawn.
+"""The scene in the window: camera, viewports, colours, overlays, and the times of drawing.
 
-Draws by `Pipeline.draw`, as films do, and keeps the time of each part of the paper's Figure 1. It
-draws if something has changed, and while it moves as finely as this machine can. A scene that
-stands still, a screenshot and a film are always drawn in full. While something moves, frames that
-are too slow let the detail fall at once to the level that is expected to be fast enough. It rises
-by one level where a new motion begins, or after a second or two of ample time. Between slow and
-ample lies more than one level, so it does not swing to and fro.
+It is drawn by `Pipeline.draw`, like films, and each part of the paper's Figure 1 is timed. It is
+drawn if something has changed, and, during motion, as finely as this machine can. A scene at rest,
+a screenshot and a film are always drawn in full. During motion, slow frames reduce the detail at
+once to the level that is expected to be fast enough. The detail rises by one level when a new
+motion begins, or after a second or two with ample time. More than one level lies between slow and
+ample, so the detail does not oscillate.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class SceneView:
     """One view of a session's scene.
 
     area: the scene's part of the window: left, top, width, height [window units].
-    pointed: the muscles of the control that the mouse is on, and how much each has to do with it.
+    pointed: the muscles of the control under the mouse, with their shares.
     hovered: the muscle under the mouse on the skin; None beside it.
     """
 
@@ -60,12 +60,12 @@ class SceneView:
         self.camera = whole_scene(self._session.scene, script.camera)
 
     def look_from(self, label: str) -> None:
-        """Turn the camera to one of `render.VIEWS`, about the point that it looks at."""
+        """Turn the camera to one of `render.VIEWS`, about its target."""
         self.camera.yaw, self.camera.pitch = render.VIEWS[label.lower().replace(" ", "-")]
 
     @property
     def display(self) -> Display:
-        """How the scene is drawn."""
+        """The display settings of the scene."""
         return self._settings.display
 
     @property
@@ -82,9 +82,9 @@ class SceneView:
         return self.pixels(self.area)
 
     def pixels(self, area: tuple[float, float, float, float]) -> render.Rectangle:
-        """A part of the window, as one of the framebuffer."""
+        """A part of the window in pixels of the framebuffer."""
         display = imgui.get_io().display_size
-        width, height = self._surface.frame_size  # of the picture that is drawn next
+        width, height = self._surface.frame_size  # size of the next picture
         across = width / max(display.x, 1.0)
         along = height / max(display.y, 1.0)
         left, top, wide, high = area
@@ -94,12 +94,12 @@ class SceneView:
 
     @property
     def letter(self) -> float:
-        """How large words are in the window [pixels]: captions are no smaller."""
+        """Size of words in the window [pixels]; captions have at least this size."""
         return self.pixels((0.0, 0.0, em(), 1.0))[2]
 
     @property
     def state(self) -> object:
-        """Everything that the picture depends on, but for the motion of the scene."""
+        """All that the picture depends on, except the motion of the scene."""
         display = repr(asdict(self.display))
         camera = self.camera
         lens = camera.field_of_view
@@ -136,19 +136,19 @@ class Stage:
         self.set_scene(scene, display)
 
     def set_scene(self, scene: Drawable, display: Display) -> None:
-        """Draw this scene from here on."""
+        """Draw this scene from now on."""
         self.scene = scene
         self.pipeline = Pipeline(scene, render.Renderer(self.surface))
         self._tone: float | None = None
-        # The mesh as it is, and as the refiner that is chosen has it drawn.
+        # The unrefined mesh, and the mesh of the chosen refiner.
         self.refined = self.static = self.pipeline.bind(Refinement(refiner=STATIC))
         self.beside = self.static  # at the left of a comparison
-        self._asked: Refinement | None = None  # the one that is bound
+        self._asked: Refinement | None = None  # the bound refinement
         self._asked_beside = Refinement(refiner=STATIC)
         self.bind(display)
 
     def bind(self, display: Display) -> None:
-        """Bind the refiners that `display` asks for; UserError if one refuses its options."""
+        """Bind the refiners of `display`; UserError if one refuses its options."""
         tone = TONES[display.tone]
         if tone != self._tone:
             self.pipeline.set_tone(tone)
@@ -161,16 +161,16 @@ class Stage:
         chosen = display.refinement_on(self.scene)
         if chosen == self._asked:
             return
-        self._asked = chosen  # refused options are refused once, not in every frame
+        self._asked = chosen  # so wrong options give one error, not one in every frame
         is_static = chosen.refiner == STATIC
         self.refined = self.static if is_static else self.pipeline.bind(chosen)
 
     def give_up_refinement(self) -> None:
-        """Draw the mesh as it is until another refinement is asked for."""
+        """Draw the unrefined mesh until another refinement is requested."""
         self.refined = self.static
 
     def viewports(self, display: Display, area: render.Rectangle) -> list[Viewport]:
-        """The viewports in an area of the frame: one, or one for each side of a comparison."""
+        """The viewports in an area of the frame: one, or two for a comparison."""
         left, bottom, width, height = area
         if display.compare == "off" or width < 2:  # less than a pixel for each
             return [Viewport(self.refined if display.is_refined else self.static, area)]
@@ -184,7 +184,7 @@ class Stage:
         return [Viewport(self.beside, first), Viewport(self.refined, second)]
 
     def draw(self, view: SceneView, *, is_photo: bool = False) -> None:
-        """Draw the scene as finely as the surface's `detail` says; a photo without the mouse's."""
+        """Draw the scene with the surface's `detail`; a photo omits overlays of the mouse."""
         display = view.display
         timed = self._times.timed
         viewports = self.viewports(display, view.viewport)
@@ -229,10 +229,10 @@ class Stage:
 def pointed_lines(
     scene: Drawable, shares: Mapping[str, float], clarity: float = 0.9
 ) -> list[render.Lines]:
-    """The muscle fibres of a control under the mouse: the larger a muscle's share, the clearer.
+    """The muscle fibres of a control under the mouse; larger shares are clearer.
 
-    shares: name of a muscle -> its share; a name without side means both. clarity: the opacity of
-    the muscle with the largest share.
+    shares: name of a muscle -> its share; a name without side means both sides. clarity: the
+    opacity of the muscle with the largest share.
     """
     face = scene.face if shares else None
     fibres = {} if face is None else face.simulation.anatomy.fibres()
@@ -259,7 +259,7 @@ def _map_behind(light: str) -> render.MapBackground:
 def style_of(
     display: Display, background: render.Background | render.MapBackground | None
 ) -> render.Style:
-    """The renderer's style for the display that the user chose."""
+    """The renderer's style for the user's display settings."""
     is_textured, albedo = SKINS[display.skin]
     return render.Style(
         shading=render.Shading(display.shading),
@@ -287,17 +287,17 @@ LEVELS = (
 # (measured 2026-11-29).
 COSTS = 1.0, 0.8, 0.7, 0.61, 0.54
 PATIENCE_FRAMES = 4  # frames in a row that decide
-CALM_FRAMES = 40  # frames in a row after which a picture may become finer while it moves
+CALM_FRAMES = 40  # frames in a row after which a moving picture may become finer
 
 
 class LevelOfDetail:
     """Picks a level of detail by the time that frames took."""
 
-    FIRST_SOFTWARE_LEVEL = 1  # lest the first second stutters
+    FIRST_SOFTWARE_LEVEL = 1  # to avoid stutter in the first second
 
     def __init__(self, *, is_software: bool) -> None:
         self.level = self.FIRST_SOFTWARE_LEVEL if is_software else 0
-        self._slow: list[float] = []  # [s] of the last frames, all too slow
+        self._slow: list[float] = []  # times of the last frames [s], all too slow
         self._fast = 0
 
     @property
@@ -307,11 +307,11 @@ class LevelOfDetail:
 
     @property
     def unhurried(self) -> render.Detail:
-        """The detail for a scene that seldom moves: the first one for software, or a finer one."""
+        """The detail for a scene that seldom moves: software's first level, or a finer one."""
         return LEVELS[min(self.level, self.FIRST_SOFTWARE_LEVEL)]
 
     def begin_motion(self) -> None:
-        """Note that a motion begins: the one moment at which more detail goes unnoticed."""
+        """Note that a motion begins: at this moment nobody notices more detail."""
         if self._fast >= PATIENCE_FRAMES:
             self._rise()
         self._forget()
@@ -319,7 +319,7 @@ class LevelOfDetail:
     def note(self, seconds: float) -> None:
         """Note the whole time of a frame of a moving scene [s]."""
         slow_seconds = 0.045  # [s] a frame; more than 20 a second are promised
-        ample_seconds = 0.024  # [s] a frame at which the next finer level is safe
+        ample_seconds = 0.024  # [s] a frame: the next finer level is then safe
         self._slow = [*self._slow, seconds] if seconds > slow_seconds else []
         self._fast = self._fast + 1 if seconds < ample_seconds else 0
         if len(self._slow) >= PATIENCE_FRAMES:
@@ -350,11 +350,11 @@ class Painter:
         self._view = view
         self._messages = messages
         self.level_of_detail = LevelOfDetail(is_software=stage.surface.is_software)
-        self._calm_for = 0.0  # [s] that the picture has not changed
+        self._calm_for = 0.0  # [s] without a change of the picture
         self.forget()
 
     def forget(self) -> None:
-        """Draw anew: the last picture is out of date."""
+        """Note that the last picture is out of date."""
         self._painted: tuple[object, render.Detail] = (None, FULL_DETAIL)
 
     @property
@@ -391,7 +391,7 @@ class Painter:
         self._stage.surface.labels = ()
         try:
             self._stage.draw(self._view)
-        except PlugInError as error:  # work goes on, and the mesh is drawn as it is
+        except PlugInError as error:  # work goes on, with the unrefined mesh
             self._messages.say(str(error), error=True)
             self._stage.give_up_refinement()
             self._stage.draw(self._view)

@@ -1,4 +1,4 @@
-"""The user's document: the controls of a scene, states that can be undone, a script's file."""
+"""The user's document: the controls of a scene, undo, a script's file."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from ...script.script_file import preface_of, save_script
 class SceneControls:
     """Every control of every layer (muscles, jaw, gaze, action units, expressions, visemes).
 
-    limits: the lowest and highest value of each. muscles: the lowest ones, to which all others add
-    up; all controls of a scene without layers. groups: title -> controls, the highest layer first;
-    those of both sides of a muscle are found beside its sides.
+    limits: the lowest and highest value of each. muscles: the lowest controls, to which all others
+    add; all controls of a scene without layers. groups: title -> controls, the highest layer first;
+    controls for both sides of a muscle are beside its sides.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -41,7 +41,7 @@ class SceneControls:
         }
 
     def alone(self, name: str) -> ControlValues:
-        """This control at its most, and no other."""
+        """This control at its limit, and no other."""
         return self.limits.pose({name: self.limits[name][1]})
 
     def moved_by(self, values: Mapping[str, float]) -> frozenset[str]:
@@ -59,7 +59,7 @@ class LiveOverride:
         self.take({}, 0.0)
 
     def take(self, controls: Mapping[str, float], share: float) -> None:
-        """Override these controls from now on, and no others; unknown names are left out."""
+        """From now on override only these controls; unknown names are left out."""
         if (names := tuple(controls)) != self._names:  # a stream has the same in each frame
             self._names = names
             self._known = tuple(name for name in names if name in self._limits)
@@ -70,11 +70,11 @@ class LiveOverride:
 
     @property
     def is_on(self) -> bool:
-        """Whether anything is overridden."""
+        """Whether any control is overridden."""
         return self._share > 0.0
 
     def over(self, values: ControlValues) -> ControlValues:
-        """The values, overridden: a mean of two values is within their limits, too."""
+        """The overridden values; a mean of two values is also within their limits."""
         if not self._share:
             return values
         numbers = values.numbers.copy()
@@ -86,9 +86,9 @@ _QUOTED = re.compile(r"""'[^'\n]*'|"(?:\\.|[^"\\\n])*\"""")
 
 
 class ScriptFile:
-    """The file of one script, through all of its changes; undo and redo share it.
+    """The file of one script through all its changes; undo and redo share it.
 
-    path: None as long as no file of the user's holds the script.
+    path: None as long as no file of the user holds the script.
     """
 
     def __init__(self, path: Path | None, saved: Script) -> None:
@@ -98,19 +98,19 @@ class ScriptFile:
 
     @classmethod
     def of(cls, script: Script) -> ScriptFile:
-        """The file that a script was read from; examples and recordings are no file to save to."""
+        """The file of a script; examples and recordings have no file to save to."""
         path = Path(script.source)
         is_own = not script.is_converted and path.is_file()
         is_own = is_own and not path.resolve().is_relative_to(str(files("risorius.assets")))
         return cls(path if is_own else None, script)
 
     def differs(self, script: Script) -> bool:
-        """Whether saving would change anything."""
+        """Whether saving would change the file."""
         return script is not self._saved and script != self._saved
 
     @property
     def objection(self) -> str:
-        """The loss by writing the file unasked, in words; "" for none."""
+        """The loss if the file were written unasked, in words; "" for none."""
         if self.path is None or not self.path.exists():
             return ""
         if _bytes_of(self.path) != self._bytes:
@@ -119,12 +119,12 @@ class ScriptFile:
 
     @property
     def _has_comments(self) -> bool:
-        """Whether there are comments that are not kept: all but those at the head."""
+        """Whether there are comments that would be lost: all except those at the head."""
         text = (self._bytes or b"").decode(errors="replace")
         return "#" in _QUOTED.sub("", text.removeprefix(preface_of(text)))
 
     def save(self, script: Script, path: Path) -> None:
-        """Write the script, which from now on is kept there; raises UserError if it cannot be."""
+        """Write the script to its new file; raises UserError if this fails."""
         save_script(path, script)
         self.path = path
         self._saved = script
@@ -143,47 +143,47 @@ def _bytes_of(path: Path | None) -> bytes | None:
 class Document:
     """A pose, a script, and the file of the script."""
 
-    values: Mapping[str, float] | None  # set by hand, those not 0; None: as the script has them
+    values: Mapping[str, float] | None  # set by hand, without zeros; None: the script's values
     script: Script
-    file: ScriptFile  # in which the script is kept
-    time: float = field(default=0.0, compare=False)  # [s] at which the pose was made
+    file: ScriptFile  # the script's file
+    time: float = field(default=0.0, compare=False)  # [s] of the pose's time
 
 
 State = TypeVar("State")
 
 
 class History(Generic[State]):
-    """The states that there were; the last one noted is the present."""
+    """The noted states; the last one is the present."""
 
     def __init__(self, present: State) -> None:
         self._states = [present]
-        self.place = 0  # of the present among them
+        self.place = 0  # of the present state among them
 
     @property
     def can_undo(self) -> bool:
-        """Whether there is something before the present."""
+        """Whether a state before the present exists."""
         return self.place > 0
 
     @property
     def can_redo(self) -> bool:
-        """Whether something was undone."""
+        """Whether an undone state exists."""
         return self.place < len(self._states) - 1
 
     @property
     def present(self) -> State:
-        """The state noted last, or come back to."""
+        """The state that was noted, or returned to, last."""
         return self._states[self.place]
 
     def note(self, state: State) -> None:
-        """Note a change; states undone before are forgotten. Equal states count once."""
+        """Note a change, and forget undone states. Equal states count once."""
         if state == self.present:
             return
         self._states[self.place + 1 :] = [state]
-        del self._states[:-100]  # the states that are kept
+        del self._states[:-100]  # number of kept states
         self.place = len(self._states) - 1
 
     def amend(self, state: State) -> None:
-        """Replace the present state; that is no step of undo."""
+        """Replace the present state without a step of undo."""
         self._states[self.place] = state
 
     def go(self, place: int) -> State:

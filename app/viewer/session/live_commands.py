@@ -1,4 +1,4 @@
-"""A live face in the window: begin and end it, calibrate it, and let it override the session.
+"""A live face in the window: its commands, its calibration, and its override of the session.
 
 The live face overrides sliders and script; these keep the controls that it does not name.
 """
@@ -13,7 +13,7 @@ from ...live.protocols import Listening, own_address
 from ..messages import Message
 from .session import Session
 
-PACKET_WAIT = 0.008  # [s] that a frame waits for a packet: half a frame of the phone's
+PACKET_WAIT = 0.008  # [s] that a frame waits for a packet: half a phone's frame
 
 
 def check_scene(name: str) -> None:
@@ -23,19 +23,19 @@ def check_scene(name: str) -> None:
 
 
 class LiveCommands:
-    """Commands of menus and panels for a live face, and questions of the window about it.
+    """Commands of menus and panels for a live face, and its state for the window.
 
     wanted: protocol, address and port for `toggle`; settable.
-    face: the live face, None while the window does not listen.
+    face: the live face, or None if the window does not listen.
     own_address: the address to which a phone must send, "" without a network.
     """
 
     def __init__(
         self, session: Session, show_panel: Callable[[], None], wake: Callable[[], None]
     ) -> None:
-        """show_panel: is called when a live face begins, and shows the panel with its state.
+        """show_panel: shows the panel with the live face's state; called at its beginning.
 
-        wake: makes a window that waits for events go on; it is called from another thread.
+        wake: wakes a window that waits for events; another thread calls it.
         """
         self._session = session
         self._show_panel = show_panel
@@ -43,7 +43,7 @@ class LiveCommands:
         self.wanted = Listening("livelink")
         self.face: LiveFace | None = None
         self.own_address = ""
-        self.has_changed = False  # the sender's state in words, in the last `advance`
+        self.has_changed = False  # whether the last `advance` changed the sender's state in words
         self._shown: object = None
 
     # Commands
@@ -84,16 +84,16 @@ class LiveCommands:
             self.face.calibrate()
         return "Hold a neutral face, eyes on the camera ..."
 
-    # Questions of the window
+    # State for the window
 
     def advance(self, seconds: float) -> Message:
-        """Take in the packets that came; their face overrides the session's controls."""
+        """Read the packets that came; their face overrides the session's controls."""
         face = self.face
         if face is None:
             self.has_changed = False
             return None
         was_calibrating = face.is_calibrating
-        face.advance(min(seconds, 0.1))  # of easing, after a longer frame, too
+        face.advance(min(seconds, 0.1))  # [s] of easing at most, even after a longer frame
         shown = face.state, face.received > 0
         self.has_changed = shown != self._shown
         self._shown = shown
@@ -109,19 +109,19 @@ class LiveCommands:
 
     @property
     def has_frame(self) -> bool:
-        """Whether a frame has come that woke the window, and that `advance` has not taken in."""
+        """Whether a frame woke the window and `advance` has not read it."""
         return self.face is not None and self.face.has_frame
 
     @property
     def is_busy(self) -> bool:
-        """Whether something is about to change without a packet."""
+        """Whether something will soon change without a packet."""
         return self.face is not None and (self.face.is_easing or self.face.is_calibrating)
 
     @property
     def is_receiving(self) -> bool:
-        """Whether a face is seen, and another packet can be expected soon."""
+        """Whether a face is visible, and another packet can be expected soon."""
         return self.face is not None and self.face.state is State.RECEIVING
 
     def due_in(self) -> float:
-        """How long the window may sleep [s]: until the face is lost, if nothing comes."""
+        """Time that the window may sleep [s]: until the face is lost without packets."""
         return LOST_AFTER - self.face.silence if self.face and self.is_receiving else float("inf")

@@ -1,9 +1,9 @@
-"""When the simulation takes its steps: as real time goes, and none for a face at rest.
+"""Times of the simulation's steps: real time, and none for a face at rest.
 
-Real time is cut into steps of the same length, which no frame rate can upset. Source: Fiedler 2004,
-"Fix your timestep!". While nobody moves the face, and somebody may look, it lives by itself: that
-adds to controls that are 0, and to no other. No slider moves, nothing is recorded, saved or undone;
-that it begins and ends softly is left to the muscles.
+Real time is cut into steps of equal length, independent of the frame rate. Source: Fiedler 2004,
+"Fix your timestep!". While nobody moves the face, it has idle life, which only adds to controls
+that are 0. No slider moves, and idle life is not recorded, saved or undone; the muscles make it
+begin and end softly.
 """
 
 from __future__ import annotations
@@ -23,34 +23,35 @@ from ...errors import UserError
 from ...motion.life import Idle, Values
 from .session import Session
 
-STEP = 1.0 / 60.0  # [s] as in films and tests; the simulation divides it further by itself
-MOST_STEPS = 6  # a tenth of a second, which a stalled window catches up
-# Of a step that may be taken before it is due: a screen of 60 Hz that is now a little late and now
-# early gets one step for each of its frames, and motion does not judder.
+STEP = 1.0 / 60.0  # [s], as in films and tests; the simulation divides it further
+MOST_STEPS = 6  # a tenth of a second that a stalled window catches up
+# Share of a step that may be taken before it is due: frames of a 60 Hz screen that are a little
+# late or early then get one step each, and motion does not stutter.
 EARLY_SHARE = 0.25
-CALM_SECONDS = 0.15  # [s] without change before physics rests and the scene is drawn in full
+CALM_SECONDS = 0.15  # [s] without change until physics rests and the scene is drawn in full
 PHASES = ("simulation", "refinement", "upload", "draw")  # of the paper's Figure 1
 
-Life = Callable[[float], Mapping[str, float]]  # values to add to controls, so much [s] later
+Life = Callable[[float], Mapping[str, float]]  # seconds -> values to add to controls
 
 
 class FrameTimes:
     """Milliseconds of the last frames that were drawn, for the window and benchmarks.
 
-    milliseconds: by phase. whole: of frames with events and panels, up to the frame after.
-    steps: of the simulation.
+    milliseconds: times by phase. whole: those of frames with events and panels, up to the next
+        frame.
+    steps: numbers of steps of the simulation.
     """
 
     def __init__(self) -> None:
         self.clear()
 
     def clear(self) -> None:
-        """Forget all frames: those to come are of another scene."""
+        """Forget all frames: the next ones show another scene."""
         kept_frames = 60
         self.milliseconds = {name: deque([0.0], kept_frames) for name in PHASES}
         self.whole = deque([0.0], kept_frames)
         self.steps = deque([0], kept_frames)
-        self._is_over = False  # the last frame
+        self._is_over = False  # whether the last frame is complete
 
     @contextmanager
     def timed(self, phase: str) -> Iterator[None]:
@@ -71,7 +72,7 @@ class FrameTimes:
         self._is_over = True
 
     def median(self, phase: str) -> float:
-        """The median of a phase [ms], of the frames in which it was done; 0 before the first."""
+        """The median of a phase [ms] over the frames with this phase; 0 before the first."""
         times = [each for each in self.milliseconds[phase] if each > 0.0]
         return float(np.median(times)) if times else 0.0
 
@@ -83,15 +84,15 @@ class FrameTimes:
 
 
 class Clock:
-    """Counts the steps that are due; time left over waits for the next call."""
+    """Counts the due steps; remaining time is kept for the next call."""
 
     def __init__(self) -> None:
         self._owed = 0.0
 
     def steps(self, elapsed: float, early: float = EARLY_SHARE) -> int:
-        """How many steps to take after `elapsed` more seconds; the rest of a stall is forgotten.
+        """Number of steps after `elapsed` more seconds; the rest of a stall is forgotten.
 
-        early: of a step that may be taken before it is due.
+        early: share of a step that may be taken before it is due.
         """
         self._owed += max(elapsed, 0.0)
         due = max(int(self._owed / STEP + early), 0)
@@ -112,25 +113,25 @@ class Physics:
         self.begin_anew()
 
     def begin_anew(self) -> None:
-        """Begin with another scene, which may move at once."""
+        """Begin again with another scene, which may move at once."""
         self._times.clear()
-        self.has_moved = False  # since the last frame in which it had, as far as one can see
-        self._seen = self._session.scene.positions.copy()  # in that frame
+        self.has_moved = False  # whether it moved visibly since `_seen`
+        self._seen = self._session.scene.positions.copy()  # at the last visible motion
         self._seen_bones = self._session.scene.bone_transforms()
-        self._left_for = 0.0  # [s] that nobody has moved the face
-        self._posed: ControlValues | None = None  # at the last step
-        self._still_at = self._seen  # where vertices were when they last moved
-        self._still_for = 0.0  # [s] that no vertex has moved from there
+        self._left_for = 0.0  # [s] without a user's motion of the face
+        self._posed: ControlValues | None = None  # values at the last step
+        self._still_at = self._seen  # vertices at their last motion
+        self._still_for = 0.0  # [s] without motion from there
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether nothing has moved for some time."""
+        """Whether the face has rested for some time."""
         return self._still_for > CALM_SECONDS
 
     @property
     def is_left_alone(self) -> bool:
-        """Whether nobody has moved the face for some time, and it does no more than live."""
-        left_alone_seconds = 0.5  # [s] after which a face that nobody moved any more only lives
+        """Whether nobody has moved the face for some time, and it only has idle life."""
+        left_alone_seconds = 0.5  # [s] without a user's motion until only idle life is left
         return self._left_for > left_alone_seconds
 
     def advance(
@@ -141,12 +142,12 @@ class Physics:
         is_urgent: bool = False,
         life: Life | None = None,
     ) -> None:
-        """Take the steps that are due; none for a face at rest that neither a user nor life moves.
+        """Take the due steps; none for a resting face that neither a user nor idle life moves.
 
         is_skin_dragged: whether the mouse drags the skin. is_urgent: whether a live face has just
-        moved. UserError if the simulation gave up.
+        moved. Raises UserError if the simulation failed.
         """
-        # The same for a packet of a live face, which must not wait a frame.
+        # The same share for a packet of a live face, which must not wait for a frame.
         urgent_early_share = 0.95
         steps = self._clock.steps(seconds, urgent_early_share if is_urgent else EARLY_SHARE)
         session = self._session
@@ -155,17 +156,17 @@ class Physics:
         is_driven = session.is_playing or session.is_recording or is_skin_dragged
         is_driven = is_driven or wanted != self._posed
         self._left_for = 0.0 if is_driven or life is None else self._left_for + steps * STEP
-        if is_driven:  # even in a frame too short for a step: the window must not go to sleep
+        if is_driven:  # even in a frame too short for a step: the window must stay awake
             self._still_for = 0.0
         self.has_moved = False
         if steps == 0 or (life is None and self.is_at_rest):
             return
         self._posed = wanted
         self._step(steps, life)
-        # In some poses lips in contact tremble by 0.006 mm, which nobody sees and nothing ends.
+        # In some poses touching lips tremble forever by an invisible 0.006 mm.
         still_distance = 0.01  # [mm]
         moved = float(np.abs(scene.positions - self._still_at).max(initial=0.0))
-        # Muscles follow late: a face that has not moved yet may be about to.
+        # Muscles follow late: a face that has not moved yet may move soon.
         if is_driven or moved > still_distance:
             self._still_at = scene.positions.copy()
             self._still_for = 0.0
@@ -192,20 +193,20 @@ class Physics:
                 raise UserError(str(error)) from None
 
     def _is_to_be_seen(self) -> bool:
-        """Whether the face has moved enough since it was last seen to move."""
+        """Whether the face has moved visibly since its last visible motion."""
         scene = self._session.scene
-        seen_distance = 0.2  # [mm] of motion that is drawn while it only lives: about half a pixel
+        seen_distance = 0.2  # [mm] of idle motion that is drawn: about half a pixel
         if float(np.abs(scene.positions - self._seen).max(initial=0.0)) > seen_distance:
             return True
         turns = (
             float(np.abs(matrix[:3, :3] - self._seen_bones[name][:3, :3]).max())
             for name, matrix in scene.bone_transforms().items()
         )
-        eye_radius = 12.0  # [mm] about: of how far a turning eye moves
+        eye_radius = 12.0  # [mm], to convert turns of an eye into motion
         return max(turns, default=0.0) * eye_radius > seen_distance
 
 
-SLEEP_DELAY = 600.0  # [s] without input: the user has gone, and the machine may rest
+SLEEP_DELAY = 600.0  # [s] without input: the user has left, and the machine may rest
 
 
 class IdleLife:
@@ -222,7 +223,7 @@ class IdleLife:
         self._is_wanted = is_wanted
         self._eye = eye
         self._idle = Idle(session.scene)
-        self._time = 0.0  # of its life [s]
+        self._time = 0.0  # of idle life [s]
         self._without_input = 0.0  # [s]
 
     def note_input(self) -> None:
@@ -231,10 +232,10 @@ class IdleLife:
 
     @property
     def is_on(self) -> bool:
-        """Whether the face lives now.
+        """Whether the face has idle life now.
 
-        A script that is played, recorded or looked through moves it alone, until it has ended, and
-        so does a live face, until it is lost.
+        A script that is played, recorded or scrubbed moves the face alone until it has ended, and
+        so does a live face until it is lost.
         """
         session = self._session
         if not self._is_wanted() or session.scene.face is None:
@@ -244,9 +245,9 @@ class IdleLife:
         return not (is_moved or session.live_override.is_on) and self._without_input < SLEEP_DELAY
 
     def after(self, seconds: float, *, is_held: bool) -> Values:
-        """The values to add to the controls, `seconds` later than the last time.
+        """The values to add to the controls, `seconds` after the last call.
 
-        is_held: the user has hold of something, so that the face does no more than look at him.
+        is_held: whether the user holds something, so that the face only looks at the user.
         """
         if not self.is_on:
             return {}

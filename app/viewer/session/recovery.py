@@ -1,9 +1,9 @@
-"""Unsaved work survives the end of the window: a signal, a crash, a closed terminal.
+"""Unsaved work that survives the end of the window: a signal, a crash, a closed terminal.
 
 A script beside the settings keeps the work. It is written some seconds after a change, and when a
 signal stops the process. A pose by hand is a key in it. The file is removed when the work is saved
-or given up. The next window adds the time of writing to the name of a file that it finds, and the
-user can open it like any script. Of several windows with the same scene the first one locks the
+or discarded. The next window adds the time of writing to the name of a file that it finds, and the
+user can open this file like any script. The first of several windows with the same scene locks the
 file; the system releases the lock when the process ends.
 """
 
@@ -23,7 +23,7 @@ from ...staging import locked
 from ...stopping import cleaned_up_if_stopped
 from .session import Session
 
-INTERVAL = 2.0  # [s] after a change, in which further ones may come
+INTERVAL = 2.0  # [s] after a change, in which further changes may come
 
 
 class Recovery:
@@ -39,14 +39,14 @@ class Recovery:
         self._path = folder and folder / f"unsaved-{session.scene.name}.toml"
         self._lock: IO[Any] | None = None
         self._safe: object = None  # the state in the file
-        self._due = math.inf  # when the file is to be written
+        self._due = math.inf  # due time of the file
         self._writing_took = 0.0  # [s]
         self._is_failing = False
         if self._path is not None:
             with contextlib.suppress(OSError):
                 self._path.parent.mkdir(parents=True, exist_ok=True)
                 self._lock = locked(self._path.with_suffix(".lock"))
-                if self._lock is None:  # another window has it
+                if self._lock is None:  # another window has the lock
                     self._path = None
                 elif self._path.exists():
                     when = time.localtime(self._path.stat().st_mtime)
@@ -54,13 +54,13 @@ class Recovery:
                     self.found = self._path.replace(self._path.with_stem(kept))
 
     def watch(self) -> None:
-        """Note changes, and write the file when it is due; to be called in each turn of the loop.
+        """Note changes, and write the file when it is due; each turn of the loop calls this.
 
-        Raises UserError, once, where the file cannot be written.
+        Raises UserError, once, if the file cannot be written.
         """
         if self._path is None:
             return
-        pause_factor = 30.0  # or so many times the time of writing, lest a long recording stutters
+        pause_factor = 30.0  # or this many times the time of writing, for long recordings
         if not self._session.work.unsaved:
             if self._safe is not None:
                 self.discard()
@@ -73,11 +73,11 @@ class Recovery:
             self._due = self._clock() + max(INTERVAL, pause_factor * self._writing_took)
 
     def due_in(self) -> float:
-        """How long until the file is to be written [s]; infinite without a change."""
+        """Time until the file must be written [s]; infinite without a change."""
         return self._due - self._clock()
 
     def save(self) -> None:
-        """Write unsaved work; UserError, once, where the file cannot be written."""
+        """Write unsaved work; UserError, once, if the file cannot be written."""
         state = _state(self._session)
         if self._path is None or state == self._safe or not self._session.work.unsaved:
             return
@@ -90,13 +90,13 @@ class Recovery:
             self._is_failing = True
             if not is_reported:
                 raise UserError(f"unsaved work is not kept safe: {error}") from None
-        finally:  # writing that failed is tried again after the next change
+        finally:  # a failed write is repeated after the next change
             self._safe = state
             self._due = math.inf
             self._writing_took = time.perf_counter() - begin
 
     def discard(self) -> None:
-        """Remove the file: all work is saved, or knowingly given up."""
+        """Remove the file: all work is saved, or deliberately discarded."""
         if self._path is not None:
             with contextlib.suppress(OSError):
                 self._path.unlink(missing_ok=True)
@@ -114,13 +114,13 @@ class Recovery:
         self.discard()
 
     def close(self) -> None:
-        """Release the lock, and leave the file, if there is one, to the next window."""
+        """Release the lock, and leave an existing file to the next window."""
         if self._lock is not None:
             self._lock.close()
 
 
 def unsaved_script(session: Session) -> Script:
-    """The script with the recording, and with a pose by hand as a key at the time shown."""
+    """The script with the recording, and with a pose by hand as a key at the present time."""
     recorder = session.recorder
     script = (recorder.script() if recorder is not None else None) or session.script
     if _has_pose(session):
@@ -130,13 +130,13 @@ def unsaved_script(session: Session) -> Script:
 
 
 def _has_pose(session: Session) -> bool:
-    """Whether a pose by hand is unsaved; in a paused recording, whether controls were moved."""
+    """Whether a pose by hand is unsaved, or controls were moved in a paused recording."""
     missed = session.recorder.missed if session.recorder is not None else {}
     return session.work.has_unsaved_pose or (bool(missed) and not session.is_playing)
 
 
 def _state(session: Session) -> object:
-    """The state of unsaved work: two states differ where the work differs; quickly compared."""
+    """The state of unsaved work; two states differ if the work differs, and compare fast."""
     return (
         session.script if session.work.script_is_unsaved else None,
         session.values if _has_pose(session) else None,

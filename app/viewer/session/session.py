@@ -1,6 +1,6 @@
 """A user's work on a face: controls, a script in time, a recording, undo, unsaved work.
 
-This module knows the scene, which adds up all of `values`, and nothing of windows.
+This module knows the scene, which adds up all `values`, but no windows.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ class Session:
         self.time = 0.0
         self.speed = 1.0
         self.is_playing = self.is_looping = self.is_keying = False  # keying: hands set keys at once
-        self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
+        self.pose_is_unsaved = False  # made by hand; an expression's button can repeat itself
         self.is_following = any(self.values.numbers)  # the script; a neutral face need not yet
-        self._is_touched = False  # by hand, since something was noted
-        self._moved = set[str]()  # controls, by hand, since the face followed the script
+        self._is_touched = False  # by hand, since the last note
+        self._moved = set[str]()  # controls moved by hand since the face followed the script
         self.recorder: Recorder | None = None  # of the present recording
-        self.live_override = LiveOverride(scene.limits)  # is no part of states that can be undone
+        self.live_override = LiveOverride(scene.limits)  # not a part of undo
         self.history = History(self._document())
         self.work = Work(self)
 
     def move_to(self, scene: Scene) -> None:
-        """Continue with another scene, all else as it is; UserError if it has other controls."""
+        """Continue with another scene and the same work; UserError if it has other controls."""
         if scene.name != self.scene.name or not scene.limits.keys() >= self.controls.limits.keys():
             raise UserError(f"this window shows a {self.scene.name}, which has other controls")
         self.script.check(scene.limits)
@@ -57,10 +57,10 @@ class Session:
     # Controls by hand
 
     def set(self, name: str, value: float, *, linked: bool = False) -> None:
-        """Set a control within its limits, and if `linked` its twin; a script that plays stops."""
+        """Set a control within its limits, and its twin if `linked`; a playing script stops."""
         names = {name, twin_of(name)} if linked else {name}
         self.values = self.scene.limits.pose(dict.fromkeys(names, rounded(value)), self.values)
-        if self.recorder is not None:  # the script goes on, and this is held
+        if self.recorder is not None:  # the script goes on, and this value is held
             self.recorder.held.update((each, self.values[each]) for each in names)
         if not self.is_recording:
             self.is_playing = self.is_following = False
@@ -68,12 +68,12 @@ class Session:
             self._moved |= names
 
     def toggle_alone(self, name: str) -> None:
-        """Show this control alone at its most, or neutral if it is shown already."""
+        """Show this control alone at its limit, or the neutral face if it is shown already."""
         pose = self.scene.limits.pose({}) if self.is_alone(name) else self.controls.alone(name)
         self.set_pose(pose, is_unsaved=False)
 
     def is_alone(self, name: str) -> bool:
-        """Whether this control alone is not 0, and at its most."""
+        """Whether only this control is set, and at its limit."""
         return self.values == self.controls.alone(name)
 
     def neutral(self) -> None:
@@ -86,7 +86,7 @@ class Session:
         self.set_pose(self.scene.limits.pose(values))
 
     def set_pose(self, pose: ControlValues, *, is_unsaved: bool = True) -> None:
-        """Take a value for each control; a recording takes in those that differ."""
+        """Set a value for each control; a recording records those that differ."""
         if self.recorder is not None:
             self.recorder.held |= {n: v for n, v in pose.items() if v != self.values[n]}
         else:
@@ -99,19 +99,19 @@ class Session:
 
     @property
     def current(self) -> ControlValues:
-        """The value of each control now: by hand or script, overridden by a live face."""
+        """The present value of each control, by hand or script, overridden by a live face."""
         return self.live_override.over(self.values)
 
     @property
     def differing(self) -> frozenset[str]:
-        """The controls that hands moved away from the script; it takes a look into every track."""
+        """The controls that were moved by hand away from the script; this reads every track."""
         if self.is_following or self.is_recording:
             return frozenset()
         return frozenset(self._away(self.values))
 
     @property
     def touched(self) -> frozenset[str]:
-        """The controls that hands or a live face moved since the last key."""
+        """The controls moved by hand or by a live face since the last key."""
         return frozenset(self._moved.union(self._away(self.current)))
 
     def _away(self, values: ControlValues) -> list[str]:
@@ -124,9 +124,9 @@ class Session:
         return Document(values, self.script, self.file, self.time)
 
     def note(self) -> None:
-        """Note a complete change (a slider let go, a button pressed), to be undone."""
+        """Note a complete change (a released slider, a pressed button) for undo."""
         if self.is_recording:
-            return  # that is one change, when it ends
+            return  # a recording is one change, noted at its end
         is_touched, self._is_touched = self._is_touched, False
         if is_touched and self.is_keying and self.differing:
             self._key(self.values, self._moved.union(self._away(self.values)))
@@ -138,11 +138,11 @@ class Session:
         return self.history.can_undo or self._document() != self.history.present
 
     def undo(self) -> None:
-        """Undo the last change, or go back to it if the face has moved since."""
+        """Undo the last change, or return to it if the face has moved since."""
         self.go_to(self.history.place - (self._document() == self.history.present))
 
     def redo(self) -> None:
-        """Redo the change that was undone last."""
+        """Redo the last undone change."""
         self.go_to(self.history.place + 1)
 
     def go_to(self, place: int) -> None:
@@ -155,7 +155,7 @@ class Session:
         self.file = document.file
         if document.values is None:
             self._go_to(self.time)
-        else:  # a pose is seen where it was made
+        else:  # a pose is shown at its own time
             self.time = min(document.time, self.script.duration)
             self.values = self.scene.limits.pose(document.values)
             self.is_following = False
@@ -173,7 +173,7 @@ class Session:
         return line
 
     def start_over(self) -> None:
-        """Begin with the first pose, held for a while: each replay begins alike."""
+        """Begin with the first pose, held for a while, so that all replays begin alike."""
         self.time = 0.0
         self._follow_script()
         self.scene.reset()
@@ -182,7 +182,7 @@ class Session:
             self.scene.step(SETTLING)  # as in a film
 
     def seek(self, time: float) -> Message:
-        """Go to a time of the script and take its pose; the message names controls let go."""
+        """Go to a time of the script with its pose; the message names released controls."""
         self._refuse_while_recording()
         line = self.let_go()
         self._go_to(time)
@@ -194,7 +194,7 @@ class Session:
         self.pose_is_unsaved = False
 
     def let_go(self) -> Message:
-        """Go back to the script; the message names controls let go, which undo brings back."""
+        """Return to the script; the message names released controls, which undo restores."""
         if self.is_following or self.is_recording:
             return None
         self.note()
@@ -208,15 +208,15 @@ class Session:
         return f"{controls} not keyed, so let go; [Undo] brings the pose back"
 
     def seek_key(self, direction: int) -> Message:
-        """Pause at the next time at which the script has a key, or with -1 at the one before."""
+        """Pause at the next time with a key, or with -1 at the previous one."""
         line = self.seek(keyframes.time_beyond(self.script, self.time, direction))
         self.is_playing = False
         return line
 
     def edit(self, script: Script, *, is_done: bool = True) -> None:
-        """Take the script as it was changed; a face that follows it follows the change.
+        """Replace the script by a changed one; a face that follows it follows the change.
 
-        is_done: False while something is dragged, which is no step yet.
+        is_done: False during a drag, which is not yet a step of undo.
         """
         self._refuse_while_recording()
         self.script = script
@@ -233,8 +233,7 @@ class Session:
     def set_key(self, names: Iterable[str] | None = None) -> float:
         """Make the present face a key; returns its time [s].
 
-        names: of the controls that are keyed, None for a whole pose. Others stay as hands left
-        them.
+        names: those of the keyed controls, None for a whole pose. Others keep their values by hand.
         """
         self._refuse_while_recording()
         time = self._key(self.current, names)
@@ -261,7 +260,7 @@ class Session:
     def advance(self, seconds: float, beneath: Mapping[str, float] | None = None) -> None:
         """Let time pass: the script moves the controls, the scene follows them.
 
-        beneath: values added to the scene at controls that are 0; no script ever has them.
+        beneath: values that are added to controls at 0; they never enter a script.
         """
         if self.is_playing:
             self.time += self.speed * seconds
@@ -288,9 +287,9 @@ class Session:
         return self.recorder is not None
 
     def toggle_recording(self) -> Message:
-        """Record moved controls into the script, which plays from the time shown, or end that.
+        """Record moved controls into the script, which plays from the present time, or end this.
 
-        Nothing is recorded while it is paused, or goes through a part again.
+        Nothing is recorded while the script is paused or repeats a part.
         """
         if self.recorder is None:
             held = {name: self.values[name] for name in self.differing}
@@ -306,7 +305,7 @@ class Session:
         self.is_playing = False
         if recording is not None:
             self.script = recording
-            self._go_to(rounded(self.time))  # which is the end, where the recording is the last
+            self._go_to(rounded(self.time))  # this is the end, if the recording is the last part
         self.values = self.scene.limits.pose(recorder.missed, self.values)
         self.is_following = False
         missed = self.differing  # a pose by hand
@@ -321,7 +320,7 @@ class Session:
 
     @property
     def recorded_seconds(self) -> float:
-        """How long the recording is so far."""
+        """Present duration of the recording [s]."""
         return self.recorder.time - self.recorder.start if self.recorder is not None else 0.0
 
     def replace_script(self, script: Script, file: ScriptFile) -> None:
@@ -336,13 +335,13 @@ class Session:
 
 
 class Work:
-    """The files of a session: scripts and poses that are opened, saved, or unsaved."""
+    """The files of a session: scripts and poses that are opened, saved or unsaved."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
 
     def open(self, script: Script) -> None:
-        """Show a pose, which a recording takes in, or begin a script, which ends a recording."""
+        """Show a pose, which a recording records, or begin a script, which ends a recording."""
         if is_pose(script):
             pose = script.values(0.0, self._session.scene.limits)
             self._session.set_pose(pose, is_unsaved=False)
@@ -350,7 +349,7 @@ class Work:
             self._session.replace_script(script, ScriptFile.of(script))
 
     def begin_script(self) -> None:
-        """Begin a script of one pose: the face as it is, to which keys can be added."""
+        """Begin a script with the present face as its pose, to which keys can be added."""
         session = self._session
         old = session.script
         is_unsaved = session.pose_is_unsaved
@@ -363,7 +362,7 @@ class Work:
         self._session.file.save(self._session.script, path)
 
     def save_pose(self, path: Path) -> None:
-        """Write the controls as they are to a file; raises UserError if it cannot be written."""
+        """Write the present controls to a file; raises UserError if it cannot be written."""
         session = self._session
         pose = pose_script(session.current, title=path.stem, scene=session.script.scene)
         save_script(path, pose)
@@ -383,11 +382,11 @@ class Work:
 
     @property
     def name(self) -> str:
-        """The script's name: that of its file, if there is one, else its title."""
+        """The script's name: that of its file, if it has one, else its title."""
         path = self._session.file.path
         return as_text(path.name if path else self._session.script.title or "Untitled")
 
     @property
     def has_unsaved_pose(self) -> bool:
-        """Whether there is a pose made by hand that no file has."""
+        """Whether there is an unsaved pose made by hand."""
         return self._session.pose_is_unsaved and any(self._session.values.numbers)

@@ -1,8 +1,8 @@
-"""The script's sound in the window: it is heard while the script plays, and sets the pace.
+"""The script's sound in the window: it plays with the script, and sets the pace.
 
-The picture follows the sound: a device keeps the time of its own clock, and the sound must not
-jump. So a little more or less time passes for the picture, until both agree, and a window that was
-stalled skips the time that was heard meanwhile. The sound follows a jump of the user or of a loop.
+The picture follows the sound: a device has its own clock, and the sound must not jump. So time
+passes a little faster or slower for the picture until both agree, and a stalled window skips the
+time that was heard meanwhile. The sound follows a jump of the user or of a loop.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ...sound.player import NoDeviceError, Player
 from .physics import MOST_STEPS, STEP
 from .session import Session
 
-LONGEST_FRAME = (MOST_STEPS + 1) * STEP  # [s] of the script at most; more was not the script's own
+LONGEST_FRAME = (MOST_STEPS + 1) * STEP  # [s] of the script at most; more is a jump
 
 
 class Soundtrack:
@@ -29,10 +29,10 @@ class Soundtrack:
         self._player: Player | None = None
         self._time = session.time  # in the last frame
         self._was_playing = False  # in the last frame
-        self.sound = None  # in the script's file; None as long as it has none
+        self.sound = None  # the script's sound; None without one
 
     def refresh(self) -> None:
-        """Read the script's sound if it has another one now; UserError, once, if it cannot be."""
+        """Read the script's sound if it has changed; UserError, once, if this fails."""
         file = self._session.script.sound
         if file == self._file:
             return
@@ -52,11 +52,11 @@ class Soundtrack:
 
     @property
     def is_heard(self) -> bool:
-        """Whether there is something to be heard just now."""
+        """Whether the sound can be heard now."""
         return self._player is not None and self._player.is_heard
 
     def elapsed(self, seconds: float) -> float:
-        """How much time shall pass for the picture [s], where `seconds` went by."""
+        """Time that shall pass for the picture [s], after `seconds` of real time."""
         session = self._session
         player = self._player
         if player is None or self.sound is None:
@@ -74,9 +74,9 @@ class Soundtrack:
         return seconds
 
     def _in_step(self, player: Player, seconds: float, went: float) -> float:
-        """How much time shall pass for the picture, that it is where the sound is.
+        """Time that shall pass for the picture [s], so that it agrees with the sound.
 
-        went: how far the script went in the last frame [s].
+        went: motion of the script in the last frame [s].
         """
         session = self._session
         has_jumped = not 0.0 <= went <= LONGEST_FRAME * session.speed
@@ -85,12 +85,12 @@ class Soundtrack:
         if player.is_stuck:
             return seconds
         late = (player.position - session.time) / session.speed - seconds
-        most_lag = 0.05  # [s] by which the picture is late before it skips
+        most_lag = 0.05  # [s] of lag before the picture skips
         if late > most_lag and session.time < session.script.duration:  # a recording goes beyond
             session.time = min(session.time + late * session.speed, session.script.duration)
             self._time = session.time
             return seconds
-        catch_up_seconds = 0.3  # [s] in which most of a drift is gone
+        catch_up_seconds = 0.3  # [s] in which most of a drift is corrected
         return max(seconds + late * min(seconds / catch_up_seconds, 1.0), 0.0)
 
     def rest(self) -> None:

@@ -1,8 +1,8 @@
-"""The keys in time: a ruler to scrub in, below it rows of keys, or their values as curves.
+"""The keys over time: a ruler for scrubbing; below it rows of keys, or values as curves.
 
-As in every dope sheet: a click selects a key and goes there, a drag moves the selected keys,
-Shift adds, a drag over nothing draws a box, the wheel zooms. Where keys are too dense to be seen
-one by one, a drag moves selected keys alone, and a drag over others draws a box.
+It works like every dope sheet: a click selects a key and goes there, a drag moves the selected
+keys, Shift adds, a drag over an empty place draws a box, the wheel zooms. Where keys are too dense
+to distinguish, a drag only moves selected keys, and a drag over others draws a box.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ class Drag:
 
     doing: str  # keys, box, scrub, end, pan, slope
     began: tuple[float, float]  # [window units]
-    script: Script  # as it was then
-    selected: Places  # then
+    script: Script  # the script at the press
+    selected: Places  # selected keys at the press
     has_moved: bool = False
 
 
 class DopeSheet:
-    """Draws ruler and rows, and carries out the mouse's actions in them."""
+    """Draws ruler and rows, and executes the mouse's actions in them."""
 
     ROW_HEIGHT = 1.35  # [em] of a row's height
     RULER_HEIGHT = 1.45  # [em] of the ruler's height
-    CLICK_DISTANCE = 4.0  # [window units] a press that moves less is a click, not a drag
+    CLICK_DISTANCE = 4.0  # [window units]: a press with less motion is a click
 
     def __init__(
         self,
@@ -67,26 +67,26 @@ class DopeSheet:
         self._drag: Drag | None = None
         self._grabbed = NOWHERE  # the keys at one time that the mouse was pressed on
         self._all: tuple[Track, ...] = ()
-        self.rows: tuple[Track, ...] = ()  # of these the ones that are not folded away
-        self._known: Script | None = None  # of which the tracks are
-        self._are_dense: dict[str, bool] = {}  # by name: keys are too dense to be seen one by one
-        self._bottom = 0.0  # of all of it [window units]
-        self._tops = [0.0]  # of each row, and of one below the last [window units]
-        self._gutter = 0.0  # the width of their names [window units]
+        self.rows: tuple[Track, ...] = ()  # the visible ones of these
+        self._known: Script | None = None  # the script of these tracks
+        self._are_dense: dict[str, bool] = {}  # by name: whether keys are too dense to distinguish
+        self._bottom = 0.0  # bottom of the whole sheet [window units]
+        self._tops = [0.0]  # tops of rows, and of one after the last [window units]
+        self._gutter = 0.0  # width of row names [window units]
         self._wants_menu = False
 
     def _is_open(self, name: str) -> bool:
-        """Whether the rows folded into this one are displayed; at first, of many groups one."""
-        most_curves = 24  # that are displayed at once, unless somebody wants more
+        """Whether the rows folded into this one are displayed; at first only one of many groups."""
+        most_curves = 24  # that are displayed at once by default
         is_few = len(self._session.script.tracks) <= most_curves or name == self._all[1].name
         return self.settings.folds.get(name, is_few if ":" in name else self.settings.shows_curves)
 
     def height(self, room: float) -> float:
-        """The height of ruler and rows [window units], no more than there is room for."""
+        """The height of ruler and rows [window units], within the room."""
         self._refresh()
-        most_rows = 6  # that are seen at once; the rest is scrolled to
+        most_rows = 6  # visible rows; the user scrolls to others
         rows = em(self.ROW_HEIGHT) * sum(track.height for track in self.rows[:most_rows])
-        graph_height = 14.0  # [em] of its height, as long as nobody changes that
+        graph_height = 14.0  # [em] of its default height
         wanted = em(graph_height) if self.settings.shows_curves else rows
         above = em(self.RULER_HEIGHT) + self._waveform.height
         return above + max(min(wanted, room - above), em(self.ROW_HEIGHT))
@@ -102,7 +102,7 @@ class DopeSheet:
         self.graph.take(self.rows)
 
     def draw(self, height: float) -> None:
-        """Draw everything, inside the timeline's window, so high [window units]."""
+        """Draw everything inside the timeline's window, with this height [window units]."""
         self._refresh()
         session = self._session
         axis = self.axis
@@ -145,7 +145,7 @@ class DopeSheet:
             imgui.end_popup()
 
     def _draw_rows(self, io: Any) -> None:
-        """Draw the rows, or the names of curves alone."""
+        """Draw the rows, or only the names of curves."""
         flags = imgui.WindowFlags_.no_scroll_with_mouse | imgui.WindowFlags_.no_background
         least = max(self._bottom - imgui.get_cursor_screen_pos().y, em(self.ROW_HEIGHT))
         has_keys = not self.settings.shows_curves
@@ -178,7 +178,7 @@ class DopeSheet:
         y = corner[1] + 0.5 * (em(self.ROW_HEIGHT) - em())
         self._gui.places[f"row {track.name}"] = x, y, x + em(4.0), y + em()
         room = min(room, self._gutter) - indent - arrow - em(0.3)
-        label = shortened(track.label, room, keeps_end=not track.is_sum)  # which names the side
+        label = shortened(track.label, room, keeps_end=not track.is_sum)  # the end names the side
         is_curve = self.settings.shows_curves and track.control
         muted = self._gui.theme.muted
         ink = self.graph.colour(track) if is_curve else ink_of(muted)
@@ -204,7 +204,7 @@ class DopeSheet:
     # The mouse
 
     def _hover(self, io: Any, left: float) -> None:
-        """Answer the mouse over rows or curves while it holds nothing."""
+        """Respond to the mouse over rows or curves while no button is pressed."""
         selection = self.selection
         axis = self.axis
         (x, y) = io.mouse_pos
@@ -222,7 +222,7 @@ class DopeSheet:
                     selection.places = track.places
             imgui.set_scroll_y(imgui.get_scroll_y() - em(self.ROW_HEIGHT) * io.mouse_wheel)
             return
-        key_reach = 0.5  # [em] beside a key that still mean it
+        key_reach = 0.5  # [em] around a key that count as the key
         if self.settings.shows_curves:
             graph.handle = graph.handle_at(x, y)
             hit = None if graph.handle else graph.at(x, y)
@@ -250,7 +250,7 @@ class DopeSheet:
         return bisect.bisect_right(self._tops, y) - 1
 
     def _begin(self, doing: str, io: Any, selected: Places | None = None) -> None:
-        """Begin a drag; selected: the keys to select from now on, None for those that are."""
+        """Begin a drag; selected: the keys to select from now on, None for the present ones."""
         places = self.selection.places if selected is None else selected
         self._drag = Drag(doing, (*io.mouse_pos,), self._session.script, places)
 
@@ -291,7 +291,7 @@ class DopeSheet:
             self.axis.zoom(zoom_per_notch**io.mouse_wheel, io.mouse_pos.x)
 
     def _follow(self, io: Any, drag: Drag) -> None:
-        """Carry out the drag until the mouse lets go; Escape undoes the drag."""
+        """Continue the drag until the button is released; Escape undoes the drag."""
         (x, y) = io.mouse_pos
         axis = self.axis
         session = self._session
@@ -318,17 +318,17 @@ class DopeSheet:
             self._messages.attempt(lambda: self._release(io, drag))
 
     def _snapped(self, time: float, io: Any) -> float:
-        """The time of the nearest frame; with Ctrl just that time [s]."""
+        """The time of the nearest frame, or with Ctrl the exact time [s]."""
         return time if io.key_ctrl else keyframes.on_frame(time)
 
     def _move_keys(self, io: Any, drag: Drag) -> None:
         right = io.mouse_pos.x - drag.began[0]
         down = io.mouse_pos.y - drag.began[1]
-        if not io.key_ctrl:  # either way begins with a step
+        if not io.key_ctrl:  # a frame steps in both directions
             right, down = (0.0 if abs(way) < self.CLICK_DISTANCE else way for way in (right, down))
         time = self._grabbed.first
         target = time + self.axis.seconds(right)
-        target = min(max(target, 0.0), self.axis.end)  # further right it would not be seen
+        target = min(max(target, 0.0), self.axis.end)  # further right is invisible
         offset = self._snapped(target, io) - time if right else 0.0
         script, places = keyframes.moved(drag.script, drag.selected, offset)
         line = f"{time + offset:.2f} s"
@@ -365,7 +365,7 @@ class DopeSheet:
         self.selection.places = drag.selected | inside
 
     def _release(self, io: Any, drag: Drag) -> Message:
-        """End the drag as the mouse lets go; returns a message about it."""
+        """End the drag at the release; return a message about it."""
         session = self._session
         line = None
         if drag.doing == "keys" and drag.has_moved:

@@ -1,8 +1,9 @@
-"""Keys as curves: the value of each control over time, just as the script plays it.
+"""Keys as curves: the value of each control over time, as the script plays it.
 
-A curve belongs to a track, or to one control of the poses: there a key that is dragged up changes
-that value of its pose. The way to a selected key has two handles, at its control points as a Bezier
-curve, that are dragged up and down. The mouse's actions are in dope_sheet.py, as for rows of keys.
+A curve belongs to a track, or to one control of the poses: a key of a pose that is dragged up
+changes this value of the pose. The way to a selected key has two handles, at the control points of
+a Bezier curve, which can be dragged up and down. dope_sheet.py has the mouse's actions, as for rows
+of keys.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ VALUE_STEPS = tuple(digit * 10.0**power for power in range(-4, 6) for digit in (
 
 
 class Hit(NamedTuple):
-    """The meaning of a place in the graph: a curve, and its key if one is there."""
+    """The curve at a place in the graph, and its key if there is one."""
 
     curve: Track
     value: float
@@ -33,20 +34,20 @@ class Hit(NamedTuple):
 
 
 class Handle(NamedTuple):
-    """A control point of the way to a key, a third from either end: it sets the slope there."""
+    """A control point of the way to a key, a third from one end, which sets the slope there."""
 
     key: Places
     number: int  # 0: at the start of the way, 1: at its end
     slopes: tuple[float, float]  # in mean speeds
-    ends: tuple[float, float]  # the values there and at the other end of the way
+    ends: tuple[float, float]  # the values at this end and at the other end of the way
     place: Point
-    root: Point  # where its key is
+    root: Point  # place of its key
 
 
 class Graph:
     """Draws curves between a time axis and one of values, and finds keys and curves by place."""
 
-    MOUSE_REACH = 0.55  # [em] from a key or a curve that still mean it
+    MOUSE_REACH = 0.55  # [em] around a key or curve that count as it
     KEY_RADIUS = 0.27  # [em] from a key's middle to its corners
 
     def __init__(self, gui: Gui, selection: KeySelection, axis: TimeAxis) -> None:
@@ -55,14 +56,14 @@ class Graph:
         self._axis = axis
         self.curves: list[Track] = []
         self.held: Hit | None = None  # the curve or key that the mouse was pressed on
-        self.handle: Handle | None = None  # that the mouse was pressed on
+        self.handle: Handle | None = None  # the handle that the mouse was pressed on
         self._low = 0.0  # value
         self._high = 1.0  # value
-        self._bottom = 0.0  # where the low value is
-        self.slope = -1.0  # how far down 1 is from 0 [window units]
+        self._bottom = 0.0  # height of the low value
+        self.slope = -1.0  # distance of 1 down from 0 [window units]
 
     def take(self, rows: Iterable[Track]) -> None:
-        """Display the curves of these rows, those of which keys are selected in front."""
+        """Display the curves of these rows; those with selected keys are in front."""
         self.curves = sorted((row for row in rows if row.control), key=self._is_selected)
 
     def colour(self, curve: Track, opacity: float = 1.0) -> int:
@@ -75,7 +76,7 @@ class Graph:
         return curve.track in self._selection.places.times
 
     def y(self, value: Any) -> Any:
-        """Where a value is, or each of an array of values [window units]."""
+        """Place of a value, or of each value of an array [window units]."""
         return self._bottom + self.slope * (value - self._low)
 
     # Places of keys and curves
@@ -102,7 +103,7 @@ class Graph:
         return hit if distance < 2.0 * reach else None
 
     def handles(self) -> Iterator[Handle]:
-        """The handles of the ways to selected keys, where there is room for them."""
+        """The handles of the ways to selected keys, if there is room."""
         axis = self._axis
         for curve in self.curves:
             channel = curve.channel
@@ -138,7 +139,7 @@ class Graph:
         return handle if distance < em(self.MOUSE_REACH) else None
 
     def bent(self, handle: Handle, y: float) -> str:
-        """The easing that the way has if its handle is dragged to a height."""
+        """The easing of the way after its handle is dragged to a height."""
         slopes = list(handle.slopes)
         (own, other) = map(self.y, handle.ends)
         slopes[handle.number] = 3.0 * (y - own) / (other - own)
@@ -155,7 +156,7 @@ class Graph:
         return places.between(self._axis.time(begin), self._axis.time(end))
 
     def _is_dense(self, curve: Track) -> bool:
-        """Whether its visible keys are too dense to be seen one by one."""
+        """Whether its visible keys are too dense to distinguish."""
         axis = self._axis
         times = curve.channel.times
         count = np.diff(np.searchsorted(times, (axis.start, axis.end)))[0]
@@ -166,7 +167,8 @@ class Graph:
     def draw(self, edges: Point, duration: float, *, is_held: bool) -> None:
         """Draw all of it, between an upper and a lower edge [window units].
 
-        duration: of the script [s]. is_held: by the mouse, so that values stay where they are.
+        duration: that of the script [s]. is_held: whether the mouse holds a curve, so that the axis
+        of values stays.
         """
         axis = self._axis
         lines = imgui.get_window_draw_list()
@@ -189,7 +191,7 @@ class Graph:
         lines.pop_clip_rect()
 
     def _fit(self, edges: Point) -> None:
-        """Let the axis of values reach from edge to edge: all of them, unless it was zoomed."""
+        """Let the axis of values reach from edge to edge, with all values unless it was zoomed."""
         ends = [0.0, 1.0, *(end for curve in self.curves for end in curve.channel.ends)]
         self._low = min(ends)
         self._high = max(ends)
@@ -199,7 +201,7 @@ class Graph:
         self.slope = -height / (self._high - self._low)
 
     def _draw_ground(self, low: Point, high: Point, script_end: float) -> None:
-        """Draw the ground of the curves, between two corners: darker as far as the script goes."""
+        """Draw the ground of the curves between two corners, darker up to the script's end."""
         theme = self._gui.theme
         lines = imgui.get_window_draw_list()
         end = min(max(script_end, low[0]), high[0])
@@ -223,7 +225,7 @@ class Graph:
             lines.add_text(place, ink_of(theme.muted), label)
 
     def _draw_handles(self) -> None:
-        """Draw the handles of the ways to selected keys, each with the line that it bends."""
+        """Draw the handles of the ways to selected keys, each with a line to its key."""
         accent = ink_of(self._gui.theme.accent)
         lines = imgui.get_window_draw_list()
         for handle in self.handles():
@@ -231,7 +233,7 @@ class Graph:
             lines.add_circle_filled(handle.place, em(0.8 * self.KEY_RADIUS), accent)
 
     def _draw_keys(self, curve: Track, ink: int) -> None:
-        """Draw the visible keys; before selected ones the way that the script takes to them."""
+        """Draw the visible keys, and the ways to selected keys."""
         axis = self._axis
         channel = curve.channel
         accent = ink_of(self._gui.theme.accent)

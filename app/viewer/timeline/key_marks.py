@@ -1,4 +1,4 @@
-"""The look of ruler, rows and keys of the timeline; dope_sheet.py has their behaviour."""
+"""Drawings of ruler, rows and keys of the timeline; dope_sheet.py has their behaviour."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Point = tuple[float, float]
 def draw_ruler(
     theme: Theme, axis: TimeAxis, time: float, duration: float, edges: tuple[float, float]
 ) -> None:
-    """Draw ticks with seconds, the script's end, and at the time shown a handle to scrub by.
+    """Draw ticks with seconds, the script's end, and a handle for scrubbing at the present time.
 
     time, duration: [s]. edges: the upper and the lower one [window units].
     """
@@ -54,7 +54,7 @@ def draw_ruler(
 
 
 def number_of(time: float) -> str:
-    """Seconds as short as they can be written, minutes where there are some."""
+    """The shortest text for seconds, with minutes if there are any."""
     if time < 60.0:
         return f"{time:.3g} s" if time == 0.0 else f"{time:.3g}"
     minutes, seconds = divmod(round(time, 2), 60.0)
@@ -63,7 +63,7 @@ def number_of(time: float) -> str:
 
 
 def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float, float]) -> None:
-    """Draw the line at the time shown [s], from one edge to the other [window units]."""
+    """Draw the line at the present time [s], from one edge to the other [window units]."""
     if axis.start <= time <= axis.end:
         x = round(axis.x(time)) + 0.5
         ink = ink_of(theme.accent)
@@ -74,7 +74,7 @@ def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float,
 def draw_label(
     text: str, corner: Point, ink: int, arrow: float = 0.0, *, is_open: bool = False
 ) -> None:
-    """Draw the name of a row from its upper left corner on, with an arrow where it folds."""
+    """Draw the name of a row at its upper left corner, with an arrow if it folds."""
     lines = imgui.get_window_draw_list()
     (left, top) = corner
     if arrow:
@@ -84,12 +84,12 @@ def draw_label(
 
 
 class TrackPainter:
-    """Draws tracks along an axis, with the selected keys of a script that lasts this long."""
+    """Draws tracks along an axis, with selected keys."""
 
     KEY_RADIUS = 0.36  # [em] from a key's middle to its corners
 
     def __init__(self, theme: Theme, axis: TimeAxis, selected: Places, duration: float) -> None:
-        """duration: of the script [s]."""
+        """duration: that of the script [s]."""
         self._theme = theme
         self._axis = axis
         self._selected = selected
@@ -97,15 +97,15 @@ class TrackPainter:
         self._low = axis.x(axis.start) - em(0.5)
         self._high = axis.x(axis.end) + em(0.5)
         margin = axis.seconds(em(0.5))
-        least_key_distance = 2.0  # [window units] keys nearer than that are drawn as one
+        least_key_distance = 2.0  # [window units]: nearer keys are drawn as one
         count = max(round((self._high - self._low) / least_key_distance), 2)
         self._edges = np.linspace(axis.start - margin, axis.end + margin, count + 1)  # of columns
         self._script_end = min(max(axis.x(duration), self._low), self._high)
 
     def draw(self, track: Track, top: float, unit: float) -> bool:
-        """A row of `unit` times its height: its ground, keys, names.
+        """Draw a row of `unit` times its height: its ground, keys, names.
 
-        Returns whether the keys that are visible are too dense to be drawn one by one.
+        Returns whether the visible keys are too dense to be drawn one by one.
         """
         lines = self._lines
         theme = self._theme
@@ -130,7 +130,7 @@ class TrackPainter:
         return self._draw_keys(track, middle)
 
     def _draw_keys(self, track: Track, middle: float) -> bool:
-        """Draw the visible keys, selected ones on top; dense ones hide no curve."""
+        """Draw the visible keys, selected ones on top; dense keys do not hide curves."""
         size = em(self.KEY_RADIUS if track.is_whole else 0.8 * self.KEY_RADIUS)
         ink = imgui.get_color_u32(imgui.Col_.text) if track.is_whole else ink_of(self._theme.muted)
         names = track.places.times
@@ -138,7 +138,7 @@ class TrackPainter:
             self._axis.x(places.latest_in(self._edges, names))
             for places in (track.places, self._selected)
         )
-        most_covered_share = 0.5  # of a row by keys that are drawn one by one
+        most_covered_share = 0.5  # of a row under keys that are drawn one by one
         is_dense = len(marks) * 2.0 * size > most_covered_share * (self._high - self._low)
         seen = marks[:0] if is_dense and len(track.channel) else marks
         accent = ink_of(self._theme.accent)
@@ -148,11 +148,11 @@ class TrackPainter:
         return is_dense
 
     def _draw_names(self, track: Track, top: float) -> None:
-        """Draw the names of poses above them, each as far as there is room before the next."""
+        """Draw the names of poses above them, each up to the next one."""
         axis = self._axis
         ink = ink_of(self._theme.muted)
         ends = [axis.x(time) - em(0.6) for time, _ in track.names[1:]] + [self._high]
-        least_name_width = 2.4  # [em] of a pose's name: less would be no name
+        least_name_width = 2.4  # [em] of a pose's name: less is unreadable
         for (time, name), end in zip(track.names, ends, strict=False):
             if axis.start <= time <= axis.end:
                 x = axis.x(time) - em(self.KEY_RADIUS)
@@ -168,7 +168,7 @@ def draw_line(xs: Floats64, ys: Floats64, ink: int, width: float = 1.0) -> None:
 
 
 def draw_box(theme: Theme, first: Point, last: Point) -> None:
-    """Draw the box that a drag over nothing encloses."""
+    """Draw the box of a drag over an empty place."""
     lines = imgui.get_window_draw_list()
     lines.add_rect_filled(first, last, ink_of(theme.accent, 0.15))
     lines.add_rect(first, last, ink_of(theme.accent, 0.8))
@@ -178,7 +178,7 @@ peaks_of = functools.lru_cache(maxsize=1)(Peaks)
 
 
 class Waveform:
-    """Draws the sound of the script; of no height where there is none."""
+    """Draws the sound of the script; without a sound it has no height."""
 
     def __init__(self, gui: Gui, soundtrack: Soundtrack, axis: TimeAxis) -> None:
         self._gui = gui
@@ -197,9 +197,9 @@ class Waveform:
         return sound.duration if sound is not None else 0.0
 
     def draw(self, time: float, duration: float, corner: Point) -> None:
-        """Draw it from its upper left corner on; after the script's end it is faint.
+        """Draw it at its upper left corner; after the script's end it is faint.
 
-        time: that is shown [s]. duration: of the script [s].
+        time: the present one [s]. duration: that of the script [s].
         """
         sound = self._soundtrack.sound
         axis = self._axis
@@ -221,7 +221,7 @@ class Waveform:
         inside = ink_of(theme.muted)
         outside = ink_of(theme.muted, 0.35)
         ends = axis.x(duration)
-        least_amplitude = 0.5  # [window units] from the middle: silence is a thin line
+        least_amplitude = 0.5  # [window units] from the middle: silence appears as a thin line
         uppers = (middle - least_amplitude - reach * high).tolist()
         lowers = (middle + least_amplitude - reach * low).tolist()
         for x, (upper, lower) in enumerate(zip(uppers, lowers, strict=True), start=first):

@@ -1,4 +1,4 @@
-"""The keys of a script: in rows, a track each, and those that are selected."""
+"""The keys of a script in rows, one per track, and the selected keys."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ from ..session.session import Session
 
 @dataclass(frozen=True)
 class Track:
-    """One row: the keys of the poses, of tracks together, or those that move one control."""
+    """One row: the keys of the poses, of several tracks, or of one control."""
 
     name: str  # no other row has it
     label: str
     places: Places
-    channel: Channel = field(default_factory=partial(Channel, (), ()))  # of one control
+    channel: Channel = field(default_factory=partial(Channel, (), ()))  # keys of one control
     control: str = ""  # the name of that control
     track: str = ""  # the name of the track that has its keys
-    parents: tuple[str, ...] = ()  # the names of the rows that it is folded into
-    names: tuple[tuple[float, str], ...] = ()  # of poses, by time [s]
-    is_whole: bool = False  # poses, which are keys of all controls
-    is_sum: bool = False  # of the rows below it, which may be folded
+    parents: tuple[str, ...] = ()  # the names of the rows into which it is folded
+    names: tuple[tuple[float, str], ...] = ()  # names of poses, by time [s]
+    is_whole: bool = False  # whether keys are poses, of all controls
+    is_sum: bool = False  # whether it sums the rows below it, which may be folded
     number: int = 0  # among all rows
 
     @property
     def height(self) -> float:
-        """The height of the row, in ordinary rows: that of the poses has room for names."""
+        """The height of the row, in ordinary rows; the row of poses has room for names."""
         return 1.75 if self.is_whole else 1.0
 
 
@@ -69,14 +69,14 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
         for name in inside:
             alone = Places({name: times[name]})
             channel = script.tracks[name]
-            sign = "+ " if name in script.posed_names else ""  # it is added to the poses
+            sign = "+ " if name in script.posed_names else ""  # it adds to the poses
             label = f"{sign}{called(name)}"
             rows.append(Track(f"track {name}", label, alone, channel, name, name, parents))
     return tuple(replace(row, number=number) for number, row in enumerate(rows))
 
 
 def movers_of(script: Script, name: str) -> str:
-    """The parts of a script that move a control, in words; "" for none."""
+    """Words for the parts of a script that move a control; "" for none."""
     parts = {"the poses": name in script.posed_names, "a track": name in script.tracks}
     return " and ".join(part for part, is_there in parts.items() if is_there)
 
@@ -92,7 +92,7 @@ class KeySelection:
     def __init__(self, session: Session) -> None:
         self._session = session
         self.places = NOWHERE
-        self.copied: tuple[Script, Places] | None = None  # which can be pasted
+        self.copied: tuple[Script, Places] | None = None  # keys to paste
 
     @property
     def can_edit(self) -> bool:
@@ -101,15 +101,15 @@ class KeySelection:
 
     @property
     def can_change(self) -> bool:
-        """Whether there are keys that something could be done with."""
+        """Whether there are keys to change."""
         return bool(self.places) and self.can_edit
 
     def set_key(self) -> Message:
-        """Key the controls that were moved since the last key, at the time shown."""
+        """Key the controls that were moved since the last key, at the present time."""
         return self.key_controls(self._session.touched)
 
     def key_controls(self, names: Collection[str]) -> Message:
-        """Key these controls alone, at the time shown."""
+        """Key these controls alone, at the present time."""
         if not names:
             raise UserError("no control was moved since the last key; [Key whole pose] keys all")
         time = self._session.set_key(names)
@@ -122,7 +122,7 @@ class KeySelection:
         return f"{controls} keyed at {time:.2f} s"
 
     def key_whole_pose(self) -> Message:
-        """Make the present face a key of all controls at the time shown."""
+        """Make the present face a key of all controls at the present time."""
         time = self._session.set_key()
         script = self._session.script
         there = keyframes.places_of(script).near(time, keyframes.SAME)
@@ -130,14 +130,14 @@ class KeySelection:
         return f"Whole pose keyed at {time:.2f} s"
 
     def keys_of(self, names: Iterable[str]) -> Places:
-        """The keys that the tracks of these controls have at the time shown."""
+        """The keys of these controls' tracks at the present time."""
         session = self._session
         reach = 0.5 * keyframes.FRAME
         there = keyframes.places_of(session.script).near(session.time, reach).times
         return Places({name: there[name] for name in names if name in there})
 
     def delete_keys_of(self, names: Collection[str]) -> Message:
-        """Delete the keys that the tracks of these controls have at the time shown."""
+        """Delete the keys of these controls' tracks at the present time."""
         session = self._session
         session.edit(keyframes.without(session.script, self.keys_of(names)))
         return f"{listed(names)}: key deleted; [Undo] brings back"
@@ -151,18 +151,18 @@ class KeySelection:
         return f"{listed(names)}: track cleared; [Undo] brings back"
 
     def delete(self) -> Message:
-        """Take the selected keys away."""
+        """Delete the selected keys."""
         keys = counted(len(self.places), "key")
         self._session.edit(keyframes.without(self._session.script, self.places))
         return f"{keys} deleted; [Undo] brings back"
 
     def copy(self) -> Message:
-        """Keep the selected keys, to be pasted elsewhere."""
+        """Copy the selected keys for pasting."""
         self.copied = self._session.script, self.places
         return f"{counted(len(self.places), 'key')} copied; [Paste] pastes at the time shown"
 
     def paste(self) -> Message:
-        """Paste the copied keys from the time shown on; also those of another script."""
+        """Paste the copied keys at the present time, even into another script."""
         assert self.copied is not None
         source, places = self.copied
         offset = keyframes.key_time(self._session.script, self._session.time) - places.first

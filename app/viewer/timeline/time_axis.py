@@ -14,9 +14,9 @@ Number = TypeVar("Number", float, Floats64)
 
 
 class TimeAxis:
-    """From `start` on, `span` seconds; the whole script as long as nobody zooms in."""
+    """The visible part: `span` seconds from `start` on; by default the whole script."""
 
-    LEAST_SPAN = 8.0 * FRAME  # [s] as far as one may zoom in
+    LEAST_SPAN = 8.0 * FRAME  # [s] at the closest zoom
 
     def __init__(self) -> None:
         self.start = 0.0
@@ -36,7 +36,7 @@ class TimeAxis:
 
     def fit(self, end: float) -> None:
         """Keep the visible part inside a script that ends at `end` [s]."""
-        margin_factor = 1.06  # of the script: room behind its end, to drag keys there
+        margin_factor = 1.06  # of the script: room after its end, to drag keys there
         whole = max(end * margin_factor, self.LEAST_SPAN)
         self.is_whole = self.is_whole or self.span >= whole
         if self.is_whole:
@@ -50,26 +50,26 @@ class TimeAxis:
         return self.start + self.span
 
     def x(self, time: Number) -> Number:
-        """Where a time is, or each of an array of times [window units]."""
+        """Place of a time, or of each time of an array [window units]."""
         return self._left + self._width * (time - self.start) / self.span
 
     def time(self, x: float) -> float:
-        """The time there [s], 0 or more."""
+        """The time at a place [s], 0 or more."""
         return max(self.start + self.seconds(x - self._left), 0.0)
 
     def seconds(self, distance: float) -> float:
-        """How long a distance [window units] lasts."""
+        """Duration of a distance [window units]."""
         return distance / self._width * self.span
 
     def zoom(self, factor: float, x: float) -> None:
-        """Show `factor` times as much time; the time at `x` stays there."""
+        """Show `factor` times as much time; the time at `x` keeps its place."""
         fixed = self.time(x)
         self.span = max(self.span * factor, self.LEAST_SPAN)
         self.is_whole = False
         self.start = fixed - self.seconds(x - self._left)
 
     def scroll(self, seconds: float) -> None:
-        """Show a part that is so much later."""
+        """Show a later part, by `seconds`."""
         self.start += seconds
 
     def follow(self, time: float) -> None:
@@ -78,7 +78,7 @@ class TimeAxis:
             self.start = time - 0.1 * self.span
 
     def ticks(self, label_width: float) -> list[tuple[float, bool]]:
-        """The times of marks that are visible [s], and whether each has room for a label."""
+        """The times of visible marks [s], and whether each has room for a label."""
         wide = (step for step in TICK_STEPS[1:] if step >= self.seconds(label_width))
         labelled = next(wide, TICK_STEPS[-1])
         least_tick_share = 0.12  # of the room for a label

@@ -1,4 +1,4 @@
-"""The timeline below the picture: the keys in time; below them play, record, loop, speed, key."""
+"""The timeline below the picture: the keys over time, and buttons below them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..interface.gui import colour, em
 from ..interface.widgets import choose, hint, shortened, stay_in_line
 from .dope_sheet import DopeSheet
 
-# By the label of the command: the button's text while that is on, and a hint.
+# Label of a command -> the button's text while it is on, and a hint.
 BUTTON_TEXTS = {
     "Play": ("Pause", "play the script ([Play])"),
     "Record": ("Stop", "record the controls that you move, from here on ([Record])"),
@@ -35,16 +35,16 @@ class Timeline:
     def __init__(
         self, app: ApplicationContext, commands: Iterable[Command], dope_sheet: DopeSheet
     ) -> None:
-        """commands: those of the buttons must be among them."""
+        """commands: must include those of the buttons."""
         self._gui = app.gui
         self._session = app.session
         self._messages = app.messages
         self._commands = {command.label: command for command in commands}
         self.dope_sheet = dope_sheet
-        self._rows = 1  # of buttons, which go on in a second one where the window is narrow
+        self._rows = 1  # rows of buttons: a narrow window has a second one
 
     def height(self) -> float:
-        """The height of the timeline [window units]; it scrolls if words are too large for it."""
+        """The height of the timeline [window units]; it scrolls if words are too large."""
         display = imgui.get_io().display_size.y
         most = 0.4 * display
         buttons = self._rows * imgui.get_frame_height_with_spacing()
@@ -52,7 +52,7 @@ class Timeline:
         return float(min(buttons + self.dope_sheet.height(most - buttons), most))
 
     def draw(self) -> None:
-        """Draw everything, inside its window: buttons at its lower edge, which stays put."""
+        """Draw everything inside its window: buttons at the lower edge, which does not move."""
         left, top = imgui.get_cursor_pos()
         height = self._rows * imgui.get_frame_height_with_spacing()
         height = max(imgui.get_content_region_avail().y - height, self.dope_sheet.height(0.0))
@@ -96,9 +96,9 @@ class Timeline:
         hint("speed of the script")
 
     def _draw_status(self, differing: int) -> None:
-        """Draw the time, then a recording, or how many controls differ, or else the script.
+        """Draw the time, then a recording, the number of differing controls, or the script.
 
-        Where there is no room for both, news go first, and the script's name is left out.
+        If there is no room for both, news comes first, and the script's name is left out.
         """
         session = self._session
         theme = self._gui.theme
@@ -122,7 +122,7 @@ class Timeline:
         if not (is_tight and is_news):
             imgui.text(shortened(time, imgui.get_content_region_avail().x))
             hint("the time shown, and the script's length, whose end is in the ruler")
-            if is_tight:  # the title has the script's name, too
+            if is_tight:  # the title also has the script's name
                 return
             imgui.same_line(0.0, gap)
         imgui.text_colored(colour(ink), shortened(status, imgui.get_content_region_avail().x))

@@ -55,7 +55,7 @@ class FaceMode:
         self.mouse = Mouse(self.view, context.stage, context.messages, grab, self.select_muscle)
 
     def _commands(self, close: Task) -> tuple[Command, ...]:
-        """All commands, each with the parts that it needs."""
+        """All commands, each with its parts."""
         context = self._context
         session = context.session
         settings = context.settings
@@ -91,7 +91,7 @@ class FaceMode:
             "Mechanism": mechanism.draw,
             "Scene": scene_panel.draw,
         }
-        if scene.face is not None:  # which a live face moves
+        if scene.face is not None:  # a live face can move it
             tabs["Live"] = live.draw
         self.layout = Layout(context, menu_bar, tabs, self.timeline)
 
@@ -102,12 +102,12 @@ class FaceMode:
 
     @property
     def unsaved(self) -> str:
-        """The work that no file has, in words; "" for none."""
+        """The unsaved work in words; "" for none."""
         return self._context.session.work.unsaved
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether nothing moves, and nothing is about to."""
+        """Whether all is at rest, and will stay so."""
         return (
             self.physics.is_at_rest
             and not self.life.is_on
@@ -118,7 +118,7 @@ class FaceMode:
 
     @property
     def is_left_alone(self) -> bool:
-        """Whether nobody has moved the face for some time, and it does no more than live."""
+        """Whether nobody has moved the face for some time, and it only has idle life."""
         return self.physics.is_left_alone
 
     @property
@@ -127,7 +127,7 @@ class FaceMode:
         return self._context.live.has_changed
 
     def paint(self, elapsed: float) -> bool:
-        """Let time pass for the face, and draw it; returns whether the picture has changed."""
+        """Let time pass for the face, and draw it; return whether the picture has changed."""
         messages = self._context.messages
         live = self._context.live
         physics = self.physics
@@ -149,7 +149,7 @@ class FaceMode:
         self.layout.draw(self.view)
 
     def rest(self) -> None:
-        """Make no sound, because the window waits for an event."""
+        """Stop the sound, because the window waits for an event."""
         self.soundtrack.rest()
 
     def drop(self, paths: Sequence[str]) -> Message:
@@ -157,10 +157,10 @@ class FaceMode:
         return self._file_drop.open(paths)
 
     def leave(self, then: Task) -> Message:
-        """Run `then`: the script is kept, and asked for where the window closes."""
+        """Run `then`: the script is kept, and the closing window asks about it."""
         return then()
 
-    # The window puts the face aside, and takes it up again
+    # The window suspends the face, and resumes it
 
     def set_aside(self) -> None:
         """Stand still, while a mesh is marked in the window."""
@@ -169,7 +169,7 @@ class FaceMode:
         self.soundtrack.rest()
 
     def resume(self) -> None:
-        """Mark the picture as out of date: the window showed something else."""
+        """Mark the picture as out of date, because the window showed a mesh."""
         self.mouse.forget()
         self.painter.forget()
 

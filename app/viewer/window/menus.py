@@ -96,7 +96,7 @@ def file_menu(
 
 
 def export_menu(exporter: Exporter, files: FileDialogs) -> Menu:
-    """All that is written of a face for other programs, under File."""
+    """Exports of a face for other programs, a submenu of File."""
     return (
         Command(
             "File",
@@ -133,7 +133,7 @@ def edit_menu(session: Session) -> Menu:
 
 
 def time_menu(session: Session, scripts: ScriptCommands, axis: TimeAxis) -> Menu:
-    """Playing, recording, and ways through the script."""
+    """Commands to play, to record, and to move through the script."""
     command = partial(Command, "Time")
     return (
         command("Play", "Space", session.toggle_playing, lambda: session.is_playing),
@@ -157,7 +157,7 @@ def switch_of(
     *,
     begins_section: bool = False,
 ) -> Command:
-    """A command that gives a field of some part one value or the other."""
+    """A command that switches a field of a part between two values."""
 
     def is_on() -> bool:
         return bool(getattr(part(), field) == on)
@@ -169,7 +169,7 @@ def switch_of(
 
 
 def keys_menu(session: Session, selection: KeySelection) -> Menu:
-    """Changes of the keys that are selected in the timeline."""
+    """Commands for the selected keys of the timeline."""
     command = partial(Command, "Keys")
     edit = partial(command, can_run=lambda: selection.can_edit)
     change = partial(command, can_run=lambda: selection.can_change)
@@ -191,7 +191,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
 
 
 def view_menu(settings: Settings, view: SceneView, session: Session) -> Menu:
-    """How the scene is drawn, and the panels around it."""
+    """Commands for the scene's display, and the panels around it."""
 
     def has_face() -> bool:
         """Whether the scene is a face: a plane has no texture, muscles and life."""
@@ -202,14 +202,14 @@ def view_menu(settings: Settings, view: SceneView, session: Session) -> Menu:
     setting = partial(switch_of, lambda: settings, "View")
 
     def toggle_look() -> Message:
-        """The paper's own rule, or the look that is first; either as it is."""
+        """Switch between the paper's rule and the first look, both without changes."""
         display = settings.display
         display.choose_preset(FIRST_PRESET if display.look == PAPERS_PRESET else PAPERS_PRESET)
         return f"Look: {display.look}"
 
     is_opened = lambda: "muscles" in settings.display.overlays  # noqa: E731
     muscles = partial(command, is_on=is_opened, can_run=has_face)
-    view_keys = {  # Alt: where there is no number pad
+    view_keys = {  # Alt: for keyboards without a number pad
         "Front": "Keypad1, Alt+1",
         "Three-quarter": "Keypad2, Alt+2",
         "Three-quarter right": "Ctrl+Keypad2, Ctrl+Alt+2",
@@ -246,7 +246,7 @@ def expression_keys(session: Session) -> Menu:
 
 
 def live_menu(live: LiveCommands, session: Session) -> Menu:
-    """A face that is sent while it moves; no menu where there is none to be moved."""
+    """Commands for a live face; no menu for a scene without a face."""
     command = partial(Command, "Live")
     if session.scene.face is None:
         return ()
@@ -257,7 +257,7 @@ def live_menu(live: LiveCommands, session: Session) -> Menu:
 
 
 def help_menu(manual: Manual, commands: Callable[[], Menu]) -> Menu:
-    """The manual, the program, and how to cite it. commands: all of the window."""
+    """The manual, the program, its citation. commands: all of the window."""
     command = partial(Command, "Help")
     return (
         command("Manual", "F1", manual.read),
@@ -299,6 +299,6 @@ def about() -> Message:
 
 
 def copy_citation() -> Message:
-    """Put the paper and the program into the clipboard, as BibTeX."""
+    """Copy citations of the paper and the program to the clipboard, as BibTeX."""
     imgui.set_clipboard_text(CITATION.replace("VERSION", __version__))
     return "The paper and the program are in the clipboard, as BibTeX"

@@ -16,11 +16,11 @@ class Mode(Protocol):
 
     @property
     def name(self) -> str:
-        """The name of the file that the user works on."""
+        """The name of the user's file."""
 
     @property
     def unsaved(self) -> str:
-        """The work that no file has, in words; "" for none."""
+        """The unsaved work in words; "" for none."""
 
     @property
     def view(self) -> SceneView:
@@ -44,27 +44,27 @@ class Mode(Protocol):
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether nothing moves, and nothing is about to."""
+        """Whether all is at rest, and will stay so."""
 
     @property
     def is_left_alone(self) -> bool:
-        """Whether the face does no more than live."""
+        """Whether the face only has idle life."""
 
     @property
     def has_news(self) -> bool:
-        """Whether a panel has something new to show that is no input of the user."""
+        """Whether a panel has news that did not come from the user's input."""
 
     def paint(self, elapsed: float) -> bool:
-        """Let seconds pass, and draw the picture; returns whether it has changed."""
+        """Let seconds pass, and draw the picture; return whether it has changed."""
 
     def draw_panels(self) -> None:
         """Draw the panels, and give the picture its place."""
 
     def rest(self) -> None:
-        """Make no sound, because the window waits for an event."""
+        """Stop the sound, because the window waits for an event."""
 
     def drop(self, paths: Sequence[str]) -> Message:
         """Open files that were dropped onto the window."""
 
     def leave(self, then: Task) -> Message:
-        """Run `then`; if work of this mode alone would be lost, ask first."""
+        """Run `then`; ask first if unsaved work of this mode would be lost."""

@@ -1,4 +1,4 @@
-"""The window opens: the scene is made behind a splash screen, then the parts that panels share."""
+"""The opening of the window: the scene is made behind a splash screen, then the shared parts."""
 
 from __future__ import annotations
 
@@ -24,10 +24,9 @@ def open_window(
 ) -> tuple[ApplicationContext, contextlib.ExitStack, str]:
     """Make the scene, and the shared parts in the open window.
 
-    display: None takes the one remembered.
-    Returns the parts, a stack that closes them with the window, and a complaint about remembered
-    settings, "" for none. UserError if script or display do not fit the scene; the window is
-    closed then.
+    display: None takes the remembered one. Returns the parts, a stack that closes them with the
+    window, and a complaint about remembered settings, or "". Raises UserError if script or display
+    do not fit the scene; the window is then closed.
     """
     settings = splash.settings
     complaint = splash.complaint
@@ -46,7 +45,7 @@ def open_window(
 
 
 def without_refused_options(display: Display, scene: Scene) -> str:
-    """Refine by the look alone where a refiner refuses the scene; a line says why, "" for none."""
+    """Refine by the look alone if a refiner refuses the scene; return the reason, or ""."""
     try:
         _refine_once(scene, display)
     except UserError as error:
@@ -56,18 +55,18 @@ def without_refused_options(display: Display, scene: Scene) -> str:
 
 
 def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> Scene:
-    """The scene, at rest; the code of its first frames has run once, and is compiled."""
+    """The scene at rest; the code of its first frames has run once, so it is compiled."""
     scene = build_scene(script.scene, head)
     script.check(scene.limits)
     scene.step(1.0 / 60.0)
     scene.reset()
-    with contextlib.suppress(UserError):  # which is reported when the window is there
+    with contextlib.suppress(UserError):  # reported when the window is open
         _refine_once(scene, display)
     return scene
 
 
 def _refine_once(scene: Scene, display: Display) -> None:
-    """Refine a scene as it is; raises UserError for a refiner that refuses it, or fails."""
+    """Refine the present scene; raises UserError for a refiner that refuses it, or fails."""
     refinement = display.refinement_on(scene)
     refiner = refiner_for(scene, refinement)
     with reported(plug_ins_of(*refinement.on(scene.name))):

@@ -1,4 +1,4 @@
-"""When the window draws a frame, and how long it waits for an event before it draws the next."""
+"""The times of the window's frames, and its waits for events between them."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .mode import Mode
 
 
 class Schedule:
-    """Keeps the time of frames; a window in which nothing happens sleeps until an event."""
+    """Keeps the time of frames; an idle window sleeps until an event."""
 
-    FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
+    FRAMES_AFTER_EVENT = 3  # the GUI responds to an event within this many frames
 
     def __init__(
         self,
@@ -30,19 +30,19 @@ class Schedule:
         self._file_drop = file_drop
         self._mode = mode
         self._due_in = due_in
-        self._begun = time.perf_counter()  # the present frame [s]
-        self._awake = self.FRAMES_AFTER_EVENT  # frames that are drawn in any case
+        self._begun = time.perf_counter()  # begin of the present frame [s]
+        self._awake = self.FRAMES_AFTER_EVENT  # number of frames to draw in any case
 
     def restart(self) -> None:
         """Forget the time that has passed since the last frame."""
         self._begun = time.perf_counter()
 
     def wake(self, frames: int = FRAMES_AFTER_EVENT) -> None:
-        """Draw this many frames at least."""
+        """Draw at least this many frames."""
         self._awake = max(self._awake, frames)
 
     def begin_frame(self) -> float:
-        """Begin a frame; returns the seconds since the last one began."""
+        """Begin a frame; return the seconds since the last one began."""
         last = self._begun
         self._begun = time.perf_counter()
         return self._begun - last
@@ -53,7 +53,7 @@ class Schedule:
 
     @property
     def spent(self) -> float:
-        """How long the present frame has taken so far [s]."""
+        """Time of the present frame so far [s]."""
         return time.perf_counter() - self._begun
 
     @property
@@ -63,7 +63,7 @@ class Schedule:
 
     @property
     def is_idle(self) -> bool:
-        """Whether nothing moves, and nothing is about to."""
+        """Whether all is at rest, and will stay so."""
         mode = self._mode()
         return (
             not self.is_awake
@@ -74,7 +74,7 @@ class Schedule:
 
     @property
     def is_left_alone(self) -> bool:
-        """Whether the face does no more than live, and nothing else happens."""
+        """Whether the face only has idle life, and nothing else happens."""
         return (
             self._mode().is_left_alone
             and not self.is_awake
@@ -83,14 +83,15 @@ class Schedule:
         )
 
     def pause(self) -> None:
-        """Sleep where nothing happens, and between frames where the face only lives.
+        """Sleep while nothing happens, and between frames of idle life.
 
-        The latter half of the time at least, however long a frame takes. A live face that has just
-        been shown is waited for: a frame that begins with its packet shows it at once.
+        Idle life leaves at least half of the time for sleep, however long a frame takes. After a
+        live face's frame, wait for the next packet: a frame that begins with its packet shows it at
+        once.
         """
         gui = self._context.gui
         live = self._context.live
-        life_wait = 1.0 / 15.0  # [s] from one frame to the next while the face only lives
+        life_wait = 1.0 / 15.0  # [s] from one frame of idle life to the next
         if self.is_idle:
             self.sleep()
         elif self.is_left_alone:
@@ -100,7 +101,7 @@ class Schedule:
             gui.look(PACKET_WAIT)
 
     def sleep(self) -> None:
-        """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
+        """Sleep until an event comes, or for a while; the clock stops meanwhile."""
         context = self._context
         is_watching = (
             context.files.is_waiting

@@ -1,4 +1,4 @@
-"""The window as it opens: a line on its progress, while the face is made in a thread."""
+"""The opening window: a line with the progress, while a thread makes the face."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Result = TypeVar("Result")
 
 
 class SplashScreen(logging.Handler):
-    """An open window with nothing in it yet; a context manager, which closes it.
+    """An open, still empty window; a context manager, which closes it.
 
     settings, complaint: those remembered, and a line that names the unusable ones.
     """
@@ -41,7 +41,7 @@ class SplashScreen(logging.Handler):
         known = size or self.settings.size
         self._text = LOADING_TEXT
         self._drawn = ((0, 0), "")
-        most = 2560, 1440  # [units of a screen of ordinary density], where it has room for that
+        most = 2560, 1440  # [units of a screen of ordinary density], if it has room
         self.surface = render.open_window(known or most, "Risorius", is_scaled=known is None)
         if known is None:
             self.settings.zoom = zoom_for(self.surface)
@@ -60,7 +60,7 @@ class SplashScreen(logging.Handler):
         self.surface.close()
 
     def during(self, work: Callable[[], Result]) -> Result:
-        """Do long work while the window answers; if the work fails, the window closes."""
+        """Do long work while the window responds; if the work fails, the window closes."""
         thread = ThreadPoolExecutor(1)
         outcome = thread.submit(work)
         thread.shutdown(wait=False)
@@ -81,7 +81,7 @@ class SplashScreen(logging.Handler):
 
 
 def zoom_for(surface: render.WindowSurface) -> float:
-    """How much larger than usual words are on a large screen, so that they can be read there."""
+    """Factor on the size of words, so that they are readable on a large screen."""
     height = surface.frame_size[1] / surface.pixel_scale
     usual_height = 1080.0  # [units of a screen of ordinary density]
     return min(max(height / usual_height, 1.0), 1.5)

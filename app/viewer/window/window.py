@@ -1,8 +1,8 @@
 """The window: it joins the two modes, runs one pass of its loop at a time, and closes.
 
-Physics goes in steps of its own, apart from frames (physics.py). The scene is drawn only when
-something in it has changed, with less detail while it moves if the machine is slow (stage.py);
-panels are drawn around it less often then. A window in which nothing happens waits (schedule.py).
+Physics has its own steps, independent of frames (physics.py). The scene is drawn only when it has
+changed; on a slow machine, a moving scene has less detail (stage.py), and its panels are drawn less
+often. An idle window waits (schedule.py).
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ from .splash_screen import SplashScreen
 
 
 class Viewer:
-    """The window with everything in it, as it runs; a context manager.
+    """The running window with everything in it; a context manager.
 
-    face: the mode in which the face moves. marking_mode: the one in which landmarks of a mesh are
-    marked, None while the face is shown.
+    face: the mode of the moving face. marking_mode: the mode of marking, None while the face is
+    shown.
     """
 
-    refresh = 0.1  # [s] that a picture of the panels may be old while the face moves
+    refresh = 0.1  # [s]: largest age of the panels' picture while the face moves
 
     def __init__(
         self,
@@ -59,10 +59,11 @@ class Viewer:
     ) -> None:
         """Open the window; nothing moves yet.
 
-        head: a user's own, None for the built-in one. size, display: None takes those remembered.
-        splash: the window, where it is open already.
-        settings_path: of the settings, beside which unsaved work is kept; None for nowhere.
-        Raises UserError for a script that names controls which the scene has not.
+        head: a user's own, None for the built-in one. size, display: None takes the remembered
+            ones.
+        splash: the window, if it is already open.
+        settings_path: that of the settings, with unsaved work beside it; None for no file. Raises
+        UserError for a script with controls that the scene lacks.
         """
         splash = splash or SplashScreen(size, settings_path)
         context, resources, complaint = open_window(splash, script, head, display)
@@ -84,14 +85,14 @@ class Viewer:
         self.export_dialog = ExportDialog(self.gui, self.exporter, self.files, context.view)
         self.schedule = Schedule(context, self.file_drop, lambda: self.mode, self.recovery.due_in)
         self.is_leaving = False
-        # Of the panels as they were drawn last: age [s], size of the window [pixels].
+        # For the last picture of the panels: age [s], size of the window [pixels].
         self._panels_age = math.inf
         self._panels_size = (0, 0)
         self._is_scene_covered = True  # by panels
         self._greet(complaint, script)
 
     def _greet(self, complaint: str, script: Script) -> None:
-        """Show the first message, and remember the files that are open."""
+        """Show the first message, and remember the open files."""
         settings = self.settings
         if script.is_converted or self.session.file.path is not None:
             settings.note_recent(Path(script.source))
@@ -106,7 +107,7 @@ class Viewer:
     def __enter__(self) -> Viewer:
         self.schedule.restart()
         on_drop(self.surface.handle, self.drop)
-        for _ in range(2):  # panels and tabs find their places before the first picture
+        for _ in range(2):  # panels and tabs get their places before the first picture
             self._draw_gui(is_visible=False)
         return self
 
@@ -118,10 +119,10 @@ class Viewer:
         if playing:
             self.session.toggle_playing()
         self.schedule.restart()
-        stopping = cleaned_up_if_stopped(self.exporter.close)  # when the work is safe
+        stopping = cleaned_up_if_stopped(self.exporter.close)  # after the work is safe
         with stopping, self.recovery.guarding(), cleaned_up_if_stopped(self.remember):
             while True:
-                if self.gui.is_minimised:  # time stands still, and nothing is drawn
+                if self.gui.is_minimised:  # time stops, and nothing is drawn
                     self.schedule.sleep()
                 else:
                     self.frame()
@@ -131,7 +132,7 @@ class Viewer:
                     self.ask_to_close()
                     if self.surface.should_close:
                         break
-                    self.gui.restore()  # to be asked
+                    self.gui.restore()  # so that the user sees the question
                 is_over = playing and not self.session.is_playing
                 if once and is_over and not self.session.work.unsaved:
                     break
@@ -160,7 +161,7 @@ class Viewer:
         if mode.has_news:
             schedule.wake()
         if schedule.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
-            return  # the picture stays as it is; in a line of text the cursor blinks
+            return  # the picture stays; the cursor blinks in a line of text
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
         if is_moving and not schedule.is_left_alone:
@@ -168,7 +169,7 @@ class Viewer:
         schedule.end_frame()
 
     def _take_results(self) -> None:
-        """Take in the work of threads and processes: an export, a head that is made, portraits."""
+        """Take the results of threads and processes: an export, a new head, portraits."""
         portraits = self.context.portraits
         if portraits.has_news:
             portraits.take_in()
@@ -177,20 +178,20 @@ class Viewer:
             self.schedule.wake(1)
         self.messages.attempt(self.exporter.poll, stays=True)
         if self.file_drop.has_news:
-            self.schedule.wake(2)  # the box of the message grows a frame late
+            self.schedule.wake(2)  # the message's box grows a frame late
             self.messages.text = ""
             self.messages.attempt(self.file_drop.poll, stays=True)
 
     def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:
-        """Draw the panels around the scene, unless their last picture does.
+        """Draw the panels around the scene, unless their last picture suffices.
 
-        On software OpenGL they cost as much as a quarter of the face, and while a script plays only
-        sliders creep in them. Every action of the user is answered in the same frame.
+        On software OpenGL they cost a quarter of the face, and while a script plays only sliders
+        move in them. Every action of the user has a response in the same frame.
         """
         mode = self.mode
         size = self.surface.size
         is_answering = self.schedule.is_awake or imgui.is_any_item_active()
-        if not self.schedule.is_left_alone:  # the face's own life moves no slider
+        if not self.schedule.is_left_alone:  # idle life moves no slider
             self._panels_age += elapsed
         has_input = mode.draws_over_picture or (is_answering and not mode.mouse.is_dragging)
         is_stale = self._panels_age >= self.refresh or size != self._panels_size
@@ -206,7 +207,7 @@ class Viewer:
         self._is_scene_covered = self.gui.covers(mode.view.area)
 
     def _draw_gui(self, *, is_visible: bool) -> None:
-        """Draw panels, and answer the user in them and in the face; is_visible: see Gui.frame."""
+        """Draw panels, and respond to the user in panels and face; is_visible: see Gui.frame."""
         messages = self.messages
         gui = self.gui
         files = self.files
@@ -220,7 +221,7 @@ class Viewer:
             self.context.manual.draw(mode.view.area)
             if imgui.is_any_mouse_down():
                 mode.view.pointed = {}
-            if not question.is_open:  # dialogs wait for the answer
+            if not question.is_open:  # dialogs wait until it is answered
                 messages.attempt(partial(files.draw, gui))
                 messages.attempt(self.export_dialog.draw)
             scripts = self.context.scripts
@@ -237,7 +238,7 @@ class Viewer:
     # Changes of the window as a whole
 
     def show_scene(self, scene: Scene) -> None:
-        """Take another scene with the same controls in place of this one."""
+        """Replace the scene by another one with the same controls."""
         if self.marking_mode is not None and self.marking_mode.unsaved:
             raise UserError("landmarks were moved meanwhile: use this head once more")
         self.session.move_to(scene)
@@ -251,10 +252,10 @@ class Viewer:
             self.messages.say(refused)
 
     def read(self, mesh: Path, landmarks: Path | None = None) -> Task:
-        """Read a mesh, in any thread; returns a task that has its landmarks marked.
+        """Read a mesh, in any thread; return a task that opens the marking of its landmarks.
 
-        The marking begins with those of a file, if there is one. The face waits meanwhile.
-        UserError if the mesh or the file cannot be used.
+        The marking begins with the landmarks of a file, if there is one. The face waits meanwhile.
+        Raises UserError for an unusable mesh or file.
         """
         marking = Marking(mesh, self.files)
         line = None if landmarks is None else marking.open(landmarks)
@@ -270,7 +271,7 @@ class Viewer:
         return mark
 
     def leave_marking(self) -> None:
-        """Go back to the face."""
+        """Return to the face."""
         if self.marking_mode is not None:
             self.marking_mode = None
             self.face.resume()
@@ -293,7 +294,7 @@ class Viewer:
         return None
 
     def remember(self) -> None:
-        """Write the settings as they are now; raises UserError if that cannot be."""
+        """Write the present settings; raises UserError if this fails."""
         if self._settings_path is not None:
             self.settings.size = self.gui.window_size
             save_settings(self._settings_path, self.settings)
@@ -302,8 +303,8 @@ class Viewer:
         """Save the settings, and release everything."""
         try:
             self.remember()
-        except UserError as error:  # a disk that is full must not keep the window open
-            log = logging.getLogger("risorius.viewer")  # reports when there is no window any more
+        except UserError as error:  # a full disk must not keep the window open
+            log = logging.getLogger("risorius.viewer")  # reports after the window has closed
             log.warning("risorius: %s; the next window does not look as this one", error)
         self.context.live.stop()
         self.exporter.close()
