@@ -1,1 +1,1 @@
-"""Benchmarks: each room measures one thing and makes numbers and text; its commands print them."""
+"""Benchmarks: each module measures one thing and makes numbers and text; commands print them."""

@@ -1,8 +1,8 @@
-"""Avatars of heads: do they keep the vertices of their files, and how far are sums of shapes off.
+"""Avatars of heads: a check of their files' vertices, and errors of sums of shapes.
 
 Heads are the built-in one and a made person, and by options MakeHuman's base mesh and a scan. Each
-is made into an avatar as by `risorius rig`, and its file is read again. Its landmarks are guessed
-from five of them, too.
+head becomes an avatar, as by `risorius rig`, and its file is read again. Its landmarks are also
+guessed from five of them.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ PERSON = 7
 
 
 class HeadFile(NamedTuple):
-    """A head of a file, and the file of its landmarks."""
+    """A file of a head, and the file of its landmarks."""
 
     name: str
     mesh: Path
@@ -50,9 +50,9 @@ class HeadFile(NamedTuple):
 class Row(NamedTuple):
     """One avatar.
 
-    vertices: of the file, of the skin where there is no file. in_place: how many of these the
-    avatar has, with their numbers. shapes: how many of ARKit's names are there, in Apple's order.
-    guess: of its landmarks.
+    vertices: number in the file, or in the skin without a file. in_place: number of these that the
+    avatar has under the same numbers. shapes: number of ARKit's names in Apple's order.
+    guess: that of its landmarks.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Row(NamedTuple):
 
 
 def makehuman(folder: Path) -> HeadFile:
-    """The head of MakeHuman's base mesh in a folder; UserError where it is not there."""
+    """The head of MakeHuman's base mesh in a folder; UserError if it is missing."""
     head = HeadFile("MakeHuman hm08", folder / "base.obj", folder / "base.json")
     for path in (head.mesh, head.landmarks):
         if not path.is_file():
@@ -88,9 +88,9 @@ def scan(scans: Scans, folder: Path) -> HeadFile:
 def measure(folder: Path | None, reference: Path | None) -> Iterator[Row]:
     """Make an avatar of each head, one after the other.
 
-    folder: of MakeHuman's base mesh. reference: of scans. None: that head is left out.
+    folder: the one of MakeHuman's base mesh. reference: the one of scans. None leaves a head out.
     """
-    avatar_of(None, _request(), _quiet)  # what is compiled once is not timed
+    avatar_of(None, _request(), _quiet)  # compilation is not timed
     yield measured(None)
     yield measured(person_called(PERSON), f"person {PERSON}")
     if folder is not None:
@@ -107,7 +107,7 @@ def measured(head: FittedHead | None, name: str = "built-in") -> Row:
     content = avatar_glb(avatar, name)
     seconds = time.perf_counter() - begin
     points, names = mesh_called("skin", content)
-    # Where texture coordinates have seams, copies of a vertex follow it.
+    # At seams of texture coordinates, copies of vertices follow.
     is_copy = (np.diff(points, axis=0) == 0.0).all(axis=1)
     points = points[~np.append(False, is_copy)]
     scene = avatar.scene
@@ -168,11 +168,11 @@ def _request() -> RigRequest:
 
 
 def _quiet(_: str) -> None:
-    """Print no line on a head."""
+    """Print no line about a head."""
 
 
 def report(rows: Sequence[Row], guesses: Sequence[Guess] = ()) -> str:
-    """The text to print. guesses: of other heads."""
+    """The text to print. guesses: those of other heads."""
     files = [
         (row.name, row.vertices, row.in_place, row.shapes, row.megabytes, row.seconds)
         for row in rows
@@ -199,7 +199,7 @@ def report(rows: Sequence[Row], guesses: Sequence[Guess] = ()) -> str:
 
 
 def targets(rows: Sequence[Row]) -> list[Target]:
-    """All vertices in their places, and all names."""
+    """The targets: all vertices in their places, and all names."""
     found = []
     for row in rows:
         found.append(at_least(f"{row.name}, vertices in place", row.in_place, row.vertices))

@@ -1,4 +1,4 @@
-"""An offscreen surface on which single meshes are drawn, and pictures laid out in rows."""
+"""An offscreen surface for single meshes, and pictures arranged in rows."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
 
 @dataclass(frozen=True)
 class Drawing:
-    """The camera and style of a picture, and its parts and lines beside the mesh."""
+    """The camera and style of a picture, and its parts and lines besides the mesh."""
 
     camera: render.OrbitCamera
     style: render.Style
@@ -51,7 +51,7 @@ class Canvas:
         self.surface.close()
 
     def mesh_of(self, refiner: refine.Refiner) -> DrawnMesh:
-        """The mesh of a refiner in buffers that are lent to it, the same at every call."""
+        """The mesh of a refiner in lent buffers, the same at every call."""
         if refiner not in self._meshes:
             room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
             self._meshes[refiner] = DrawnMesh("", refiner, self.renderer.lend_stream(*room))
@@ -78,7 +78,7 @@ class Canvas:
         faces: npt.NDArray[np.integer],
         drawing: Drawing,
     ) -> Image:
-        """Draw a surface whose normals are known, and that no refiner made; read back."""
+        """Draw a surface with known normals, which no refiner made; read back."""
         position_and_normal = 6  # columns of a vertex without texture coordinates
         stream = self.renderer.lend_stream(len(positions), len(faces), position_and_normal)
         stream.vertices[:] = np.hstack([positions, normals])
@@ -97,33 +97,33 @@ class Canvas:
 
 @dataclass(frozen=True)
 class Shot:
-    """A picture of a mesh with so many triangles, to be compared with others."""
+    """A picture of a mesh with this number of triangles, for comparisons."""
 
     triangles: int
     image: Image
 
     def off(self, other: Shot) -> Floats64:
-        """How far each pixel is from that of another picture [levels of 255], (H, W)."""
+        """Difference of each pixel from that of another picture [levels of 255], (H, W)."""
         apart = self.image.astype(np.float64) - other.image
         return np.asarray(np.sqrt((apart**2).mean(axis=2)))
 
     def rms(self, truth: Shot) -> float:
-        """Root mean square of that."""
+        """Root mean square of this difference."""
         return float(np.sqrt((self.off(truth) ** 2).mean()))
 
 
 def parts_without_hair(scene: Scene) -> tuple[Any, ...]:
-    """The parts of a scene but for hair, which hides form."""
+    """The parts of a scene without hair, which hides form."""
     return tuple(part for part in scene.parts if not part.name.startswith(HAIR))
 
 
 def image_table(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Image:
-    """Lay pictures of one size out in rows, each row with a title above and each cell a caption."""
+    """Arrange pictures of one size in rows; each row has a title, and each cell a caption."""
     _, first_cells = rows[0]
     _, first_image = first_cells[0]
     height, width = first_image.shape[:2]
     columns = max(len(cells) for _, cells in rows)
-    # Pages show it about 1000 pixels wide: then a caption is no smaller than about 12.
+    # Pages show it about 1000 pixels wide; captions then still have about 12 pixels.
     size = max(16.0, min(width, height) / 17.0, columns * width / 72.0)
     title = round(2.0 * size)
     caption_height = round(1.7 * size)

@@ -1,6 +1,6 @@
 """The report of `risorius bench capture`: frames a second of a film.
 
-The film is the face's script, as the mesh is and refined, side by side. Where the face is still, it
+The film is the face's script, unrefined and refined, side by side. While the face is still, it
 shows its last picture again. `bench window` reports the time of each stage of a frame, by the same
 pipeline.
 """
@@ -25,7 +25,7 @@ from .report import processor
 
 
 def report(size: tuple[int, int], seconds: float) -> str:
-    """Make films of so many seconds of the script; the text to print."""
+    """Make films of `seconds` of the script; return the text to print."""
     whole = script_for(None, "face")
     script = replace(whole, duration=min(seconds, whole.duration), poses=whole.poses)
     beside = (Refinement(refiner=STATIC),)
@@ -51,10 +51,10 @@ def report(size: tuple[int, int], seconds: float) -> str:
 
 
 def _timed(script: Script, options: CaptureOptions, film: Path) -> tuple[float, float]:
-    """Wall and processor seconds of a film, from nothing: its processes start, too."""
+    """Wall and processor seconds of a film, including the start of its processes."""
 
     def used() -> float:
-        """Processor time [s] of this process and those that it began and that ended."""
+        """Processor time [s] of this process and of its ended children."""
         times = os.times()
         return times.user + times.system + times.children_user + times.children_system
 

@@ -26,7 +26,7 @@ size_option = click.option("--size", type=Size(), default=(1280, 720), help="By 
 
 @click.group()
 def bench() -> None:
-    """Measure: each command prints figures and how they were taken."""
+    """Measure: each command prints figures and the method."""
 
 
 @bench.command("refine")
@@ -76,7 +76,7 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str, pairs: st
 
 @bench.command("embedding")
 def bench_embedding() -> None:
-    """Measure how near a fine mesh comes to its true place when a coarse one carries it."""
+    """Measure how near a fine mesh, carried by a coarse one, comes to its true place."""
     from . import embedding
 
     rows = embedding.measure()
@@ -119,8 +119,8 @@ def bench_quality(reference: Path | None, expressions: tuple[str, ...]) -> None:
 def bench_rivals(reference: Path | None, seconds: float) -> None:
     """Compare refinement with other libraries: distance to true surfaces, and time.
 
-    They refine a sphere, the plane, the built-in head, and a scan with --reference. Each library
-    that is not installed is skipped with one line; pip install '.[rivals]' brings all.
+    They refine a sphere, the plane, the built-in head, and a scan with --reference. A library that
+    is not installed is skipped with one line; pip install '.[rivals]' installs all.
     """
     from . import rivals, subjects
 
@@ -172,7 +172,7 @@ def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
 @bench.command("persons")
 @click.option("--count", type=click.IntRange(2, 10000), default=200, help="By default 200 of each.")
 def bench_persons(count: int) -> None:
-    """Compare women and men of ours with published measures."""
+    """Compare our women and men with published measures."""
     from . import persons
 
     rows = persons.measure(count)

@@ -1,10 +1,10 @@
-"""How near a fine mesh comes to its true place when a coarse one carries it.
+"""Distance of a fine mesh, carried by a coarse one, from its true place.
 
 Surfaces with a formula are bent by maps with a formula, so the true place of every fine vertex is
-known. The fine mesh lies on the surface, the coarse one has its vertices on it. Beside
-`refine.Embedding` stand the two ways that coarse simulations usually draw fine meshes by: a place
-on the flat triangle that was nearest at rest, without the offset from it, and with the offset in
-the triangle's own axes. All three see the same coarse triangles.
+known. The fine mesh lies on the surface, the coarse one has its vertices on it. `refine.Embedding`
+is compared with the two usual ways to draw fine meshes on coarse simulations: a place on the flat
+triangle that was nearest at rest, without an offset, and with an offset in the triangle's own axes.
+All three use the same coarse triangles.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Faces = npt.NDArray[np.int32]
 Surface = tuple[Points, Faces]
 Map = Callable[[Points], Points]
 
-ROUNDS = 20  # of timing a frame
+ROUNDS = 20  # rounds of timing a frame
 
 
 class Row(NamedTuple):
@@ -59,7 +59,7 @@ def sphere(levels: int) -> Surface:
 
 
 def tube(around: int, along: int) -> Surface:
-    """An open cylinder along x, of radius 0.5 and length 4, that looks outward."""
+    """An open cylinder along x, with radius 0.5 and length 4, that faces outward."""
     angles = 2.0 * np.pi * np.arange(around) / around
     places = np.linspace(-2.0, 2.0, along + 1)
     x, angle = np.meshgrid(places, angles, indexing="ij")
@@ -71,21 +71,21 @@ def tube(around: int, along: int) -> Surface:
 
 
 def rolled(points: Points) -> Points:
-    """Roll x up around an axis that lies 1.5 below: what is flat becomes a cylinder."""
+    """Roll x up around an axis 1.5 below: a plane becomes a cylinder."""
     radius = 1.5 + points[:, 2]
     angle = points[:, 0] / 1.5
     return np.stack([radius * np.sin(angle), points[:, 1], radius * np.cos(angle) - 1.5], axis=1)
 
 
 def waved(points: Points) -> Points:
-    """Bend what is flat, along the x axis and a little across it."""
+    """Bend a plane along the x axis, and a little across it."""
     moved = points.copy()
     moved[:, 2] += 0.15 * np.sin(3.0 * points[:, 0] + points[:, 1])
     return moved
 
 
 def twisted(points: Points) -> Points:
-    """Turn everything about the x axis, the farther the more."""
+    """Turn all points about the x axis, more at larger x."""
     angle = 0.8 * points[:, 0]
     y = np.cos(angle) * points[:, 1] - np.sin(angle) * points[:, 2]
     z = np.sin(angle) * points[:, 1] + np.cos(angle) * points[:, 2]
@@ -93,12 +93,12 @@ def twisted(points: Points) -> Points:
 
 
 def stretched(points: Points) -> Points:
-    """Make an ellipsoid of a sphere."""
+    """Stretch a sphere into an ellipsoid."""
     return points * [1.3, 0.8, 1.0]
 
 
 def swollen(points: Points) -> Points:
-    """Half as thick again."""
+    """Make thickness one and a half times as large."""
     return points * [1.0, 1.5, 1.5]
 
 
@@ -119,7 +119,7 @@ class FlatBinding:
         self._offsets = np.einsum("nij,ni->nj", self._axes(rest), away)
 
     def evaluate(self, positions: Points, *, offset: bool) -> Points:
-        """Where the points come, with or without their offset."""
+        """The moved points, with or without their offsets."""
         places = self._places.interpolate(positions)
         if not offset:
             return places
@@ -181,7 +181,7 @@ def report(rows: list[Row]) -> str:
 
 
 def targets(rows: list[Row]) -> list[Target]:
-    """Three times nearer than flat binding with an offset, wherever the surface bends."""
+    """The targets: three times nearer than flat binding with an offset, if the surface bends."""
     least = min(row.with_offset / row.ours for row in rows)
     return [at_least("flat binding with offset by ours", least, 3.0)]
 

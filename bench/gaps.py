@@ -1,17 +1,17 @@
-"""Do closed lips stay closed, do lids close, and does the skin tear?
+"""A test of closed lips, closing lids and whole skin.
 
-The benchmark sets every row of each layer alone to full strength, and hundreds of random mixtures
-of muscles, and settles the built-in head in each. It counts the inverted triangles, those that
-turned by more than a right angle against the skin around them. It measures how deep skin sits in
-the other lip, an eyeball or the teeth.
+The benchmark sets each row of every layer to full strength, and then hundreds of random mixtures of
+muscles, and lets the built-in head settle in each pose. It counts inverted triangles: those turned
+by more than a right angle against the skin around them. It measures how deep skin sits in the other
+lip, an eyeball or the teeth.
 
 For action units, and expressions in which the mouth or an eye is shut, it also reports two gaps:
-the widest slit between the lips where nothing opens them, and the greatest height at which a shut
-eyeball is seen, or the space past it. The views cover the whole front, 60 degrees to either side
-and 40 up and down. Both the mesh and the refined mesh are measured, because smoothing thins a
-folded lip a little; the worse of the two counts. Gaps are measured by lines of sight, not by
-distances between vertices: a gap that nobody can look through is none, and a gap may lie between
-two vertices that touch.
+the widest slit between lips that no muscle opens, and the greatest visible height of a shut
+eyeball, or of the space past it. The views cover the whole front, 60 degrees to either side and 40
+up and down. Both the mesh and the refined mesh are measured, because smoothing thins a folded lip a
+little; the worse of the two counts. Gaps are measured by lines of sight, not by distances between
+vertices: a gap without a line of sight does not count, and a gap may lie between two touching
+vertices.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ Triangles = npt.NDArray[Any]
 LARGEST_FAULTS = {"slit": 0.2, "eye": 0.2, "lips": 0.1, "lids": 0.1, "teeth": 0.1}  # mm
 YAWS = (0.0, -30.0, 30.0, -60.0, 60.0)  # degrees
 PITCHES = (0.0, -10.0, 10.0, -25.0, 25.0, -40.0, 40.0)
-VIEWS = tuple(  # the whole front, as far as cameras go round it
+VIEWS = tuple(  # the whole front, as far as cameras turn
     (yaw, pitch)
     for yaw, pitch in itertools.product(YAWS, PITCHES)
     if (yaw / 60.0) ** 2 + (pitch / 40.0) ** 2 < 1.3
@@ -47,11 +47,11 @@ VIEWS = tuple(  # the whole front, as far as cameras go round it
 
 
 class Pose(NamedTuple):
-    """The faults of one pose; None where nothing ought to be shut."""
+    """The faults of one pose; None if lips or eyes need not be shut."""
 
     name: str
     slit: float | None  # mm, widest between the lips
-    eye: float | None  # mm, greatest height at which an eye that is shut is seen
+    eye: float | None  # mm, greatest visible height of a shut eye
     inverted: int  # triangles
     lips: float  # mm deep in the other lip
     lids: float  # mm deep in an eyeball
@@ -59,13 +59,13 @@ class Pose(NamedTuple):
 
 
 def measure(mixtures: int) -> list[Pose]:
-    """Put the built-in head into each pose, and into so many random mixtures."""
+    """Set the built-in head to each pose, and to this number of random mixtures."""
     head = assets.load("head")
     simulation = sim.create(head)
     options = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
     refiner = refine.create("kahler", head.faces, head.vertices, **options)
     poses = []
-    settling_frames = 45  # of 1/60 s until a pose is still
+    settling_frames = 45  # frames of 1/60 s until a pose is still
     seed = 2001
     for name, values in _values(simulation, mixtures, np.random.default_rng(seed)):
         now = settled_positions(simulation, values, settling_frames)
@@ -79,7 +79,7 @@ def measure(mixtures: int) -> list[Pose]:
 def _gaps(
     head: Any, simulation: sim.Simulation, refiner: refine.Refiner, name: str
 ) -> tuple[float | None, float | None]:
-    """The slit between the lips and the height of an eye that are shut in a pose [mm]."""
+    """The slit between shut lips, and the visible height of a shut eye, in a pose [mm]."""
     sums = simulation.controls.sums
     moved = {control for control, value in sums.items() if value != 0.0}
     is_turned = moved and all(control.startswith("head_") for control in moved)  # and nothing else
@@ -94,10 +94,10 @@ def _gaps(
         "viseme_sil",
         "viseme_PP",
     )
-    eyes_shut = ("yawn",)  # beside those above
+    eyes_shut = ("yawn",)  # besides those above
     if is_turned or name not in (*simulation.controls.layers[layer], *mouth_shut, *eyes_shut):
         return None, None
-    # FACS: these part the lips themselves. All others leave the mouth as it is.
+    # FACS: these part the lips; all others leave the mouth shut.
     lip_parting = ("AU9", "AU10", "AU16", "AU22", "AU25", "AU26", "AU27")
     is_shut = name.removesuffix("_left").removesuffix("_right") not in lip_parting + eyes_shut
     landmarks = simulation.positions[head.landmarks]
@@ -122,7 +122,7 @@ def _values(
     controls = simulation.controls
     for names_of_layer in controls.layers.values():
         yield from ((name, {name: 1.0}) for name in names_of_layer)
-    # The pose of the head turns all triangles alike; it is left out.
+    # The pose of the head turns all triangles equally, so it is left out.
     limits = {n: controls.limits[n] for n in controls.lowest if not n.startswith("head_")}
     names = np.array(list(limits))
     most_controls = 8  # in a mixture
@@ -137,7 +137,7 @@ def _values(
 def meshes_of(
     simulation: sim.Simulation, refiner: refine.Refiner
 ) -> dict[str, tuple[Floats64, Triangles]]:
-    """Positions [mm] and triangles of the face as it is simulated ("static") and "refined"."""
+    """Positions [mm] and triangles of the simulated face ("static") and the "refined" one."""
     drawn = refiner.refine(simulation.positions)
     return {
         "static": (simulation.positions, simulation.faces),
@@ -146,9 +146,9 @@ def meshes_of(
 
 
 def widest_slit(positions: Floats64, triangles: Triangles, landmarks: Floats64) -> float:
-    """Greatest height [mm] of the slit between the lips that one looks through from any of VIEWS.
+    """Greatest height [mm] of a slit between the lips that is visible in any of VIEWS.
 
-    `landmarks`: where the 68 are now (68, 3).
+    `landmarks`: the present 68 (68, 3).
     """
     lip = landmarks[list(LOWER_EDGES["mouth"])]
     mouth_radius = 60.0  # mm around the mouth's middle in which skin may cover it
@@ -158,13 +158,13 @@ def widest_slit(positions: Floats64, triangles: Triangles, landmarks: Floats64) 
 
 
 def _turned_by(yaw: float, pitch: float) -> Floats64:
-    """Rotation that brings the look from `yaw`, `pitch` [degrees] to the front."""
+    """Rotation that brings the view from `yaw`, `pitch` [degrees] to the front."""
     about_y_then_x = Rotation.from_euler("yx", [yaw, pitch], degrees=True)
     return np.asarray(about_y_then_x.as_matrix())
 
 
 def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Floats64]:
-    """Triangles (n, 3, 3) of the eyeballs that the head brings, turned as they are now, by side."""
+    """Triangles (n, 3, 3) of the head's eyeballs with their present turn, by side."""
     bones = simulation.bones.transforms()
     found = {}
     for part in head.parts:
@@ -178,11 +178,11 @@ def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Floats64]:
 def lid_gaps(
     positions: Floats64, triangles: Triangles, landmarks: Floats64, eyeballs: Mapping[str, Floats64]
 ) -> dict[str, float]:
-    """Greatest height [mm] at which each eyeball, or the space past it, is seen from any of VIEWS.
+    """Greatest height [mm] of each eyeball, or the space past it, visible in any of VIEWS.
 
-    A place is seen if no skin is in front of it, between the lids or through them: the cornea
-    stands out of the ball and may pierce a lid. `landmarks`: where the 68 are now (68, 3);
-    `eyeballs`: see `eyeballs_of`. The result is by the eye's side.
+    A place is visible if no skin is in front of it, between the lids or through them: the cornea
+    stands out of the ball and may pierce a lid. `landmarks`: the present 68 (68, 3); `eyeballs`:
+    see `eyeballs_of`. The result is by the eye's side.
     """
     turns = [_turned_by(*view) for view in VIEWS]
     gaps = {}
@@ -210,19 +210,19 @@ def _lid_gap(near: Floats64, ends: Floats64, ball: Floats64) -> float:
     heights = np.arange(middle - lid_window, middle + lid_window, lid_step)
     widest = 0
     lid_columns = 23  # planes across an eye
-    lid_end = 1.5  # [mm] beside the corners of an eye, which are not looked at
+    lid_end = 1.5  # [mm] beside the corners of an eye, which are not tested
     for x in np.linspace(left + lid_end, right - lid_end, lid_columns):
         covered = _front(near, x, heights) >= np.maximum(_front(ball, x, heights), deepest)
-        skin = np.flatnonzero(covered)  # beyond the outermost the head may have ended
+        skin = np.flatnonzero(covered)  # the head may end beyond the outermost
         if len(skin):
             widest = max(widest, int((~covered[skin[0] : skin[-1]]).sum()))
     return lid_step * widest
 
 
 def _front(triangles: Floats64, x: float, heights: Floats64) -> Floats64:
-    """How far to the front triangles (n, 3, 3) reach in the plane at x, shape (len(heights),).
+    """Frontmost z of triangles (n, 3, 3) in the plane at x, shape (len(heights),).
 
-    -inf where there is none at that height.
+    It is -inf at heights without a triangle.
     """
     across = triangles[:, :, 0]
     is_crossed = (across.min(axis=1) < x) & (across.max(axis=1) > x)
@@ -241,11 +241,11 @@ def _front(triangles: Floats64, x: float, heights: Floats64) -> Floats64:
 
 
 def inverted_count(rest: Floats64, now: Floats64, faces: Triangles) -> int:
-    """How many triangles turned by more than a right angle against the skin around them."""
+    """Number of triangles turned by more than a right angle against the skin around them."""
     before = cross_products(rest, faces)
     after = cross_products(now, faces)
     count = 0
-    compared_radius = 12.0  # mm around a triangle whose mean turn it is compared with
+    compared_radius = 12.0  # mm around a triangle: skin for the compared mean turn
     for face in np.flatnonzero((before * after).sum(axis=1) < 0.0):
         corners = faces[face]
         middle = rest[corners].mean(axis=0)
@@ -267,7 +267,7 @@ def _worst(poses: Sequence[Pose], column: str) -> tuple[float, str]:
 
 
 def report(poses: Sequence[Pose]) -> str:
-    """The text to print: how many poses, and which is the worst in each way."""
+    """The text to print: the number of poses, and the worst pose for each measure."""
     torn = [pose for pose in poses if pose.inverted]
     rows = [(column, *_worst(poses, column)) for column in Pose._fields[1:]]
     return "\n".join(
@@ -286,7 +286,7 @@ def report(poses: Sequence[Pose]) -> str:
 
 
 def targets(poses: Sequence[Pose]) -> list[Target]:
-    """The targets of skin and contacts; a triangle turns over in a wink or a yawn."""
+    """The targets of skin and contacts; a triangle may turn over in a wink or a yawn."""
     torn = sum(pose.inverted > 0 for pose in poses) / len(poses)
     most = LARGEST_FAULTS.items()
     most_torn = 2.0  # [% of poses]

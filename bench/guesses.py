@@ -1,4 +1,4 @@
-"""How far landmarks lie off that are guessed from five true points of a head."""
+"""Errors of landmarks that are guessed from five true points of a head."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ PERSONS = (7, 63)
 
 
 class Guess(NamedTuple):
-    """A head whose landmarks were guessed.
+    """A head with guessed landmarks.
 
-    off: how far each of the 68 lies from the true one, where the outer corners of the eyes are 89
-    mm apart, shape (68,).
+    off: distance of each of the 68 from the true one, for outer eye corners 89 mm apart, shape
+    (68,).
     """
 
     name: str
@@ -31,7 +31,7 @@ class Guess(NamedTuple):
 
 
 def guessed(name: str, mesh: Mesh, true: Floats64) -> Guess:
-    """The guess for a mesh. true: where its landmarks lie [its unit], shape (68, 3)."""
+    """The guess for a mesh. true: its true landmarks [its unit], shape (68, 3)."""
     found = guess(mesh, {number: true[number] for number in FIRST})
     right_corner, left_corner = true[[36, 45]]
     apart = 89.0  # [mm], as of the built-in head
@@ -40,7 +40,7 @@ def guessed(name: str, mesh: Mesh, true: Floats64) -> Guess:
 
 
 def persons_turned() -> list[Guess]:
-    """The guesses for two made persons in metres, who lie on a side or stand on the head."""
+    """The guesses for two made persons in metres, lying on a side and upside down."""
     found = []
     for number, degrees in zip(PERSONS, ((0.0, 20.0, 90.0), (150.0, -35.0, 10.0)), strict=True):
         person = person_called(number)

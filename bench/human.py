@@ -1,14 +1,14 @@
-"""How human a head's form is: its distance from the nearest person of a reference, by region.
+"""Likeness of a head to people: its distance from the nearest person of a reference, by region.
 
-The mean person of a reference is turned, moved and bent along the modes until
-it lies on the head as well as such a person can. The rest is reported as the distance along the
-head's normals (RMS) and the angle between normals (median): distances between landmarks do not show
-form, normals do. Large weights mean a head that few people could have. People who were fitted by
-half of the modes have a rest of 0.33 to 0.48 mm and 2.6 to 3.7 degrees.
+The mean person of a reference is turned, moved and bent along the modes until it lies on the head
+as well as such a person can. The rest is reported as the distance along the head's normals (RMS)
+and the angle between normals (median): normals show form, distances between landmarks do not. Large
+weights mean an unusual head. People fitted by half of the modes have a rest of 0.33 to 0.48 mm and
+2.6 to 3.7 degrees.
 
-Vertices in nostrils and between lips are left out, since either mesh has insides of its own.
-Source of the fit: Amberg, Knothe, Vetter 2008, "Expression invariant 3D face recognition with a
-morphable model" (a shape model fitted to a surface, nearest points in turns with weights).
+Vertices in nostrils and between lips are left out, because each mesh has its own insides. Source of
+the fit: Amberg, Knothe, Vetter 2008, "Expression invariant 3D face recognition with a morphable
+model" (a shape model fitted to a surface, nearest points in turns with weights).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from .subjects import DENSE, MILLIMETRES, MODES, Faces, Points, read_arrays
 Rotation = scipy.spatial.transform.Rotation
 Labels = npt.NDArray[np.str_]
 
-# [mm] RMS that may be left of the finer mesh.
+# [mm] RMS: largest rest of the finer mesh.
 MOST_DISTANCES = {"all": 0.50, "nose": 0.60, "mouth": 0.60}
 REGIONS = ("forehead", "eyes", "nose", "cheek", "mouth", "chin", "jaw")
 
@@ -45,8 +45,9 @@ REGIONS = ("forehead", "eyes", "nose", "cheek", "mouth", "chin", "jaw")
 class IdentitySpace:
     """People as mean + weights @ modes, all [mm].
 
-    Of a folder of `bench reference`: `identity_modes.npz` has on the vertices of `face.npz` the
-    components of ICT-FaceKit's identity, `modes` (k, V, 3) [cm], at one standard deviation each.
+    It comes from a folder of `bench reference`: `identity_modes.npz` has the components of
+    ICT-FaceKit's identity on the vertices of `face.npz`, `modes` (k, V, 3) [cm], each at one
+    standard deviation.
     """
 
     mean: Points
@@ -59,7 +60,7 @@ class IdentitySpace:
 
     @classmethod
     def read(cls, folder: Path) -> IdentitySpace:
-        """Read a folder. Raises UserError, naming the file, where something in it is missing."""
+        """Read a folder. Raises UserError, which names the file, if something is missing."""
         face = read_arrays(folder / DENSE, ("vertices", "triangles", "landmarks68"))
         if not (folder / MODES).is_file():
             raise UserError(f"{folder / MODES}: is not there; it holds the modes of identity")
@@ -78,7 +79,7 @@ class IdentitySpace:
         return np.asarray(self.mean + np.tensordot(weights, self.modes, 1), dtype=np.float64)
 
     def regions(self) -> Labels:
-        """The name of the region that each vertex is in, "" where hidden or no face, (V,)."""
+        """The name of each vertex's region, "" for hidden ones and outside the face, (V,)."""
         x, y, z = self.mean.T
         marks = self.mean[self.landmarks]
         aside = np.abs(x)
@@ -134,14 +135,14 @@ class HeadMesh:
 
 @dataclass(frozen=True)
 class Rest:
-    """The rest of a surface beside people's modes."""
+    """The rest of a surface that people's modes do not explain."""
 
     weights: Points
-    """Of the modes, shape (k,), in standard deviations."""
+    """Weights of the modes, shape (k,), in standard deviations."""
     distances: Mapping[str, float]
-    """RMS by region, and of "all" [mm]; NaN where a region is empty."""
+    """RMS by region, and of "all" [mm]; NaN for an empty region."""
     angles: Mapping[str, float]
-    """Median between normals, by the same [deg]."""
+    """Median angle between normals, by the same regions [deg]."""
 
 
 def measure(folder: Path, head_file: Path | None = None) -> dict[str, Rest]:
@@ -163,9 +164,9 @@ def measure(folder: Path, head_file: Path | None = None) -> dict[str, Rest]:
 
 
 def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest:
-    """The rest of a surface beside the nearest person of the space.
+    """The rest of a surface that the nearest person of the space does not explain.
 
-    labels: the region of each of the space's vertices, "" where it does not count.
+    labels: the region of each of the space's vertices, "" for none.
     """
     asked = np.flatnonzero(labels != "").astype(np.int32)
     count = len(space.modes)
@@ -177,10 +178,10 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
     )
     shift = wanted_middle - turn.apply(marked).mean(axis=0)
     rounds = 18  # of nearest points
-    landmark_rounds = 6  # of the first rounds, which landmarks lead, too
+    landmark_rounds = 6  # first rounds, which landmarks also lead
     landmark_weight = 0.3  # of 1/mm^2
     farthest_distance = 12.0  # [mm] that points may be apart
-    independent_points = 600  # points that count as independent: neighbours err alike
+    independent_points = 600  # points that count as independent: neighbours have similar errors
     face_landmarks = slice(17, 68)  # without the outline of the face, which slides
     for number in range(rounds):
         points = turn.apply(space.person(weights)) + shift
@@ -222,9 +223,9 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
 
 
 def _changes(modes: Points, points: Points, numbers: Faces, ways: Points) -> Points:
-    """How far modes, turns and shifts move some points along their ways (n, 3), (n, K + 6).
+    """Motion of points along their ways (n, 3) by modes, turns and shifts, (n, K + 6).
 
-    modes: turned, shape (K, V, 3). numbers: of the points, shape (n,).
+    modes: turned, shape (K, V, 3). numbers: those of the points, shape (n,).
     """
     by_modes = np.einsum("kij,ij->ik", modes[:, numbers], ways)
     # A small turn w about the origin moves a point p along n by (p x n) w.
@@ -235,7 +236,7 @@ def _changes(modes: Points, points: Points, numbers: Faces, ways: Points) -> Poi
 def _feet(
     points: Points, triangles: Faces, asked: Faces, surface: HeadMesh
 ) -> tuple[Points, Points, Points]:
-    """Nearest points of the surface to the asked ones, their normals, cosines of both normals."""
+    """Nearest points of the surface to the given ones, their normals, cosines of both normals."""
     own = vertex_normals(points, triangles)[asked]
     at = nearest_on(points[asked], own, surface.vertices, surface.faces)
     facing = at.interpolate(surface.normals)

@@ -1,16 +1,16 @@
-"""Detectors of other people on a set of ours: do its landmarks mean what theirs mean?
+"""Third-party detectors on one of our sets: a comparison of both definitions of landmarks.
 
 dlib's shape predictor learned iBug's 68 points (Kazemi, Sullivan 2014; Sagonas et al. 2016).
-MediaPipe's face landmarker (Google, Apache-2.0) has a mesh of its own, on whose lines the 68 are
-set here as the scheme has them: evenly along a brow or a jaw, half way between peak and corner of
-the lips. An error is a distance in the picture, in hundredths of the distance between the outer
-corners of the eyes at their depth. It has two parts:
+MediaPipe's face landmarker (Google, Apache-2.0) has its own mesh. Here the 68 are set on lines of
+this mesh by the scheme: evenly along a brow or a jaw, half way between peak and corner of the lips.
+An error is a distance in the picture, in hundredths of the distance between the outer corners of
+the eyes at their depth. It has two parts:
 
-    constant   the mean offset of a point on frontal pictures, both sides as one: another definition
+    constant the mean offset of a point on frontal pictures, both sides as one: another definition
     the rest   how well the detector works on these pictures
 
-A detector checks a definition; it is no measure of a face's form. Pictures of masked persons are
-left out, for there it guesses.
+A detector checks a definition; it does not measure a face's form. Pictures of masked persons are
+left out, because there it guesses.
 """
 
 from __future__ import annotations
@@ -52,9 +52,10 @@ MOST_YAW = 10.0  # [degrees] of frontal pictures
 class Finding:
     """The errors of a detector on the pictures of a set.
 
-    errors: of each picture and point, in the frame of the face: along the line of the eyes to the
-    subject's left, and down [percent of the eyes' distance], (n, 68, 2). yaw: of the heads
-    [degrees], (n,). picture_count: of all without a mask, those without a found face included.
+    errors: those of each picture and point, in the frame of the face: along the line of the eyes to
+    the subject's left, and down [percent of the eyes' distance], (n, 68, 2). yaw: that of the heads
+    [degrees], (n,). picture_count: number of pictures without a mask, including those without a
+    found face.
     """
 
     detector: str
@@ -64,12 +65,12 @@ class Finding:
 
     @property
     def distances(self) -> Floats64:
-        """How far each point is off [percent], (n, 68)."""
+        """Distance of each point from its label [percent], (n, 68)."""
         return np.asarray(np.linalg.norm(self.errors, axis=2))
 
     @property
     def is_frontal(self) -> Flags:
-        """Of each picture, (n,)."""
+        """Whether each picture is frontal, (n,)."""
         return np.abs(self.yaw) < MOST_YAW
 
     @property
@@ -82,16 +83,16 @@ class Finding:
 
 
 def is_installed(detector: str) -> bool:
-    """Whether the library of a detector is there."""
+    """Whether the library of a detector is installed."""
     return importlib.util.find_spec(detector) is not None
 
 
 @contextlib.contextmanager
 def opened(detector: str, model: Path | None) -> Iterator[Detector]:
-    """A detector of `DETECTORS`, with its model; UserError where it is missing or no such file.
+    """A detector of `DETECTORS` with its model; UserError for a missing or wrong file.
 
     The detector gives the 68 points of a picture (H, W, 3), shape (68, 2) [pixels, the middle of
-    the first one is 0.5], or None where it finds no face.
+    the first one is 0.5], or None without a face.
     """
     if detector == "dlib":
         yield _dlib(model)
@@ -111,7 +112,7 @@ def _dlib(model: Path | None) -> Detector:
     except RuntimeError as error:
         raise UserError(f"{file}: is no shape predictor of dlib: {error}") from None
     faces = dlib.get_frontal_face_detector()
-    larger = 1  # times that pictures are doubled, for small faces
+    larger = 1  # number of times that pictures are doubled, for small faces
 
     def detect(image: Image) -> Floats64 | None:
         """The 68 points of the largest face [pixels], shape (68, 2); None without a face."""
@@ -120,7 +121,7 @@ def _dlib(model: Path | None) -> Detector:
         if not boxes:
             return None
         box = max(boxes, key=lambda each: each.area())
-        # Annotations count pixels from 1, dlib from 0: half of a pixel either way, left as it is.
+        # Annotations count pixels from 1, dlib from 0: the difference of half a pixel is ignored.
         points = predictor(array, box).parts()
         return np.array([(point.x, point.y) for point in points], dtype=np.float64)
 
@@ -128,7 +129,7 @@ def _dlib(model: Path | None) -> Detector:
 
 
 def packaged_model() -> Path:
-    """The predictor that the package face_recognition_models brings."""
+    """The predictor in the package face_recognition_models."""
     package = importlib.util.find_spec("face_recognition_models")
     places = list(package.submodule_search_locations or ()) if package else []
     if not places:
@@ -185,9 +186,9 @@ def _half_of_mesh(mesh: Floats64, side: int) -> dict[int, Floats64]:
     ridge = [(168, 168), (6, 6), (197, 197), (195, 195), (5, 5), (4, 4)]
     mesh = mesh.copy()
     above, below = mesh[[(162, 389)[side], (127, 356)[side]]]
-    mesh[jaw[0][side]] = 0.25 * above + 0.75 * below  # at the height of the eyes
-    # The ends of a brow are the middle of its upper and its lower line, which begins farther from
-    # the nose than iBug's brows do.
+    mesh[jaw[0][side]] = 0.25 * above + 0.75 * below  # height of the eyes
+    # The ends of a brow are means of its upper and its lower line; it begins farther from the nose
+    # than iBug's brows.
     outer, inner = mesh[[(46, 276)[side], (55, 285)[side]]]
     mesh[upper_brow[0][side]] = 0.5 * (mesh[upper_brow[0][side]] + outer)
     mesh[upper_brow[-1][side]] = 0.35 * (mesh[upper_brow[-1][side]] + inner) + 0.3 * mesh[9]
@@ -211,7 +212,7 @@ def _half_of_mesh(mesh: Floats64, side: int) -> dict[int, Floats64]:
 
 
 def measure(folder: Path, name: str, detector: Detector) -> Finding:
-    """Compare a detector with the labels of a set; UserError where the folder has no samples."""
+    """Compare a detector with the labels of a set; UserError if the folder has no samples."""
     files = sorted(folder.glob("[0-9]*.json"))
     if not files:
         raise UserError(f"{folder}: holds no data set; make one with `risorius dataset`")
@@ -232,7 +233,7 @@ def measure(folder: Path, name: str, detector: Detector) -> Finding:
 
 
 def errors_of(found: Floats64, labels: Mapping[str, Any]) -> Floats64:
-    """How far points (68, 2) are from those of labels; see `Finding.errors`, shape (68, 2)."""
+    """Errors of points (68, 2) against labels; see `Finding.errors`, shape (68, 2)."""
     landmarks = labels["landmarks"]
     camera = labels["camera"]
     pixels = np.array(landmarks["pixels"])[:68]

@@ -1,9 +1,9 @@
-"""A frame whose splits stay beside a sparse matrix that other programs keep.
+"""A frame with constant splits, compared with a sparse matrix that other programs keep.
 
-Where every edge is split once, one level of Loop subdivision is a matrix, the same in all frames.
-Others multiply positions by it: libigl's `loop_matrix` by scipy, and a plain loop over its rows in
-numba. Neither makes normals; ours does. Frames come in pairs, one of ours and one of a rival, the
-next pair the other way round, so other work on the machine slows both.
+If every edge is split once, one level of Loop subdivision is a matrix, the same in all frames. The
+rivals multiply positions by it: libigl's `loop_matrix` in scipy, and a plain loop over its rows in
+numba. Neither makes normals; ours does. Frames come in pairs, one of ours and one of a rival, and
+the next pair has the opposite order, so that other work on the machine slows both.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ class Row(NamedTuple):
     mesh: str
     rival: str
     triangles: int
-    """Of the mesh that is refined."""
+    """Triangles of the refined mesh."""
     ours: float
     """Time of a frame, normals included, median [ms]."""
     theirs: float
     """Time of a rival's frame, median [ms]."""
     gain: float
-    """How much longer the rival takes in a pair, median of the pairs."""
+    """Ratio of the rival's time to ours in a pair, median of the pairs."""
 
 
 def measure(
@@ -111,7 +111,7 @@ def _multiply(matrix: Any, positions: Points) -> object:
 def multiply_plainly(
     starts: Integers32, columns: Integers32, weights: Floats64, positions: Points, out: Points
 ) -> None:
-    """Write the product of a sparse matrix and positions, as one would write it in numba."""
+    """Write the product of a sparse matrix and positions, in plain numba."""
     for row in range(len(out)):
         x = 0.0
         y = 0.0

@@ -1,16 +1,17 @@
-"""How well the muscles move skin: simulated against scanned displacement, shape by shape.
+"""Quality of the skin's motion: simulated against scanned displacement, shape by shape.
 
-Takes a folder of scans (subjects.py), fits the rig to that head as to anybody's, and compares its
-fields, weighted by area. A field has the name of one of ARKit's shapes in any spelling, a pair of
-them without side, and is compared with the displacement by the head's rows of that name at 1.
+The benchmark takes a folder of scans (subjects.py), fits the rig to this head like to any other,
+and compares fields of motion, weighted by area. A scanned field has the name of one of ARKit's
+shapes in any spelling, or of a pair without side. It is compared with the displacement by the
+head's rows of this name at 1.
 
     cosine      1 = same directions and proportions          magnitude   |simulated| / |scanned|
     residual    |simulated - scanned|^2 / |scanned|^2        blob        cosine of a smooth bump
 
-A blob is the yardstick that every shape must pass: skin around the scanned peak that moves as the
-peak does, less and less with distance, at its mirror image, too, where the scan moves there. It
-knows the scan, and no anatomy; of several widths the best one counts. With its best size it leaves
-a residual of 1 - blob^2, so a shape that goes astray or too far is below it.
+Every shape must be better than a blob: skin that moves like the scanned peak, less and less with
+distance, and also at the mirror image if the scan moves there. A blob knows the scan but no
+anatomy; the best of several widths counts. With its best size it leaves a residual of 1 - blob^2,
+so a shape with a wrong direction or too much motion is worse.
 
 The rig was fitted to sixteen shapes of ICT-FaceKit, so for them this is a training score.
 """
@@ -42,10 +43,10 @@ class Row(NamedTuple):
 
 
 def measure(directory: Path) -> tuple[list[Row], list[str]]:
-    """Score every shape of the reference in `directory` that the head's ARKit table knows.
+    """Score every shape of the reference in `directory` that is in the head's ARKit table.
 
-    Also the names of fields without a score: unknown ones, and those in which no skin moves.
-    Raises UserError, naming the file, if it is broken or no shape is left.
+    Returns also the names of fields without a score: unknown ones, and those without motion. Raises
+    UserError, which names the file, if it is broken or no shape is left.
     """
     scans = Scans.read(directory)
     simulation = sim.create(scans.head)
@@ -64,7 +65,7 @@ def measure(directory: Path) -> tuple[list[Row], list[str]]:
 
 
 def _shapes(name: str, simulation: sim.Simulation) -> list[str]:
-    """The shapes of ARKit that a field's name means, both of a pair; none where it is unknown."""
+    """The shapes of ARKit for a field's name, both of a pair; none for an unknown name."""
     other_names = {"cheekraiser": "cheekSquint"}  # ICT-FaceKit has AU6 twice
     name = other_names.get(name.lower(), name)
     for ways in ([name], [f"{name}Left", f"{name}Right"]):
@@ -75,10 +76,10 @@ def _shapes(name: str, simulation: sim.Simulation) -> list[str]:
 
 
 def _moved(simulation: sim.Simulation, shapes: list[str]) -> Points:
-    """Displacement by shapes at 1 [mm], (V, 3), from the shapes that they are shares of, at 1."""
+    """Displacement by shapes at 1 [mm], (V, 3), from the pose of shapes that they are shares of."""
     share_of = simulation.controls.tables.share_of
     base = {share_of[each]: 1.0 for each in shapes if each in share_of}
-    settling_frames = 60  # of 1/60 s until a pose is still
+    settling_frames = 60  # frames of 1/60 s until a pose is still
     start = (
         settled_positions(simulation, base, settling_frames) if base else simulation.rest_positions
     )
@@ -89,7 +90,7 @@ def _moved(simulation: sim.Simulation, shapes: list[str]) -> Points:
 
 
 def _row(name: str, moved: Points, scanned: Points, simulation: sim.Simulation) -> Row:
-    """Score one shape, by how far it moves the skin and how far it was scanned to, (V, 3) [mm]."""
+    """Score one shape by its simulated and scanned displacements, (V, 3) [mm]."""
     areas = simulation.areas[:, None]
 
     def product(a: Points, b: Points) -> float:
@@ -111,7 +112,7 @@ def _row(name: str, moved: Points, scanned: Points, simulation: sim.Simulation) 
 
 
 def blobs_of(skin: Points, scanned: Points) -> Iterator[Points]:
-    """A smooth bump of each width where a scan moves skin (V, 3) farthest, shape (V, 3)."""
+    """Smooth bumps of each width where a scan moves skin (V, 3) farthest, shape (V, 3)."""
     size = np.linalg.norm(scanned, axis=1)
     peak = int(size.argmax())
     there = skin[peak] * (-1.0, 1.0, 1.0)
@@ -150,7 +151,7 @@ def report(rows: list[Row], left_out: list[str]) -> str:
 
 
 def targets(rows: list[Row], _: list[str]) -> list[Target]:
-    """The targets of the muscles: the mean, the shape that is least alike, and every blob."""
+    """The targets of the muscles: the mean, the worst shape, and every blob."""
     worst = min(rows, key=lambda row: row.cosine)
     below = [row for row in rows if not row.residual < 1.0 - row.blob**2]
     nearest = max(rows, key=lambda row: row.residual / (1.0 - row.blob**2))

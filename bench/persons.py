@@ -1,7 +1,7 @@
-"""Persons beside published means of women and men: do sexes lie as far apart as people's?
+"""Our persons compared with published means: the differences between women and men.
 
-Every number is drawn twice, as a woman and as a man, so that chance is alike in both. Widths that
-were published by calipers are compared with those of the skin, less what was pressed.
+Every number is drawn twice, as a woman and as a man, so that chance is the same in both. Widths
+measured by calipers are compared with those of the skin, minus the pressed depth.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Row:
 
     @property
     def apart(self) -> float:
-        """How much larger men's is [mm]."""
+        """Difference of men's mean from women's [mm]."""
         return self.men - self.women
 
     @property
@@ -41,7 +41,7 @@ class Row:
 
 
 def measure(count: int) -> list[Row]:
-    """Draw so many women and men."""
+    """Draw this number of women and men."""
     space = person_space()
     means = {}
     for sex in Sex:
@@ -74,6 +74,6 @@ def report(rows: list[Row]) -> str:
 
 
 def targets(rows: list[Row]) -> list[Target]:
-    """Sexes lie about as far apart as published."""
+    """The targets: differences between sexes are about the published ones."""
     off = np.mean([abs(row.apart - row.published_apart) / row.deviation for row in rows])
     return [at_most("sexes off the published distance, in deviations", float(off), 0.4)]

@@ -1,4 +1,4 @@
-"""How near a refined mesh comes to the true surface, and to its picture, for its triangles.
+"""Distance of a refined mesh from the true surface, and of its picture, by number of triangles.
 
 A coarse face moves with a dense one (subjects.py): the built-in head with one of 16 times its
 triangles, or a decimated scan with the scan. It is refined by all methods of METHODS:
@@ -10,10 +10,10 @@ triangles, or a decimated scan with the scan. It is refined by all methods of ME
     outline    pixels that one of the two covers and the other does not. Pictures are drawn FINER
                times too large, so that an outline that is off by a part of a pixel counts by that
 
-Edges are split by the criterion `normal`, the paper's, or `displacement`, where the scheme would
-move an edge most; thresholds are scaled together until the mesh has BUDGET times the coarse
-triangles. Beside these stand the preset of the application with its own thresholds, everything
-split once or twice, and uniform Loop subdivision.
+Edges are split by the paper's criterion `normal`, or by `displacement`, where the scheme would move
+an edge most; thresholds are scaled together until the mesh has BUDGET times the coarse triangles.
+Further methods are the application's preset with its own thresholds, all edges split once or twice,
+and uniform Loop subdivision.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ METHODS: Mapping[str, tuple[str, dict[str, Any]]] = {
     "detail twice": ("everywhere", {"scheme": "detail", "splits": 2}),
     "uniform Loop 16x": ("loop", {"levels": 2}),
 }
-"""Title: refiner and options. "sliding" keeps to the budget, "everywhere" splits all edges."""
+"""Title -> refiner and options. "sliding" keeps the budget, "everywhere" splits all edges."""
 
 
 class Score(NamedTuple):
@@ -76,7 +76,7 @@ class Score(NamedTuple):
     method: str
     expression: str
     triangles: float
-    """Over those of the coarse mesh."""
+    """Ratio of triangles to those of the coarse mesh."""
     distance: float
     """Root of the mean squared distance [mm]."""
     picture: float
@@ -92,7 +92,7 @@ class Everywhere(refine.Criterion):
         self._splits = splits
 
     def measure(self, positions: object, normals: object, metric: Floats32) -> None:
-        """Write metrics at which all points have grown."""
+        """Write metrics at which all points are fully grown."""
         metric[:] = self._splits
 
 
@@ -104,7 +104,7 @@ def measure(
 ) -> list[Score]:
     """Score methods in all expressions of a subject, or in those named.
 
-    `progress`: called with the name of each expression before it is measured.
+    `progress`: takes the name of each expression before it is measured.
     """
     scores = []
     shown = np.concatenate([pose.dense for pose in (subject.rest, *subject.poses.values())])
@@ -129,7 +129,7 @@ def measure(
 
 
 def _bound(subject: Subject, refiner: str, options: Mapping[str, Any]) -> Callable[[Points], Mesh]:
-    """The function that makes the mesh of a method from positions (V, 3)."""
+    """A function that makes the mesh of a method from positions (V, 3)."""
     own = dict(options)
     if own.get("scheme") == "detail":
         own["scheme"] = refine.DetailScheme((subject.rest.dense, subject.dense_faces))
@@ -173,16 +173,16 @@ def _slid(
 def _shoot(
     canvas: Canvas, cameras: Sequence[render.OrbitCamera], mesh: Mesh
 ) -> tuple[Points, Flags]:
-    """Grey levels over the background (views, SIZE, SIZE), and which fine pixels are covered.
+    """Grey levels over the background (views, SIZE, SIZE), and flags of covered fine pixels.
 
-    The latter has shape (views, FINER * SIZE, FINER * SIZE).
+    The flags have shape (views, FINER * SIZE, FINER * SIZE).
     """
     on_black = replace(CLAY, bumps=0.0, background=render.BLACK)
     drawings = [Drawing(camera, on_black) for camera in cameras]
     x, normals, faces = mesh[:3]
     fine = np.stack([canvas.draw_surface(x, normals, faces, each) for each in drawings]).mean(3)
-    covered = fine > 0.0  # lit clay is nowhere black, an empty frame is
-    level_behind = 215.0  # grey level where there is no mesh, about that of the window's
+    covered = fine > 0.0  # lit clay is never black, an empty frame is
+    level_behind = 215.0  # grey level of the background, about that of the window's
     return _block_means(np.where(covered, fine, level_behind)), covered
 
 
@@ -239,7 +239,7 @@ def _gain(found: Score, static: Score, name: str) -> float:
 
 
 def targets(scores: Sequence[Score]) -> list[Target]:
-    """The targets of the scheme `cubic` where `displacement` splits, at twice the triangles."""
+    """The targets of the scheme `cubic` with `displacement`, at twice the triangles."""
     average = means(scores)
     names = ("distance", "picture")
     gains = {name: _gain(average[BEST], average[STATIC], name) for name in names}

@@ -2,7 +2,7 @@
 
 ICT-FaceKit (USC Institute for Creative Technologies, MIT licence) has one head as OBJ files of the
 same topology: neutral, in many expressions, and moved along each of its principal components of
-identity. Their first 9409 vertices are the face. Written are, in centimetres,
+identity. Their first 9409 vertices are the face. The written files are, in centimetres,
 
     face.npz            vertices (V, 3), triangles (F, 3), landmarks68 (68,), and for each
                         expression of SHAPES how far its vertices move at full strength (V, 3)
@@ -42,15 +42,15 @@ SHAPES = (
     *(f"{name}_{side}" for name in BOTH_SIDES for side in "LR"),
     *("mouthPucker", "jawLeft", "mouthFunnel", "mouthRollLower"),
 )
-"""The expressions that are measured with."""
+"""The expressions for measurements."""
 LANDMARKS = re.compile(r"\b\d+(?:\s*,\s*\d+){67}\b")
-"""The 68 vertex numbers, as the checkout's README has them."""
+"""The heading of the 68 vertex numbers in the checkout's README."""
 
 
 def make(checkout: Path, folder: Path) -> list[str]:
-    """Write the files into `folder`; returns a line for each of them, and for each missing file.
+    """Write the files into `folder`; return a line for each, and for each missing source.
 
-    Raises UserError for a checkout that is none, and OSError.
+    Raises UserError for a folder that is not a checkout, and OSError.
     """
     licence_file = "LICENSE"
     for name in (DENSE, MODES, licence_file):
@@ -94,13 +94,13 @@ def make(checkout: Path, folder: Path) -> list[str]:
 
 
 def _file(checkout: Path, name: str) -> Path | None:
-    """The OBJ file of that name, packed or not."""
+    """The OBJ file with this name, compressed or not."""
     files = (checkout / MODEL / f"{name}{suffix}" for suffix in (".obj", ".obj.gz"))
     return next((file for file in files if file.is_file()), None)
 
 
 def _read(checkout: Path, name: str) -> tuple[Points, Integers64]:
-    """Vertices and triangles of an OBJ file; polygons are fans."""
+    """Vertices and triangles of an OBJ file; polygons become fans."""
     file = _file(checkout, name)
     if file is None:
         raise UserError(
@@ -118,7 +118,7 @@ def _read(checkout: Path, name: str) -> tuple[Points, Integers64]:
 
 
 def _landmarks(readme: Path) -> Integers32:
-    """The 68 landmarks as vertex numbers, as the checkout's README has them."""
+    """The 68 landmarks as vertex numbers, from the checkout's README."""
     found = LANDMARKS.search(readme.read_text("utf-8", "replace")) if readme.is_file() else None
     if found is None:
         raise UserError(f"{readme}: names no 68 landmarks; that of ICT-FaceKit does")

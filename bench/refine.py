@@ -1,15 +1,16 @@
 """The time of a frame of refinement, for all methods and sizes of mesh in one run.
 
-Kähler, Haber, Seidel 2003, Table 1 compares the static with the refined mesh. Here the time of the
-refiner is taken, from positions to a filled stream, everything counted: normals, criterion, points,
-table, output and the call from Python. Meshes: the built-in face in six full expressions with the
-default thresholds, and large ones with thresholds that split 10, 50 or 100 % of the edges: grids of
-jittered squares under waves that travel. Flat at rest, so that every edge bends. Their lengths are
-in cells: a wave is as many triangles long in a small mesh as in a large one, and edges bend alike.
+Kähler, Haber, Seidel 2003, Table 1 compares the static with the refined mesh. Here the refiner is
+timed from positions to a filled stream, with everything: normals, criterion, points, table, output
+and the call from Python. Meshes: the built-in face in six full expressions with the default
+thresholds, and large ones with thresholds that split 10, 50 or 100 % of the edges: grids of
+jittered squares under travelling waves. They are flat at rest, so that every edge bends. Lengths
+are in cells: a wave has the same number of triangles in a small and in a large mesh, so edges bend
+equally.
 
-The methods of a mesh are run interleaved, forwards and backwards in turn, with garbage collection
-off, and medians are reported: on a shared machine times drift by a third within a run, and so only
-rows of one mesh can be compared. The best time is reported beside the median for the same reason.
+The methods of a mesh run interleaved, forwards and backwards in turn, with garbage collection off,
+and medians are reported. On a shared machine times drift by a third within a run, so only rows of
+one mesh can be compared. The best time is reported beside the median for the same reason.
 
 On the graphics card a frame lasts from the upload of positions until OpenGL has finished. The
 times of the processor do not include the upload of rows and triangles, which drawing needs too.
@@ -51,7 +52,7 @@ RULES: Mapping[str, Mapping[str, Any]] = {"paper's rule": {}, "window's look": W
 
 @dataclass(frozen=True)
 class Load:
-    """A mesh and the frames that it goes through."""
+    """A mesh and its frames."""
 
     name: str
     faces: Faces
@@ -103,7 +104,7 @@ def measure(
 
 
 def load_of(size: str) -> Load:
-    """The mesh of a size and the frames that it goes through."""
+    """The mesh of a size, and its frames."""
     if size != "face":
         triangle_counts = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
         return waving_mesh(size, triangle_counts[size])
@@ -131,7 +132,7 @@ def waving_mesh(name: str, triangle_count: int) -> Load:
 
 
 def _waved(rest: Points, phase: float) -> Points:
-    """The mesh at a moment of its waves, stronger in some places than in others."""
+    """The mesh at a moment of its waves, which are stronger in some places."""
     x = rest[:, 0]
     y = rest[:, 1]
     strength = 0.15 + np.sin(x / 61.0) ** 2 * np.sin(y / 47.0) ** 2
@@ -149,7 +150,7 @@ def _waved(rest: Points, phase: float) -> Points:
 def _face_cases(load: Load) -> list[_Case]:
     fine = assets.load("head").finer(1)
     cases = [_own("none", load, "none")]
-    # The paper's method, and each scheme and each option beside it.
+    # The paper's method, and each scheme and each option added to it.
     methods: Mapping[str, Mapping[str, Any]] = {
         "kahler": {},
         "kahler, blend": {"blend": True},
@@ -166,7 +167,7 @@ def _face_cases(load: Load) -> list[_Case]:
 
 
 def _waving_cases(load: Load) -> list[_Case]:
-    """The window's look; and the paper's method, that splits SHARES of the edges in all frames."""
+    """The window's look; and the paper's method, which splits SHARES of the edges in all frames."""
     plain = refine.create("none", load.faces, load.rest)
     a, b = plain.edges.T
 
@@ -180,7 +181,7 @@ def _waving_cases(load: Load) -> list[_Case]:
         _own("smooth", load, "kahler", **WINDOWS_LOOK),
         _fixed("smooth", load, WINDOWS_LOOK),
     ]
-    # Per cent of the edges that are split -> quantiles of the drops for the two thresholds.
+    # Percentage of split edges -> quantiles of the drops for the two thresholds.
     shares = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
     for share, quantiles in shares.items():
         once, twice = (max(0.0, float(np.quantile(drops, q))) for q in quantiles)
@@ -213,14 +214,14 @@ def _card_cases(load: Load) -> list[_Case]:
 
 
 def _own(method: str, load: Load, refiner: str, **options: Any) -> _Case:
-    """One of our refiners over all frames; the first pass compiles or loads kernels, and counts."""
+    """A case of our refiners over all frames; the first pass compiles kernels, and counts."""
     bound = refine.create(refiner, load.faces, load.rest, **options)
     counts = [len(bound.refine(frame).triangles) for frame in load.frames]
     return _Case(method, float(np.mean(counts)), bound.refine)
 
 
 def _fixed(method: str, load: Load, options: Mapping[str, Any]) -> _Case:
-    """`kahler` with the same triangles in all frames, those that the clip needs."""
+    """A case of `kahler` with the same triangles in all frames, those that the clip needs."""
     changing = refine.create("kahler", load.faces, load.rest, **options)
     splits = refine.splits_of_clip(changing, load.frames)
     others = {name: value for name, value in options.items() if name != "criterion"}
@@ -255,9 +256,8 @@ def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:
 def interleaved(calls: Sequence[Callable[[], object]], rounds: int) -> Floats64:
     """Return the seconds of each call in each round, shape (rounds, len(calls)).
 
-    The speed of a call depends on the caches that the call before it left. Of three or more calls
-    each always follows the same neighbours, so where two are compared closely they are timed as a
-    pair.
+    The speed of a call depends on the caches after the call before it. Each of three or more calls
+    always follows the same neighbours, so two calls are timed as a pair for a close comparison.
     """
     seconds = np.zeros((rounds, len(calls)))
     gc.disable()

@@ -13,9 +13,9 @@ import click
 
 
 def table(columns: str, rows: Iterable[Sequence[object]], *, indent: str = "") -> list[str]:
-    """Lines of a table, the titles in the first one; nothing stands for None.
+    """Lines of a table, with the titles first; None is left empty.
 
-    columns: "title:format" with the width in front, as in "name:<9|ms:8.3f"; "<" sets text left.
+    columns: "title:format" with the width first, as in "name:<9|ms:8.3f"; "<" aligns text left.
     """
     parts = [column.rsplit(":", 1) for column in columns.split("|")]
     titles, formats = zip(*parts, strict=True)
@@ -53,7 +53,7 @@ def at_least(name: str, value: float, least: float, unit: str = "") -> Target:
 
 
 def conclude(text: str, targets: Iterable[Target]) -> None:
-    """Print a report and its targets; end with exit code 1 where a target is missed."""
+    """Print a report and its targets; end with exit code 1 if a target is missed."""
     targets = list(targets)
     click.echo("\n".join([text, "", *map(str, targets)]).rstrip())
     if not all(target.is_met for target in targets):

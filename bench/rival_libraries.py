@@ -1,8 +1,8 @@
 """Other libraries that refine triangle meshes, each behind the same two calls.
 
-A method is bound to triangles and rest positions once, and keeps all that its library lets it keep.
-A frame takes positions and, where the method has one, its limit. Of the settings of a library those
-stand here that came nearest to the true surfaces of rivals.py.
+A method is bound to triangles and rest positions once, and keeps all that its library can keep. A
+frame takes positions and, if the method has one, its limit. Each library has the settings that came
+nearest to the true surfaces of rivals.py.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ class Method(NamedTuple):
 
     title: str
     package: str
-    """The distribution that brings it."""
+    """The distribution that contains it."""
     module: str
     bind: Callable[[Faces, Points], Frame]
     has_limit: bool
-    """Whether the number of triangles follows a limit; the others make four of each."""
+    """Whether a limit sets the number of triangles; other methods make four of each."""
 
 
 def _manifold3d(faces: Faces, rest: Points, adaptive: bool) -> Frame:
-    """Smooth by tangents. It takes closed surfaces: holes get lids, which are taken off again."""
+    """Smooth by tangents. It needs closed surfaces, so holes get lids, which are removed again."""
     manifold3d = import_module("manifold3d")
     lids: list[tuple[int, int, int]] = []
     loops = boundary_loops(faces)
@@ -66,7 +66,7 @@ def _manifold3d(faces: Faces, rest: Points, adaptive: bool) -> Frame:
 
 
 def _meshlib(faces: Faces, rest: Points) -> Frame:
-    """Splits the edges that are curved most, and smooths the new points."""
+    """Split the edges with most curvature, and smooth the new points."""
     mrmeshpy = import_module("meshlib.mrmeshpy")
     mrmeshnumpy = import_module("meshlib.mrmeshnumpy")
     kept = mrmeshnumpy.meshFromFacesVerts(faces, rest)
@@ -89,7 +89,7 @@ def _meshlib(faces: Faces, rest: Points) -> Frame:
 
 
 def _pymeshlab(faces: Faces, rest: Points, rule: str) -> Frame:
-    """Splits edges that are longer than the limit, up to three times."""
+    """Split edges that are longer than the limit, up to three times."""
     pymeshlab = import_module("pymeshlab")
 
     def frame(positions: Points, limit: float) -> Surface:
@@ -105,7 +105,7 @@ def _pymeshlab(faces: Faces, rest: Points, rule: str) -> Frame:
 
 
 def _vtk(faces: Faces, rest: Points, rule: str) -> Frame:
-    """One of VTK's filters, which keeps its input and is run anew."""
+    """Run one of VTK's filters, which keeps its input, for each frame."""
     modeling = import_module("vtkmodules.vtkFiltersModeling")
     data = import_module("vtkmodules.vtkCommonDataModel")
     core = import_module("vtkmodules.vtkCommonCore")
@@ -140,7 +140,7 @@ def _vtk(faces: Faces, rest: Points, rule: str) -> Frame:
 
 
 def _libigl(faces: Faces, rest: Points) -> Frame:
-    """The matrix of one level of Loop subdivision, kept."""
+    """Multiply by the stored matrix of one level of Loop subdivision."""
     igl = import_module("igl")
     matrix, fine = igl.loop_matrix(faces.astype(np.int64), len(rest))
     rows = matrix.tocsr()

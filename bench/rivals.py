@@ -1,16 +1,16 @@
-"""Refinement beside other libraries: distance to the true surface, and time, at equal triangles.
+"""Refinement compared with other libraries: distance to the true surface, and time.
 
-A coarse mesh whose vertices lie on a known surface is refined to four times its triangles: what
-one level of Loop subdivision makes. Methods with a limit (a length, a tolerance, a number of
-splits) get the limit that leads nearest to that number without going beyond it.
+A coarse mesh with vertices on a known surface is refined to four times its triangles, the number of
+one level of Loop subdivision. Methods with a limit (a length, a tolerance, a number of splits) get
+the limit that leads nearest to this number without exceeding it.
 
     distance   from each point of the true surface the nearest point of the mesh is found, exactly;
                root of the mean square, in millionths of the diagonal of the surface's box
     first      from arrays of triangles and positions to arrays of the refined mesh [ms]
     frame      the same for further positions, where all that a library lets keep is kept [ms]
 
-Times are the shortest of many calls: other work on the machine counts least so. Ours makes normals
-of the refined mesh, too; the others make none.
+Times are the shortest of many calls, which other work on the machine affects least. Ours also makes
+normals of the refined mesh; the others make none.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ from .rival_libraries import METHODS, Faces, Frame, Method, Points, Surface
 from .subjects import Subject
 
 TIMES = 4.0
-"""Triangles of the refined mesh over those of the coarse one."""
+"""Ratio of triangles of the refined mesh to those of the coarse one."""
 
 
 class Case(NamedTuple):
-    """A coarse mesh, moved, and points of the surface that it stands for."""
+    """A moved coarse mesh, and points of its true surface."""
 
     surface: str
     faces: Faces
@@ -61,9 +61,9 @@ class Row(NamedTuple):
     distance: float
     """Root mean square [millionths of the diagonal]."""
     first: float
-    """Set-up and a frame, shortest of all calls [ms]."""
+    """Set-up and one frame, shortest of all calls [ms]."""
     frame: float
-    """A further frame, the same [ms]."""
+    """A further frame, shortest of all calls [ms]."""
 
 
 class _Frame:
@@ -110,7 +110,7 @@ OURS: Sequence[Method] = tuple(
 
 
 def cases(subjects: Sequence[tuple[str, Subject]]) -> Iterator[Case]:
-    """A sphere, the plane under its full sine, and of each subject the pose that moves it most."""
+    """A sphere, the plane under its full sine, and the pose of most motion for each subject."""
     coarse = trimesh.creation.icosphere(2)
     faces = np.array(coarse.faces, dtype=np.int32)
     points = np.array(coarse.vertices)
@@ -134,7 +134,7 @@ def cases(subjects: Sequence[tuple[str, Subject]]) -> Iterator[Case]:
 
 
 def available() -> tuple[list[Method], list[str]]:
-    """Ours, the methods whose library is installed, and a line for each library that is not."""
+    """Our methods, those of installed libraries, and a line for each missing library."""
     found = list(OURS)
     skipped = {}
     for method in METHODS:
@@ -148,9 +148,9 @@ def available() -> tuple[list[Method], list[str]]:
 
 
 def measure(case: Case, methods: Sequence[Method], seconds: float) -> tuple[list[Row], list[str]]:
-    """Rows of the methods, and a line for each that does not take the mesh.
+    """Rows of the methods, and a line for each method that does not accept the mesh.
 
-    `seconds`: of timing, at least five calls of each.
+    `seconds`: time for each, with at least five calls.
     """
     rows = []
     skipped = []
@@ -163,7 +163,7 @@ def measure(case: Case, methods: Sequence[Method], seconds: float) -> tuple[list
             skipped.append(f"skipped: {method.title} of the {case.surface}: {error}")
             continue
         distance = _distance(case, surface)
-        # One after the other: threads of one library would hold up those of the next.
+        # One after another: threads of one library would slow those of the next.
         time_of_each = 0.5 * seconds / len(methods)
         first = _shortest(partial(_first, case, method, limit), time_of_each)
         further = _shortest(frame, time_of_each)
@@ -195,7 +195,7 @@ def _limit(case: Case, method: Method) -> float:
     def is_over(limit: float) -> bool:
         return len(frame(case.positions, limit)[1]) > TIMES * len(case.faces)
 
-    # From the side of few triangles: a far too low limit may lead to billions of them.
+    # Begin with few triangles: a far too low limit may lead to billions of them.
     high = 10.0 * float(np.linalg.norm(np.ptp(case.positions, axis=0)))
     smallest = 1e-9 * high
     while high > smallest and not is_over(0.5 * high):
@@ -212,7 +212,7 @@ def _limit(case: Case, method: Method) -> float:
 
 
 def _distance(case: Case, surface: Surface) -> float:
-    """Root mean square of the distance of the true surface [millionths of the diagonal]."""
+    """Root mean square distance from the true surface [millionths of the diagonal]."""
     points, triangles = surface
     away = closest_points(case.truth, points.astype(np.float64), triangles.astype(np.int32))
     diagonal = float(np.linalg.norm(np.ptp(case.truth, axis=0)))
@@ -224,7 +224,7 @@ def _first(case: Case, method: Method, limit: float) -> Surface:
 
 
 def _shortest(call: Callable[[], object], seconds: float) -> float:
-    """The shortest time of a call [ms], of at least five and as many as fit the time."""
+    """The shortest time of a call [ms], out of at least five and as many as fit the time."""
     fewest_rounds = 5
     times: list[float] = []
     while len(times) < fewest_rounds or sum(times) < seconds:

@@ -1,16 +1,16 @@
 """A face tracker on our faces: every shape of ARKit at 1, read back from pictures.
 
-A shape is right if somebody else's eyes call it by its name: MediaPipe's face landmarker (Google,
-Apache-2.0), which finds a face in a picture and says how far each of ARKit's shapes is there, 0 to
-1, all but `tongueOut`. Its model is a file that users bring, face_landmarker.task. Each shape is
-drawn from VIEWS and shown as it is and mirrored, so that the tracker's own left and right do not
-count. The report has the mean score less that of the neutral face:
+A shape should be recognised by an independent tracker: MediaPipe's face landmarker (Google,
+Apache-2.0) finds a face in a picture and scores each of ARKit's shapes, 0 to 1, except `tongueOut`.
+Users supply its model file, face_landmarker.task. Each shape is drawn from VIEWS and shown directly
+and mirrored, so that differences between the tracker's left and right do not count. The report has
+the mean score minus that of the neutral face:
 
     own      of the shape itself; of a pair, both sides of which are posed, the mean of both
     highest  the other shape that scores most, with its score; of pairs the mean of both sides
 
-A tracker is no measure of anatomy: it learned which shapes come together in real faces, and some
-shapes it never reports, not in scans of real faces either (docs/capture.md).
+A tracker does not measure anatomy: it learned which shapes occur together in real faces, and it
+never reports some shapes, not even in scans of real faces (docs/capture.md).
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ from .report import table
 Scores = dict[str, float]
 Tracker = Callable[[Image], Scores]
 
-VIEWS = ("front", "-8,0", "8,0")  # as people sit before a camera
+VIEWS = ("front", "-8,0", "8,0")  # as people sit in front of a camera
 SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
 
 
 @contextlib.contextmanager
 def face_tracker(model: Path) -> Iterator[Tracker]:
-    """The tracker with a model file: every shape's score in a picture (H, W, 3); {} without a face.
+    """A tracker with a model file: it gives every shape's score in a picture (H, W, 3), or {}.
 
     Raises UserError as `face_landmarker` does.
     """
@@ -60,9 +60,9 @@ def face_tracker(model: Path) -> Iterator[Tracker]:
 
 @contextlib.contextmanager
 def face_landmarker(model: Path, **options: bool) -> Iterator[Callable[[Image], Any]]:
-    """MediaPipe's face landmarker with a model file: its result for a picture (H, W, 3).
+    """MediaPipe's face landmarker with a model file; it gives its result for a picture (H, W, 3).
 
-    UserError where the file is no model, and where MediaPipe is not installed.
+    Raises UserError for another file, and without MediaPipe.
     """
     with silent():
         mediapipe = needed("mediapipe", "the face tracker", "mediapipe", package="MediaPipe")
@@ -85,15 +85,15 @@ def face_landmarker(model: Path, **options: bool) -> Iterator[Callable[[Image], 
             f"{model}: is no model of MediaPipe's face landmarker, which is called "
             f"face_landmarker.task: {error}"
         ) from None
-    with contextlib.closing(landmarker):  # left open it fails as Python ends
+    with contextlib.closing(landmarker):  # left open, it fails at Python's end
         yield look
 
 
 @contextlib.contextmanager
 def silent() -> Iterator[None]:
-    """Keep the tracker's libraries from telling the error stream how they load; errors are raised.
+    """Silence the tracker's libraries, which print their loading; errors are still raised.
 
-    They write to the stream's number, past Python, and have no switch for it.
+    They write to the stream's file descriptor, past Python, and have no switch for this.
     """
     sys.stderr.flush()
     kept = os.dup(2)
@@ -115,8 +115,8 @@ class Shape(NamedTuple):
 
     @property
     def verdict(self) -> str:
-        """Whether it is seen, and under which name."""
-        seen_score = 0.1  # a score below says nothing
+        """Whether the tracker sees it, and under which name."""
+        seen_score = 0.1  # a lower score means nothing
         if max(self.own, self.score) < seen_score:
             return "not seen"
         return "seen" if self.own >= self.score else f"as {self.highest}"
@@ -146,7 +146,7 @@ def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
         if not side:
             yield name, (name,)
         elif side == "Left":
-            is_way = stem in ("jaw", "mouth")  # jawLeft is where the jaw goes
+            is_way = stem in ("jaw", "mouth")  # jawLeft is a direction
             title = f"{name}, Right" if is_way else stem
             yield title, (name, twin_of(name))
 
@@ -156,8 +156,8 @@ def compared(
 ) -> Shape:
     """Scores above those of the neutral face, where the shapes `own` are at 1.
 
-    posed: shapes that are there besides, and no mistake. Sides count by their mean, beside a side
-    that was posed alone by the greater one.
+    posed: further shapes in the pose, which are no mistakes. Sides count by their mean; if one side
+    was posed alone, by the greater score.
     """
     is_sided = len(own) == 1 and twin_of(own[0]) != own[0]
     over = {name: scores[name] - neutral[name] for name in scores if name in ARKIT}
@@ -172,12 +172,12 @@ def compared(
 
 
 def measure(tracker: Tracker) -> dict[str, Shape]:
-    """Show every shape of the built-in head to the tracker; its scores, by base name."""
+    """Show every shape of the built-in head to the tracker; return scores by base name."""
     shapes = {}
     with Capture(FaceScene(), CaptureOptions(size=SIZE)) as studio:
         neutral = pose_scores(tracker, studio, ())
-        # Shapes whose sides cannot be posed together, and the shapes that are posed beside them: no
-        # eye looks to a side alone, and lips that close do so over an open jaw.
+        # Shapes whose sides cannot be posed together, and shapes that are posed with them: both
+        # eyes look aside together, and lips close over an open jaw.
         posed_beside = {
             "mouthLeft, Right": (),
             "jawLeft, Right": (),

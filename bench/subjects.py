@@ -1,4 +1,4 @@
-"""Faces to measure against: a folder of scans, and the built-in head with its finer meshes.
+"""Reference faces: a folder of scans, and the built-in head with its finer meshes.
 
 A folder of scans, as `risorius bench reference` makes it of ICT-FaceKit, has `face.npz`: vertices
 (V, 3), triangles (F, 3), landmarks68 (68,), and for each expression a displacement field (V, 3);
@@ -47,17 +47,17 @@ GROUPS = {
 
 @dataclass(frozen=True)
 class Scans:
-    """A neutral face and its displacement by expressions, as they were scanned [mm]."""
+    """A scanned neutral face, and its displacement by expressions [mm]."""
 
     mesh: Mesh
     landmarks: Faces
     """The 68, as vertex numbers."""
     fields: Mapping[str, Points]
-    """Expression -> how far all vertices move, shape (V, 3)."""
+    """Expression -> displacement of all vertices, shape (V, 3)."""
 
     @classmethod
     def read(cls, directory: Path) -> Scans:
-        """Read a folder. Raises UserError, naming the file, if it is broken."""
+        """Read a folder. Raises UserError, which names the file, if it is broken."""
         other_arrays = ("vertices", "triangles", "landmarks68")
         arrays = read_arrays(directory / DENSE, other_arrays)
         vertices, triangles, landmarks = (arrays.pop(name) for name in other_arrays)
@@ -81,11 +81,11 @@ class Scans:
 
     @cached_property
     def head(self) -> FittedHead:
-        """The rig, fitted to the neutral face as to anybody's, by its 68 landmarks."""
+        """The rig, fitted to the neutral face by its 68 landmarks, like to any face."""
         return fit(self.mesh, self.landmarks)
 
     def field(self, name: str) -> Points:
-        """How far an expression moves the vertices of `head` [mm], shape (V, 3)."""
+        """Displacement of the vertices of `head` by an expression [mm], shape (V, 3)."""
         return self.head.to_millimetres.vectors(self.fields[name][self.head.file_vertices])
 
 
@@ -108,7 +108,7 @@ class Subject:
 
 
 def scanned(scans: Scans) -> Subject:
-    """A scan and a decimation of it, whose vertices go where the scan under them goes."""
+    """A scan and its decimation, whose vertices follow the scan under them."""
     mesh = scans.mesh
     points, faces = decimated(mesh.vertices, mesh.faces, COARSE_TRIANGLES)
     place = closest_points(points, mesh.vertices, mesh.faces)
@@ -118,9 +118,9 @@ def scanned(scans: Scans) -> Subject:
 
 
 def built_in(level: int = 2) -> Subject:
-    """The built-in head, and as the dense mesh its finer one of that level (1 or 2).
+    """The built-in head, with its finer mesh of a level (1 or 2) as the dense one.
 
-    The muscles of its rig move the dense mesh; the coarse one goes along, as its first vertices.
+    The muscles of its rig move the dense mesh, whose first vertices are the coarse mesh.
     """
     head = assets.load("head")
     fine = head.finer(level)
@@ -163,7 +163,7 @@ def settled_positions(
 
 
 def read_arrays(path: Path, needed: tuple[str, ...]) -> dict[str, npt.NDArray[Any]]:
-    """All arrays of a file; UserError where it is broken or one of `needed` is missing."""
+    """All arrays of a file; UserError if it is broken or one of `needed` is missing."""
     if not path.is_file():
         raise UserError(f"{path}: is not there; `risorius bench reference` makes such a folder")
     try:

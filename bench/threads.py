@@ -1,8 +1,8 @@
 """The time of a frame of refinement by one thread, and by all of them.
 
-Frames come in pairs: one by one thread, then one by all, the next pair the other way round. Other
-work on the machine slows both of a pair, so the gain is the median of their quotients. The bits of
-both are equal (refine/mesh/threads.py).
+Frames come in pairs: one by one thread, then one by all; the next pair has the opposite order.
+Other work on the machine slows both frames of a pair, so the gain is the median of their quotients.
+Both have the same bits (refine/mesh/threads.py).
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ class Row(NamedTuple):
     mesh: str
     rule: str
     triangles: int
-    """Of the mesh that is refined."""
+    """Triangles of the refined mesh."""
     alone: float
     """Time of a frame by one thread, median [ms]."""
     together: float
-    """By all threads, median [ms]."""
+    """Time of a frame by all threads, median [ms]."""
     gain: float
-    """How much less time a frame of a pair takes by all threads, median of the pairs."""
+    """Ratio of the time by one thread to that by all in a pair, median of the pairs."""
 
 
 def measure(
@@ -44,7 +44,7 @@ def measure(
 ) -> list[Row]:
     """Time each rule on meshes of these sizes, for about `seconds` each, at least five pairs.
 
-    Raises UserError where there is one thread only.
+    Raises UserError if there is only one thread.
     """
     count = threads.THREAD_COUNT
     if count == 1:
@@ -67,7 +67,7 @@ def measure(
 
 
 def _refine(load: Load, refiner: refine.Refiner, thread_count: int) -> None:
-    """Refine all frames by so many threads."""
+    """Refine all frames by this number of threads."""
     threads.THREAD_COUNT = thread_count
     for frame in load.frames:
         refiner.refine(frame)

@@ -1,9 +1,8 @@
 """Frames a second of the window while a smile plays, and its load while nothing happens.
 
-The real window is driven as fast as it goes; it waits for nothing but the screen.
-Rounds take all cases in turn, forwards and backwards: on a shared machine only cases of one run
-can be compared. A case begins like a new window, with an untimed second in which it finds its
-level of detail.
+The real window runs as fast as it can; it only waits for the screen. Rounds take all cases in turn,
+forwards and backwards, because on a shared machine only cases of one run can be compared. A case
+begins like a new window, with an untimed second to find its level of detail.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ WARM_UP = 1.0  # [s]
 IDLE_SECONDS = 8.0
 
 Frames = list[list[float]]
-"""Of each: seconds, seconds of processor time, milliseconds of the stages."""
+"""For each frame: seconds, seconds of processor time, milliseconds of the stages."""
 
 
 def measure(
@@ -37,8 +36,8 @@ def measure(
 ) -> tuple[str, list[Target]]:
     """Time the window: `seconds` for each case, after a second of warming up.
 
-    `head`: in place of the built-in one, for which nothing is promised. Returns the text to print,
-    and the targets of the window where software draws.
+    `head`: replaces the built-in one; no speed is promised for it. Returns the text to print, and
+    the targets of the window for software OpenGL.
     """
     cases = {
         "smile": Display(),
@@ -89,7 +88,7 @@ def _smile() -> Script:
 
 
 def _play(viewer: Viewer, display: Display, seconds: float) -> Frames:
-    """Let the window play for a while; returns the times of its frames."""
+    """Let the window play for a while; return the times of its frames."""
     viewer.settings.display = replace(display)
     viewer.face.painter.level_of_detail = LevelOfDetail(is_software=viewer.surface.is_software)
     if not viewer.session.is_playing:
@@ -115,7 +114,7 @@ def _run(viewer: Viewer, seconds: float) -> Frames:
 
 
 def _idle_share(viewer: Viewer, *, is_alive: bool) -> float:
-    """How much of one core the window takes while nothing happens, or the face lives by itself."""
+    """Share of one core that the window takes while nothing happens, or during idle life."""
     viewer.session.neutral()
     viewer.settings.is_alive = is_alive
     while not (viewer.schedule.is_left_alone if is_alive else viewer.schedule.is_idle):

@@ -5,7 +5,8 @@
 
 A square sheet is held at its border and sags. MuJoCo simulates 128 triangles. Their vertices carry
 a finer mesh twice: as bones of a MuJoCo skin, which is flat on each triangle, and through
-`refine.Embedding`. A simulation of four times the triangles says where the finer mesh belongs.
+`refine.Embedding`. A simulation of four times the triangles gives the true places of the finer
+mesh.
 """
 
 import mujoco
@@ -83,7 +84,7 @@ def sheet_of(model: mujoco.MjModel) -> tuple[Points, Faces]:
 
 
 def sagged(spec: mujoco.MjSpec) -> tuple[Points, Points]:
-    """Vertices of the sheet and of its skin, if it has one, after two seconds."""
+    """Vertices of the sheet and of its skin, if any, after two seconds."""
     model = spec.compile()
     data = mujoco.MjData(model)
     for _ in range(400):
@@ -97,7 +98,7 @@ def sagged(spec: mujoco.MjSpec) -> tuple[Points, Points]:
 
 
 def main() -> dict[str, float]:
-    """Root mean square distances from the finer simulation [mm]."""
+    """Compute root mean square distances from the finer simulation [mm]."""
     finer = cloth(2 * CELLS)
     fine, triangles = sheet_of(finer.compile())
     truth, _ = sagged(finer)

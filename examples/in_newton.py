@@ -5,8 +5,8 @@
 
 A square sheet is held at its border and sags. Newton simulates 128 triangles, on the processor.
 They carry a finer mesh twice: as a visual mesh of Newton, which is flat on each triangle, and
-through `refine.Embedding`. A simulation of four times the triangles says where the finer mesh
-belongs.
+through `refine.Embedding`. A simulation of four times the triangles gives the true places of the
+finer mesh.
 """
 
 import newton
@@ -62,7 +62,7 @@ def sagged(model: newton.Model) -> newton.State:
 
 
 def main() -> dict[str, float]:
-    """Root mean square distances from the finer simulation [mm]."""
+    """Compute root mean square distances from the finer simulation [mm]."""
     finer = cloth(2 * CELLS).finalize(device="cpu")
     fine = finer.particle_q.numpy().astype(np.float64)
     triangles = finer.tri_indices.numpy()

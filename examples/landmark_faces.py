@@ -1,8 +1,8 @@
-"""Faces cut out of pictures with their 68 points: of a data set of ours, and of photographs.
+"""Faces cut out of pictures, with their 68 points: from a data set of ours, and from photographs.
 
 `train_landmarks.py` learns from the first and is tested on the second. A photograph with a `.pts`
-file beside it, as 300-W has them, has one face, marked by hand. In the others dlib finds the faces,
-and its points stand for the truth.
+file beside it, as in 300-W, has one face, marked by hand. In other photographs dlib finds the
+faces, and its points serve as the truth.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from risorius.faces import Faces
 Face = tuple[np.ndarray, np.ndarray]  # a picture (3, 144, 144) 0..255, points (68, 2) from -1 to 1
 
 SIDE = 96  # of the picture that a network sees [pixels]
-WIDE = 144  # of the pictures that are kept, for the network's are turned and moved in them
+WIDE = 144  # of the stored pictures; the network's pictures are turned and moved within them
 
 
 def cut_out(picture: PIL.Image.Image, points: np.ndarray) -> Face:
@@ -42,7 +42,7 @@ def cut_out(picture: PIL.Image.Image, points: np.ndarray) -> Face:
 
 
 def read_set(faces: Faces, numbers: list[int], is_on_bone: bool) -> list[Face]:
-    """Samples of ours. is_on_bone: the jaw lies where the rig has it, not on the outline."""
+    """Our samples. is_on_bone: whether the jaw's points are the rig's, not those of the outline."""
     found = []
     for number in numbers:
         sample = faces[number]
@@ -73,14 +73,14 @@ def read_by_dlib(picture: np.ndarray, doublings: int = 0) -> list[np.ndarray]:
 
 
 def points_of_dlib(faces: list[Face]) -> np.ndarray:
-    """What dlib reads in cut-out faces, (n, 68, 2) from -1 to 1; no numbers where it finds none."""
+    """dlib's points in cut-out faces, (n, 68, 2) from -1 to 1; NaN where it finds none."""
     found = [read_by_dlib(np.ascontiguousarray(cut.transpose(1, 2, 0)), 1) for cut, _ in faces]
     nothing = np.full((68, 2), np.nan)
     return np.stack([(each or [nothing])[0] for each in found]) / (WIDE / 2) - 1.0
 
 
 def read_photographs(folder: Path) -> tuple[list[Face], list[Face]]:
-    """The faces in photographs that are marked by hand, and those that dlib reads."""
+    """The faces of photographs: those marked by hand, and those that dlib reads."""
     by_hand = []
     by_dlib = []
     kinds = (".jpg", ".jpeg", ".png", ".ppm")
@@ -90,7 +90,7 @@ def read_photographs(folder: Path) -> tuple[list[Face], list[Face]]:
         if marks.exists():
             text = marks.read_text("utf-8").partition("{")[2].partition("}")[0]
             points = np.array(text.split(), float).reshape(68, 2)
-            by_hand.append(cut_out(picture, points - 0.5))  # they count pixels from 1
+            by_hand.append(cut_out(picture, points - 0.5))  # .pts files count pixels from 1
         else:
             by_dlib += [cut_out(picture, points) for points in read_by_dlib(np.asarray(picture))]
     return by_hand, by_dlib

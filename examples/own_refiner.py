@@ -1,11 +1,11 @@
-"""A refiner of one's own, registered from outside: cuts every triangle in four where edges grow.
+"""A refiner of your own, registered from outside: it cuts triangles in four when edges grow.
 
     python examples/own_refiner.py
 
 It derives from `refine.BaseRefiner`, which binds the mesh, checks arguments, and carries texture
-coordinates and attributes along. This one cuts all edges or none, and does not smooth. After
-`refiners.register` the whole program knows it by name. A package of its own needs no call; it says
-in its pyproject.toml
+coordinates and attributes. This refiner cuts all edges or none, and does not smooth. After
+`refiners.register` the whole program knows it by name. A separate package needs no call, but these
+lines in its pyproject.toml
 
     [project.entry-points."risorius.refiners"]
     quarters = "my_package:Quarters"
@@ -70,7 +70,7 @@ class Quarters(BaseRefiner):
 
     @property
     def triangle_capacity(self) -> int:
-        """Four for each, but one for a triangle that names a vertex twice."""
+        """Four for each triangle, but one for a triangle that names a vertex twice."""
         return len(self._cut)
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
@@ -124,7 +124,7 @@ def main() -> list[int]:
     for stretch in (1.0, 1.5, 2.0, 3.0):
         positions = rest * [stretch, 1.0, 1.0]
         mesh = refiner.refine(positions)
-        check(refiner, mesh, positions)  # names the mistakes of a refiner
+        check(refiner, mesh, positions)  # reports mistakes of a refiner
         counts.append(len(mesh.triangles))
     return counts
 

@@ -1,9 +1,9 @@
-"""The plug-in in a plain script: arrays in, refined triangles out, one OBJ file to look at.
+"""The plug-in in a plain script: arrays in, refined triangles out, one OBJ file to view.
 
     python examples/plain_script.py [FILE.obj]
 
-A tube of 384 triangles bends to more than half a ring and back. It needs `risorius.refine`, and
-that needs numpy and numba alone.
+A tube of 384 triangles bends to more than half a ring and back. It needs `risorius.refine`, which
+only needs numpy and numba.
 """
 
 import sys
@@ -56,7 +56,7 @@ def write_obj(path: Path, mesh: refine.RefinedMesh) -> None:
 
 
 def main(target: Path) -> list[int]:
-    """Refine 60 frames, write the one that is bent most, return the triangles of each."""
+    """Refine 60 frames, write the most bent one, return the triangles of each."""
     rest, faces = tube()
     refiner = refine.create("kahler", faces, rest)  # once per mesh
     counts = []

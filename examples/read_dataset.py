@@ -1,4 +1,4 @@
-"""Print what a data set has for training: samples by persons, and how often each unit is there.
+"""Print the content of a data set for training: samples by persons, and frequencies of units.
 
     risorius dataset --count 1000 --passes depth,segmentation -o faces
     python examples/read_dataset.py faces

@@ -5,7 +5,7 @@
     python examples/train_landmarks.py faces photographs
 
 An error is the mean distance in hundredths of the distance between the outer corners of the eyes.
-As in tests on 300-W, where the face is comes from its known points; see `landmark_faces.py`.
+As in tests on 300-W, known points give the place of the face; see `landmark_faces.py`.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ def tensors(faces: list[Face]) -> tuple[Tensor, Tensor]:
 
 
 def seen(pictures: Tensor, points: Tensor, changes: Tensor | None = None) -> tuple[Tensor, Tensor]:
-    """Pictures and points as the network sees them: their middle, or what `changes` shows.
+    """Pictures and points for the network: their middle, or the part in `changes`.
 
-    changes: of each, from places in the result to places in the picture, shape (n, 2, 3).
+    changes: for each, a map from places in the result to places in the picture, shape (n, 2, 3).
     """
     middle = torch.tensor([[SIDE / WIDE, 0.0, 0.0], [0.0, SIDE / WIDE, 0.0]])
     view = middle.expand(len(pictures), 2, 3) if changes is None else changes
@@ -47,7 +47,7 @@ def seen(pictures: Tensor, points: Tensor, changes: Tensor | None = None) -> tup
 
 
 def varied(pictures: Tensor, points: Tensor) -> tuple[Tensor, Tensor]:
-    """Pictures and points for training: turned, moved, mirrored, of other colours and quality."""
+    """Pictures and points for training: turned, moved, mirrored, with other colours and quality."""
     inside, places = _turned(pictures, points)
     inside = _recoloured(inside)
     _blur(inside)
@@ -94,7 +94,7 @@ def _some(pictures: Tensor) -> list[int]:
 
 
 def _blur(pictures: Tensor) -> None:
-    """Make some pictures as soft as small ones."""
+    """Blur some pictures like small ones."""
     for number in _some(pictures):
         small = int(torch.randint(28, 80, ()))
         picture = pictures[number : number + 1]
@@ -103,7 +103,7 @@ def _blur(pictures: Tensor) -> None:
 
 
 def _cover(pictures: Tensor) -> None:
-    """Hold something before some faces: a rectangle of one colour."""
+    """Cover some faces by a rectangle of one colour."""
     for number in _some(pictures):
         top, left, height, width = torch.randint(8, 72, (4,)).tolist()
         rows = slice(top, top + height // 2)
@@ -140,9 +140,9 @@ class Network(nn.Module):
 
 
 def train(faces: list[Face], epochs: int, is_plain: bool) -> Network:
-    """A network that learned from faces. is_plain: it sees them as they are."""
+    """A network that learned from faces. is_plain: whether it sees unvaried faces."""
     pictures, points = tensors(faces)
-    network = Network().to(memory_format=torch.channels_last)  # faster so on a processor
+    network = Network().to(memory_format=torch.channels_last)  # faster on a processor
     steps = (len(faces) + 31) // 32
     optimiser = torch.optim.AdamW(network.parameters(), weight_decay=1e-3)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 4e-3, epochs * steps)

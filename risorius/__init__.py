@@ -2,7 +2,7 @@
 
     from risorius import assets, refine, render, sim
 
-Four packages that know nothing of each other, and `risorius.app`, which joins them.
+These four packages are independent of each other; `risorius.app` joins them.
 """
 
 __version__ = "0.2.0"

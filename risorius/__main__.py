@@ -1,4 +1,4 @@
-"""The command `risorius`, whole: the product's sub-commands, and beside them those of bench/."""
+"""The whole command `risorius`: the sub-commands of app/, and those of bench/."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def command() -> click.Group:
 
 
 def run() -> None:
-    """Run the command; signals are handled before anything else is loaded."""
+    """Run the command; signals are handled before other modules are loaded."""
     handle_signals()
     command()()
 

@@ -2,9 +2,8 @@
 
     from risorius.faces import Faces
 
-`Faces` is a data set for PyTorch, with a length and items by number: hand it to a DataLoader. This
-file needs numpy and Pillow only, and nothing else of Risorius: it may be copied to where a network
-is trained.
+`Faces` is a data set for PyTorch's DataLoader, with a length and items by number. This file only
+needs numpy and Pillow, and no other part of Risorius: it may be copied to a training machine.
 """
 
 from __future__ import annotations
@@ -25,10 +24,10 @@ UNITS = ("AU1", "AU2", "AU4", "AU6", "AU7", "AU10", "AU12", "AU14", "AU15", "AU1
 
 
 class Faces:
-    """A set as `risorius dataset` makes it, of single files or in shards; each item is a sample."""
+    """A set made by `risorius dataset`, in single files or shards; each item is a sample."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
-        """folder: that of the set. Raises OSError if there is no index."""
+        """folder: the set's folder. Raises OSError if there is no index."""
         self.folder = Path(folder)
         with (self.folder / "index.csv").open(encoding="utf-8", newline="") as file:
             self.rows = list(csv.DictReader(file))
@@ -39,8 +38,8 @@ class Faces:
     def __getitem__(self, number: int) -> dict[str, npt.NDArray[Any]]:
         """A sample.
 
-        image (3, H, W) 0..1; units (12,) 0..1; pixels (70, 2) and visible (70,) of landmarks;
-        classes (H, W), 255 = leave out, where the set has them.
+        It has image (3, H, W) 0..1; units (12,) 0..1; pixels (70, 2) and visible (70,) of
+        landmarks; and classes (H, W), 255 = ignore, if the set has them.
         """
         files = self.files(number)
         labels = json.loads(files["json"])
@@ -72,7 +71,7 @@ class Faces:
     def split(self, share: float = 0.2) -> tuple[list[int], list[int]]:
         """Numbers of samples for training and for testing; no person is in both, none is empty."""
         persons = sorted({int(row["person_number"]) for row in self.rows})
-        count = min(max(round(share * len(persons)), 1), len(persons) - 1)  # of one person, none
+        count = min(max(round(share * len(persons)), 1), len(persons) - 1)  # with one person, none
         tested = set(persons[:count])
         is_tested = [int(row["person_number"]) in tested for row in self.rows]
         numbers = range(len(self))
@@ -80,7 +79,7 @@ class Faces:
 
 
 def _members(part: io.BytesIO) -> list[tuple[str, bytes]]:
-    """The files in a part of a tar file, by their names behind the first dot."""
+    """The files in a part of a tar file, by the ends of their names after the first dot."""
     found = []
     with tarfile.open(fileobj=part, mode="r:") as tar:
         for member in tar:

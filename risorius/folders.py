@@ -1,11 +1,11 @@
-"""Folders of the user that several packages need."""
+"""The user's folders that several packages need."""
 
 import os
 from pathlib import Path
 
 
 def configuration_folder() -> Path:
-    """The user's configuration of Risorius, which may be missing."""
+    """The user's folder for the configuration of Risorius; it may be missing."""
     folder = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config")
     return folder / "risorius"
 

@@ -1,17 +1,17 @@
-"""`njit`: numba's decorator with one set of options, and machine code that is kept, never stale.
+"""`njit`: numba's decorator with one set of options, and stored machine code that is never stale.
 
-Numba keeps machine code itself (`cache=True`), but looks at one file at a time: when a kernel
-changes that is called from another file, old code goes on running. So code lies in a folder that is
-named by a digest of all sources of `geometry/`, `refine/` and `sim/`, this file, and the versions
-of numba and Python; where one letter changes, everything is compiled anew, in a new folder. It is
+Numba stores machine code itself (`cache=True`), but only checks one file at a time: when a kernel
+changes that another file calls, old code keeps running. So code lies in a folder with a name from a
+digest of all sources of `geometry/`, `refine/` and `sim/`, this file, and the versions of numba and
+Python. If one letter changes, everything is compiled again in a new folder. It is
 `risorius/compiled-DIGEST` in the folder named by NUMBA_CACHE_DIR, or in the user's cache.
 
-`numba.config.CACHE_DIR` is where numba looks for its folder, once, when it decorates a function. It
-is set for that moment alone: kernels of other programs in the same process stay where they were.
-Without a folder that is this user's alone, code is compiled in each process, and the log says so
-once. With NUMBA_DISABLE_JIT=1 all kernels run as the Python that they are written in, slowly, for
-debuggers and coverage. There is no fast-math unless a kernel asks for it, so results do not depend
-on how a loop was vectorised.
+Numba reads its folder from `numba.config.CACHE_DIR` once, when it decorates a function. The
+variable is set for that moment only, so kernels of other programs in the same process keep their
+folder. Without a folder that belongs to this user alone, code is compiled in each process, and the
+log reports it once. With NUMBA_DISABLE_JIT=1 all kernels run as Python, slowly, for debuggers and
+coverage. Fast-math is off unless a kernel asks for it, so results do not depend on the
+vectorisation of a loop.
 
 This file does not depend on the code that it compiles. A copy of `refine/` needs it, too.
 """
@@ -37,7 +37,7 @@ from numba.core import event
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-"""Of all kernels: other threads may run meanwhile, and 1 / 0 is infinite as it is in numpy."""
+"""Options of all kernels: other threads may run meanwhile, and 1 / 0 is infinite, as in numpy."""
 
 log = logging.getLogger(__name__)
 _lock = threading.Lock()
@@ -58,11 +58,11 @@ def njit(
 def njit(function: Any = None, /, *, lanes: bool = False, fastmath: Collection[str] = ()) -> Any:
     """Compile a function with numba when it is first called with new types of arguments.
 
-    Code is kept for this package alone: the dependencies of other code are unknown.
+    Code is stored for this package only: the dependencies of other code are unknown.
 
-    - `lanes`: whether the compiler looks for equal work on neighbouring numbers, and does it at
-      once (LLVM's SLP vectoriser, which numba leaves out). The bits are the same.
-    - `fastmath`: liberties that the compiler may take, as in numba; none if it is left out.
+    - `lanes`: whether the compiler combines equal work on neighbouring numbers (LLVM's SLP
+      vectoriser, which numba leaves out). The bits are the same.
+    - `fastmath`: inexact optimisations that the compiler may use, as in numba; by default none.
     """
     options: dict[str, Any] = {"fastmath": set(fastmath)} if fastmath else {}
     if function is None:
@@ -83,7 +83,7 @@ def njit(function: Any = None, /, *, lanes: bool = False, fastmath: Collection[s
 
 @functools.cache
 def cache_folder() -> Path | None:
-    """The folder that machine code is stored in; None if there is none that can be trusted."""
+    """The folder for machine code; None if there is no trusted one."""
     users = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     above = Path(os.environ.get("NUMBA_CACHE_DIR") or users).absolute() / "risorius"
     folder = above / f"compiled-{_digest()}"
@@ -93,7 +93,7 @@ def cache_folder() -> Path | None:
         status = folder.lstat()
         if hasattr(os, "geteuid") and (status.st_uid != os.geteuid() or status.st_mode & 0o022):
             raise OSError("others may write into it")
-        # Numba fails where the disk is full; all our kernels need a tenth of this.
+        # Numba fails on a full disk; all our kernels need a tenth of this.
         free_bytes = 1 << 26
         if shutil.disk_usage(folder).free < free_bytes:
             raise OSError("the disk is full")
@@ -110,23 +110,23 @@ def cache_folder() -> Path | None:
 
 
 def _digest() -> str:
-    """Digest of all that machine code depends on, but for the processor, which numba looks at."""
+    """Digest of all that machine code depends on, except the processor, which numba checks."""
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
     digest.update(Path(__file__).read_bytes())
     for package in ("geometry", "refine", "sim"):  # either may be absent
         found = importlib.util.find_spec(f"{__package__}.{package}")
         for folder in (found and found.submodule_search_locations) or ():
-            for file in sorted(Path(folder).rglob("[!.]*.py")):  # no editor's hidden ones
+            for file in sorted(Path(folder).rglob("[!.]*.py")):  # no hidden files of editors
                 digest.update(str(file.relative_to(folder)).encode() + file.read_bytes())
     return digest.hexdigest()[:16]
 
 
 def _remove_old(above: Path) -> None:
-    """Remove folders of other digests, but for some that were used last."""
+    """Remove folders of other digests, except those used last."""
     with suppress(OSError):
         used = {folder: folder.stat().st_mtime for folder in above.glob("compiled-*")}
         most_folders = 8  # of other digests, which stay at any age
-        unused_seconds = 24 * 3600.0  # after which other folders may leave
+        unused_seconds = 24 * 3600.0  # after which other folders may be removed
         for folder in sorted(used, key=used.__getitem__, reverse=True)[most_folders:]:
             if used[folder] < time.time() - unused_seconds:
                 shutil.rmtree(folder, ignore_errors=True)
@@ -142,7 +142,7 @@ class _Compilation(event.Listener):
         self._settings: list[int] = []
 
     def on_start(self, event: event.Event) -> None:
-        """Numba begins to compile a function of anybody's."""
+        """Numba begins to compile any function."""
         function = event.data["dispatcher"].py_func
         self._settings.append(_numbas.SLP_VECTORIZE)
         if (function.__module__ or "").partition(".")[0] == __package__:

@@ -1,7 +1,7 @@
 """The accessor `risorius` of PyVista's meshes: `mesh.risorius.refine()`.
 
-PyVista (0.48 or newer) finds it by the entry point `pyvista.accessors`, and imports it when
-`mesh.risorius` is first used; a program that uses it imports pyvista alone.
+PyVista (0.48 or newer) finds it by the entry point `pyvista.accessors`, and imports it at the first
+use of `mesh.risorius`; a program only imports pyvista.
 """
 
 from collections.abc import Iterable, Iterator
@@ -37,7 +37,7 @@ class PolyDataRefiner:
     def refine(
         self, frame: pyvista.PolyData | npt.ArrayLike, *, view: View | None = None
     ) -> pyvista.PolyData:
-        """Refine one frame into a mesh of its own.
+        """Refine one frame into a new mesh.
 
         Parameters
         ----------
@@ -115,7 +115,7 @@ class PolyDataRefiner:
         fixed: bool = False,
         progress_bar: bool = False,
     ) -> Iterator[pyvista.PolyData]:
-        """Refine many frames as they are asked for, each as `refine` does.
+        """Refine many frames one by one, as they are requested, each as `refine` does.
 
         Parameters
         ----------
@@ -136,16 +136,16 @@ class PolyDataRefiner:
 
 
 class Cells(NamedTuple):
-    """Cells of one kind, as VTK keeps them."""
+    """Cells of one kind in VTK's form."""
 
     starts: Integers64
-    """Where each cell begins among `points`, and where the last one ends, shape (C + 1,)."""
+    """Place in `points` where each cell begins, and where the last one ends, shape (C + 1,)."""
     points: Integers64
-    """Points of all cells, one cell behind the other."""
+    """Points of all cells, one cell after another."""
 
     @property
     def sizes(self) -> Integers64:
-        """Points of each cell, shape (C,)."""
+        """Number of points of each cell, shape (C,)."""
         return np.diff(self.starts)
 
     def of(self, cell: int) -> Integers64:
@@ -183,7 +183,7 @@ def triangles_of(mesh: pyvista.PolyData) -> tuple[Integers64, Integers64]:
 
 
 def _cells_of(array: Any, point_count: int) -> Cells:
-    """The cells of a vtkCellArray; raises ValueError for points beyond `point_count`."""
+    """The cells of a vtkCellArray; raises ValueError for points from `point_count` on."""
     starts = np.asarray(pyvista.convert_array(array.GetOffsetsArray()), dtype=np.int64)
     points = np.asarray(pyvista.convert_array(array.GetConnectivityArray()), dtype=np.int64)
     if len(points) > 0 and not 0 <= points.min() <= points.max() < point_count:
@@ -210,7 +210,7 @@ def _cut_polygons(points: npt.ArrayLike, polygons: Cells) -> tuple[Integers64, I
     cut = uncut.triangulate()
     triangles = _cells_of(cut.GetPolys(), cut.n_points).points.reshape(-1, 3)
     polygon_of = np.asarray(cut.cell_data[SOURCE])
-    # Where points lie on one line, VTK leaves triangles out: their neighbours would have a hole.
+    # If points lie on one line, VTK leaves triangles out, and their neighbours would have a hole.
     counts = np.bincount(polygon_of, minlength=len(polygons.sizes))
     is_short = np.zeros(len(polygons.sizes), dtype=np.bool_)
     fans: list[tuple[int, int, int]] = []
@@ -237,7 +237,7 @@ class RisoriusAccessor:
     """Crack-free refinement of surfaces where they bend; `mesh.risorius` of any `PolyData`."""
 
     def __init__(self, mesh: pyvista.PolyData) -> None:
-        """PyVista makes it when it is first used."""
+        """PyVista makes this object at the first use."""
         self._mesh = mesh
 
     def refine(

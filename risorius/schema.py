@@ -5,7 +5,8 @@ checks; an error is reported in one line:
 
     face.toml, 'muscle', 'frontalis', 'width': was 99, must be a number from 1 to 60
 
-Below every package, because rigs, scripts, landmarks, recordings and settings are all read here.
+This module is below every package, because it reads rigs, scripts, landmarks, recordings and
+settings.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ from pydantic_core import CoreSchema, ErrorDetails, core_schema
 
 Read = TypeVar("Read")
 
-# The allowed values, by pydantic's names of errors.
+# pydantic's name of an error -> the allowed values.
 MUST_BE = {
     "bool_type": "true or false",
     "dataclass_type": "a table",
@@ -47,14 +48,14 @@ MUST_BE = {
     "too_long": "a list of {max_length}",
     "tuple_type": "a list",
 }
-LENIENT = "unknown keys are passed by"  # of another version of the program
-OWN = "("  # keys that begin so are put in by readers; no file has them
+LENIENT = "unknown keys are passed by"  # for files of other versions
+OWN = "("  # readers add keys that begin with this; no file has them
 REST = f"{OWN}rest)"
 HIDDEN = f"{OWN}hidden)"
 
 
 class Record:
-    """A table of a file; see the head of this module. A key that is no field is a mistake.
+    """A table of a file; see the head of this module. A key without a field is a mistake.
 
     A field of the type `Rest[...]`, of which there may be one, takes all other keys instead.
     """
@@ -70,7 +71,7 @@ class Record:
 
 @dataclass(frozen=True)
 class Within:
-    """A rule for a number, or each one of a tuple: finite, from `low` to `high`, and no bool."""
+    """A rule for a number, or each number of a tuple: finite, from `low` to `high`, not a bool."""
 
     low: float
     high: float
@@ -78,7 +79,7 @@ class Within:
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """Numbers of the kinds that are annotated."""
+        """Numbers of the annotated kinds."""
         if get_origin(source) is tuple:
             schema = core_schema.tuple_schema(
                 list(map(self._of_one, get_args(source))), strict=True
@@ -103,9 +104,9 @@ class Within:
 
 @dataclass(frozen=True)
 class OneOf:
-    """Exactly one of these, or of those that a function returns when the first is read.
+    """A rule: exactly one of these values, or of those that a function returns at the first read.
 
-    description: names them in errors, where they are many.
+    description: words for many values in errors.
     """
 
     allowed: Iterable[Any] | Callable[[], Iterable[Any]]
@@ -114,12 +115,12 @@ class OneOf:
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """A choice by value and type, since True is equal to 1."""
+        """A choice by value and type, because True is equal to 1."""
         allowed = tuple(self.allowed() if callable(self.allowed) else self.allowed)
         typed = {(type(each), each) for each in allowed}
 
         def one(given: Any) -> Any:
-            """One of them; raises ValueError for another."""
+            """The given value if it is allowed; raises ValueError otherwise."""
             if not isinstance(given, Hashable) or (type(given), given) not in typed:
                 raise ValueError
             return given
@@ -133,7 +134,7 @@ class OneOf:
 
 @dataclass(frozen=True)
 class MadeFrom:
-    """A rule for any type: a function makes it from the file's value, or raises ValueError."""
+    """A rule for any type: a function makes the value from the file's, or raises ValueError."""
 
     table: Any
     make: Callable[[Any], Any]
@@ -149,14 +150,14 @@ class MadeFrom:
 
 @dataclass(frozen=True)
 class Kinds:
-    """A record of one of several classes: of that which the key `kind` of the table names."""
+    """A record of one of several classes: the key `kind` of the table names the class."""
 
     records: Mapping[str, type[Record]]
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """A choice by that key, which the records do not have."""
+        """A choice by this key, which the records do not have."""
         return core_schema.tagged_union_schema(
             {
                 OWN + name: core_schema.no_info_before_validator_function(
@@ -172,14 +173,14 @@ class Kinds:
 
 
 def called(key: str) -> Any:
-    """The rule that a field has another key in files."""
+    """The rule for a field with another key in files."""
     return Field(alias=key)
 
 
 Number = Annotated[float, Strict(), AllowInfNan(False)]
 Flag = Annotated[bool, Strict()]
-Rest = Annotated[dict[str, Read], called(REST)]  # of a field: it has all other keys
-Hidden = Annotated[Read, called(HIDDEN)]  # of a field: no file has a key for it
+Rest = Annotated[dict[str, Read], called(REST)]  # type of a field with all other keys
+Hidden = Annotated[Read, called(HIDDEN)]  # type of a field without a key in files
 
 
 _adapter: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)
@@ -192,7 +193,7 @@ def read(
     *,
     error: type[Exception] = ValueError,
 ) -> Read:
-    """A record, or any other type, made of the content of a file.
+    """A record, or a value of another type, from the content of a file.
 
     where: its name in errors, a file or a part of one.
 
@@ -205,10 +206,11 @@ def read(
 
 
 def read_what_fits(kind: type[Read], document: Any) -> tuple[Read, list[str]]:
-    """A record of those entries of a table that are allowed, and a line for each that is not.
+    """A record of the allowed entries of a table, and a line for each other entry.
 
-    For settings: a file by another version of the program, or by hand, must not stop this one.
-    Every field has a default; an entry is a key of the table, or of a table within it.
+    It is for settings: a file from another version of the program, or written by hand, must not
+    stop this one. Every field has a default; an entry is a key of the table, or of a table within
+    it.
     """
     found: list[str] = []
     while True:
@@ -221,26 +223,26 @@ def read_what_fits(kind: type[Read], document: Any) -> tuple[Read, list[str]]:
 
 
 def quoted(value: object) -> str:
-    """A value in the text of an error, cut where it is long."""
+    """A value in the text of an error, shortened if it is long."""
     try:
         return reprlib.repr(value)
-    except ValueError:  # Python writes no number of thousands of digits
+    except ValueError:  # Python does not write numbers with thousands of digits
         return f"a very long {type(value).__name__}"
 
 
 def question(name: str, known: Iterable[str]) -> str:
-    """The nearest known name, as a question at the end of an error; nothing if none is near."""
+    """The nearest known name, as a question at the end of an error; "" if none is near."""
     near = difflib.get_close_matches(str(name), list(known), n=1)
     return f"; did you mean '{near[0]}'?" if near else ""
 
 
 def parsed_toml(text: str) -> dict[str, Any]:
-    """The table of a TOML file; ValueError with the reason if it is none."""
+    """The table of a TOML file; ValueError with the reason for another text."""
     return cast(dict[str, Any], _parsed(tomllib.loads, text, "TOML"))
 
 
 def parsed_json(text: str | bytes) -> Any:
-    """The content of a JSON file; ValueError with the reason if it is none."""
+    """The content of a JSON file; ValueError with the reason for another text."""
     return _parsed(json.loads, text, "JSON")
 
 
@@ -267,7 +269,7 @@ def _keys(record: type[Any]) -> tuple[str, ...]:
 
 
 def _known_keys_of(known: tuple[str, ...], table: Any, info: ValidationInfo) -> Any:
-    """A table whose unknown keys are in that of the rest; raises ValueError if there is none."""
+    """A table with unknown keys moved into the rest's; raises ValueError if there is no rest."""
     if not isinstance(table, Mapping):
         return table
     plain = [key for key in known if not key.startswith(OWN)]
@@ -303,7 +305,7 @@ def _line(where: str, problem: ErrorDetails) -> str:
 
 
 def _without(document: Any, place: Sequence[int | str]) -> Any:
-    """A table without the entry at this place, as deep as there are tables."""
+    """A table without the entry at this place, which may be in a nested table."""
     keys = [key for key in place if not str(key).startswith(OWN)]
     if not isinstance(document, Mapping) or not keys or keys[0] not in document:
         return {}

@@ -1,1 +1,1 @@
-"""The paper, made anew: its numbers and pictures, each beside our measurement."""
+"""The paper repeated: its numbers and pictures, each beside our measurement."""

@@ -1,10 +1,10 @@
-r"""A criterion of our own for Fig. 10: how far borders of the mesh turn otherwise than at rest.
+r"""A criterion of our own for Fig. 10: changes of the turns of the mesh's borders since rest.
 
-It uses the public names of `refine` alone, as a criterion of any other package would.
+It only uses the public names of `refine`, like a criterion of any other package.
 
-A mouth that is shut is a slit with two straight sides. It may open in the surface that it lies in:
-nothing bends, no normal turns, no other criterion sees it; but a straight line becomes an arc.
-Kähler, Haber, Seidel 2003, section 5, on Fig. 10: "improving the silhouette of the opened mouth".
+A shut mouth is a slit with two straight sides. It may open within its surface: nothing bends and no
+normal turns, so no other criterion notices it; but a straight line becomes an arc. Kähler, Haber,
+Seidel 2003, section 5, on Fig. 10: "improving the silhouette of the opened mouth".
 
            v          The turn at a vertex a of a border p, a, q, with u and v the
        a------>q      directions of its edges and n the normal at a, is three numbers:
@@ -17,13 +17,13 @@ Kähler, Haber, Seidel 2003, section 5, on Fig. 10: "improving the silhouette of
 
     measure of a border edge = mean of the turns at its ends: the angle between the tangents there
 
-The border itself is seldom seen: it may lie inside the lips, and the eye sees a line that runs
-beside it. So vertices around take over the mean turn of their neighbours that are nearer to the
-border, less with every ring, until REACH_RINGS. And an edge there counts as far as it runs along
-the border, by the squared cosine between both: across it nothing turns, and long, thin triangles
-along the lips are wanted (section 5, Fig. 8).
+The border itself is rarely visible: it may lie inside the lips, and the eye sees a line beside it.
+So vertices around it take over the mean turn of their neighbours nearer to the border, less with
+every ring, up to REACH_RINGS. An edge there counts as far as it runs along the border, by the
+squared cosine between both: there is no turn across the border, and long, thin triangles along the
+lips are desired (section 5, Fig. 8).
 
-A corner stays one, so the border has no turn there.
+A corner stays a corner, so the border has no turn there.
 """
 
 from typing import Annotated, NamedTuple
@@ -37,9 +37,10 @@ from risorius.refine import port
 Once = Annotated[float, refine.Option("an edge splits once where borders turn more", least=0.0)]
 Twice = Annotated[float, refine.Option("the same for splitting twice", least=0.0)]
 REACH_RINGS = 5
-"""Rings of edges around the border, the first in which a turn no longer counts. Chosen by the
-outlines of five opened mouths of the built-in head, whose border lies three rings inside the lips:
-two more took 12 % more triangles for 3 % of the error."""
+"""The first ring of edges around the border in which a turn no longer counts. Chosen by the
+outlines of five open mouths of the built-in head, whose border lies three rings inside the lips:
+two more rings took 12 % more triangles for 3 % of the error.
+"""
 
 
 class Nearby(NamedTuple):
@@ -50,15 +51,15 @@ class Nearby(NamedTuple):
     ways: list[Integers32]
     """For each ring but the first, vertices that turns spread to and from, shape (2, S)."""
     way_shares: list[Floats64]
-    """How much of a turn spreads along each of them, shape (S,)."""
+    """Share of a turn that spreads along each pair, shape (S,)."""
     edges: Integers64
     """The edges on and beside the border, shape (N,)."""
     edge_shares: Floats64
-    """How much of the sum of the turns at its ends is the measure of an edge, shape (N,)."""
+    """Factor on the sum of the turns at an edge's ends, for its measure, shape (N,)."""
 
 
 class BorderTurn(refine.Criterion):
-    """Borders that turn otherwise than at rest, such as that of a mouth that opens."""
+    """Borders whose turns change since rest, such as that of an opening mouth."""
 
     def __init__(self, once: Once = 0.03, twice: Twice = 0.12) -> None:
         """`once`, `twice`: angles between the tangents at both ends of an edge [rad]."""
@@ -67,7 +68,7 @@ class BorderTurn(refine.Criterion):
     def bind(
         self, connectivity: refine.Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
-        """Find what lies on borders and beside them, and how borders turn at rest."""
+        """Find vertices and edges on and beside borders, and the turns of borders at rest."""
         self._mesh = connectivity
         self._nearby = find_nearby(connectivity, rest_positions)
         self._rest_turns = turns_of(rest_positions, rest_normals, self._nearby.curves)
@@ -99,7 +100,7 @@ def turns_of(positions: Floats64, normals: Floats32, curves: Integers64) -> Floa
 
 
 def _units(vectors: Floats64) -> Floats64:
-    """Their directions, shape (.., 3); zero where one has no length."""
+    """Unit vectors, shape (.., 3); zero vectors stay zero."""
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
     return vectors / np.where(lengths > 0.0, lengths, 1.0)
 
@@ -107,7 +108,7 @@ def _units(vectors: Floats64) -> Floats64:
 def find_nearby(mesh: refine.Connectivity, rest_positions: Floats64) -> Nearby:
     """Find the vertices and edges on and beside the borders.
 
-    A vertex that has no normal at rest, because all triangles around are slivers, has no turn.
+    A vertex without a normal at rest, because all triangles around are slivers, has no turn.
     """
     before, after = port.border_neighbours(mesh, rest_positions).T
     undefined = np.empty(mesh.vertex_count, dtype=np.bool_)
@@ -118,7 +119,7 @@ def find_nearby(mesh: refine.Connectivity, rest_positions: Floats64) -> Nearby:
     ring = rings_from_border(mesh)
     ways, shares = ways_inward(mesh, ring)
 
-    # The direction of the border beside a vertex has no sign, so it is kept as a square, d d^T.
+    # The direction of the border beside a vertex has no sign, so it is stored as a square, d d^T.
     squares = np.zeros((mesh.vertex_count, 3, 3))
     is_border = ~mesh.around.is_interior
     along = directions[is_border]
@@ -141,7 +142,7 @@ def find_nearby(mesh: refine.Connectivity, rest_positions: Floats64) -> Nearby:
 
 
 def rings_from_border(mesh: refine.Connectivity) -> Integers64:
-    """How many edges each vertex is away from the border, REACH_RINGS at most, shape (V,)."""
+    """Distance of each vertex from the border in edges, at most REACH_RINGS, shape (V,)."""
     ring = np.full(mesh.vertex_count, REACH_RINGS)
     ring[mesh.edges[~mesh.around.is_interior]] = 0
     for k in range(1, REACH_RINGS):
@@ -156,8 +157,8 @@ def ways_inward(
 ) -> tuple[list[Integers32], list[Floats64]]:
     """For each ring but the first, the ways along edges to its vertices from the ring before.
 
-    Returns their ends and starts, shape (2, S), and the share of each in the mean of all ways that
-    end there, shape (S,).
+    Returns their ends and starts, shape (2, S), and the share of each way in the mean of all ways
+    with the same end, shape (S,).
     """
     ways = []
     shares = []

@@ -1,10 +1,11 @@
-"""A head of a quarter of the triangles: where the paper's rule is seen, and where it helps.
+"""A head with a quarter of the triangles: the visible effect of the paper's rule, and its benefit.
 
 Kähler, Haber, Seidel 2003, section 1: "when the surface is animated by moving the mesh nodes, the
-resulting mesh doesn't adapt well to the deformation." On 536 triangles everybody sees that. As in
-Figure 10 the built-in head with 16 times its triangles is moved by the same muscles, drawn alike
-and taken for the truth; the coarse head has some of its vertices. Below the pictures stands which
-pixels a rule changed: green where they came nearer to the dense mesh, red where they went away.
+resulting mesh doesn't adapt well to the deformation." On 536 triangles everybody sees this. As in
+Figure 10, the built-in head with 16 times its triangles is moved by the same muscles, drawn in the
+same way, and taken as the truth; the coarse head has some of its vertices. Below the pictures, the
+pixels that a rule changed are green if they came nearer to the dense mesh, and red if they went
+away.
 """
 
 from __future__ import annotations
@@ -30,26 +31,26 @@ from ..canvas import CLAY, Canvas, Drawing, Shot, image_table, parts_without_hai
 from ..subjects import SETTLE, fine_simulation, settled_positions
 from .experiments import Outcome
 
-SEEN_CHANGE = 8.0  # levels of 255: a change that is seen
+SEEN_CHANGE = 8.0  # levels of 255: a visible change
 LOOKS = (STATIC, PAPERS_PRESET, FIRST_PRESET)
-"""A column each; the dense mesh comes after them."""
+"""One column for each look; the dense mesh comes after them."""
 
 
 @dataclass(frozen=True)
 class Cell(Shot):
-    """The picture of one expression by one look, and where the head is in it, (H, W)."""
+    """The picture of one expression by one look, and flags of the head's pixels, (H, W)."""
 
     is_head: Flags
     smoother: float
-    """Angle between neighbouring triangles where edges are split, over that of the mesh there."""
+    """Angle between neighbouring triangles at split edges, over that of the mesh there."""
 
     def wrong(self, truth: Cell) -> int:
-        """Pixels that are the head here or in truth, but not in both."""
+        """Pixels of the head here or in truth, but not in both."""
         return int((self.is_head != truth.is_head).sum())
 
 
 def outcome(size: tuple[int, int] = (300, 360)) -> Outcome:
-    """How much nearer each look comes to the dense mesh, and of what it changes, how much helps."""
+    """Gains of each look toward the dense mesh, and the share of its changes that help."""
     rows = []
     sums = {name: np.zeros(5) for name in LOOKS}
     for expression, cells in _drawn(size):
@@ -122,7 +123,7 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
 
 
 def _smoother(drawn: DrawnMesh, positions: Floats64) -> float:
-    """The mean angle between triangles of split ones, over that between these; 1 for none."""
+    """The mean angle between refined triangles, over that between the split ones; 1 for none."""
     assert drawn.mesh is not None
     splits = drawn.refiner.splits[drawn.refiner.triangle_edges].sum(axis=1)
     is_split = splits > 0

@@ -1,4 +1,4 @@
-"""`risorius reproduce`: the paper's table and figures made anew, on a page."""
+"""`risorius reproduce`: the paper's table and figures repeated, on a page."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ PATH = click.Path(path_type=Path)
 )
 @click.option("--rounds", type=click.IntRange(3, 10_000), help="Rounds of timing; by default 60.")
 def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
-    """Make the paper's figures and table anew, all or some, into a folder.
+    """Repeat the paper's figures and table, all or some, in a folder.
 
     There are figure8, figure9, figure10, coarse and table1. index.html in the folder shows the
-    results, in the paper's order. The exit code is 1 where a tolerance is missed.
+    results in the paper's order. The exit code is 1 if a tolerance is missed.
     """
     from risorius.app.files import check_file, save_text
     from risorius.app.pictures import save_png
@@ -79,7 +79,7 @@ def _text(result: Result) -> str:
 
 
 def _page(results: Sequence[Result]) -> str:
-    """All of it on one page for any browser, which loads the pictures beside it."""
+    """All results on one page for any browser, which loads the pictures beside it."""
     findings = [finding for result in results for finding in result.findings]
     met = sum(claim.verdict(measured) == "met" for claim, measured in findings)
     made = (

@@ -1,8 +1,8 @@
-"""The numbers of the paper, and whether our measurements agree with them.
+"""The numbers of the paper, and their agreement with our measurements.
 
-`paper.toml` is the one table of experiments, in the order of the paper. An entry there makes a
-command and a part of the page; a new entry needs no other change. The command line imports this at
-once, so it imports nothing that is slow.
+`paper.toml` is the only table of experiments, in the order of the paper. An entry there makes a
+command and a part of the page; a new entry needs no other change. The command line imports this
+module at once, so it has no slow imports.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Claim:
     high: float = math.inf
     style: str = "g"
     differs: str = ""
-    """Why our number is not as the paper says; "" where it should be."""
+    """Reason why our number differs from the paper; "" if it should agree."""
 
     def verdict(self, number: float) -> str:
         """Whether the number agrees; NaN misses, too."""
@@ -52,7 +52,7 @@ class Claim:
         return f"(expected here: {text})" if self.differs else text
 
     def ours(self, number: float) -> str:
-        """A number as it is written."""
+        """A number in its written form."""
         return f"{number:{self.style}}"
 
 
@@ -64,7 +64,7 @@ class Outcome:
     """Measured values, by name."""
     picture: Image | None = None
     text: str = ""
-    """A table of more than the claims."""
+    """A table with more than the claims."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Experiment:
     """A statement of the paper, and the function that tests it; see `paper.toml`."""
 
     name: str
-    """Of the command, and of its picture."""
+    """Name of the command, and of its picture."""
     title: str
     place: str
     function: str
@@ -81,7 +81,7 @@ class Experiment:
     rounds: int | None = None
 
     def run(self, *, rounds: int | None = None) -> Result:
-        """Run it. KeyError for a claim that was not measured."""
+        """Run the experiment. KeyError for a claim without a measurement."""
         timing = {} if self.rounds is None else {"rounds": rounds or self.rounds}
         module, _, name = self.function.partition(".")
         function = getattr(importlib.import_module(f"{__package__}.{module}"), name)
@@ -91,7 +91,7 @@ class Experiment:
 
 
 class Result(NamedTuple):
-    """An experiment that was run, and the measurement for each of its claims."""
+    """A finished experiment, and the measurement for each of its claims."""
 
     experiment: Experiment
     outcome: Outcome
@@ -99,12 +99,12 @@ class Result(NamedTuple):
 
     @property
     def missed(self) -> list[tuple[Claim, float]]:
-        """Those that are not met."""
+        """The claims that are not met."""
         return [(claim, x) for claim, x in self.findings if claim.verdict(x) == "MISSED"]
 
 
 def _claim(entry: dict[str, Any]) -> Claim:
-    """One of the table."""
+    """A claim of the table."""
     if "exactly" in entry:
         entry["low"] = entry["high"] = entry.pop("exactly")
     return Claim(**entry)

@@ -1,11 +1,11 @@
-"""The paper's Fig. 10: the region of the mouth, static and refined, beside a dense mesh.
+"""The paper's Fig. 10: the region of the mouth, static and refined, compared with a dense mesh.
 
 Kähler, Haber, Seidel 2003, section 5: "The rendered mesh is visibly smoothed, reducing shading
-artifacts and improving the silhouette of the opened mouth." A smooth surface need not be true; so
-the built-in head with 16 times the triangles is moved by the same muscles, drawn alike and taken
-for the truth. Below a picture stands how far it is off, in levels of 255 and in pixels around the
-opening between the lips: the row under the smooth pictures shows that opening dark, and red where
-it is not as that of the dense mesh.
+artifacts and improving the silhouette of the opened mouth." A smooth surface need not be true. So
+the built-in head with 16 times the triangles is moved by the same muscles, drawn in the same way,
+and taken as the truth. Below a picture is its error, in levels of 255 and in pixels around the
+opening between the lips. The row under the smooth pictures shows this opening dark, and red where
+it differs from that of the dense mesh.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from ..subjects import SETTLE, fine_simulation, settled_positions
 from .border_turn import BorderTurn
 from .experiments import Outcome
 
-FINER = 2  # pixels are drawn so many times as fine
+FINER = 2  # factor on the resolution of drawn pixels
 SMOOTH = replace(GOURAUD, albedo=render.SKIN)
 MOUTH = 1  # channel of a picture of kinds: skin, mouth, background
 BLUE = render.Background((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -57,11 +57,11 @@ STATIC, PAPER, CUBIC, DETAIL = VARIANTS = (
 
 @dataclass(frozen=True)
 class Viewpoint:
-    """An expression, and where it is looked at from."""
+    """An expression, and its viewpoint."""
 
     expression: str
     view: str  # yaw, pitch [degrees], zoom, around the lips
-    aside: tuple[float, float]  # the camera is moved right and up, in heights of the frame
+    aside: tuple[float, float]  # motion of the camera right and up, in heights of the frame
 
 
 @dataclass(frozen=True)
@@ -72,12 +72,12 @@ class Cell(Shot):
     kinds: Unsigned8  # skin, mouth, background, FINER times as fine, (H, W)
 
     def wrong(self, truth: Cell) -> Flags:
-        """Fine pixels that are the opening of the mouth here, or there, but not in both."""
+        """Fine pixels of the mouth's opening here or in the truth, but not in both."""
         return np.asarray((self.kinds == MOUTH) != (truth.kinds == MOUTH))
 
     def opening(self, truth: Cell) -> Image:
         """The picture of the opening."""
-        # By kind
+        # Colours by kind
         opening_colours = np.array([(233, 222, 214), (52, 40, 42), (255, 255, 255)], np.uint8)
         picture = opening_colours[self.kinds]
         wrong_colour = (225, 30, 30)
@@ -86,14 +86,14 @@ class Cell(Shot):
 
 
 def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
-    """How much of the error of mouths goes away, by the paper's rule and an interpolating one."""
+    """Reduction of the error of mouths by the paper's rule and by interpolating ones."""
     changed = []
     left = list[float]()
     outline = list[float]()
     papers_left = list[float]()
     papers_outline = list[float]()
     rows = []
-    seen_change = 8.0  # levels of 255: a change that is seen
+    seen_change = 8.0  # levels of 255: a visible change
     for expression, cells in _drawn(size):
         named = {cell.title: cell for cell in cells}
         truth = cells[-1]

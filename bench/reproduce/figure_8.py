@@ -1,9 +1,9 @@
 """The paper's Fig. 8: long, thin subtriangles lie along the folds of skin.
 
-A fold bends across and hardly along. Its direction in a triangle, that of the least curvature, is
-found from how normals turn along the triangle's edges. The paper's claim is true if subtriangles
-are longer than the triangles that they are parts of, and lie nearer to that direction. The
-measurements stand below each picture.
+A fold bends across its direction and hardly along it. In a triangle this is the direction of least
+curvature, which follows from the turn of normals along the triangle's edges. The paper's claim is
+true if subtriangles are longer than their triangles, and nearer to this direction. The measurements
+are below each picture.
 
 Source: Kähler, Haber, Seidel 2003, section 5 and Fig. 8; Rusinkiewicz 2004, "Estimating curvatures
 and their derivatives on triangle meshes", for the curvature of a triangle.
@@ -31,9 +31,9 @@ Faces = npt.NDArray[np.int32]
 
 
 def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
-    """How much nearer to folds subtriangles lie, and how much thinner they are.
+    """Angles of subtriangles to folds, and their thinness, against those of triangles.
 
-    In pictures: the mesh, refined by the paper's rule, and where folds run.
+    Pictures show the mesh, the mesh refined by the paper's rule, and the folds.
     """
     scene = build_scene("face")
     scene.pose({"disgust": 1.0})
@@ -67,7 +67,7 @@ def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
 
 
 def lines_along(scene: Scene) -> list[Points]:
-    """A short line along the fold in each triangle that lies in one, a little above it."""
+    """A short line along the fold in each triangle of a fold, a little above it."""
     corners = scene.positions[scene.faces]
     directions, is_fold = find_folds(scene.faces, scene.positions)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -81,19 +81,19 @@ def lines_along(scene: Scene) -> list[Points]:
 
 
 class Shapes(NamedTuple):
-    """The triangles of folds in the mean, larger ones counting more."""
+    """The triangles of folds, as means weighted by area."""
 
     smallest_angle: float  # [degrees] of a triangle's three
-    off_fold: float  # [degrees] from the long axis to the fold; 45 where that is left to chance
+    off_fold: float  # [degrees] from the long axis to the fold; chance gives 45
 
     def __str__(self) -> str:
         return f"smallest angle {self.smallest_angle:.0f}°, {self.off_fold:.0f}° off the fold"
 
 
 def measure(refiner: refine.Refiner, faces: Faces, positions: Points) -> tuple[Shapes, Shapes]:
-    """Triangles that lie in folds and are split: those of the mesh, and the refined ones.
+    """Measure split triangles in folds: those of the mesh, and the refined ones.
 
-    Refines `positions` (V, 3) anew.
+    This refines `positions` (V, 3) again.
     """
     mesh = refiner.refine(positions)
     directions, is_fold = find_folds(faces, positions)
@@ -105,7 +105,7 @@ def measure(refiner: refine.Refiner, faces: Faces, positions: Points) -> tuple[S
 
 
 def find_folds(faces: Faces, positions: Points) -> tuple[Points, Flags]:
-    """The direction of least curvature in each triangle (F, 3), and whether it lies in a fold."""
+    """The direction of least curvature in each triangle (F, 3), and flags of triangles in folds."""
     static = refine.create("none", faces, positions).refine(positions)
     corners = static.positions.astype(np.float64)[static.triangles]
     normals = static.normals.astype(np.float64)[static.triangles]
@@ -127,7 +127,7 @@ def find_folds(faces: Faces, positions: Points) -> tuple[Points, Flags]:
     high = sizes.max(axis=1)
     bent_angle = 0.2  # [rad] that the normal turns across a triangle of a fold, at least
     is_bent = high * np.sqrt(2.0 * areas) > bent_angle
-    # Of the curvature across, at most: a triangle that bends along, too, is in a dome.
+    # Largest ratio of the curvature along to that across: with more, a triangle is in a dome.
     along_share = 0.4
     is_straight = low < along_share * high
     return directions, is_bent & is_straight
@@ -137,7 +137,7 @@ def _fitted_curvatures(edges: Points, turns: Points) -> Points:
     """Curvature of triangles in their planes, symmetric, shape (F, 2, 2), by least squares.
 
     Curvature (a b, b c) turns the normal along an edge (u, v) by (a u + b v, b u + c v). edges,
-    turns: in the plane, shape (F, 3, 2).
+    turns: vectors in the plane, shape (F, 3, 2).
     """
     u = edges[:, :, 0]
     v = edges[:, :, 1]

@@ -1,7 +1,7 @@
 """The paper's Fig. 9: the plane under a strong sine, static and refined, beside the true sine.
 
-Below each picture stands how far it is from the true one, which no refiner knows, in shading and in
-outline: a mesh so dense that no triangle shows, with the normals of the sine itself.
+Below each picture is its difference from the true one, in shading and in outline. The true one is a
+mesh so dense that no triangle shows, with the normals of the sine itself; no refiner knows it.
 
 `risorius reproduce figure9` draws it.
 Kähler, Haber, Seidel 2003, section 5.
@@ -23,13 +23,13 @@ from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table
 from .experiments import Outcome
 from .figure_10 import Variant
 
-BACKGROUND = 250.0  # grey level; pictures stand on white, and no part of the plane is as light
+BACKGROUND = 250.0  # grey level: almost white, lighter than any part of the plane
 
 
 def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
-    """How far the shading of each variant is from that of the sine, in the mean over its columns.
+    """Difference of each variant's shading from that of the sine, as a mean over its columns.
 
-    The rows of each shading in turn, the true sine last; columns are moments.
+    Rows are variants of each shading, with the true sine last; columns are moments.
     """
     means = {}
     rows = []
@@ -68,14 +68,14 @@ def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
 
 
 class Waving:
-    """The plane in the frame of the figure, as refiners show it and as it should be."""
+    """The plane in the frame of the figure, refined and true."""
 
     def __init__(self, canvas: Canvas) -> None:
         self._canvas = canvas
         self._scene = PlaneScene()
-        view = "28,-30,0.796"  # from here no corner shows its underside, which no light reaches
+        view = "28,-30,0.796"  # from here the dark underside is never visible
         self._camera = camera_for(self._scene, view)
-        # Cells of the true sine in each cell of the plane, each way: smaller than pixels.
+        # Number of cells of the true sine in each cell of the plane, each way: smaller than pixels.
         fineness = 24
         self._dense = make_grid(COLUMNS * fineness, ROWS * fineness, CELL / fineness)
 
@@ -89,7 +89,7 @@ class Waving:
         return image, self._canvas.mesh_of(refiner).triangle_count
 
     def true_image(self, phase: float) -> Image:
-        """The picture of the sine itself; on triangles so small all shadings look alike."""
+        """The picture of the sine itself; all shadings are equal on such small triangles."""
         vertices, faces = self._dense
         positions, normals = self._wave(phase).waved(vertices)
         drawing = Drawing(self._camera, GOURAUD)
@@ -103,7 +103,7 @@ class Waving:
 
 
 def levels_apart(image: Image, truth: Image) -> float:
-    """Root mean square of the difference in grey levels (0 .. 255), where both show the surface."""
+    """Root mean square difference in grey levels (0 .. 255), where both show the surface."""
     grey = _grey(image)
     true_grey = _grey(truth)
     both = np.maximum(grey, true_grey) < BACKGROUND
@@ -111,7 +111,7 @@ def levels_apart(image: Image, truth: Image) -> float:
 
 
 def outline_apart(image: Image, truth: Image) -> float:
-    """Share of the true surface's pixels that only one of the two shows, or only the other."""
+    """Pixels that only one of both pictures covers, as a share of the true surface's pixels."""
     shows = _grey(image) < BACKGROUND
     true_shows = _grey(truth) < BACKGROUND
     return float((shows != true_shows).sum() / true_shows.sum())

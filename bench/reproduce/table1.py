@@ -2,15 +2,15 @@
 
 Kähler, Haber, Seidel 2003, section 5: triangles of the static mesh, the most that refinement makes
 of them during the animation, the time to render each, and c_rt, the factor by which the time per
-triangle grows. The time of "the rendering code" in the paper is here that of refining (or handing
-through), uploading and drawing, until OpenGL has finished.
+triangle grows. The time of "the rendering code" in the paper is here that of refinement (or of
+passing the mesh on), upload and drawing, until OpenGL has finished.
 
-Where OpenGL is software, most of that is pixels, which do not care how many triangles they belong
-to. So the same is given for a picture of a few pixels, and for refinement alone, which on a mesh as
+In software OpenGL most of this time is for pixels, which do not depend on the number of triangles.
+So the same is reported for a picture of a few pixels, and for refinement alone, which for a mesh as
 small as the plane is mostly the fixed cost of a call from Python.
 
-Static and refined are timed in pairs. A refined mesh has more triangles, so a time below that of
-the static one, c_rt < static / refined triangles, is noise.
+Static and refined meshes are timed in pairs. A refined mesh has more triangles, so a smaller time
+than the static one's, c_rt < static / refined triangles, is noise.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ from .experiments import Outcome
 Points = npt.NDArray[np.float64]
 
 SIZE = (1280, 720)  # [pixels] of the picture
-SMALL_SIZE = (64, 36)  # where pixels cost next to nothing
+SMALL_SIZE = (64, 36)  # pixels cost almost nothing
 DRAWN, DRAWN_SMALL = (f"all of it, {width}x{height}" for width, height in (SIZE, SMALL_SIZE))
 ALONE = "refinement alone"
 WAYS = (DRAWN, DRAWN_SMALL, ALONE)
-"""The stages that are timed, from most to least."""
+"""The timed stages, from most to least."""
 
 
 @dataclass(frozen=True)
@@ -56,11 +56,11 @@ class Row:
     ratio: float
     """The paper's c_rt: time per triangle, refined over static."""
     quartiles: Sequence[float | None] = (None, None)
-    """Half of the rounds lie between these."""
+    """Quartiles: half of the rounds lie between these."""
 
     @classmethod
     def of(cls, title: str, static: int, dynamic: int, seconds: Floats64) -> Row:
-        """A row of ours. seconds: of static and refined in each round, shape (rounds, 2)."""
+        """A row of ours. seconds: times of static and refined in each round, shape (rounds, 2)."""
         ratios = static / dynamic * seconds[:, 1] / seconds[:, 0]
         low, ratio, high = np.percentile(ratios, (25, 50, 75)).tolist()
         still, refined = (1e3 * np.median(seconds, axis=0)).tolist()
@@ -92,13 +92,13 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
     for way, size in ((DRAWN, SIZE), (DRAWN_SMALL, SMALL_SIZE)):
         with Canvas(size) as canvas:
             seconds[way] = timed(partial(draw, canvas), rounds)
-    quick_rounds = 10  # rounds of a way that draws nothing, for one of the others
+    quick_rounds = 10  # rounds of a way without drawing, per round of others
     seconds[ALONE] = timed(lambda refiner: refiner.refine(positions), quick_rounds * rounds)
     return [Row.of(f"{scene.name}, {way}", len(scene.faces), count, seconds[way]) for way in WAYS]
 
 
 def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
-    """The frame of the scene's own script with the most triangles, and how many these are."""
+    """The frame of the scene's own script with the most triangles, and their number."""
     best = -1
     fullest = scene.positions
     script = script_for(None, scene.name)

@@ -16,7 +16,7 @@ from risorius.app.capture import CaptureOptions
 from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene, Scene
 
-LAYERS = {  # by file: the layer, and how many columns leave few cells of the last row empty
+LAYERS = {  # file -> the layer, and a number of columns that fills the last row
     "action_units": ("Action units", 4),
     "expressions": ("Expressions", 4),
     "visemes": ("Visemes", 5),
@@ -25,7 +25,7 @@ LAYERS = {  # by file: the layer, and how many columns leave few cells of the la
 
 
 def without_sides(names: Sequence[str]) -> list[str]:
-    """The names without the sides of pairs, or with their left sides where no name has both."""
+    """The names without sides of pairs, or with left sides if no name stands for both."""
     known = set(names)
     return [
         name
@@ -39,9 +39,9 @@ def portrait(scene: Scene, name: str, size: tuple[int, int]) -> Image:
     """All views of a control at full value, side by side."""
     turning_units = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
     is_turned = name.removesuffix("_left") in turning_units
-    raised = 11.0  # [mm] that these look higher than at the landmarks: foreheads wrinkle
+    raised = 11.0  # [mm] of the view above the landmarks: foreheads wrinkle
     target = None if is_turned else scene.framing.focus + np.array([0.0, raised, 0.0])
-    shown_over = {"mouthClose": {"mouthClose": 0.5, "jawOpen": 0.5}}  # a share shows nothing alone
+    shown_over = {"mouthClose": {"mouthClose": 0.5, "jawOpen": 0.5}}  # a share alone shows nothing
     pose = shown_over.get(name, {name: 1.0})
     views = ("0,0,1.7", "-34,3,1.7")  # front and three-quarter
     far_views = ("0,0,1.1", "-34,3,1.1")  # of a head that turns

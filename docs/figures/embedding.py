@@ -15,7 +15,7 @@ from risorius.bench.embedding import Faces, FlatBinding, Points, sheet
 
 
 def folded(points: Points) -> Points:
-    """Two folds of a cloth, whose thickness is along z."""
+    """Two folds of a cloth with its thickness along z."""
     along = 3.2 * points[:, 0] + points[:, 1]
     middle = np.column_stack([points[:, :2], 0.3 * np.sin(along)])
     slope = 0.3 * np.cos(along)
@@ -42,7 +42,7 @@ def embedding() -> Image:
 
 
 def drawn(positions: Points, faces: Faces) -> Image:
-    """A sheet, seen from obliquely above."""
+    """A sheet, seen obliquely from above."""
     upright = 60.0 * positions[:, [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
     camera = render.OrbitCamera.framing(upright)
     camera.orbit(-25.0, 35.0)

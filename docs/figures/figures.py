@@ -1,7 +1,7 @@
-"""Functions of the programs that draw the figures of the documentation: options and drawing.
+"""Functions for the programs that draw the documentation's figures: options and drawing.
 
-`python docs/figures/figures.py FILE.png ...` takes pictures of `risorius capture` and `risorius
-reproduce`, and those that programs on pages write, into docs/pictures.
+`python docs/figures/figures.py FILE.png ...` copies pictures of `risorius capture`, `risorius
+reproduce` and programs on pages into docs/pictures.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def shoot(
     options: CaptureOptions,
     target: npt.ArrayLike | None = None,
 ) -> Image:
-    """Hold a pose until it stands still, and draw it. target: of the camera [mm]."""
+    """Hold a pose until it is at rest, and draw it. target: that of the camera [mm]."""
     scene.reset()
     scene.pose(pose)
     settling_time = 1.5  # [s] after which a pose stands still
@@ -49,25 +49,25 @@ def shoot(
 def sheet(cells: Sequence[tuple[str, Image]], columns: int) -> Image:
     """Named pictures of one size, each with its name below it."""
     sheet = contact_sheet(cells, columns=columns, cell_width=cells[0][1].shape[1])
-    return sheet // 2 * 2  # without the last bit, noise, for a quarter of the bytes
+    return sheet // 2 * 2  # without the last bit, which is noise: a quarter of the bytes
 
 
 def webp(image: Image) -> bytes:
-    """A picture as WebP: without loss where that is not much larger."""
+    """A picture as WebP: without loss if that is not much larger."""
     exact = io.BytesIO()
     near = io.BytesIO()
     page = PIL.Image.fromarray(image)
     page.save(exact, "WEBP", lossless=True, quality=80)
-    # of 100: no difference is seen at full size
+    # Of 100: no difference is visible at full size.
     page.save(near, "WEBP", quality=96)
-    # How many times larger a picture without any loss may be: line art is smaller so.
+    # Largest size of a lossless picture, relative to a lossy one: line art is smaller.
     most_growth = 1.5
     is_small = len(exact.getvalue()) <= most_growth * len(near.getvalue())
     return (exact if is_small else near).getvalue()
 
 
 def draw(folder: Path, figures: Mapping[str, Figure]) -> None:
-    """Draw each figure into NAME.webp in the folder, which is looked at before one is drawn."""
+    """Draw each figure into NAME.webp in the folder, which is checked before."""
     for name in figures:
         check_file(folder / f"{name}.webp")
     for name, figure in figures.items():
@@ -77,7 +77,7 @@ def draw(folder: Path, figures: Mapping[str, Figure]) -> None:
 
 
 def run(about: str | None, figures: Mapping[str, Figure]) -> None:
-    """Draw the figures of the command line: mistakes are one line, signals are heard."""
+    """Draw the figures of the command line; mistakes give one line, and signals end the program."""
     parser = argparse.ArgumentParser(description=(about or "").partition("\n")[0])
     parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
     parser.add_argument("--only", nargs="+", metavar="NAME", default=[], help="these alone")

@@ -1,9 +1,9 @@
 """Draw the pictures of docs/head.md, and wrinkles: `python docs/figures/head.py [FOLDER]`.
 
-Contact sheets, always from the same views and under the same light, so that two states of the head
-can be laid side by side: `system` (one smile, from muscles to skin), `head_views` (the head at
-rest, as painted skin, as clay, as flat triangles), `wrinkles` (some poses from near, without and
-with the wrinkles that the simulation makes), and `persons` (at rest, then in other light).
+Contact sheets, always with the same views and light, so that two states of the head can be
+compared: `system` (one smile, from muscles to skin), `head_views` (the head at rest, as painted
+skin, as clay, as flat triangles), `wrinkles` (some poses from near, without and with the wrinkles
+that the simulation makes), and `persons` (at rest, then in other light).
 """
 
 from __future__ import annotations

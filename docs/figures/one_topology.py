@@ -32,10 +32,10 @@ def shaded(colour: Colour, light: float) -> Colour:
 
 
 def draw_frame(diagram: Diagram, mesh: refine.RefinedMesh, is_split: Flags, left: float) -> Points:
-    """Draw the triangles that look at the reader; return where all vertices are, (N, 2)."""
+    """Draw the triangles that face the reader; return the places of all vertices, (N, 2)."""
     width, height = PANEL
     centre = np.array([left + width / 2.0, CAPTION + height / 2.0])
-    pixels = 2.45  # of a millimetre
+    pixels = 2.45  # pixels per millimetre
     middle = (0.0, -22.0)  # of the face [mm], in the middle of a panel
     places = centre + pixels * (mesh.positions[:, :2].astype(np.float64) - middle)
     corners = mesh.positions[mesh.triangles].astype(np.float64)
@@ -45,7 +45,7 @@ def draw_frame(diagram: Diagram, mesh: refine.RefinedMesh, is_split: Flags, left
     is_inside = (aside < width / 2.0).all(axis=1)
     is_shown = is_inside & (normals[:, 2] > 0.0)
     depth = corners[:, :, 2].mean(axis=1)
-    split = (163, 204, 232)  # of triangles that are part of one that is split
+    split = (163, 204, 232)  # colour of parts of split triangles
     whole = (242, 240, 236)
     edge = (150, 154, 162)
     for k in np.argsort(depth):

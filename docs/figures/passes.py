@@ -24,7 +24,7 @@ from risorius.geometry.arrays import Flags
 
 
 def passes(size: tuple[int, int] = (440, 500)) -> Image:
-    """One smile, and all that is known of each of its pixels."""
+    """One smile, and all passes of its picture."""
     scene = FaceScene()
     with Capture(scene, CaptureOptions(size=size, camera="front")) as studio:
         turn = (-24.0, 4.0)  # [degrees] of the camera
@@ -70,7 +70,7 @@ def passes(size: tuple[int, int] = (440, 500)) -> Image:
 
 
 def _looked_up(numbers: npt.NDArray[Any], colours: Any, on: Any = None) -> npt.NDArray[Any]:
-    """The colour of each number; black for others, and where nothing is."""
+    """The colour of each number; black for other numbers and empty pixels."""
     image = np.zeros((*numbers.shape, 3))
     for number, colour in dict(colours).items():
         image[numbers == number] = colour
@@ -78,7 +78,7 @@ def _looked_up(numbers: npt.NDArray[Any], colours: Any, on: Any = None) -> npt.N
 
 
 def _scattered(faces: npt.NDArray[Any]) -> dict[int, Any]:
-    """A colour for each triangle, unlike those of its neighbours."""
+    """A colour for each triangle, different from its neighbours'."""
     return dict(enumerate(np.random.default_rng(2).integers(50, 235, (len(faces), 3))))
 
 
@@ -113,8 +113,8 @@ def dotted(picture: Image, labels: dict[str, Any], radius: float) -> Image:
 
 
 def dataset() -> Image:
-    """Samples row by row, and below them some of these with landmarks and classes."""
-    # Samples of a seed as `risorius dataset` makes them; of some their labels are shown, too.
+    """Samples row by row, and below them some samples with landmarks and classes."""
+    # Samples of a seed, as in `risorius dataset`; some also show their labels.
     cell_side = 192
     studio = Studio(
         request_of(Path(), seed=21, size=(cell_side, cell_side), passes=("segmentation",))

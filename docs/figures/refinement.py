@@ -94,7 +94,7 @@ def new_points(splits: tuple[int, int, int]) -> list[int]:
 
 
 def triangulation(diagram: Diagram, corners: Places, splits: tuple[int, int, int]) -> None:
-    """Draw one triangle cut up, its new points marked by level."""
+    """Draw one subdivided triangle, with its new points marked by level."""
     points = points_in(corners)
     diagram.polygon(list(corners), FILL)
     sides = {(min(a, b), max(a, b)) for t in subdivide(splits) for a, b in pairwise((*t, t[0]))}

@@ -1,6 +1,6 @@
 """Draw the pictures of docs/viewer.md: `xvfb-run -a python docs/figures/viewer.py [FOLDER]`.
 
-Each is a window as a user would see it, brought there by the same commands that menus use.
+Each is a window as a user sees it, in a state set by the commands of menus.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def face(viewer: Viewer) -> None:
 
 
 def controls(viewer: Viewer) -> None:
-    """Search, sides apart, and one muscle at work among all of them."""
+    """Search, separate sides, and one active muscle among all."""
     viewer.settings.is_linked = False
     viewer.face.face_panel.search = "upper lip"
     viewer.session.set("levator_labii_superioris_left", 0.9)
@@ -52,7 +52,7 @@ def wipe(viewer: Viewer) -> None:
     viewer.session.toggle_alone("disgust")
     viewer.context.wanted_tab = "Mechanism"
     viewer.settings.theme = "dark"
-    # Of the panel show refinement and colours of the mesh.
+    # Show the panel's refinement and colours of the mesh.
     viewer.settings.folds |= dict.fromkeys(("Anatomy", "Milliseconds"), False)
     viewer.settings.display = Display(compare="wipe", wireframe=True, splits=True, skin="clay")
     viewer.face.view.camera = camera_for(viewer.session.scene, "front")
@@ -80,7 +80,7 @@ def curves(viewer: Viewer) -> None:
 
 
 def landmarks(viewer: Viewer) -> None:
-    """Landmarks of a mesh, guessed from five points: the built-in head, as if it was foreign."""
+    """Landmarks of a mesh, guessed from five points: the built-in head as an unknown mesh."""
     head = assets.load("head")
     fine = head.finer(1)
     lines = [f"v {x:.5f} {y:.5f} {z:.5f}" for x, y, z in fine.vertices]
@@ -99,11 +99,11 @@ def landmarks(viewer: Viewer) -> None:
 
 
 def draw_image(stop: Callable[[Viewer], None]) -> Image:
-    """A window, brought to a stop of the tour."""
+    """A window at a stop of the tour."""
     size = (1160, 700)
     with Viewer(script_for(None, "face"), size) as viewer:
         viewer.settings.is_alive = False  # the same picture every time
-        # Wherever the mouse happens to be, it points at nothing: no hint comes up.
+        # The mouse points at nothing, so no hint appears.
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
         wait_until_settled(viewer)
         stop(viewer)

@@ -1,9 +1,9 @@
-"""Build the add-on for Blender as one .zip with all that it needs: Extensions > Install from Disk.
+"""Build the add-on for Blender as one complete .zip for Extensions > Install from Disk.
 
     python examples/blender/build.py [linux-x64 | windows-x64 | macos-arm64] [FOLDER]
     python examples/blender/build.py --blender 5.0 linux-x64
 
-Wheels are bundled as they come from the package index, for Blender's own Python and numpy. So each
+Wheels from the package index are bundled unchanged, for Blender's own Python and numpy. So each
 .zip is for one version of Blender, 5.2 by default, and one platform.
 """
 
@@ -21,21 +21,21 @@ PASSED_OVER = shutil.ignore_patterns(".*", "__pycache__", "build", "dist", "out"
 
 
 class Blender(NamedTuple):
-    """What wheels and the manifest must know of a version of Blender."""
+    """Data of a version of Blender for wheels and the manifest."""
 
     python: str
     numpy: str
     first: str
-    """The first version that the .zip is for."""
+    """The first version that the .zip supports."""
     beyond: str
-    """The first version after it that the .zip is not for."""
+    """The first later version that the .zip does not support."""
 
 
 BLENDERS = {
     "5.0": Blender("3.11", "numpy==1.26.4", "5.0.0", "5.1.0"),
     "5.2": Blender("3.13", "numpy==2.3.*", "5.2.0", "5.3.0"),
 }
-WHEELS_FOR = {  # by Blender's name of a platform: tags of wheels that run there
+WHEELS_FOR = {  # Blender's name of a platform -> tags of its wheels
     "linux-x64": ("manylinux_2_28_x86_64", "manylinux_2_27_x86_64", "manylinux2014_x86_64"),
     "windows-x64": ("win_amd64",),
     "macos-arm64": ("macosx_12_0_arm64", "macosx_11_0_arm64"),
@@ -45,8 +45,8 @@ WHEELS_FOR = {  # by Blender's name of a platform: tags of wheels that run there
 def collect_wheels(blender: Blender, platform: str, folder: Path) -> list[Path]:
     """Put the wheels of risorius, numba and llvmlite into a folder.
 
-    That of risorius is built from a copy: a build leaves files in its checkout, and those of an
-    earlier one would get into the wheel.
+    The wheel of risorius is built from a copy: a build leaves files in its checkout, and files of
+    an earlier build would get into the wheel.
     """
     copy = folder / "checkout"
     checkout = Path(__file__).parents[2]
@@ -62,7 +62,7 @@ def collect_wheels(blender: Blender, platform: str, folder: Path) -> list[Path]:
 
 
 def main(version: str, platform: str, target: Path) -> Path:
-    """Write the .zip; its manifest names the wheels, and the platform and Blender they are for."""
+    """Write the .zip; its manifest names the wheels, the platform and the version of Blender."""
     blender = BLENDERS[version]
     add_on = Path(__file__).parent / "risorius_refine"
     manifest = (add_on / "blender_manifest.toml").read_text(encoding="utf-8")

@@ -1,8 +1,8 @@
-"""The closest points of a triangle mesh, exactly, or those that look the same way.
+"""The exact closest points of a triangle mesh, or the closest ones that face the same way.
 
-Triangles are sorted along a curve that fills space and boxed in pairs, pairs of pairs and so on; a
-search goes down the nearer box first and skips boxes farther than the nearest triangle so far. So
-the boxes are as deep where triangles cluster as where they do not.
+Triangles are sorted along a space-filling curve and put into boxes in pairs, pairs of pairs and so
+on. A search enters the nearer box first, and skips boxes farther than the nearest triangle so far.
+The depth of boxes is the same everywhere, even where triangles cluster.
 
 Source: Morton 1966 for the curve; Ericson 2005, "Real-time collision detection", section 5.1.5, for
 one triangle.
@@ -25,7 +25,7 @@ LEAF_SIZE = 4
 
 @dataclass(frozen=True)
 class SurfacePoints:
-    """For each of n points, the place on a triangle mesh that is closest to it."""
+    """For each of n points, the closest place on a triangle mesh."""
 
     distances: Floats64
     """Shape (n,)."""
@@ -52,9 +52,9 @@ def closest_points(
 ) -> SurfacePoints:
     """Find the closest place on a mesh, at least one of `faces` (F, 3), for `points`, shape (n, 3).
 
-    `normals`: which way the surface should look there, shape (n, 3), zero for any way. A triangle
-    that looks the other way counts as `wrong_side` farther away: so points of the lower lip find
-    the lower lip though it touches the upper one.
+    `normals`: direction in which the surface should face there, shape (n, 3), zero for any
+    direction. A triangle that faces the other way counts as `wrong_side` farther away, so that
+    points of the lower lip find the lower lip even if it touches the upper one.
     """
     corners = np.asarray(vertices, dtype=np.float64)[faces]
     order = np.argsort(places_on_curve(corners.mean(axis=1)), kind="stable")
@@ -73,7 +73,7 @@ def closest_points(
 
 
 def places_on_curve(positions: Floats64) -> Integers64:
-    """How far along a curve that fills space each position lies, shape (V,)."""
+    """Place of each position along a space-filling curve, shape (V,)."""
     if len(positions) == 0:
         return np.zeros(0, dtype=np.int64)
     low = positions.min(axis=0)
@@ -82,7 +82,7 @@ def places_on_curve(positions: Floats64) -> Integers64:
     scale = (2**curve_bits - 1) / size if size > 0.0 else 0.0
     cells = ((positions - low) * scale).astype(np.int64)
     places = np.zeros(len(positions), dtype=np.int64)
-    for bit in range(curve_bits):  # of x, y and z in turn
+    for bit in range(curve_bits):  # bits of x, y and z in turn
         for axis in range(3):
             places |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
     return places
@@ -135,7 +135,7 @@ def _search(
     stack_size = 64
     stack = np.empty(stack_size, np.int64)
     reach = np.empty(stack_size)
-    least_cosine = 0.3  # between two normals that look the same way: 73 degrees
+    least_cosine = 0.3  # between two normals that count as the same direction: 73 degrees
     for q in range(queries.shape[0]):
         point = queries[q]
         way = wanted[q]
@@ -170,7 +170,7 @@ def _search(
                 continue
             left = _box_distance(boxes[2 * node], point)
             right = _box_distance(boxes[2 * node + 1], point)
-            far = 0 if left > right else 1  # the nearer one comes on top of the stack
+            far = 0 if left > right else 1  # the nearer one is on top of the stack
             stack[depth] = 2 * node + far
             reach[depth] = max(left, right)
             stack[depth + 1] = 2 * node + 1 - far
@@ -182,7 +182,7 @@ def _search(
 def closest_on_triangle(
     point: Floats64, a: Floats64, b: Floats64, c: Floats64
 ) -> tuple[float, float, float]:
-    """Barycentric coordinates of the place on triangle a, b, c that is closest to a point."""
+    """Barycentric coordinates of the place on triangle a, b, c closest to a point."""
     ux = b[0] - a[0]
     uy = b[1] - a[1]
     uz = b[2] - a[2]

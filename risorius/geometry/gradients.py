@@ -1,4 +1,4 @@
-"""How fast texture coordinates change along a surface that moves."""
+"""Gradients of texture coordinates along a moving surface."""
 
 import numpy as np
 import numpy.typing as npt
@@ -8,7 +8,7 @@ from .arrays import Floats32, Floats64, Integers32
 
 
 class TextureGradients:
-    """Gradients of u and v at texture coordinates, means of the triangles around each, by area.
+    """Gradients of u and v at texture coordinates: means over the triangles around each, by area.
 
     gradients = TextureGradients(faces, uv, face_uv)
     along_u_and_v = gradients.measure(positions)
@@ -24,7 +24,7 @@ class TextureGradients:
     def measure(self, positions: Floats64) -> Floats32:
         """Gradient of u, then of v [1/unit of positions], shape (U, 6); 0 at flat triangles.
 
-        positions: of vertices, shape (V, 3).
+        positions: those of vertices, shape (V, 3).
         """
         self._sums[:] = 0.0
         _add_gradients(positions, self._faces, self._face_uv, self._corners, self._sums)
@@ -41,7 +41,7 @@ def _add_gradients(
     corners: Floats64,
     sums: npt.NDArray[np.float64],
 ) -> None:
-    """Add to the sums of each corner its triangle's gradients times twice its area, and this.
+    """Add each triangle's gradients times twice its area, and this area, to its corners' sums.
 
     Vectors are tuples here: arrays of three numbers would be allocated for each triangle.
     """

@@ -1,4 +1,4 @@
-"""Pairs of triangles that lie near each other.
+"""Pairs of triangles near each other.
 
 Source: Cohen, Lin, Manocha, Ponamgi 1995, "I-COLLIDE", Symposium on Interactive 3D Graphics: boxes
 are sorted along one axis, and compared with those that begin before they end.
@@ -11,7 +11,7 @@ from .arrays import Floats64, Integers64
 
 
 def near_pairs(corners: Floats64) -> Integers64:
-    """Pairs of triangles (F, 3, 3) whose boxes touch, each once, lower number first, (k, 2)."""
+    """Pairs of triangles (F, 3, 3) with touching boxes, each once, lower number first, (k, 2)."""
     low = corners.min(axis=1)
     high = corners.max(axis=1)
     order = np.argsort(low[:, 0])
@@ -24,7 +24,7 @@ def near_pairs(corners: Floats64) -> Integers64:
 
 @njit
 def _sweep(low: Floats64, high: Floats64, pairs: Integers64) -> int:
-    """The number of boxes (n, 3) that touch, sorted by low x; fills `pairs` as far as it goes."""
+    """Count touching pairs of boxes (n, 3), sorted by low x, and fill `pairs` up to its size."""
     found = 0
     for one in range(len(low)):
         for other in range(one + 1, len(low)):

@@ -14,7 +14,7 @@ def arc_lengths(points: Floats64) -> Floats64:
 def evenly_spaced(points: Floats64, along: Floats64, count: int) -> Floats64:
     """Points of a polyline (n, k) at even places from its start to its end, shape (count, k).
 
-    `along`: the place of each of its points, which rises, shape (n,).
+    `along`: the rising place of each of its points, shape (n,).
     """
     places = np.linspace(0.0, along[-1], count)
     return np.stack([np.interp(places, along, column) for column in points.T], axis=1)

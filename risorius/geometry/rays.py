@@ -1,4 +1,4 @@
-"""Where lines meet triangles.
+"""Intersections of lines and triangles.
 
 Source: Möller, Trumbore 1997, "Fast, minimum storage ray/triangle intersection", Journal of
 Graphics Tools 2:21-28.
@@ -12,15 +12,15 @@ from .arrays import Floats64, Integers64
 from .directions import unit_vectors
 from .normals import cross_products
 
-PARALLEL = 1e-12  # below it a triangle is seen from its edge, and nothing is met
+PARALLEL = 1e-12  # below this a triangle is parallel to the line, and is not met
 
 
 def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tuple[Floats64, ...]:
-    """Of each line `origin + t direction` and its triangle: volume, weights u and v, and t.
+    """For each line `origin + t direction` and its triangle: volume, weights u and v, and t.
 
-    origins, directions: (n, 3) or (3,). corners: (n, 3, 3). volume: six times that of direction
-    and triangle, above 0 where the line comes from outside; the rest is 0 where it is PARALLEL.
-    The triangle is met where u, v and 1 - u - v are not negative. Four arrays (n,).
+    origins, directions: (n, 3) or (3,). corners: (n, 3, 3). volume: six times that of direction and
+    triangle, above 0 if the line comes from outside; the other results are 0 below PARALLEL. The
+    triangle is met if u, v and 1 - u - v are not negative. Returns four arrays (n,).
     """
     a = corners[:, 0]
     ab = corners[:, 1] - corners[:, 0]
@@ -39,11 +39,11 @@ def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tup
 def exits(
     origin: Floats64, directions: Floats64, vertices: Floats64, faces: npt.NDArray[np.integer]
 ) -> tuple[npt.NDArray[np.intp], Floats64, Floats64]:
-    """Where rays from one point within a surface pass through it from inside to outside.
+    """Exits of rays from one point within a surface, from inside to outside.
 
     directions: unit vectors, shape (n, 3). vertices: shape (V, 3). faces: counter-clockwise seen
-    from outside, shape (F, 3). Of each exit the number of its ray, the distance, and the cosine
-    between ray and normal; a ray has as many exits as there are layers of surface around it.
+    from outside, shape (F, 3). Returns for each exit the number of its ray, the distance, and the
+    cosine between ray and normal; a ray has an exit for each layer of surface.
     """
     normals = cross_products(vertices, faces)
     corners = vertices[faces] - origin
@@ -53,7 +53,7 @@ def exits(
     ways = unit_vectors(corners, PARALLEL)
     middle = ways.sum(axis=1)
     middle = unit_vectors(middle, PARALLEL)
-    # A triangle lies in the cone around its middle that its corners span, unless that is blunt.
+    # A triangle lies in the cone around its middle through its corners, unless the cone is blunt.
     cone = np.einsum("fik,fk->fi", ways, middle).min(axis=1)
     cone_slack = 1e-6  # of a cosine, for rounding
     cone = np.where(cone > 0.0, cone - cone_slack, -2.0)
@@ -79,10 +79,10 @@ def _meetings(
     met: Integers64,
     distances: Floats64,
 ) -> int:
-    """The number of meetings of rays from the origin with triangles, as `crossings` finds them.
+    """Count meetings of rays from the origin with triangles, as `crossings` finds them.
 
-    middle, cone: of each triangle the middle of its cone (F, 3), and the cosine of its half angle.
-    met, distances: filled as far as they go, ray and triangle (k, 2), and how far away (k,).
+    middle, cone: for each triangle the axis of its cone (F, 3), and the cosine of its half angle.
+    met, distances: filled up to their size with ray and triangle (k, 2), and distance (k,).
     """
     found = 0
     across = np.empty(3)

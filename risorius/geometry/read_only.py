@@ -1,4 +1,4 @@
-"""Arrays that are passed to callers, who must not write them."""
+"""Arrays for callers, who must not write them."""
 
 import dataclasses
 from typing import TypeVar
@@ -10,10 +10,10 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 def read_only(array: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
-    """View an array so that it cannot be written through the view; itself where it cannot be.
+    """A view of an array that cannot be written; the array itself if it is read-only.
 
-    Compiled code reads by numbers of vertices that were checked once. A change of one of them
-    afterwards would let it read beyond the end of an array.
+    Compiled code uses vertex numbers that were checked once. If one were changed afterwards, it
+    could read beyond the end of an array.
     """
     if not array.flags.writeable:
         return array
@@ -23,7 +23,7 @@ def read_only(array: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
 
 
 def make_read_only(record: object) -> None:
-    """Put read-only views in the place of the arrays of a frozen dataclass, for `__post_init__`."""
+    """Replace the arrays of a frozen dataclass by read-only views, for `__post_init__`."""
     for field in dataclasses.fields(record):  # type: ignore[arg-type]
         value = getattr(record, field.name)
         if isinstance(value, np.ndarray):

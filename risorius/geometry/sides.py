@@ -11,10 +11,10 @@ def sides_of(faces: Integers) -> Integers:
 
 
 def different_pairs(pairs: Integers) -> tuple[Integers64, Integers64]:
-    """Each of some pairs (n, 2) of numbers from 0 on once, and which of them each pair is, (n,).
+    """The different ones of pairs (n, 2) of numbers from 0, and each pair's place among them, (n,).
 
-    They are sorted by the first number, and by the second one, shape (k, 2). `np.unique` of rows
-    takes ten times as long.
+    The different ones are sorted by the first number, then by the second, shape (k, 2). `np.unique`
+    of rows takes ten times as long.
     """
     first, second = pairs.T.astype(np.int64)
     span = int(second.max(initial=0)) + 1

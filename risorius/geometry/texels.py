@@ -1,4 +1,4 @@
-"""The texels of a picture that triangles lie over, and where in them."""
+"""The texels of a picture under triangles, and their places in these."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .arrays import Floats64, Integers64
 
 @dataclass(frozen=True)
 class Texels:
-    """Texels within triangles; one that several triangles have is there several times."""
+    """Texels within triangles; a texel of several triangles occurs several times."""
 
     rows: Integers64
     """From the top, shape (n,)."""
@@ -38,7 +38,7 @@ class Texels:
         high = np.floor(places.max(axis=1) + margin).clip(-1, [width - 1, height - 1])
         boxes = np.concatenate([low, high.astype(np.int64)], axis=1)
         sides = np.maximum(boxes[:, 2:] - boxes[:, :2] + 1, 0)
-        most_tries = 60_000_000  # a fair layout needs two for each texel that it has
+        most_tries = 60_000_000  # a normal layout needs two for each texel
         if sides.prod(axis=1).sum() > most_tries:
             raise ValueError("texture coordinates cover the picture many times over")
         found = np.empty((0, 3), np.int64)
@@ -60,9 +60,9 @@ class Texels:
 
 
 def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -> Floats64:
-    """How fast `values` (F, 3, k) change along u and along v in triangles, shape (F, 2, k).
+    """Rates of `values` (F, 3, k) along u and along v in triangles, shape (F, 2, k).
 
-    corners: their texture coordinates, (F, 3, 2); triangles without area have no rates, 0.
+    corners: their texture coordinates, (F, 3, 2); triangles without area have the rate 0.
     """
     steps = np.diff(corners, axis=1).astype(np.float64)
     changes = np.diff(values, axis=1).astype(np.float64)
@@ -76,7 +76,7 @@ def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -
 def _walk(
     places: Floats64, boxes: Integers64, margin: float, found: Integers64, weights: Floats64
 ) -> int:
-    """Write row, column and triangle of texels, and weights, as far as there is room; count all."""
+    """Write row, column and triangle of texels, and weights, while there is room; count all."""
     count = 0
     for t in range(places.shape[0]):
         a, b, c = places[t]
@@ -86,7 +86,7 @@ def _walk(
         area = ab[0] * ac[1] - ab[1] * ac[0]
         if abs(area) < 1e-9:
             continue
-        # How much of a corner's weight is lost within a margin beyond the side opposite to it.
+        # Loss of a corner's weight within a margin beyond the opposite side.
         slack_a = margin * np.hypot(bc[0], bc[1]) / abs(area) + 1e-9
         slack_b = margin * np.hypot(ac[0], ac[1]) / abs(area) + 1e-9
         slack_c = margin * np.hypot(ab[0], ab[1]) / abs(area) + 1e-9

@@ -1,10 +1,9 @@
-"""Add-on for Blender: a copy of an animated mesh that is refined in every frame, where it bends.
+"""Add-on for Blender: a copy of an animated mesh, refined in every frame where it bends.
 
-Object > Refined Copy, or the tab Risorius of the 3D viewport's sidebar. The source may be
-moved by shape keys, armatures, caches or physics: a handler of frame changes reads the evaluated
-mesh and writes triangles into the copy, in the window and in renders alike. Python keeps no
-reference to Blender's data between frames: refiners are bound anew after undo and after a file is
-opened.
+Object > Refined Copy, or the tab Risorius of the 3D viewport's sidebar. Shape keys, armatures,
+caches or physics may move the source: a handler of frame changes reads the evaluated mesh and
+writes triangles into the copy, in the window and in renders. Python keeps no reference to Blender's
+data between frames: refiners are bound again after undo and after a file is opened.
 """
 
 from typing import Any
@@ -20,8 +19,8 @@ LOOKS = {
 }
 WIDTHS = {"FLOAT": 1, "FLOAT2": 2, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4}
 FIELDS = {"INT": "value", "FLOAT": "value", "FLOAT_COLOR": "color"}  # others have a "vector"
-SPLITS = "risorius_splits"  # of the mesh at rest: how often each edge is split in all frames
-bounds: dict[int, "Bound"] = {}  # of each refined copy, by its number in this session
+SPLITS = "risorius_splits"  # attribute of the mesh at rest: splits of each edge in all frames
+bounds: dict[int, "Bound"] = {}  # number of a refined copy in this session -> its refiner
 
 
 def numbers(collection: Any, name: str, width: int, kind: type) -> np.ndarray:
@@ -32,14 +31,14 @@ def numbers(collection: Any, name: str, width: int, kind: type) -> np.ndarray:
 
 
 def points_of(mesh: bpy.types.Mesh) -> np.ndarray:
-    """The positions of a mesh, shape (V, 3), as single floats, as Blender keeps them."""
+    """The positions of a mesh, shape (V, 3), in Blender's single precision."""
     return numbers(mesh.attributes["position"].data, "vector", 3, np.float32)
 
 
 def values_of(mesh: bpy.types.Mesh) -> dict[str, np.ndarray]:
-    """Numbers of the points of a mesh that change with its frames, by name: heat, colours, strain.
+    """Values at points of a mesh that change with its frames, by name: heat, colours, strain.
 
-    Those that Blender keeps for itself, and positions, are none of them.
+    Blender's internal values and positions are left out.
     """
     return {
         each.name: numbers(each.data, FIELDS.get(each.data_type, "vector"), width, np.float32)
@@ -50,7 +49,7 @@ def values_of(mesh: bpy.types.Mesh) -> dict[str, np.ndarray]:
 
 
 class Bound:
-    """The refiner of one copy, and the data that it copies from its source beside the shape."""
+    """The refiner of one copy, and the data that it copies from its source besides the shape."""
 
     def __init__(self, settings: "RisoriusSettings") -> None:
         """Learn the mesh at rest; the first time on a machine, code is compiled for seconds."""
@@ -63,7 +62,7 @@ class Bound:
         polygons = numbers(triangles, "polygon_index", 1, np.int32).ravel()
         self.materials = numbers(rest.polygons, "material_index", 1, np.int32).ravel()[polygons]
         self.counts = len(rest.vertices), len(rest.polygons)
-        self.corners = None  # of the triangles that are in the copy
+        self.corners = None  # corners of the copy's present triangles
         splits = rest.get(SPLITS)
         look = dict(LOOKS[settings.look])
         if splits is not None:
@@ -89,7 +88,7 @@ class Bound:
         self.stays = splits is not None
 
     def refine(self, source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
-        """Refine the evaluated `source` into `mesh`; raises ValueError if it is another mesh."""
+        """Refine the evaluated `source` into `mesh`; raises ValueError for another source."""
         if (len(source.vertices), len(source.polygons)) != self.counts:
             raise ValueError("The source has other vertices or faces than at rest")
         values = {
@@ -113,7 +112,7 @@ class Bound:
         mesh.update()
 
     def make(self, mesh: bpy.types.Mesh, frame: Any, corners: np.ndarray) -> None:
-        """Put other triangles into the copy."""
+        """Write new triangles into the copy."""
         mesh.clear_geometry()
         mesh.vertices.add(len(frame.positions))
         mesh.loops.add(len(corners))
@@ -129,7 +128,7 @@ class Bound:
 
 
 def write(mesh: bpy.types.Mesh, name: str, kind: str, domain: str, values: np.ndarray) -> None:
-    """Set an attribute of a mesh, which it is given if it has none of this name."""
+    """Set an attribute of a mesh; it is added if missing."""
     attribute = mesh.attributes.get(name) or mesh.attributes.new(name, kind, domain)
     attribute.data.foreach_set(FIELDS.get(kind, "vector"), np.ascontiguousarray(values).ravel())
 
@@ -150,7 +149,7 @@ def update(copy: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
 
 @persistent
 def refine_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """After every change of the frame, also in renders: refine all copies of the scene."""
+    """Refine all copies of the scene after every change of the frame, also in renders."""
     for copy in scene.objects:
         if copy.risorius.source is not None:
             update(copy, depsgraph)
@@ -158,12 +157,12 @@ def refine_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None
 
 @persistent
 def forget(*_: Any) -> None:
-    """After undo, redo, or another file: meshes have changed."""
+    """Forget all refiners after undo, redo, or another file, because meshes have changed."""
     bounds.clear()
 
 
 def changed(settings: "RisoriusSettings", context: bpy.types.Context) -> None:
-    """Bind anew with other settings, and show it."""
+    """Bind again with other settings, and show the result."""
     bounds.pop(settings.id_data.session_uid, None)
     if settings.source is not None:
         update(settings.id_data, context.evaluated_depsgraph_get())
@@ -173,7 +172,7 @@ def source_changed(settings: "RisoriusSettings", context: bpy.types.Context) -> 
     """Follow another source, which Blender then evaluates even while it is hidden."""
     copy = settings.id_data
     copy.parent = settings.source
-    # A hidden mesh moves in renders only if a modifier asks for it; this one transfers nothing.
+    # A hidden mesh moves in renders only if a modifier needs it; this modifier transfers nothing.
     follow = copy.modifiers.get("Follow Source")
     follow = follow or copy.modifiers.new("Follow Source", "DATA_TRANSFER")
     follow.object = settings.source
@@ -207,7 +206,7 @@ class RisoriusSettings(bpy.types.PropertyGroup):
 
 
 class OBJECT_OT_risorius_refine(bpy.types.Operator):  # noqa: N801 (Blender asks for such names)
-    """Add a copy that is refined where the mesh bends; call it in a frame in which it is at rest"""
+    """Add a copy that is refined where the mesh bends; call it in a frame at rest"""
 
     bl_idname = "object.risorius_refine"
     bl_label = "Refined Copy"
@@ -215,13 +214,13 @@ class OBJECT_OT_risorius_refine(bpy.types.Operator):  # noqa: N801 (Blender asks
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Say whether the active object is a mesh, and no refined copy itself."""
+        """Whether the active object is a mesh, but not a refined copy itself."""
         active = context.active_object
         is_mesh = active is not None and active.type == "MESH" and active.mode == "OBJECT"
         return is_mesh and active.risorius.source is None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Add the copy beside its source, which is hidden, and moves it."""
+        """Add the copy at its source, which is hidden, and moves the copy."""
         source = context.active_object
         depsgraph = context.evaluated_depsgraph_get()
         rest = bpy.data.meshes.new_from_object(source.evaluated_get(depsgraph))
@@ -259,7 +258,7 @@ class OfRefinedCopy:
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Say whether the active object is a refined copy."""
+        """Whether the active object is a refined copy."""
         return refined_copy(context) is not None
 
 
@@ -270,7 +269,7 @@ class OBJECT_OT_risorius_keep(OfRefinedCopy, bpy.types.Operator):  # noqa: N801
     bl_label = "Keep One Topology"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Refine all frames, and keep the most splits that any of them has at each edge."""
+        """Refine all frames, and keep the most splits of any frame at each edge."""
         copy = refined_copy(context)
         scene = context.scene
         shown = scene.frame_current
@@ -299,7 +298,7 @@ class OBJECT_OT_risorius_change(OfRefinedCopy, bpy.types.Operator):  # noqa: N80
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Say whether the active object is a refined copy with one topology."""
+        """Whether the active object is a refined copy with one topology."""
         return super().poll(context) and SPLITS in refined_copy(context).risorius.rest
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -357,7 +356,7 @@ HANDLERS = (
 
 
 def register() -> None:
-    """Blender calls it when the add-on is switched on."""
+    """Register the add-on; Blender calls this when it is switched on."""
     for one in CLASSES:
         bpy.utils.register_class(one)
     bpy.types.Object.risorius = bpy.props.PointerProperty(type=RisoriusSettings)
@@ -367,7 +366,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Blender calls it when the add-on is switched off; refined copies stay as they are."""
+    """Unregister the add-on; Blender calls this when it is switched off. Refined copies stay."""
     for name, handler in HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)
     bpy.types.VIEW3D_MT_object.remove(show_in_menu)
