@@ -23,7 +23,7 @@ from . import hair as short
 from .hair import HAIR, Cut, Fall, Scalp, from_within
 
 EDGE, ROUNDED = np.radians([62.0, 50.0])  # angles from the face to hair, and to its full volume
-HEM = 28.0  # [mm] of thinning tips
+HEM = 12.0  # [mm] of thinning tips, of hair that is cut
 FULL = 2.0  # density where all layers are full; [mm] that hair stands off the head
 VOLUME = 9.0
 DOWN, RIGHT = np.array([(0.0, -1.0, -0.12), (1.0, 0.0, 0.0)])  # it hangs down, free of the back
@@ -67,8 +67,9 @@ def falling_hair(
     risen = 0.1 + 0.9 * np.sin(0.5 * np.pi * rise)
     thick = VOLUME * risen * np.sin(0.5 * np.pi * beside)[:, None]
     solid = np.vstack([scalp.points, vertices[vertices[:, 1] > ear[1] - 53.0]]) - middle
-    # [mm] of the inner side off the skin, at roots, where light must not pass below, and beyond.
-    clearance = np.where(over > 0.0, 5.0, 2.5)
+    # [mm] of the inner side off the skin: at roots, where light must not pass below, beyond, and over
+    # the forehead, which bulges when brows rise.
+    clearance = np.where(over > 0.0, 5.0 + 3.0 * (1.0 - beside[:, None]) ** 2, 2.5)
     places = middle + (_reach(ways, solid) + clearance + thick)[..., None] * ways
     start = places[:, -1:]
     wide = np.linalg.norm((start - middle)[..., [0, 2]], axis=-1)
@@ -140,7 +141,8 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         thick += (root_width - tied_width) * (1.0 - smooth_step(0.0, tie_distance, far))
         thick *= np.sqrt(1.0 - 0.97 * t**4)
         shade = np.exp(-(((far - tie_distance) / 5.0) ** 2))
-        dense = np.minimum(far / root_depth, (far[-1] - far) / HEM)
+        tail_hem = 28.0  # [mm] of thinning tips
+        dense = np.minimum(far / root_depth, (far[-1] - far) / tail_hem)
         # For a tail and a knot: number of locks, their width [mm], depth between them, their turns.
         tail = (6, 24.0, 0.04, 0.1)
         locks, wide, deep, turns = tail

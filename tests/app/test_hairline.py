@@ -53,3 +53,19 @@ def test_no_dots_lie_along_the_front():
             pictures.append(capture.draw_image()[front].astype(np.float64).mean(axis=2))
     assert pictures[0].max() > pictures[0].min() + 100.0  # hair and skin
     assert np.abs(pictures[1] - pictures[0]).max() < 16.0
+
+
+def test_a_forehead_with_raised_brows_stays_below_hair():
+    """It bulges by 2 mm there, and came through the edge of hair beside the face."""
+    scene = FaceScene(person_called(64))
+    pictures = []
+    for strength in (0.0, 1.0):
+        scene.reset()
+        scene.simulation.controls.set_all({"AU1": strength, "AU2": strength})
+        scene.step(1.0)
+        with Capture(scene, CaptureOptions(size=(500, 500))) as capture:
+            pictures.append(capture.draw_image()[60:150, 150:350].astype(np.float64).mean(axis=2))
+    calm, raised = pictures
+    dark = 90.0  # levels: her hair has less, her skin more
+    assert 0.2 < (calm < dark).mean() < 0.8
+    assert np.count_nonzero((calm < dark) & (raised > dark)) < 60
