@@ -101,7 +101,7 @@ void main() {
     float far = tall * smoothstep(0.0, mix(0.5, 1.0, single), dense);
     float cover = clamp((far - surface.layer) / mix(SHARP, SOFT, single) + 0.5, 0.0, 1.0) * there;
     if (cover < 0.08) discard;
-    float uneven = 0.6 * tones.x + 0.4 * tones.y;
+    float uneven = 0.6 * (tones.x + tones.y);
     // Tilted toward the root and toward the tip.
     float first = surface.cosine + UNEVEN * uneven - TILT, second = first + 2.0 * TILT;
     float bright = exp2(-SHARPNESS * first * first), glow = exp2(-SOFTNESS * second * second);
