@@ -268,6 +268,17 @@ class PlacedView:
         least_reach = 1e-6  # for a scene behind the camera
         return float(depths[0]), 1.0 / max(float(depths[1] - depths[0]), least_reach)
 
+    @cached_property
+    def depth_tolerance(self) -> tuple[float, float]:
+        """How far depths on one surface may be apart, of the depth range: at 0, and its slope.
+
+        That is a part of the width of a pixel there.
+        """
+        share = 0.7 / self.camera.focal(self.viewport[2] / self.viewport[3], self.viewport[3])
+        least, scale = self.depth_range
+        depth_ahead = 0.5 * (1.0 - float(self.projection[2, 2])) - least
+        return share * scale * depth_ahead, -share
+
 
 def box_corners(points: npt.NDArray[Any]) -> Floats64:
     """The corners of the box that holds all points (n, 3), shape (8, 3), float64."""

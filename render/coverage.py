@@ -1,7 +1,4 @@
-"""Coverage: the surface that each sample of a pixel sees, from drawings without light.
-
-Such a drawing takes a fifth of the time of shading, and less if only some triangles are drawn.
-"""
+"""Coverage: the surface that each sample of a pixel sees, from drawings without light."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -9,16 +6,14 @@ from typing import NamedTuple
 import moderngl
 
 from .camera import PlacedView
-from .edge_tiles import INNER_NUMBER, EdgeTiles
 from .frame import Plane, Skin
 from .parts import PlacedBuffers
 from .programs import compile_program, write_uniform
 from .render_target import Rectangle, RenderTarget
-from .stream import Share
-from .translucency import CUT_WIDTH, SUNK_DEPTH, set_cut
+from .translucency import CUT_WIDTH, NOWHERE, SUNK_DEPTH, set_cut
 
 Numbers = tuple[float, float, float]  # numbers of a surface, see surface_number.glsl
-SKIN_NUMBERS = 190.0, 63.0, float(INNER_NUMBER)
+SKIN_NUMBERS = 190.0, 63.0, 254.0
 
 
 class Drawn(NamedTuple):
@@ -46,10 +41,8 @@ class Coverage:
         self._frame = gl.framebuffer([self.numbers], self.depths)
         self._programs: dict[tuple[str, ...], moderngl.Program] = {}
 
-    def draw(
-        self, drawn: Drawn, view: PlacedView, area: Rectangle, tiles: EdgeTiles | None
-    ) -> None:
-        """Draw surfaces within an area, or only the parts that tiles can show."""
+    def draw(self, drawn: Drawn, view: PlacedView, area: Rectangle) -> None:
+        """Draw surfaces within an area."""
         gl = self._gl
         gl.scissor = None
         self._frame.clear(depth=1.0)
@@ -58,28 +51,20 @@ class Coverage:
         gl.scissor = area
         gl.enable_only(moderngl.DEPTH_TEST)
         if drawn.skin is not None:
-            self._draw_skin(drawn, drawn.skin, view, tiles)
+            self._draw_skin(drawn, drawn.skin, view)
         for each in drawn.parts:
-            is_solid = each.buffers.kind != "STRANDS"
-            if is_solid and (tiles is None or each.number in tiles.numbers):
+            if each.buffers.kind != "STRANDS":
                 self._draw_part(each, drawn.cut if each.part.lies_beneath else None, view)
 
-    def _draw_skin(
-        self, drawn: Drawn, skin: Skin, view: PlacedView, tiles: EdgeTiles | None
-    ) -> None:
+    def _draw_skin(self, drawn: Drawn, skin: Skin, view: PlacedView) -> None:
         """Draw the skin, both sides."""
         defines = ["TRANSLUCENT"] * drawn.is_opened + ["TRIANGLES"] * drawn.has_triangles
         defines += ["PIXEL"] * drawn.has_normals
         program = self._program(view, SKIN_NUMBERS, *defines)
         write_uniform(program, "model_view", view.world_to_view)
         if drawn.is_opened:
-            set_cut(program, view, drawn.cut or (0.0, 0.0, 0.0, -1.0), CUT_WIDTH)
-        stream = skin.stream
-        if tiles is None:
-            stream.draw(program)
-            return
-        stream.choose(tiles.touched(view, stream.mesh.vertices[:, :3], stream.mesh.triangles))
-        stream.draw(program, Share.CHOSEN)
+            set_cut(program, view, drawn.cut or NOWHERE, CUT_WIDTH)
+        skin.stream.draw(program)
 
     def _draw_part(self, placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> None:
         """Draw a solid part, or the outline of short hair."""

@@ -4,9 +4,12 @@ Each pixel is shaded once. If it shows several surfaces, `sample_mixer.py` mixes
 """
 
 import math
+from collections.abc import Sequence
 
 import moderngl
+import numpy as np
 
+from ..geometry.arrays import Unsigned8
 from .errors import GLError
 
 Rectangle = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
@@ -78,6 +81,16 @@ class RenderTarget:
         """The frame, bottom row first, three bytes per pixel, or four."""
         return bytes(self.frame.read(components=components, alignment=1))
 
+    def read_area(self, area: Rectangle) -> tuple[Unsigned8, Unsigned8]:
+        """The colours and the surfaces of an area, bottom row first, each (height, width, 4)."""
+        shape = area[3], area[2], 4
+        colours = self.frame.read(viewport=area, components=4)
+        surfaces = self._numbered.read(viewport=area, components=4)
+        return (
+            np.frombuffer(colours, np.uint8).reshape(shape),
+            np.frombuffer(surfaces, np.uint8).reshape(shape),
+        )
+
 
 def _texture(gl: moderngl.Context, size: tuple[int, int]) -> moderngl.Texture:
     """Four bytes a pixel, which end at the borders."""
@@ -100,6 +113,15 @@ def scaled(viewport: Rectangle, scale: float) -> Rectangle:
     right = math.ceil(scale * (left + width))
     top = math.ceil(scale * (bottom + height))
     return x, y, right - x, top - y
+
+
+def around(rectangles: Sequence[Rectangle]) -> Rectangle:
+    """The smallest rectangle that holds all."""
+    left = min(each[0] for each in rectangles)
+    bottom = min(each[1] for each in rectangles)
+    right = max(each[0] + each[2] for each in rectangles)
+    top = max(each[1] + each[3] for each in rectangles)
+    return left, bottom, right - left, top - bottom
 
 
 def intersection(first: Rectangle, second: Rectangle) -> Rectangle:

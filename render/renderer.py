@@ -30,7 +30,8 @@ from .materials import (
 )
 from .parts import PartStore, PlacedBuffers
 from .programs import compile_program, write_uniform
-from .sample_mixer import SampleMixer
+from .render_target import RenderTarget
+from .sample_mixer import Mixer, SampleMixer
 from .shadow import Shadow, ShadowMap
 from .stream import GpuStream, MeshBuffers, Share, Stream
 from .style import ColourBy, Shading, Style
@@ -65,7 +66,7 @@ class Renderer:
         self._backdrop = Backdrop(self._gl)
         self._shadow_map: ShadowMap | None = None
         self._geometry_buffer: GeometryBuffer | None = None
-        self._mixer: SampleMixer | None = None
+        self._mixer: Mixer | None = None
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
         """Lend arrays for a mesh of at most this many vertices and triangles (see Stream)."""
@@ -169,7 +170,7 @@ class Renderer:
         if not target.samples:
             return
         if self._mixer is None or self._mixer.target is not target:
-            self._mixer = SampleMixer(self._gl, target, is_software=self.surface.is_software)
+            self._mixer = self._new_mixer(target)
         skin = frame.skin if with_skin else None
         boxes = [each.corners for each in parts]
         if skin is not None:
@@ -188,6 +189,14 @@ class Renderer:
             self._mixer.mix(drawn, view, areas)
             if skin is None:
                 target.forget_surfaces()
+
+    def _new_mixer(self, target: RenderTarget) -> Mixer:
+        """What smooths edges on a target."""
+        if not self.surface.is_software:
+            return SampleMixer(self._gl, target)
+        from .software_mixer import SoftwareMixer  # numba, which a GPU does not wait for
+
+        return SoftwareMixer(target)
 
     def _draw_under(self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers]) -> None:
         """Draw solid parts that an opened skin will show; light passes through it to them."""

@@ -7,31 +7,38 @@ et al. 2011, "Decoupled sampling for graphics pipelines", for the idea.
 """
 
 from collections.abc import Sequence
+from typing import Protocol
 
 import moderngl
-import numpy as np
 
 from .camera import PlacedView
 from .coverage import Coverage, Drawn
-from .edge_tiles import EdgeTiles
 from .programs import compile_program
-from .render_target import Rectangle, RenderTarget
+from .render_target import Rectangle, RenderTarget, around
 
 _UNITS = {"colours": 4, "sample_numbers": 5, "sample_depths": 6, "surfaces": 7}  # of textures
+
+
+class Mixer(Protocol):
+    """Smooths the edges on one target."""
+
+    target: RenderTarget
+
+    def mix(self, drawn: Drawn, view: PlacedView, areas: Sequence[Rectangle]) -> None:
+        """Smooth the edges of surfaces that were drawn in a view, all of them within areas."""
 
 
 class SampleMixer:
     """Smooths the edges on one target, which has samples."""
 
-    def __init__(self, gl: moderngl.Context, target: RenderTarget, *, is_software: bool) -> None:
+    def __init__(self, gl: moderngl.Context, target: RenderTarget) -> None:
         self.target = target
         self._gl = gl
-        self._is_software = is_software
         self._coverage = Coverage(gl, target)
         self._copy = gl.texture(target.size, 4)
         self._copied = gl.framebuffer([self._copy])
         found = gl.depth_renderbuffer(target.size)
-        self._found = gl.framebuffer([gl.texture(target.size, 1)], found)
+        self._found = gl.framebuffer(depth_attachment=found)
         self._mixed = gl.framebuffer([target.colour], found)
         self._mixed.depth_mask = False
         self._find = self._pass("FIND")
@@ -49,18 +56,14 @@ class SampleMixer:
     def mix(self, drawn: Drawn, view: PlacedView, areas: Sequence[Rectangle]) -> None:
         """Smooth the edges of surfaces that were drawn in a view and lie within areas."""
         gl = self._gl
-        area = _around(areas)
+        area = around(areas)
         bands = _bands(areas)
         self.target.surfaces.use(_UNITS["surfaces"])
         self._found.use()
         gl.scissor = None
         self._found.clear(depth=1.0)
         self._run(self._find, view, area, bands)
-        tiles = None
-        if self._is_software and not drawn.is_opened and not drawn.has_triangles:
-            marks = self._found.read(viewport=area, components=1, alignment=1)
-            tiles = EdgeTiles(np.frombuffer(marks, np.uint8).reshape(area[3], area[2]), area)
-        self._coverage.draw(drawn, view, area, tiles)
+        self._coverage.draw(drawn, view, area)
         gl.scissor = None
         gl.copy_framebuffer(self._copied, self.target.frame)
         self._copy.use(_UNITS["colours"])
@@ -83,12 +86,7 @@ class SampleMixer:
         left, bottom, width, height = area
         program = shaded.program
         program["area"] = left, bottom, left + width - 1, bottom + height - 1
-        # A part of a pixel's width, as a share of the view's depth range.
-        focal = view.camera.focal(view.viewport[2] / view.viewport[3], view.viewport[3])
-        share = 0.7 / focal
-        least, scale = view.depth_range
-        depth_ahead = 0.5 * (1.0 - float(view.projection[2, 2])) - least
-        program["tolerance"] = share * scale * depth_ahead, -share
+        program["tolerance"] = view.depth_tolerance
         if "depth_range" in program:
             program["depth_range"] = view.depth_range
         gl.viewport = 0, 0, *self.target.size
@@ -98,24 +96,15 @@ class SampleMixer:
             shaded.render(moderngl.TRIANGLES, vertices=3)
 
 
-def _around(areas: Sequence[Rectangle]) -> Rectangle:
-    """The smallest rectangle that holds all areas."""
-    left = min(each[0] for each in areas)
-    bottom = min(each[1] for each in areas)
-    right = max(each[0] + each[2] for each in areas)
-    top = max(each[1] + each[3] for each in areas)
-    return left, bottom, right - left, top - bottom
-
-
 def _bands(areas: Sequence[Rectangle]) -> list[Rectangle]:
     """Rows of pixels that hold all areas, each as wide as the areas in it: shoulders are wide."""
-    _, bottom, _, height = _around(areas)
+    _, bottom, _, height = around(areas)
     band_height = 64  # [pixels], as high as the tiles that software draws together
     bands = []
     for low in range(bottom, bottom + height, band_height):
         high = min(low + band_height, bottom + height)
         within = [each for each in areas if each[1] < high and low < each[1] + each[3]]
         if within:
-            left, _, width, _ = _around(within)
+            left, _, width, _ = around(within)
             bands.append((left, low, width, high - low))
     return bands

@@ -13,7 +13,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..geometry.arrays import Flags, Floats32, Integers32, Unsigned32
+from ..geometry.arrays import Floats32, Integers32, Unsigned32
 from .camera import box_corners
 
 
@@ -23,7 +23,6 @@ class Share(Enum):
     ALL = "all"  # in their order
     BUMPED = "bumped"  # those with a corner where the bump map shows
     SMOOTH = "smooth"  # all others
-    CHOSEN = "chosen"  # those given to `choose`
 
 
 NUMBER_BYTES = 4  # bytes
@@ -184,12 +183,6 @@ class MeshBuffers:
                 "stream of 18 columns, or draw without a fade"
             )
 
-    def choose(self, is_chosen: Flags) -> None:
-        """Choose among the uploaded triangles, (triangle_count,), for `draw`."""
-        chosen = self.mesh.triangles[is_chosen]
-        self._ranges[Share.CHOSEN] = 0, len(chosen)
-        self._rewrite("chosen", chosen)
-
     def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
         """Draw uploaded triangles, with the attributes in_position, in_normal, in_uv as needed.
 
@@ -201,8 +194,7 @@ class MeshBuffers:
         first, count = self._ranges.get(share, (0, 0))
         if count == 0:
             return
-        indices = self._more["chosen" if share is Share.CHOSEN else "parted"]
-        array = self._vertex_array(program, indices)
+        array = self._vertex_array(program, self._more["parted"])
         array.render(moderngl.TRIANGLES, vertices=3 * count, first=3 * first)
 
     def _draw_all(self, array: moderngl.VertexArray) -> None:

@@ -14,6 +14,7 @@ from .stream import MeshBuffers, Share
 CUT_WIDTH = 0.008  # of the scene's radius: visible thickness of cut skin
 # Of the scene's radius: largest distance of parts that come out of the skin that should hide them.
 SUNK_DEPTH = 0.08
+NOWHERE: Plane = 0.0, 0.0, 0.0, -1.0  # in front of which nothing is
 # Colours blend as usual; the layer starts transparent and collects premultiplied colour.
 _PREMULTIPLYING_BLEND: Any = (
     moderngl.SRC_ALPHA,
@@ -65,7 +66,7 @@ def draw_nearest(
 def set_translucency(program: moderngl.Program, frame: Frame, view: PlacedView) -> None:
     """Set the opacity of a frame's skin, and the plane behind which it holds (None: everywhere)."""
     program["opacity"] = frame.style.opacity
-    set_cut(program, view, frame.cut or (0.0, 0.0, 0.0, -1.0), CUT_WIDTH)
+    set_cut(program, view, frame.cut or NOWHERE, CUT_WIDTH)
 
 
 def set_cut(program: moderngl.Program, view: PlacedView, cut: Plane, width: float) -> None:

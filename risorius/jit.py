@@ -2,8 +2,8 @@
 
 Numba stores machine code itself (`cache=True`), but only checks one file at a time: when a kernel
 changes that another file calls, old code keeps running. So code lies in a folder with a name from a
-digest of all sources of `geometry/`, `refine/` and `sim/`, this file, and the versions of numba and
-Python. If one letter changes, everything is compiled again in a new folder. It is
+digest of all sources of `geometry/`, `refine/`, `render/` and `sim/`, this file, and the versions
+of numba and Python. If one letter changes, everything is compiled again in a new folder. It is
 `risorius/compiled-DIGEST` in the folder named by NUMBA_CACHE_DIR, or in the user's cache.
 
 Numba reads its folder from `numba.config.CACHE_DIR` once, when it decorates a function. The
@@ -113,7 +113,7 @@ def _digest() -> str:
     """Digest of all that machine code depends on, except the processor, which numba checks."""
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
     digest.update(Path(__file__).read_bytes())
-    for package in ("geometry", "refine", "sim"):  # either may be absent
+    for package in ("geometry", "refine", "render", "sim"):  # either may be absent
         found = importlib.util.find_spec(f"{__package__}.{package}")
         for folder in (found and found.submodule_search_locations) or ():
             for file in sorted(Path(folder).rglob("[!.]*.py")):  # no hidden files of editors

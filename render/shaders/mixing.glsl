@@ -47,7 +47,7 @@ void main() {
     float allowed = allowed_at(here.y);
     bool is_one = max(max(others.x, others.y), max(others.z, others.w)) == 0.0;
     if (is_one && max(bends.x, bends.y) <= allowed) discard;
-    pixel_colour = vec4(here.x == 0.0 ? 1.0 : here.x);  // of background 255
+    pixel_colour = vec4(0.0);
 }
 
 #else

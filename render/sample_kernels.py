@@ -1,0 +1,356 @@
+"""Kernels of `software_mixer.py`: pixels beside edges, what their samples see, and their colours.
+
+They do what coverage.glsl and mixing.glsl do, but visit the pixels beside edges alone.
+Source: Olano, Greer 1997, "Triangle scan conversion using 2D homogeneous coordinates": a triangle
+that reaches behind the eye needs no clipping.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..geometry.arrays import Floats64, Integers32, Unsigned8
+from ..jit import njit
+
+SAMPLES = np.array([(0.375, 0.125), (0.875, 0.375), (0.125, 0.625), (0.625, 0.875)])
+"""Where samples are in a pixel, x and y: no two in one row or column, as drivers have them."""
+
+SURFACE = 0
+HAIR = 1
+TRIANGLES = 2  # each of them is a surface of its own
+_LEAST_FACING = 0.05  # as in shell_layers.glsl
+_WAYS = np.array([(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)])  # to a pixel, and its neighbours
+_SKIN = 190  # the first of the numbers of skin, see surface_number.glsl
+_DEPTHS = 255.0 * 255.0  # steps of depth in the numbers of a pixel
+
+
+_Linear = tuple[float, float, float]  # a, b and c of a x + b y + c
+_Edges = tuple[_Linear, _Linear, _Linear]  # of a triangle, against its corners
+_Corner = tuple[float, float, float, float]  # see `see`
+
+
+class Pixels(NamedTuple):
+    """The pixels beside edges in an area, row by row.
+
+    before: how many come before each place of the area, shape (height, width + 1). columns, rows:
+        of each, shape (n,).
+    """
+
+    before: Integers32
+    columns: Integers32
+    rows: Integers32
+
+
+@njit
+def _differ(first: float, second: float) -> bool:
+    """Whether two numbers are of two surfaces; those of skin change slowly."""
+    return abs(first - second) >= (12.5 if min(first, second) >= _SKIN else 0.5)
+
+
+@njit
+def find_edges(surfaces: Unsigned8, least: float, slope: float) -> Pixels:
+    """Find pixels beside another surface. surfaces: see surface_number.glsl, (height, width, 4).
+
+    least, slope: of the tolerance of depths on one surface, a linear function of depth.
+    """
+    height, width, _ = surfaces.shape
+    numbers = np.empty((height + 2, width + 2), np.int32)  # with the last ones again around
+    depths = np.empty((height + 2, width + 2), np.int32)
+    for y in range(height + 2):
+        stored = surfaces[min(max(y - 1, 0), height - 1)]
+        for x in range(width):
+            numbers[y, x + 1] = stored[x, 0]
+            depths[y, x + 1] = 255 * np.int32(stored[x, 1]) + np.int32(stored[x, 2])
+        for each in (numbers[y], depths[y]):
+            each[0] = each[1]
+            each[width + 1] = each[width]
+    before = np.empty((height, width + 1), np.int32)
+    columns = np.empty(height * width, np.int32)
+    rows = np.empty(height * width, np.int32)
+    is_edge = np.empty(width, np.uint8)
+    count = 0
+    for y in range(height):
+        _mark_row(numbers[y : y + 3], depths[y : y + 3], _DEPTHS * least, slope, is_edge)
+        for x in range(width):
+            before[y, x] = count
+            if is_edge[x]:
+                columns[count] = x
+                rows[count] = y
+                count += 1
+        before[y, width] = count
+    return Pixels(before, columns[:count].copy(), rows[:count].copy())
+
+
+@njit
+def _mark_row(
+    numbers: Integers32, depths: Integers32, least: float, slope: float, is_edge: Unsigned8
+) -> None:
+    """Mark pixels beside another surface in the middle of three rows; without a branch.
+
+    least: in steps of depth. is_edge: 0 or 1, written.
+    """
+    number_below, number_here, number_above = numbers[0], numbers[1], numbers[2]
+    below, here, above = depths[0], depths[1], depths[2]
+    most = np.int32(0.5 * _DEPTHS)
+    for x in range(len(is_edge)):
+        number = number_here[x + 1]
+        differs = _differ(number_here[x], number) | _differ(number_here[x + 2], number)
+        differs |= _differ(number_below[x + 1], number) | _differ(number_above[x + 1], number)
+        depth = here[x + 1]
+        across = abs(here[x] + here[x + 2] - 2 * depth)
+        along = abs(below[x + 1] + above[x + 1] - 2 * depth)
+        bend = np.float32(max(across, along))
+        allowed = np.float32(least) + np.float32(slope) * np.float32(depth)
+        differs |= bool((bend > allowed) | (bend > most))
+        is_edge[x] = differs
+
+
+@njit
+def see(
+    corners: Floats64,
+    values: Floats64,
+    triangles: Integers32,
+    kind: int,
+    numbers: tuple[float, float, float],
+    has_back: bool,
+    pixels: Pixels,
+    depths: Floats64,
+    seen: Floats64,
+) -> None:
+    """Let samples of pixels see triangles (M, 3), where nothing nearer is seen.
+
+    corners: x and y in pixels of the area and depth 0 to 1, all times the last column, (V, 4).
+    values: of vertices, shape (V, 2): how far up they face, and how far they are from a cut; of
+        HAIR its density, and how it faces the eye. numbers: of surface_number.glsl. has_back:
+        whether the inner side is seen, too.
+    depths, seen: of each sample the depth, and the number, shape (n, SAMPLES); written.
+    """
+    for sign in (1.0, -1.0):  # what is hidden behind fronts takes little time
+        if sign > 0.0 or has_back:
+            _see_side(sign, corners, values, triangles, kind, numbers, pixels, depths, seen)
+
+
+@njit
+def _see_side(
+    sign: float,
+    corners: Floats64,
+    values: Floats64,
+    triangles: Integers32,
+    kind: int,
+    numbers: tuple[float, float, float],
+    pixels: Pixels,
+    depths: Floats64,
+    seen: Floats64,
+) -> None:
+    """Let samples see the fronts of triangles, sign 1, or their backs, sign -1."""
+    before, columns, _ = pixels
+    height = before.shape[0]
+    width = before.shape[1] - 1
+    is_front = sign > 0.0
+    for t in range(len(triangles)):
+        a = _corner(corners, triangles[t, 0])
+        b = _corner(corners, triangles[t, 1])
+        c = _corner(corners, triangles[t, 2])
+        if min(a[3], b[3], c[3]) > 0.0 and sign * _turn(a, b, c) <= 0.0:
+            continue
+        left, right = _span(a[0], b[0], c[0], a[3], b[3], c[3], width)
+        bottom, top = _span(a[1], b[1], c[1], a[3], b[3], c[3], height)
+        if not _has_any(before, left, right, bottom, top):
+            continue
+        edges = _edge(b, c), _edge(c, a), _edge(a, b)
+        volume = edges[0][0] * a[0] + edges[0][1] * a[1] + edges[0][2] * a[3]
+        if not sign * volume > 0.0:
+            continue
+        plane = _plane((a, b, c), edges, 1.0 / volume)
+        slack = 0.5 * (abs(plane[0]) + abs(plane[1]))
+        for y in range(bottom, top):
+            for n in range(before[y, left], before[y, right]):
+                x = columns[n]
+                far = max(max(depths[n, 0], depths[n, 1]), max(depths[n, 2], depths[n, 3]))
+                if _at(plane, x + 0.5, y + 0.5) - slack > far or not _may_touch(edges, sign, x, y):
+                    continue
+                number = -1.0
+                for s in range(len(SAMPLES)):
+                    px = x + SAMPLES[s, 0]
+                    py = y + SAMPLES[s, 1]
+                    depth = _at(plane, px, py)
+                    if not 0.0 <= depth <= depths[n, s] or not _is_inside(edges, sign, px, py):
+                        continue
+                    if number < 0.0:
+                        # Drivers know it in the middle of a pixel, for all of its samples.
+                        one, two = _mean(values, triangles, t, edges, x + 0.5, y + 0.5)
+                        number = _number(kind, numbers, is_front, t, one, two)
+                        if number < 0.0:
+                            break
+                    depths[n, s] = depth
+                    seen[n, s] = number
+
+
+@njit
+def _corner(corners: Floats64, vertex: int) -> _Corner:
+    """A row of corners; as an array of its own it would take longer than all that follows."""
+    return corners[vertex, 0], corners[vertex, 1], corners[vertex, 2], corners[vertex, 3]
+
+
+@njit
+def _turn(a: _Corner, b: _Corner, c: _Corner) -> float:
+    """Twice the area of a triangle in front of the eye, below 0 where its back is seen."""
+    ax, ay = a[0] / a[3], a[1] / a[3]
+    abx, aby = b[0] / b[3] - ax, b[1] / b[3] - ay
+    acx, acy = c[0] / c[3] - ax, c[1] / c[3] - ay
+    return abx * acy - acx * aby
+
+
+@njit
+def _span(
+    a: float, b: float, c: float, a_depth: float, b_depth: float, c_depth: float, count: int
+) -> tuple[int, int]:
+    """The first pixel along an axis that a triangle may touch, and the one behind the last."""
+    if min(a_depth, b_depth, c_depth) <= 0.0:
+        return 0, count
+    a, b, c = a / a_depth, b / b_depth, c / c_depth
+    low, high = min(a, b, c), max(a, b, c)
+    if not (high >= 0.0 and low < count):  # nor where they are no numbers
+        return 0, 0
+    return int(max(low, 0.0)), int(min(high + 1.0, count))
+
+
+@njit
+def _has_any(before: Integers32, left: int, right: int, bottom: int, top: int) -> bool:
+    """Whether any pixel is beside an edge in a rectangle."""
+    for y in range(bottom, top):
+        if before[y, left] != before[y, right]:
+            return True
+    return False
+
+
+@njit
+def _edge(a: _Corner, b: _Corner) -> _Linear:
+    """The linear function of a place that is 0 on the edge; the other way its exact negative."""
+    x = a[1] * b[3] - b[1] * a[3]
+    y = a[3] * b[0] - b[3] * a[0]
+    return x, y, a[0] * b[1] - b[0] * a[1]
+
+
+@njit
+def _at(edge: _Linear, x: float, y: float) -> float:
+    """The function of an edge at a place."""
+    return edge[0] * x + edge[1] * y + edge[2]
+
+
+@njit
+def _plane(corners: tuple[_Corner, _Corner, _Corner], edges: _Edges, scale: float) -> _Linear:
+    """Depth on a triangle as a linear function of a place."""
+    x = y = rest = 0.0
+    for k in range(3):
+        depth = scale * corners[k][2]
+        x += edges[k][0] * depth
+        y += edges[k][1] * depth
+        rest += edges[k][2] * depth
+    return x, y, rest
+
+
+@njit
+def _may_touch(edges: _Edges, sign: float, x: int, y: int) -> bool:
+    """Whether any of a pixel is inside each edge."""
+    for k in range(3):
+        slack = 0.5 * (abs(edges[k][0]) + abs(edges[k][1]))
+        if sign * _at(edges[k], x + 0.5, y + 0.5) < -slack:
+            return False
+    return True
+
+
+@njit
+def _is_inside(edges: _Edges, sign: float, x: float, y: float) -> bool:
+    """Whether a place is inside each edge; one on an edge belongs to one side of it alone."""
+    for k in range(3):
+        across, along, _ = edges[k]
+        far = sign * _at(edges[k], x, y)
+        if far < 0.0:
+            return False
+        if far == 0.0 and (sign * across < 0.0 or (across == 0.0 and sign * along <= 0.0)):
+            return False
+    return True
+
+
+@njit
+def _mean(
+    values: Floats64, triangles: Integers32, triangle: int, edges: _Edges, x: float, y: float
+) -> tuple[float, float]:
+    """The values of a triangle at a place."""
+    whole = one = two = 0.0
+    for k in range(3):
+        share = _at(edges[k], x, y)
+        whole += share
+        one += share * values[triangles[triangle, k], 0]
+        two += share * values[triangles[triangle, k], 1]
+    return one / whole, two / whole
+
+
+@njit
+def _number(
+    kind: int,
+    numbers: tuple[float, float, float],
+    is_front: bool,
+    triangle: int,
+    one: float,
+    two: float,
+) -> float:
+    """The number of a surface, see surface_number.glsl; below 0 where it is not."""
+    if kind == HAIR:
+        has_edge = one >= 0.9 * min(max(2.5 * two, _LEAST_FACING), 1.0)
+        return numbers[0] if has_edge else -1.0
+    if not is_front:
+        return numbers[2] if two >= 0.0 else -1.0
+    if kind == TRIANGLES:
+        return 1.0 + (numbers[0] + 37.0 * (triangle % 188)) % 188.0
+    return numbers[0] + numbers[1] * min(max(0.5 + 0.5 * one, 0.0), 1.0)
+
+
+@njit
+def mix(
+    colours: Unsigned8,
+    surfaces: Unsigned8,
+    pixels: Pixels,
+    depths: Floats64,
+    seen: Floats64,
+    least: float,
+    slope: float,
+) -> Unsigned8:
+    """The colours (height, width, 4), mixed where samples see several surfaces; see mixing.glsl.
+
+    depths: 0 to 1 over the depth range of the view. Other arguments: of `find_edges` and `see`.
+    """
+    height, width, _ = colours.shape
+    mixed = colours.copy()
+    for n in range(len(pixels.columns)):
+        x = pixels.columns[n]
+        y = pixels.rows[n]
+        own = (255.0 * surfaces[y, x, 1] + surfaces[y, x, 2]) / _DEPTHS
+        allowed = min(least + slope * own, 0.5)
+        red = green = blue = opaque = 0
+        for s in range(len(SAMPLES)):
+            best = 2.0
+            shown_x, shown_y = x, y
+            for k in range(len(_WAYS)):
+                at_x = min(max(x + _WAYS[k, 0], 0), width - 1)
+                at_y = min(max(y + _WAYS[k, 1], 0), height - 1)
+                known = surfaces[at_y, at_x]
+                off = abs((255.0 * known[1] + known[2]) / _DEPTHS - depths[n, s])
+                if _differ(known[0], seen[n, s]):
+                    off += 1.0
+                if k == 0 and off <= allowed:
+                    break
+                if off < best:
+                    best = off
+                    shown_x, shown_y = at_x, at_y
+            red += colours[shown_y, shown_x, 0]
+            green += colours[shown_y, shown_x, 1]
+            blue += colours[shown_y, shown_x, 2]
+            opaque += colours[shown_y, shown_x, 3]
+        half = len(SAMPLES) // 2
+        mixed[y, x, 0] = (red + half) // len(SAMPLES)
+        mixed[y, x, 1] = (green + half) // len(SAMPLES)
+        mixed[y, x, 2] = (blue + half) // len(SAMPLES)
+        mixed[y, x, 3] = (opaque + half) // len(SAMPLES)
+    return mixed

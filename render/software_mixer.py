@@ -1,0 +1,131 @@
+"""Smooth edges by samples, as `sample_mixer.py` does, where software draws.
+
+Software OpenGL takes samples of every pixel that a triangle touches, a third of the time of a
+picture. Kernels take them beside edges alone, in one pixel of fifty. The picture lies in the memory
+that they read anyway.
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ..geometry.arrays import Floats64, Integers32
+from ..geometry.directions import unit_vectors
+from .camera import PlacedView
+from .coverage import SKIN_NUMBERS, Drawn, Numbers, part_numbers
+from .frame import Plane, Skin
+from .parts import PlacedBuffers
+from .render_target import Rectangle, RenderTarget, around
+from .sample_kernels import HAIR, SAMPLES, SURFACE, TRIANGLES, find_edges, mix, see
+from .translucency import NOWHERE, SUNK_DEPTH, in_view
+
+_MEAN_PLACE = 0.6  # of the strands' way, where vertices of hair lie; as in shell_layers.glsl
+_LOWEST_PLACE = 0.15
+
+
+class _Surface(NamedTuple):
+    """A surface as `see` takes it; corners: of its vertices in clip space, shape (V, 4)."""
+
+    corners: Floats64
+    values: Floats64
+    triangles: Integers32
+    kind: int
+    numbers: Numbers
+    has_back: bool
+
+
+class SoftwareMixer:
+    """Smooths the edges on one target."""
+
+    def __init__(self, target: RenderTarget) -> None:
+        self.target = target
+
+    def mix(self, drawn: Drawn, view: PlacedView, areas: Sequence[Rectangle]) -> None:
+        """Smooth the edges of surfaces that were drawn in a view, all of them within areas."""
+        area = around(areas)
+        colours, surfaces = self.target.read_area(area)
+        pixels = find_edges(surfaces, *view.depth_tolerance)
+        depths = np.ones((len(pixels.rows), len(SAMPLES)))
+        seen = np.zeros_like(depths)
+        to_area = _clip_to(area, view)
+        with np.errstate(all="ignore"):  # a corner that is not finite is seen nowhere
+            for surface in _surfaces(drawn, view):
+                placed = surface._replace(corners=surface.corners @ to_area)
+                see(*placed, pixels, depths, seen)
+        least, scale = view.depth_range
+        depths = np.clip((depths - least) * scale, 0.0, 1.0)
+        mixed = mix(colours, surfaces, pixels, depths, seen, *view.depth_tolerance)
+        self.target.colour.write(mixed, viewport=area)
+
+
+def _clip_to(area: Rectangle, view: PlacedView) -> Floats64:
+    """The matrix from clip space to pixels of an area and depths of the target."""
+    left, bottom, width, height = view.viewport
+    matrix = np.diag([0.5 * width, 0.5 * height, 0.5, 1.0])
+    matrix[3] = 0.5 * width + left - area[0], 0.5 * height + bottom - area[1], 0.5, 1.0
+    return matrix
+
+
+def _surfaces(drawn: Drawn, view: PlacedView) -> Iterator[_Surface]:
+    """All that samples may see, in the order in which coverage.py draws it."""
+    if drawn.skin is not None:
+        yield _of_skin(drawn, drawn.skin, view)
+    for each in drawn.parts:
+        if each.buffers.kind == "SHELLS":
+            yield _of_hair(each, view)
+        elif each.buffers.kind != "STRANDS":
+            yield _of_part(each, drawn.cut if each.part.lies_beneath else None, view)
+
+
+def _of_skin(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
+    """The skin, both sides."""
+    mesh = skin.stream.mesh
+    rows = mesh.vertices
+    values = np.zeros((len(rows), 2))
+    if drawn.has_normals:
+        values[:, 0] = unit_vectors(rows[:, 3:6] @ view.world_to_view[:3, :3])[:, 1]
+    if drawn.is_opened:
+        cut = np.array(drawn.cut or NOWHERE)
+        values[:, 1] = rows[:, :3] @ cut[:3] + cut[3]
+    kind = TRIANGLES if drawn.has_triangles else SURFACE
+    clip = _moved(rows[:, :3], view.world_to_clip)
+    return _Surface(clip, values, mesh.triangles.view(np.int32), kind, SKIN_NUMBERS, True)
+
+
+def _of_part(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Surface:
+    """A solid part. cut: under the skin before it the part is hidden, see sunk.glsl."""
+    places = _moved(placed.part.vertices, placed.part.transform.T @ view.world_to_view)[:, :3]
+    clip = _moved(places, view.projection)
+    if cut is not None:
+        plane = np.array(in_view(cut, view))
+        most = SUNK_DEPTH * view.camera.scene_radius
+        beyond = np.clip(places @ plane[:3] + plane[3], 0.0, most)[:, None]
+        sunk = _moved(places + beyond * unit_vectors(places), view.projection)
+        clip[:, 2] = sunk[:, 2] / sunk[:, 3] * clip[:, 3]
+    values = np.zeros((len(places), 2))
+    triangles = placed.buffers.faces.astype(np.int32, copy=False)
+    return _Surface(clip, values, triangles, SURFACE, part_numbers(placed), False)
+
+
+def _of_hair(placed: PlacedBuffers, view: PlacedView) -> _Surface:
+    """The outline of short hair; see coverage.glsl."""
+    striation = placed.part.part.striation
+    assert striation is not None  # as short hair has it
+    layers = placed.buffers.layer_count(view)
+    place = (np.floor(_MEAN_PLACE * layers - _LOWEST_PLACE + 0.5) + _LOWEST_PLACE) / layers
+    model_view = placed.part.transform.T @ view.world_to_view
+    outline = placed.part.vertices + (place - _MEAN_PLACE) * striation[:, 2:5]
+    places = _moved(outline, model_view)[:, :3]
+    normals = unit_vectors(placed.part.normals @ model_view[:3, :3])
+    facing = np.abs((normals * unit_vectors(places)).sum(axis=1))
+    values = np.stack([striation[:, 5].astype(np.float64), facing], axis=1)
+    clip = _moved(places, view.projection)
+    triangles = placed.buffers.faces.astype(np.int32, copy=False)
+    return _Surface(clip, values, triangles, HAIR, part_numbers(placed), False)
+
+
+def _moved(points: npt.NDArray[np.floating], matrix: Floats64) -> Floats64:
+    """Points (n, 3), moved by a matrix for row vectors, shape (n, 4)."""
+    return np.asarray(points @ matrix[:3] + matrix[3])
