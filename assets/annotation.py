@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from risorius.geometry.arrays import Floats64, Integers32
-from risorius.geometry.closest import SurfacePoints, closest_points
+from risorius.geometry.closest import MeshSearch, SurfacePoints
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.polylines import arc_lengths, evenly_spaced
 from risorius.geometry.read_only import make_read_only
@@ -108,10 +108,15 @@ def _evenly(corners: Floats64, count: int) -> Floats64:
 
 def places_on_texture(uv: Floats64) -> SurfacePoints:
     """The places of the built-in head's skin that texture coordinates (n, 2) show."""
+    return _texture().closest(np.hstack([uv, np.zeros((len(uv), 1))]))
+
+
+@lru_cache(maxsize=1)
+def _texture() -> MeshSearch:
+    """The built-in head's skin, laid flat as its texture is."""
     known = load("head")
     level = np.zeros((len(known.uv), 1))
-    flat = np.hstack([known.uv.astype(np.float64), level])
-    return closest_points(np.hstack([uv, np.zeros((len(uv), 1))]), flat, known.faces)
+    return MeshSearch.of(np.hstack([known.uv.astype(np.float64), level]), known.faces)
 
 
 def _vertices(numbers: Integers32) -> SurfacePoints:

@@ -54,8 +54,7 @@ def falling_hair(
     drop = np.linspace(0.0, 1.0, sample_count)[1:]
     roots = unit_vectors(front + (share**0.8)[:, None] * (crown - front))
     level_of_widest = np.array([0.0, -0.1, 0.0])  # a little below it strands leave the head
-    pairs = zip(roots, unit_vectors(level + level_of_widest), strict=True)
-    ways = np.array([scipy.spatial.geometric_slerp(*pair, over) for pair in pairs])
+    ways = _turned(roots, unit_vectors(level + level_of_widest), over)
     across = 88.0 * side * (np.pi - angle)
     uneven = 0.6 * np.sin(0.9 * across) + 0.4 * np.sin(0.37 * across + 1.0)
     # Beside the face the outer side curves to the inner one.
@@ -112,10 +111,26 @@ def _reach(ways: Floats64, solid: Floats64) -> Floats64:
     """
     far = np.linalg.norm(solid, axis=1)
     sharpness = 120.0  # of the mean over directions
-    weights = np.exp(sharpness * (ways @ (solid / far[:, None]).T - 1.0))
+    weights = ways.reshape(-1, 3) @ (solid / far[:, None]).T
+    weights -= 1.0  # in place: there are a million
+    weights *= sharpness
+    np.exp(weights, out=weights)
     power = 24.0  # of the mean over distances: high, so that the farthest counts most
-    mean = (weights * far**power).sum(axis=-1) / weights.sum(axis=-1)
+    sums = weights @ np.column_stack([far**power, np.ones(len(far))])
+    mean = (sums[:, 0] / sums[:, 1]).reshape(ways.shape[:2])
     return np.asarray(mean ** (1.0 / power))
+
+
+def _turned(start: Floats64, end: Floats64, shares: Floats64) -> Floats64:
+    """Unit vectors on great circles from some (n, 3) to others, at shares of the turn (m,).
+
+    No two of a pair are alike or opposite. Shape (n, m, 3). Source: Shoemake 1985, "Animating
+    rotation with quaternion curves".
+    """
+    angle = np.arccos((start * end).sum(axis=1))[:, None]
+    parts = np.sin((1.0 - shares) * angle), np.sin(shares * angle)
+    before, after = (part / np.sin(angle) for part in parts)
+    return np.asarray(before[..., None] * start[:, None] + after[..., None] * end[:, None])
 
 
 def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Part, ...]:

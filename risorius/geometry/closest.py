@@ -10,6 +10,7 @@ one triangle.
 
 import math
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
@@ -43,6 +44,44 @@ class SurfacePoints:
         return carried
 
 
+@dataclass(frozen=True, eq=False)
+class MeshSearch:
+    """A mesh whose triangles are sorted and boxed, to be searched more than once."""
+
+    faces: npt.NDArray[np.integer]
+    """Vertices of the triangles, shape (F, 3), at least one."""
+    _order: Integers64
+    _corners: Floats64
+    _ways: Floats64
+    _boxes: Floats64
+
+    @classmethod
+    def of(cls, vertices: npt.NDArray[np.floating], faces: npt.NDArray[np.integer]) -> Self:
+        """Sort and box triangles (F, 3) of vertices (V, 3)."""
+        corners = np.asarray(vertices, dtype=np.float64)[faces]
+        order = np.argsort(places_on_curve(corners.mean(axis=1)), kind="stable")
+        corners = np.ascontiguousarray(corners[order])
+        ways = cross_products(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3))
+        return cls(faces, order, corners, unit_vectors(ways, 1e-300), _boxes(corners))
+
+    def closest(
+        self,
+        points: npt.NDArray[np.floating],
+        normals: npt.NDArray[np.floating] | None = None,
+        wrong_side: float = 0.0,
+    ) -> SurfacePoints:
+        """Find the closest places as `closest_points` does."""
+        queries = np.ascontiguousarray(points, dtype=np.float64)
+        wanted = np.zeros_like(queries) if normals is None else np.array(normals, dtype=np.float64)
+        distances = np.empty(len(queries))
+        triangles = np.empty(len(queries), np.int64)
+        weights = np.empty((len(queries), 3))
+        mesh = self._corners, self._ways, self._boxes
+        _search(queries, wanted, *mesh, wrong_side, distances, triangles, weights)
+        triangles = self._order[triangles]
+        return SurfacePoints(distances, triangles, self.faces[triangles], weights)
+
+
 def closest_points(
     points: npt.NDArray[np.floating],
     vertices: npt.NDArray[np.floating],
@@ -56,20 +95,7 @@ def closest_points(
     direction. A triangle that faces the other way counts as `wrong_side` farther away, so that
     points of the lower lip find the lower lip even if it touches the upper one.
     """
-    corners = np.asarray(vertices, dtype=np.float64)[faces]
-    order = np.argsort(places_on_curve(corners.mean(axis=1)), kind="stable")
-    corners = np.ascontiguousarray(corners[order])
-    ways = cross_products(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3))
-    ways = unit_vectors(ways, 1e-300)
-    queries = np.ascontiguousarray(points, dtype=np.float64)
-    wanted = np.zeros_like(queries) if normals is None else np.array(normals, dtype=np.float64)
-    distances = np.empty(len(queries))
-    triangles = np.empty(len(queries), np.int64)
-    weights = np.empty((len(queries), 3))
-    boxes = _boxes(corners)
-    _search(queries, wanted, corners, ways, boxes, wrong_side, distances, triangles, weights)
-    triangles = order[triangles]
-    return SurfacePoints(distances, triangles, faces[triangles], weights)
+    return MeshSearch.of(vertices, faces).closest(points, normals, wrong_side)
 
 
 def places_on_curve(positions: Floats64) -> Integers64:

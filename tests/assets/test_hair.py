@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from scipy.spatial import cKDTree
+from scipy.spatial import cKDTree, geometric_slerp
 
 from risorius.app.anatomy import Anatomy, AnatomyView
 from risorius.app.capture import Capture, CaptureOptions
@@ -21,6 +21,8 @@ from risorius.assets.identities import (
     sample_identity,
 )
 from risorius.assets.identities.hair import CUTS, Fall, Hairline
+from risorius.assets.identities.long_hair import _reach, _turned
+from risorius.geometry.directions import unit_vectors
 from risorius.render import Style
 from tests.assets.checks import check_part
 
@@ -195,3 +197,22 @@ def test_no_slit_is_below_the_hem_of_a_bald_crown():
 def test_no_slit_is_below_the_outline_of_hair_from_above():
     """Layers of hair that is drawn back are closed where a look goes over them."""
     assert gaps(haired("knotted"), slice(0, 330), camera="0,65") < 40
+
+
+def test_strands_turn_along_great_circles(generator):
+    """From each direction to another, as scipy interpolates them one by one."""
+    start, end = unit_vectors(generator.normal(size=(2, 8, 3)).reshape(-1, 3)).reshape(2, 8, 3)
+    shares = np.linspace(0.0, 1.0, 5)
+    wanted = [geometric_slerp(*pair, shares) for pair in zip(start, end, strict=True)]
+    assert _turned(start, end, shares) == pytest.approx(np.array(wanted), abs=1e-12)
+
+
+def test_hair_reaches_over_the_farthest_skin_near_by(generator):
+    """A soft maximum over the points in about a direction, by the plain formula."""
+    solid = 90.0 * unit_vectors(generator.normal(size=(300, 3)))
+    solid *= generator.uniform(0.9, 1.1, (300, 1))
+    ways = unit_vectors(generator.normal(size=(12, 3))).reshape(4, 3, 3)
+    far = np.linalg.norm(solid, axis=1)
+    weights = np.exp(120.0 * (ways @ (solid / far[:, None]).T - 1.0))
+    wanted = ((weights * far**24).sum(axis=-1) / weights.sum(axis=-1)) ** (1.0 / 24.0)
+    assert _reach(ways, solid) == pytest.approx(wanted, rel=1e-12)

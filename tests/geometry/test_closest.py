@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.linalg import norm
 
-from risorius.geometry.closest import closest_points
+from risorius.geometry.closest import MeshSearch, closest_points
 from tests import meshes
 
 
@@ -48,3 +48,16 @@ def test_finds_what_looks_the_same_way():
     ways = np.array([[0, 0, 1.0], [0, 0, -1.0]])
     found = closest_points(points, vertices, faces, ways, wrong_side=1.0)
     assert found.triangles[0] < len(grid.faces) <= found.triangles[1]
+
+
+def test_a_mesh_is_searched_as_often_as_wanted(generator):
+    """Each time with the answer of a search of its own."""
+    vertices = generator.normal(size=(40, 3))
+    faces = np.arange(39).reshape(-1, 3)
+    search = MeshSearch.of(vertices, faces)
+    for count in (5, 1, 0, 9):
+        points, normals = generator.normal(size=(2, count, 3))
+        found = search.closest(points, normals, 0.5)
+        wanted = closest_points(points, vertices, faces, normals, 0.5)
+        for name in ("distances", "triangles", "corners", "weights"):
+            assert (getattr(found, name) == getattr(wanted, name)).all()
