@@ -1,7 +1,7 @@
-"""Lay the folders of this checkout as they are installed: `python tests/as_installed.py FOLDER`.
+"""Arrange the folders of this checkout as installed: `python tests/as_installed.py FOLDER`.
 
-Python itself finds `risorius.refine` in `refine/` by what `pip install --editable` has noted. Tools
-that only look for files, like mypy and import-linter, get a tree of links.
+Python itself finds `risorius.refine` in `refine/` by a note of `pip install --editable`. Tools that
+only search for files, like mypy and import-linter, get a tree of links.
 """
 
 import os
@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def lay(target: Path) -> None:
-    """Make the folder `risorius` in `target` anew, of links to every source file."""
+    """Make the folder `risorius` in `target` again, from links to every source file."""
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
     folders = {"risorius": "risorius", **settings["package-dir"]}
     shutil.rmtree(target / "risorius", ignore_errors=True)
@@ -25,7 +25,7 @@ def lay(target: Path) -> None:
             copy_function=os.symlink,
             ignore=shutil.ignore_patterns("__pycache__", ".*"),
         )
-    for folder in sorted(target.rglob("*/"), reverse=True):  # of sources that have left
+    for folder in sorted(target.rglob("*/"), reverse=True):  # of removed sources
         if folder.is_dir() and not any(folder.iterdir()):
             folder.rmdir()
 

@@ -1,4 +1,4 @@
-"""The command as tests give it, in this process, with its refusals; and Blender, as a reader."""
+"""The command as tests run it in this process, its refusals, and Blender as a reader of files."""
 
 import os
 import signal
@@ -26,7 +26,7 @@ def succeeded(*arguments: object) -> str:
 
 
 def refusal(result: Result) -> str:
-    """The one line that a refusal is, beside the one that says that something is compiled."""
+    """The one line of a refusal, without the line about compilation."""
     assert result.exit_code == 2, result.output
     lines = [line for line in result.output.splitlines() if not line.startswith("Compiling, ")]
     assert len(lines) == 1 and lines[0].startswith("risorius: "), result.output
@@ -36,7 +36,9 @@ def refusal(result: Result) -> str:
 def started(*words: object, **options: Any) -> subprocess.Popen[bytes]:
     """Start Python with these words as a process that hears signals in every shell.
 
-    Those that run behind an `&` or `nohup` ignore them, and pass that on. What it says is kept.
+    Processes that run behind an `&` or `nohup` ignore signals, and their children do, too. The
+    output
+    is kept.
     """
 
     def hear() -> None:
@@ -48,21 +50,21 @@ def started(*words: object, **options: Any) -> subprocess.Popen[bytes]:
 
 
 def positions_in_blender(path: Path, folder: Path, rate: float, frames: int) -> Path:
-    """Where Blender has the vertices of a file, frame by frame, as an .npz; skips without bpy."""
+    """Positions of a file's vertices in Blender, frame by frame, as an .npz; skips without bpy."""
     found = folder / "found.npz"
     _in_blender("positions_in_blender.py", path, found, f"{rate:g}", frames)
     return found
 
 
 def shape_keys_in_blender(path: Path, folder: Path) -> Path:
-    """The shape keys that Blender has of a file, as an .npz; skips without bpy."""
+    """The shape keys of a file in Blender, as an .npz; skips without bpy."""
     found = folder / "keys.npz"
     _in_blender("shape_keys_in_blender.py", path, found)
     return found
 
 
 def _in_blender(program: str, *arguments: object) -> None:
-    """Run a program beside this one by a Python that has bpy; skip without it."""
+    """Run a program of this folder in a Python that has bpy; skip without it."""
     python = os.environ.get("RISORIUS_BLENDER_PYTHON", sys.executable)
     if subprocess.run([python, "-c", "import bpy"], capture_output=True, check=False).returncode:
         pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")

@@ -1,4 +1,4 @@
-"""What tests of a file share: the window, and how each of them finds it; a Dask cluster."""
+"""Fixtures that tests of a file share: the window in a known state; a Dask cluster."""
 
 import functools
 from collections.abc import Iterator
@@ -54,7 +54,7 @@ def viewer() -> Iterator[Viewer]:
 
 @pytest.fixture
 def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Start from the neutral face with refinement on, in a folder of the test's own."""
+    """Start from the neutral face with refinement on, in a folder for this test alone."""
     monkeypatch.chdir(tmp_path)
     xdotool(viewer, "mousemove", 2, 2, "key", "Escape")
     script = replace(script_for(None, "face"), duration=0.5)
@@ -75,7 +75,7 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
 
 @pytest.fixture
 def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
-    """A script of the user's own, of poses and a blink, opened in rows of keys."""
+    """A script of the user's own, with poses and a blink, opened in rows of keys."""
     path = tmp_path / "own.toml"
     path.write_text(HELLO.read_text(encoding="utf-8"))
     viewer.session.work.open(load_script(path))
@@ -88,7 +88,7 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
 
 @pytest.fixture(scope="module")
 def shared_scenes() -> Iterator[None]:
-    """Commands of a file share scenes of the built-in head; each plays from a reset on."""
+    """Commands of a file share scenes of the built-in head; each begins with a reset."""
     built = motion.build_scene
     shared = functools.cache(built)
     with pytest.MonkeyPatch.context() as this_process:

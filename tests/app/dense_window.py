@@ -1,6 +1,6 @@
-"""Opens the window on a screen of twice the density and prints what a test wants to know.
+"""Opens the window on a screen of twice the density and prints what a test needs to know.
 
-A program of its own, because GLFW asks for the density once, when it starts.
+It is a separate program, because GLFW asks for the density once, when it starts.
 """
 
 import contextlib

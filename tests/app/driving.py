@@ -1,4 +1,4 @@
-"""Driving the viewer's window from outside, with real mouse and key events."""
+"""Control of the viewer's window from outside, with real mouse and key events."""
 
 import os
 import shutil
@@ -29,16 +29,16 @@ NEEDS_A_SCREEN = [
 ]
 HELLO = Path(__file__).parents[2] / "docs" / "hello.toml"
 SIZE = (900, 600)  # of the window that tests share
-DEADLINE = 60.0  # [s] for an answer that a quiet machine gives at once
-LEAST_FRAMES = 10  # shown before a deadline counts: one that loads a head may last longer
-STEADY = 3  # frames alike, after which no panel moves by itself
+DEADLINE = 60.0  # [s] limit for an answer that an idle machine gives at once
+LEAST_FRAMES = 10  # at least before a deadline counts: a frame that loads a head may last longer
+STEADY = 3  # number of equal frames after which no panel moves by itself
 
 
 def settle(viewer: Viewer) -> None:
-    """Draw until the window has taken in all that was sent, and panels show all that was set.
+    """Draw until the window has handled all events, and panels show all values that were set.
 
-    When xdotool ends, the screen has handled its events: a question to the screen brings all of
-    it, in order, before the answer. A panel is laid out by sizes of the frame before.
+    When xdotool ends, the screen has handled its events: a question to the screen returns all of
+    them, in order, before the answer. A panel is arranged by sizes of the frame before.
     """
     shown: list[object] = []
     glfw.get_window_pos(viewer.surface.handle)
@@ -53,24 +53,24 @@ def settle(viewer: Viewer) -> None:
 
 
 def replace_state(part: object, fresh: object) -> None:
-    """Make a part of the window, which others hold on to, like a fresh one of its kind."""
+    """Give a part of the window, to which others hold references, the state of a fresh one."""
     vars(part).clear()
     vars(part).update(vars(fresh))
 
 
 def xdotool(viewer: Viewer, *words: object) -> None:
-    """Send real events and let the window take them in."""
+    """Send real events and let the window handle them."""
     subprocess.run(["xdotool", *map(str, words)], check=True, capture_output=True)
     settle(viewer)
 
 
 def press_keys(viewer: Viewer, *keys: str) -> None:
-    """Press keys, one after another, and let the window take them in."""
+    """Press keys, one after another, and let the window handle them."""
     xdotool(viewer, "key", *keys)
 
 
 def until(viewer: Viewer, condition: Callable[[], object], seconds: float = DEADLINE) -> bool:
-    """Show frames until something has come true, or too long: one at least, or it may be old."""
+    """Show frames, at least one, until a condition is true; fail after too long."""
     end = time.monotonic() + seconds
     shown = 0
     while shown < LEAST_FRAMES or time.monotonic() < end:
@@ -82,20 +82,20 @@ def until(viewer: Viewer, condition: Callable[[], object], seconds: float = DEAD
 
 
 def run(session: Session, steps: int) -> None:
-    """Let so many steps of time pass, without a window."""
+    """Simulate this number of time steps, without a window."""
     for _ in range(steps):
         session.advance(STEP)
 
 
 def set_by_hand(session: Session, **values: float) -> None:
-    """Move sliders, and let them go."""
+    """Move sliders, and release them."""
     for name, value in values.items():
         session.set(name, value)
     session.note()
 
 
 def wait_for(condition: Callable[[], object], seconds: float = DEADLINE) -> None:
-    """Wait until another process has done something; AssertionError after too long."""
+    """Wait until a condition on another process is true; AssertionError after too long."""
     end = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end
@@ -109,7 +109,7 @@ def on_screen(viewer: Viewer, x: float, y: float) -> tuple[int, int]:
 
 
 def middle(viewer: Viewer, name: str) -> tuple[int, int]:
-    """Where an item of a panel is, on the screen."""
+    """The middle of a panel's item, on the screen."""
     assert until(viewer, lambda: name in viewer.gui.places), name
     left, top, right, bottom = viewer.gui.places[name]
     return on_screen(viewer, 0.5 * (left + right), 0.5 * (top + bottom))
@@ -122,7 +122,7 @@ def click(viewer: Viewer, name: str, *, times: int = 1) -> None:
 
 
 def drag(viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button: int = 1) -> None:
-    """Press, move and stay pressed."""
+    """Press, move, and keep the button pressed."""
     xdotool(viewer, "mousemove", *place, "mousedown", button)
     xdotool(viewer, "mousemove_relative", "--", *by)
 
@@ -130,7 +130,7 @@ def drag(viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button:
 def drag_and_release(
     viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button: int = 1
 ) -> None:
-    """Press, move and let go there."""
+    """Press, move and release there."""
     drag(viewer, place, by, button=button)
     xdotool(viewer, "mouseup", button)
 
@@ -153,7 +153,7 @@ def clear_search(viewer: Viewer) -> None:
 
 
 def moved(viewer: Viewer) -> float:
-    """How far the farthest vertex is from rest [mm]."""
+    """Distance of the farthest vertex from rest [mm]."""
     return float(np.abs(viewer.session.scene.positions - viewer.session.scene.rest_positions).max())
 
 
@@ -175,7 +175,7 @@ def seen_at(viewer: Viewer, point: np.ndarray) -> tuple[int, int]:
 
 
 def drop(viewer: Viewer, *paths: Path) -> None:
-    """Let another program drop files onto the face; the window must have taken them."""
+    """Let another program drop files onto the face, and wait until the window has taken them."""
     command = [sys.executable, "-m", "tests.app.dropping", "Risorius", *map(str, nose(viewer))]
     source = subprocess.Popen(
         [*command, *map(str, paths)], stderr=subprocess.PIPE, text=True,
@@ -187,25 +187,25 @@ def drop(viewer: Viewer, *paths: Path) -> None:
 
 
 def put(viewer: Viewer, *paths: Path) -> None:
-    """The same, without the other program."""
+    """Drop files without the other program."""
     viewer.drop([str(path) for path in paths])
     settle(viewer)
 
 
 def where_key(viewer: Viewer, place: KeyPlace) -> tuple[float, float]:
-    """Where a key is, in the first row that has it [window units]."""
+    """Place of a key in the first row that has one [window units]."""
     row = next(row for row in viewer.face.timeline.dope_sheet.rows if place in row.places)
     _, top, _, bottom = viewer.gui.places[f"row {row.name}"]
     return viewer.face.time_axis.x(place.time), 0.5 * (top + bottom)
 
 
 def key_at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:
-    """The same, on the screen."""
+    """Place of such a key on the screen."""
     return on_screen(viewer, *where_key(viewer, place))
 
 
 def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -> None:
-    """Click somewhere, with keys held down; never the second half of a double click."""
+    """Click at a place, with keys held down; never as the second half of a double click."""
     usual, viewer.gui.double_click_time = viewer.gui.double_click_time, 0.0
     held = [word for key in keys for word in ("keydown", key)]
     xdotool(viewer, "mousemove", *place, *held)
@@ -215,5 +215,5 @@ def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -
 
 
 def pose_times(viewer: Viewer) -> list[float]:
-    """When the script has poses [s]."""
+    """Times of the script's poses [s]."""
     return [pose.time for pose in viewer.session.script.poses]

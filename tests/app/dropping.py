@@ -1,8 +1,9 @@
-"""A file manager of a hundred lines: it drops files onto a window as a desktop does (XDND).
+"""A small file manager: it drops files onto a window as a desktop does (XDND).
 
-`python -m tests.app.dropping TITLE X Y FILE...` lets go of the files over the place x, y of the
-screen and ends when the window has said that it took them. Source: "Drag-and-Drop Protocol for the
-X Window System", version 5 (freedesktop.org); the parts of a source that offers only file names.
+`python -m tests.app.dropping TITLE X Y FILE...` releases the files over the place x, y of the
+screen, and ends when the window has reported that it took them. Source: "Drag-and-Drop Protocol for
+the X Window System", version 5 (freedesktop.org); the parts of a source that offers only file
+names.
 """
 
 import sys
@@ -31,7 +32,7 @@ class Source:
         self._data = "".join(f"{path.resolve().as_uri()}\r\n" for path in paths).encode()
 
     def drop(self, x: int, y: int) -> None:
-        """Enter the window, move to a place, let go, and hand the names over when asked."""
+        """Enter the window, move to a place, release, and send the names when asked."""
         uris = self._atom("text/uri-list")
         self._window.set_selection_owner(self._atom("XdndSelection"), X.CurrentTime)
         self._tell("XdndEnter", VERSION << 24, uris, 0, 0)
@@ -48,7 +49,7 @@ class Source:
         return int(self._display.intern_atom(name))
 
     def _find(self, window: Any, title: str) -> Any:
-        """The window, among all below this one, that has the words in its title and takes drops."""
+        """The window with these words in its title that accepts drops, among all below this one."""
         for child in window.query_tree().children:
             is_aware = child.get_full_property(self._atom("XdndAware"), Xatom.ATOM) is not None
             found = child if is_aware and title in (child.get_wm_name() or "") else None
@@ -65,7 +66,7 @@ class Source:
         self._display.flush()
 
     def _wait_for(self, name: str) -> Any:
-        """The window's answer; programs that ask for the names meanwhile get them."""
+        """The window's answer; requests for the names are answered meanwhile."""
         end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
             while self._display.pending_events():

@@ -1,4 +1,4 @@
-"""A plain player of glTF files: where every vertex is at a time, by the specification's words."""
+"""A simple player of glTF files: the place of each vertex at any time, by the specification."""
 
 import json
 import struct
@@ -60,7 +60,7 @@ class Player:
         return np.frombuffer(self.blob, kind, int(np.prod(shape)), start).reshape(shape)
 
     def shapes(self, name: str) -> dict[str, Array]:
-        """How far the named targets of a node's mesh move its vertices."""
+        """Displacements of a node's vertices by the named targets of its mesh."""
         mesh = self.file.meshes[self.file.nodes[self.numbers[name]].mesh]
         targets = mesh.primitives[0].targets or []
         names = (mesh.extras or {}).get("targetNames", [])
@@ -71,14 +71,14 @@ class Player:
 
     @property
     def times(self) -> Array:
-        """Of the keyframes [s]."""
+        """Times of the keyframes [s]."""
         assert self.animation is not None
         inputs = {sampler.input for sampler in self.animation.samplers}
         assert len(inputs) == 1
         return self.values(inputs.pop())
 
     def track(self, node: int, path: str) -> Array | None:
-        """What one property of a node is at each keyframe, (N, k); None where it stays."""
+        """Values of one property of a node at each keyframe, (N, k); None if it has no track."""
         for channel in [] if self.animation is None else self.animation.channels:
             if (channel.target.node, channel.target.path) == (node, path):
                 assert self.animation is not None
@@ -110,7 +110,7 @@ class Player:
         return self.values(index).astype(np.float64)
 
     def weights(self, name: str) -> Array:
-        """Of the morph targets at each keyframe, (N, K)."""
+        """Weights of the morph targets at each keyframe, (N, K)."""
         track = self.track(self.numbers[name], "weights")
         assert track is not None
         return track
@@ -142,7 +142,7 @@ class Player:
         return points
 
     def positions(self, name: str, frame: int) -> Array:
-        """Where the vertices of a node are at a keyframe [m], (V, 3)."""
+        """Positions of a node's vertices at a keyframe [m], (V, 3)."""
         node = self.numbers[name]
         points = np.column_stack([self.shape(name, frame), np.ones(self._count(name))])
         if self.file.nodes[node].skin is None:

@@ -1,4 +1,4 @@
-"""Packets written from the descriptions of their formats, apart from the code under test."""
+"""Packets written from the descriptions of their formats, without the code under test."""
 
 import struct
 from collections.abc import Mapping
@@ -25,7 +25,7 @@ SHAPES = tuple(name[0].lower() + name[1:] for name in LIVE_LINK[:52])
 def live_link(
     values: Mapping[str, float] | None, *, subject: str = "somebody", version: int = 6
 ) -> bytes:
-    """A packet of Live Link Face; None for values as when it sees no face."""
+    """A packet of Live Link Face; None for values means that it sees no face."""
     device = b"A0B1C2D3-0000-1111-2222-333344445555"
     name = subject.encode()
     packet = struct.pack(">Bi", version, len(device)) + device

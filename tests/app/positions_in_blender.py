@@ -39,7 +39,7 @@ for frame in range(int(frame_count)):
         mesh.vertices.foreach_get("co", points)
         matrix = np.array(item.evaluated_get(graph).matrix_world)
         x, y, z = (points.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]).T
-        name = item.name.partition(".")[0]  # a number behind it where an empty has the name, too
+        name = item.name.partition(".")[0]  # Blender adds a number if an empty has the same name
         found.setdefault(name, []).append(np.column_stack([x, z, -y]))
 arrays = {}
 for name, shapes in found.items():

@@ -27,7 +27,7 @@ def has_note(notes: tuple[str, ...], words: str) -> bool:
 def take_of(
     kind: str = "Live Link Face", *, seconds: float = 4.0, rate: float = 10.0, **channels: object
 ) -> Take:
-    """A take; a channel is a number that it keeps, or its values."""
+    """A take; each channel is given as one constant number, or as its values."""
     times = np.arange(round(seconds * rate) + 1) / rate
     arrays = {
         name: np.broadcast_to(np.asarray(values, float), times.shape).copy()
@@ -71,11 +71,11 @@ def timecodes(frames: Sequence[float] | Array, rate: int = 60, start: int = 36_0
 
 
 def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object] | Array]:
-    """A raw take of Live Link Face that looks around, its angles in a unit of `unit` radians.
+    """A raw take of Live Link Face: a face looks around; its angles have a unit of `unit` radians.
 
-    Eyes and shapes move as those of the app: pitch = 0.61 down - 0.44 up, yaw = 0.62 in - 0.59 out
-    of the left eye, the opposite of the right eye [rad]; + is down and to the subject's right. The
-    axes of the eyeballs stand 4 degrees outwards of where the eyes look.
+    Eyes and shapes move as in the app: pitch = 0.61 down - 0.44 up, yaw = 0.62 in - 0.59 out of the
+    left eye, the opposite of the right eye [rad]; + is down and to the subject's right. The axes of
+    the eyeballs point 4 degrees outward from the gaze.
     """
     time = np.arange(count) / 60.0
     down = 0.3 * np.sin(3.0 * time)

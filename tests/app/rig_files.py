@@ -1,4 +1,4 @@
-"""A head as somebody would bring it: an OBJ with eyes, teeth, tongue, lashes, hair and shirt."""
+"""A typical head of a user: an OBJ with eyes, teeth, tongue, lashes, hair and shirt."""
 
 import json
 from pathlib import Path
@@ -11,11 +11,11 @@ from risorius.app.scenes import FaceScene
 CENTIMETRES = 0.1
 LIBRARY = "Farben für 頭.mtl"
 PICTURE = "Haut für 頭.png"
-FIRST = ("eyeball_left", "tongue")  # parts that stand in front of the skin in the file
+FIRST = ("eyeball_left", "tongue")  # parts that come before the skin in the file
 
 
 def write_whole_head(folder: Path, scene: FaceScene) -> tuple[Path, Path, dict[str, slice]]:
-    """Write the built-in head with its parts, in centimetres; where each one's vertices are.
+    """Write the built-in head with its parts, in centimetres; return the vertices of each part.
 
     The skin has texture coordinates, normals and a material with a picture.
     """

@@ -1,4 +1,4 @@
-"""Run by a Python that has bpy: import an avatar, keep how far each shape key moves vertices.
+"""Run by a Python that has bpy: import an avatar, store the displacements of each shape key.
 
     python shape_keys_in_blender.py AVATAR.glb KEYS.npz
 
@@ -17,7 +17,7 @@ found = {}
 for item in bpy.context.scene.objects:
     if item.type != "MESH" or item.data.shape_keys is None:
         continue
-    mesh = item.name.partition(".")[0]  # a number behind it where an empty has the name, too
+    mesh = item.name.partition(".")[0]  # Blender adds a number if an empty has the same name
     places = {}
     for key in item.data.shape_keys.key_blocks:
         places[key.name] = np.empty(3 * len(item.data.vertices), np.float32)

@@ -22,7 +22,7 @@ def write_wav(path: Path, samples: npt.NDArray[np.float64], rate: int = RATE) ->
 
 
 def noise(seconds: float, rate: int = RATE, *, seed: int = 0) -> npt.NDArray[np.float64]:
-    """Noise that resembles itself at no other time; below 4 kHz, as codecs keep it."""
+    """Noise that never repeats itself; below 4 kHz, because codecs keep that."""
     white = np.random.default_rng(seed).normal(0.0, 0.2, round(seconds * rate))
     low = scipy.signal.butter(4, 4000.0, fs=rate, output="sos")
     return np.asarray(scipy.signal.sosfilt(low, white))

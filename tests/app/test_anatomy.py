@@ -1,4 +1,4 @@
-"""Muscles and skull: sound surfaces that follow the face, and skin that lets them show."""
+"""Muscles and skull: sound surfaces that follow the face, under skin that becomes transparent."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -33,7 +33,7 @@ def studio() -> Iterator[Capture]:
 
 
 def picture(studio, anatomy, **style):
-    """The picture of the face as it is now."""
+    """The picture of the face in its present state."""
     options = replace(studio.options, anatomy=anatomy)
     studio.options = replace(options, style=render.Style(**style))
     return studio.draw_image().astype(int)
@@ -56,7 +56,7 @@ def structures_of(studio, **pose):
 
 
 def check_surface(part):
-    """Finite, with unit normals, and closed: each edge is used as often in either direction."""
+    """Check that a part is finite, closed (each edge used once each way), and has unit normals."""
     assert np.isfinite(part.vertices).all()
     assert np.isfinite(part.colours).all()
     assert 0.0 <= part.colours.min()
@@ -72,7 +72,7 @@ def check_surface(part):
 
 @pytest.mark.slow
 def test_skin_that_hides_everything_is_drawn_as_ever(studio):
-    """At opacity 1, and without anything beneath, every byte is that of the usual picture."""
+    """With opacity 1, or with nothing beneath, every byte is that of the usual picture."""
     posed(studio.scene)
     usual = picture(studio, AnatomyView())
     assert np.array_equal(picture(studio, AnatomyView(STRUCTURES, 1.0)), usual)
@@ -93,13 +93,13 @@ def test_surfaces_are_sound(studio, pose):
 
 @pytest.mark.slow
 def test_muscles_swell_and_redden_as_they_contract():
-    """The zygomaticus of a smile is thicker in the middle, and redder, on both sides alike."""
+    """The zygomaticus in a smile is thicker in the middle, and redder, equally on both sides."""
     scene = posed(FaceScene())
     muscles = Muscles.of(scene.face)
     names = [name for name, _ in muscles.names]
 
     def belly(name):
-        """Area of the cross section in the middle [mm2], and how red it is there."""
+        """Area of the cross section in the middle [mm2], and its redness there."""
         first = names.index(name) * ROWS * AROUND + ROWS // 2 * AROUND
         ring = muscles.vertices[first : first + AROUND].astype(float)
         middle = ring - ring.mean(axis=0)
@@ -122,7 +122,7 @@ def test_muscles_swell_and_redden_as_they_contract():
 
 @pytest.mark.slow
 def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path):
-    """They lie in it, a long head's skull is long, and the mandible goes down with the jaw."""
+    """They lie inside it, a long head's skull is long, and the mandible goes down with the jaw."""
     head = fit_head(*stranger().write(tmp_path))
     longer = head.vertices * np.where(head.vertices[:, 2:] < 0.0, [1.0, 1.0, 1.25], 1.0)
     scene = FaceScene(replace(head, vertices=longer))
@@ -144,7 +144,7 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path):
 
 
 def test_the_coarse_head_has_muscles_and_a_skull():
-    """Its vertices are others than the built-in head's, though it names the same points."""
+    """Its vertices differ from the built-in head's, but it names the same points."""
     scene = FaceScene(coarse_head())
     parts = {each.part.name: each.part for each in Anatomy(scene).dissect(BOTH).parts}
     low = scene.rest_positions.min(axis=0) - 12.0
@@ -189,7 +189,7 @@ def test_the_whole_side_is_the_usual_picture(studio, pose, view):
     opened = picture(studio, AnatomyView(STRUCTURES, 0.3, "left"), shadows=False)
     shown = np.abs(opened - usual).max(axis=2) > 24
     at_rest = studio.scene.rest_positions
-    is_midline = (at_rest[:, 0] == 0.0) & (at_rest[:, 2] > 45.0)  # in front, the throat, too
+    is_midline = (at_rest[:, 0] == 0.0) & (at_rest[:, 2] > 45.0)  # in front, including the throat
     midline = studio.scene.positions[is_midline]
     edge = int(pixels_of(studio.camera, midline)[:, 0].min()) - 4
     studio.camera = camera
@@ -198,7 +198,7 @@ def test_the_whole_side_is_the_usual_picture(studio, pose, view):
 
 
 def pixels_of(camera, points):
-    """Where points of the world are in the picture: column and row."""
+    """Column and row in the picture of points of the world."""
     matrix = np.asarray(camera.view_matrix()) @ np.asarray(
         camera.projection_matrix(SIZE[0] / SIZE[1])
     )
@@ -208,11 +208,11 @@ def pixels_of(camera, points):
 
 
 def test_a_mask_is_searched_for_a_neck_once(monkeypatch):
-    """A head without a neck looked for one in each frame: half a second of a dense scan."""
+    """A head without a neck searched for one in each frame: half a second for a dense scan."""
     searched = []
 
     def no_sections(head):
-        """The sections of a mask: none."""
+        """No sections, as for a mask."""
         searched.append(head)
         return []
 

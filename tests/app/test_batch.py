@@ -1,4 +1,4 @@
-"""`risorius batch`: lists are checked whole, lines are done once, and killing loses nothing."""
+"""`risorius batch`: lists are checked completely, lines are done once, and kills lose nothing."""
 
 import csv
 import os
@@ -30,7 +30,7 @@ MADE = ("joy", FILM, "fear.npz")
 
 @pytest.fixture(autouse=True)
 def scripts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A folder of scripts and a list, in which the test stands."""
+    """A folder of scripts and a list, which is the test's working directory."""
     monkeypatch.chdir(tmp_path)
     for pose in POSES:
         Path(f"{pose}.toml").write_text(SCRIPT.format(0.5, pose))
@@ -49,7 +49,7 @@ def rows():
 
 
 def statuses():
-    """What became of the lines, in their order."""
+    """The final status of each line, in order."""
     return [row["status"] for row in rows().values()]
 
 
@@ -90,7 +90,7 @@ def test_a_list_is_done_and_not_done_again():
 
 
 def test_every_wrong_line_is_reported_and_nothing_is_done():
-    """One line for each, with its number; also where lines are in each other's way."""
+    """One message for each, with its number; also for lines that conflict with each other."""
     Path("mine").mkdir()
     Path("mine/notes.txt").write_text("mine")
     Path("clips.txt").write_text(
@@ -142,14 +142,14 @@ def test_a_list_of_nothing(text, message):
 
 
 def test_jobs_and_scheduler_exclude_each_other():
-    """A cluster has the workers that it has."""
+    """A cluster has a fixed number of workers."""
     message = refusal(batch("--jobs", "2", "--scheduler", "tcp://a:1"))
     assert "--jobs is for this computer" in message
 
 
 @pytest.mark.slow
 def test_what_fails_fails_alone():
-    """Exit code 1, the reason in one line and in the summary; it is tried again with --resume."""
+    """Exit code 1, the reason in one line and in the summary; --resume tries it again."""
     Path("silent.wav").write_text("no sound")
     Path("sadness.toml").write_text('sound = "silent.wav"\n' + SCRIPT.format(0.5, "sadness"))
     ended = batch("--jobs", "1")
@@ -165,13 +165,13 @@ def test_what_fails_fails_alone():
 
 @pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1:9", "foo://a:3", "tcp://a:99999"])
 def test_a_scheduler_that_is_not_there(address):
-    """One line, at once."""
+    """An unreachable scheduler is reported in one line, at once."""
     assert "no Dask scheduler answers there" in refusal(batch("--scheduler", address))
 
 
 @pytest.mark.slow
 def test_a_cluster_does_what_is_done_here(cluster):
-    """The same files; a line that fails there fails alone, with the same report."""
+    """The files are the same; a line that fails there fails alone, with the same report."""
     Path("sadness.toml").write_text("duration = [")
     ended = batch("--scheduler", cluster.scheduler_address)
     assert ended.exit_code == 1
@@ -182,7 +182,7 @@ def test_a_cluster_does_what_is_done_here(cluster):
 
 
 def films(count):
-    """A list of so many films, and their names."""
+    """A list of this number of films, and their names."""
     for number in range(count):
         script = SCRIPT.format(1 + number / 20, "amplitude")
         Path(f"{number}.toml").write_text(f'scene = "plane"\n{script}')
@@ -198,7 +198,7 @@ def begun(*arguments):
 
 
 def workers_of(process):
-    """The processes that it has work done in."""
+    """The processes that work for this one."""
     found = []
     for file in Path(f"/proc/{process.pid}/task").glob("*/children"):
         with_any = file.read_text() if file.exists() else ""

@@ -1,4 +1,4 @@
-"""Where a camera stands, from a name or from numbers."""
+"""The place of a camera, from a name or from numbers."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def test_numbers_stand_around_the_middle_of_the_face(scene):
 
 
 def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene):
-    """A camera that stood too near steps back; one that stood further away stays there."""
+    """A camera that is too near moves back; one that is farther away stays there."""
     near = whole_scene(scene, "0,0,4")
     far = whole_scene(scene, "0,0,0.2")
     for camera in (near, far, camera_for(scene, "150,5,1")):
@@ -38,7 +38,7 @@ def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene):
     "text", ["behind", "1", "1,2,3,4", "nan,0", "0,inf", "0,0,0", "0,0,-1", ""]
 )
 def test_what_no_camera_is(scene, text):
-    """Other names and numbers are refused with the allowed ones; nothing is the usual view."""
+    """Other names and numbers are refused with the allowed ones; no word means the usual view."""
     if not text:
         assert camera_for(scene, text).yaw == camera_for(scene, DEFAULT_VIEW).yaw
         return

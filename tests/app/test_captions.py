@@ -1,4 +1,4 @@
-"""Text on pictures lies where it belongs, and nowhere else."""
+"""Text on pictures is in its place, and nowhere else."""
 
 import numpy as np
 
@@ -25,13 +25,13 @@ def test_a_caption_for_each_half_and_a_line_between():
 
 
 def test_a_caption_without_room_is_left_out():
-    """It would lie over the other side, and over the face."""
+    """It would cover the other side, and the face."""
     made = labels(["static", "kahler"], [(0, 0, 30, 200), (30, 0, 370, 200)], has_bar=False)
     assert [x > 300 for x, _, _ in made] == [True]
 
 
 def test_the_bar_shows_the_colours_of_splits_from_one_to_six():
-    """At the upper right, each colour of the palette above the one of fewer splits."""
+    """At the upper right, each colour of the palette is above the one for fewer splits."""
     ((x, y, image),) = labels([], [(0, 0, 400, 200)], has_bar=True)
     assert x > 300
     assert y > 50

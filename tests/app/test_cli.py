@@ -1,4 +1,4 @@
-"""The command line: its outputs, and that mistakes are one line and exit code 2."""
+"""The command line: its outputs, and mistakes as one line with exit code 2."""
 
 from itertools import combinations
 from pathlib import Path
@@ -45,7 +45,7 @@ def test_a_script_becomes_a_film_and_a_sheet(smile, tmp_path):
 
 
 def test_frames_and_one_picture(smile, tmp_path):
-    """A folder gets one file a frame; a .png is the moment that was asked for."""
+    """A folder gets one file for each frame; a .png is the requested moment."""
     frames = tmp_path / "frames"
     still = tmp_path / "still.png"
     size = ("--size", "160x120", "--quiet")
@@ -60,10 +60,10 @@ def test_frames_and_one_picture(smile, tmp_path):
 
 @pytest.mark.slow
 def test_looks_and_refiners_side_by_side(smile, tmp_path):
-    """Each part of a comparison is the picture that its look or refiner would make alone."""
+    """Each part of a comparison is the picture that its look or refiner makes alone."""
 
     def drawn(width, *options):
-        """A picture with these options, and its triangles at most."""
+        """A picture with these options, and its largest number of triangles."""
         picture = tmp_path / "x.png"
         size = ("--size", f"{width}x120", "--quiet")
         said = succeeded("capture", smile, "-o", picture, *size, *options)
@@ -82,7 +82,7 @@ def test_looks_and_refiners_side_by_side(smile, tmp_path):
     both, most = drawn(4 * 160, *options)
     pictures = [picture for picture, _ in alone]
     seen = both[:76]  # above the captions
-    seen[:, [160, 320, 480]] = np.hstack(pictures)[:76, [160, 320, 480]]  # but for lines between
+    seen[:, [160, 320, 480]] = np.hstack(pictures)[:76, [160, 320, 480]]  # except lines between
     apart = np.abs(seen - np.hstack(pictures)[:76]).max(axis=2)
     # The background is dithered; a sample may fall on either side of an edge.
     assert (apart > 2).mean() < 1e-4
@@ -96,7 +96,7 @@ def test_looks_and_refiners_side_by_side(smile, tmp_path):
 
 
 def test_a_script_begins_in_its_first_pose(tmp_path):
-    """A pose at time 0 is there in the first frame: the face is in it, the plane is waving."""
+    """The first frame has the pose of time 0: on the face, and on the waving plane."""
     path = tmp_path / "held.toml"
     for scene, pose in (("face", "joy = 1"), ("plane", "amplitude = 1")):
         path.write_text(f"scene = '{scene}'\nduration = 1\n[[pose]]\ntime = 0\n{pose}\n")
@@ -129,7 +129,7 @@ def test_a_pose_needs_no_script(tmp_path):
 
 @pytest.mark.slow
 def test_persons_and_lights_are_filmed(tmp_path):
-    """Persons and lights: other pictures than without, the same ones every time."""
+    """Persons and lights change the pictures, and give the same ones every time."""
     seen = []
     for words in ("", "--head 3", "--style light=side", "--head ada", "--head 3"):
         asked = f"capture --set joy {words} --size 96x96 --quiet -o".split()
@@ -140,8 +140,8 @@ def test_persons_and_lights_are_filmed(tmp_path):
 
 
 def test_reproduce_table1(tmp_path):
-    """The paper's rows stand beside ours, for face and plane."""
+    """The paper's rows are beside ours, for face and plane."""
     result = risorius("reproduce", "table1", "--rounds", "3", "-o", tmp_path)
-    assert result.exit_code in (0, 1), result.output  # 1 on a machine that is busy with others
+    assert result.exit_code in (0, 1), result.output  # 1 on a busy machine
     for words in ("face, the paper", "3120", "1.75", "plane, refinement alone", "1328", "c_rt"):
         assert words in result.output

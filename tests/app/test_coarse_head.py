@@ -1,4 +1,4 @@
-"""The coarse head moves as the built-in one does, and every look refines it without a crack."""
+"""The coarse head moves like the built-in one, and every look refines it without a crack."""
 
 from itertools import product
 from pathlib import Path
@@ -19,7 +19,7 @@ from risorius.assets.topology import boundary_loops
 from risorius.geometry.rays import crossings
 from tests.app.command_line import refusal, risorius, succeeded
 
-STEPS = 40  # of 1/60 s, after which a pose is reached
+STEPS = 40  # steps of 1/60 s, after which a pose is reached
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def scene():
 
 
 def held(scene, **pose):
-    """Where the vertices are when a pose is held, shape (V, 3) [mm]."""
+    """Positions of the vertices in a held pose, shape (V, 3) [mm]."""
     scene.reset()
     scene.pose(pose)
     for _ in range(STEPS):
@@ -38,7 +38,7 @@ def held(scene, **pose):
 
 
 def gap(scene, positions, upper, lower):
-    """How far two landmarks are apart [mm]."""
+    """Distance between two landmarks [mm]."""
     first, second = positions[scene.landmarks[[upper, lower]]]
     return float(norm(first - second))
 
@@ -49,7 +49,7 @@ def test_coarse_head_has_all_controls_of_the_built_in_one(scene):
 
 
 def test_each_shape_moves_the_coarse_head_sanely(scene):
-    """All 52 of ARKit's move skin, none throws it away, and both halves do the same."""
+    """All 52 of ARKit's move skin within reason, and both halves do the same."""
     shapes = scene.groups["ARKit shapes"]
     assert len(shapes) == 52
     rest = held(scene)
@@ -87,7 +87,7 @@ def test_lips_and_lids_of_the_coarse_head_close(scene):
 
 
 def test_closed_lids_cover_the_eyes_by_every_look(scene):
-    """Seen from in front, as moved and as refined: the paper's rule draws lids apart."""
+    """From in front, unrefined and refined, because the paper's rule draws lids apart."""
     shut = held(scene, blink=1.0)
     for look in (STATIC, "paper", "smooth"):
         refinement = Refinement(refiner=STATIC) if look == STATIC else Refinement(look)
@@ -102,7 +102,7 @@ def test_closed_lids_cover_the_eyes_by_every_look(scene):
 
 
 def test_smile_of_the_coarse_head_lifts_the_corners(scene):
-    """And draws them apart."""
+    """It lifts the corners of the mouth and moves them apart."""
     corners = scene.landmarks[[48, 54]]
     rest = held(scene)[corners]
     smile = held(scene, joy=1.0)[corners]
@@ -111,7 +111,7 @@ def test_smile_of_the_coarse_head_lifts_the_corners(scene):
 
 
 def test_refined_coarse_head_has_no_crack(scene):
-    """By every look, in poses that bend it most; each makes more triangles."""
+    """This holds for every look in the poses that bend it most; each makes more triangles."""
     for look in PRESETS:
         refiner = refiner_for(scene, Refinement(look))
         for pose in ({}, {"joy": 1.0}, {"jaw_open": 1.0}, {"mouthPucker": 1.0}, {"fear": 1.0}):
@@ -152,7 +152,7 @@ def test_splits_beyond_rest_are_where_muscles_pull(scene):
 
 
 def test_border_of_an_opened_mouth_is_refined(scene):
-    """By the look smooth: its edges turn, and would leave the lower lip a V."""
+    """The look smooth refines it: its edges turn, and otherwise the lower lip would stay a V."""
     refiner = refiner_for(scene, Refinement())
     refiner.refine(held(scene, jaw_open=1.0))
     loops = boundary_loops(scene.faces)
@@ -167,11 +167,11 @@ def test_border_of_an_opened_mouth_is_refined(scene):
 
 
 def test_demo_films_the_coarse_head_by_three_looks(monkeypatch):
-    """While it speaks, in clay, with wires; and its expressions on a sheet."""
+    """The films show it speaking, in clay and with wires; a sheet shows its expressions."""
     drawn = []
 
     def note(script, options, **outputs):
-        """In place of drawing, which takes half a minute."""
+        """Note a call instead of drawing, which takes half a minute."""
         drawn.append((script.title, options, outputs))
         return 1
 

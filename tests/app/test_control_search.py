@@ -1,4 +1,4 @@
-"""The search of the Face panel: words of the trade and everyday words find controls."""
+"""The search of the Face panel: technical and everyday words find controls."""
 
 from collections.abc import Iterator
 
@@ -18,7 +18,7 @@ def rows_found(scene: FaceScene, words: str) -> Iterator[tuple[str, list[Row], l
 
 
 def groups_found(scene: FaceScene, words: str) -> set[str]:
-    """The groups in which a search finds all rows."""
+    """The groups whose rows a search finds completely."""
     return {title for title, found, rows in rows_found(scene, words) if found == rows}
 
 
@@ -31,7 +31,7 @@ def groups_found(scene: FaceScene, words: str) -> set[str]:
     ],
 )
 def test_plain_words_find_controls(scene, words, expected):
-    """Everyday words find expressions, units, shapes and muscles, and not much else."""
+    """Everyday words find expressions, units, shapes and muscles, and few other rows."""
     labels = {row.label for _, found, _ in rows_found(scene, words) for row in found}
     assert expected <= labels and len(labels) < 20
 
@@ -56,5 +56,5 @@ def test_words_of_the_trade_find_a_group(scene, words, group):
 
 
 def test_other_words_do_not(scene):
-    """A word of no meaning finds nothing."""
+    """A word without meaning finds nothing."""
     assert not groups_found(scene, "carburettor")

@@ -1,4 +1,4 @@
-"""`risorius dataset`: a set of samples, whole and the same however it was made."""
+"""`risorius dataset`: a complete set of samples, with the same bytes for every way of making it."""
 
 import csv
 import json
@@ -36,7 +36,7 @@ OPTIONS = (
 
 
 def run(folder, *options, count=COUNT):
-    """The command, in this process but for its workers."""
+    """Run the command, in this process except for its workers."""
     return risorius("dataset", "--count", count, "-o", folder, *OPTIONS, *options)
 
 
@@ -62,7 +62,7 @@ def samples(made: Path) -> list[dict[str, Any]]:
 
 
 def test_a_set_has_these_files_and_nothing_else(made, samples):
-    """No picture twice, and no face."""
+    """No picture occurs twice, and no face."""
     message = {"README.md", "dataset.json", "index.csv"}
     assert set(content(made)) == message | {f"{k:06d}{end}" for k in range(COUNT) for end in ENDS}
     assert len({(made / f"{k:06d}.png").read_bytes() for k in range(COUNT)}) == COUNT
@@ -70,7 +70,7 @@ def test_a_set_has_these_files_and_nothing_else(made, samples):
 
 
 def test_a_sample_is_the_same_alone_and_after_others(made, tmp_path):
-    """Byte for byte in another process, in another order."""
+    """It has the same bytes in another process, in another order."""
     request = request_of(made, seed=SEED, size=SIZE, passes=PASSES)
     studio = Studio(request)
     for index in (3, 0):
@@ -85,7 +85,7 @@ def test_a_sample_is_the_same_alone_and_after_others(made, tmp_path):
 
 
 def test_a_damaged_sample_is_made_anew(made, tmp_path):
-    """Labels that are empty, or a picture that is missing: the set is then as it was."""
+    """Labels are empty, or a picture is missing: afterwards the set is as before."""
     folder = tmp_path / "damaged"
     shutil.copytree(made, folder)
     (folder / "000000.json").write_bytes(b"")
@@ -97,7 +97,7 @@ def test_a_damaged_sample_is_made_anew(made, tmp_path):
 
 
 def test_a_sample_counts_when_all_of_its_files_are_whole(made, tmp_path):
-    """With another thing in the place of one of them, the sample is not there."""
+    """If anything else is in the place of one of them, the sample does not count."""
     labels = (made / "000001.json").read_bytes()
     picture = (made / "000001.png").read_bytes()
     instead = [
@@ -133,7 +133,7 @@ def test_a_sample_counts_when_all_of_its_files_are_whole(made, tmp_path):
 
 @pytest.mark.slow
 def test_a_set_can_be_made_longer(made, tmp_path):
-    """To the set that would have been made at once; not shorter."""
+    """The result is the set that would have been made at once; it cannot be made shorter."""
     folder = tmp_path / "short"
     run(folder, count=2)
     assert "2 of them new" in run(folder, "--resume").output
@@ -143,7 +143,7 @@ def test_a_set_can_be_made_longer(made, tmp_path):
 
 
 def test_what_is_no_such_set_is_left_alone(made, tmp_path):
-    """One line, and every file as it was."""
+    """One line reports it, and every file stays unchanged."""
     before = content(made)
     other = tmp_path / "other"
     other.mkdir()
@@ -163,7 +163,7 @@ def test_what_is_no_such_set_is_left_alone(made, tmp_path):
 
 @pytest.mark.slow
 def test_a_set_begins_anywhere(made, tmp_path):
-    """The same samples as in the set from 0 on, to which it can be completed."""
+    """The samples are those of the set from 0 on, and the set can be completed to it."""
     folder = tmp_path / "part"
     assert run(folder, "--first", 2, count=2).exit_code == 0
     for end in ENDS:
@@ -182,7 +182,7 @@ def test_a_set_ends_within_six_digits(tmp_path):
 
 
 def test_jobs_and_scheduler_exclude_each_other(tmp_path):
-    """A cluster has the workers that it has."""
+    """A cluster has a fixed number of workers."""
     message = refusal(run(tmp_path, "--jobs", 2, "--scheduler", "tcp://a:1"))
     assert "--jobs is for this computer" in message
 
@@ -195,7 +195,7 @@ def test_two_cannot_make_one_set(made):
 
 
 def test_labels_agree_with_each_other(made, samples):
-    """Points in space, the camera, points in the picture, and the file of landmarks."""
+    """Points in space, the camera, points in the picture, and the file of landmarks agree."""
     for sample in samples:
         camera = sample["camera"]
         landmarks = sample["landmarks"]
@@ -240,7 +240,7 @@ def test_the_card_lists_what_is_in_the_set(made, samples):
 
 @pytest.mark.slow
 def test_pictures_stand_behind_faces(tmp_path):
-    """Of one colour they are that colour wherever no class is."""
+    """Outside all classes the picture has exactly the one colour that was chosen."""
     pictures = tmp_path / "pictures"
     pictures.mkdir()
     PIL.Image.new("RGB", (100, 50), (10, 200, 30)).save(pictures / "green.png")
@@ -259,14 +259,14 @@ def test_pictures_stand_behind_faces(tmp_path):
         inner &= ~binary_dilation(is_hair, iterations=3)[1:-1, 1:-1]
         assert inner.mean() > 0.2
         off = np.abs(shot.image[1:-1, 1:-1][inner].astype(int) - (10, 200, 30)).max(axis=1)
-        assert (off > 1).mean() < 0.02  # the rim of hair that hangs on the far side
+        assert (off > 1).mean() < 0.02  # the rim of hair on the far side
     assert np.abs(behind["colour"].astype(int) - behind["picture"]).max() <= 2
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("unit", load_table(None).units)
 def test_landmarks_move_further_the_more_of_a_unit(face, unit):
-    """The effect of a label is seen: the farthest landmark goes on with every step, by a tenth."""
+    """The effect of a label is visible: the farthest landmark moves on by a tenth at every step."""
     rest = face.rest_positions[face.landmarks]
     moved = []
     for value in (0.25, 0.5, 0.75, 1.0):
@@ -292,14 +292,14 @@ def apertures_of(face, pose):
 
 @pytest.mark.parametrize("shut", ["AU17 AU15 AU4", "AU24", "AU28", "AU12", "AU43 AU6", "AU43 AU51"])
 def test_what_is_shut_has_no_aperture(face, shut):
-    """Lips that roll inward and lids that are squeezed, whose landmarks lie 1 to 4 mm apart."""
+    """Lips rolled inward and squeezed lids have none, although landmarks lie 1 to 4 mm apart."""
     found = apertures_of(face, dict.fromkeys(shut.split(), 1.0))
     assert found.pop("mouth") < 0.1
     assert all((value < 0.1) == ("AU43" in shut) for value in found.values())
 
 
 def test_apertures_grow_with_what_opens(face):
-    """In proportion from where lips and lids part, each eye for itself, however the head turns."""
+    """They grow in proportion after lips and lids part, for each eye, at any turn of the head."""
     parted = [apertures_of(face, {"AU25": value})["mouth"] for value in (0.25, 0.5, 0.75, 1.0)]
     assert parted[0] < 0.3
     assert np.diff(parted) == approx(1.1, abs=0.3)
@@ -310,7 +310,7 @@ def test_apertures_grow_with_what_opens(face):
 
 
 def test_speech_is_reported_in_units(face):
-    """A viseme of units alone gives them back; a unit that was set counts as it was set."""
+    """A viseme made of units gives these units; a unit that was set keeps its value."""
     face.reset()
     face.pose({"viseme_SS": 0.5, "AU1_left": 0.3})
     units = {name: value for name, value in action_units(face).items() if value > 0.01}

@@ -1,4 +1,4 @@
-"""`risorius dataset --degrade`: blur, noise and JPEG, as the labels have them."""
+"""`risorius dataset --degrade`: blur, noise and JPEG, as labels report them."""
 
 import json
 
@@ -15,13 +15,13 @@ GREY = np.full((120, 120, 3), 128, np.uint8)
 
 
 def test_none_of_it_changes_nothing():
-    """Every byte stays."""
+    """Every byte stays the same."""
     image = np.random.default_rng(1).integers(0, 256, (30, 40, 3)).astype(np.uint8)
     assert np.array_equal(degraded(image, CLEAN), image)
 
 
 def test_noise_deviates_by_as_many_levels():
-    """Of grey, in each channel by itself, and the same for a seed."""
+    """Its deviation is in grey levels, for each channel separately, and the same for a seed."""
     noisy = degraded(GREY, Degradation(0.0, 6.0, None, 5))
     assert noisy.std(axis=(0, 1)) == pytest.approx(6.0, rel=0.05)
     channels = noisy.reshape(-1, 3).astype(float)
@@ -31,7 +31,7 @@ def test_noise_deviates_by_as_many_levels():
 
 
 def test_blur_is_that_of_light():
-    """In the middle of an edge there is half of the light, two deviations off hardly any."""
+    """The middle of an edge has half of the light; two deviations away there is hardly any."""
     image = np.zeros((9, 80, 3), np.uint8)
     image[:, 40:] = 255
     row = degraded(image, Degradation(3.0, 0.0, None, 5))[4, :, 0]
@@ -41,7 +41,7 @@ def test_blur_is_that_of_light():
 
 
 def test_jpeg_is_unpacked_again():
-    """A lower quality is further from the picture."""
+    """A lower quality differs more from the picture."""
     image = np.kron(np.random.default_rng(1).integers(0, 256, (16, 16, 3)), np.ones((4, 4, 1)))
     image = image.astype(np.uint8)
     errors = [
@@ -53,7 +53,7 @@ def test_jpeg_is_unpacked_again():
 
 @pytest.mark.slow
 def test_only_pictures_and_one_label_differ(tmp_path):
-    """Faces stay as they are without it; rows of a table choose, and the card has the option."""
+    """Faces stay unchanged; rows of a table choose degradations, and the card names the option."""
     table = tmp_path / "my.toml"
     table.write_text("[degradations]\nblurred = 1\nnoisy = 1\nnoise = [4, 4]\ncompressed = 0\n")
     options = ("--count", 1, "--size", "80x64", "--sample", table, "--quiet")

@@ -1,4 +1,4 @@
-"""What samples of a data set are, before anything is drawn: the table, and draws from it."""
+"""Samples of a data set before anything is drawn: the table, and random choices from it."""
 
 import itertools
 from dataclasses import replace
@@ -19,7 +19,7 @@ TABLE = load_table(None)
 
 @pytest.fixture(scope="module")
 def limits() -> dict[str, tuple[float, float]]:
-    """Those of the face's controls."""
+    """Limits of the face's controls."""
     return FaceScene().limits
 
 
@@ -32,7 +32,7 @@ def units_of(sample):
 
 @given(seed=st.integers(0, 2**32 - 1), index=st.integers(0, 999_999))
 def test_any_sample_is_a_face_that_can_be_made(limits, seed, index):
-    """Controls within their limits, nothing that excludes another, the camera in its ranges."""
+    """Controls are within limits, exclude none of each other, and the camera is in its ranges."""
     sample = draw(TABLE, seed, index)
     for name, value in sample.controls.items():
         low, high = limits[name]
@@ -40,7 +40,7 @@ def test_any_sample_is_a_face_that_can_be_made(limits, seed, index):
     units = units_of(sample)
     for pair in itertools.combinations(units, 2):
         assert frozenset(pair) not in TABLE.excluded.pairs
-    assert len(units) <= MOST_UNITS + 2  # of an expression, and a blink
+    assert len(units) <= MOST_UNITS + 2  # units of an expression, and a blink
     if sample.kind == "neutral":
         assert units <= {"AU45"}
     for name, (low, high) in vars(TABLE.camera).items():
@@ -58,7 +58,7 @@ def test_a_sample_follows_from_seed_and_number_alone(seed, index):
 
 @pytest.fixture(scope="module")
 def many() -> list[Sample]:
-    """Samples enough for shares: of a share of a third, the deviation is 0.01."""
+    """Enough samples for shares: for a share of a third, the deviation is 0.01."""
     return [draw(TABLE, 1, index) for index in range(2000)]
 
 
@@ -80,7 +80,7 @@ def read(tmp_path, text):
 
 
 def test_a_table_of_ones_own_replaces_sections(tmp_path):
-    """The one that is printed changes nothing; of some sections rows that are left out stay."""
+    """The printed table changes nothing; some sections keep rows that the own table leaves out."""
     printed = risorius("dataset", "--sample-table").output
     assert read(tmp_path, printed) == TABLE
     own = read(tmp_path, "[units]\nAU12 = 1.0\n[kinds]\nunit = 1\n[persons]\ncount = 3\n")
@@ -102,7 +102,7 @@ def test_a_table_of_ones_own_replaces_sections(tmp_path):
     ],
 )
 def test_a_wrong_table_is_reported_in_one_line(tmp_path, text, message):
-    """File, section and row, and the allowed values."""
+    """The line names file, section and row, and the allowed values."""
     with pytest.raises(UserError) as raised:
         read(tmp_path, text)
     assert str(raised.value).startswith(str(tmp_path / "my.toml"))

@@ -1,4 +1,4 @@
-"""A set in shards, and on a cluster: the bytes of the set that one process makes."""
+"""A set in shards, and on a cluster: its bytes are those of a set from one process."""
 
 import csv
 import io
@@ -69,7 +69,7 @@ def members(path):
 
 
 def test_shards_hold_the_files_of_the_set(loose, packed):
-    """By names that WebDataset parts at the first dot, and nothing is left beside them."""
+    """WebDataset splits their names at the first dot; no other files are left."""
     shards = [f"shard-{k:06d}{end}" for k in range(3) for end in (".tar", ".json")]
     assert {*content(packed)} == {"README.md", "dataset.json", "index.csv", *shards}
     found = {}
@@ -81,7 +81,7 @@ def test_shards_hold_the_files_of_the_set(loose, packed):
 
 
 def test_the_index_says_where_samples_are(loose, packed):
-    """By offset and length the part of a tar file is a tar file with that sample alone."""
+    """The part of a tar file at offset and length is a tar file with this sample alone."""
     with (packed / "index.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     for row in rows:
@@ -115,7 +115,7 @@ def test_the_reader_reads_both(loose, packed, kind):
 
 
 def test_the_page_reads_a_set_as_it_says(loose, tmp_path):
-    """Its lines, pasted, run anywhere: with numpy and Pillow alone."""
+    """Its example lines run anywhere: with numpy and Pillow alone."""
     page = (Path(__file__).parents[2] / "docs" / "dataset.md").read_text("utf-8")
     blocks = re.findall(r"(?:^    .*\n|^\n)+", page, re.MULTILINE)
     (block,) = [each for each in blocks if "risorius.faces" in each]
@@ -142,7 +142,7 @@ def test_the_page_reads_a_set_as_it_says(loose, tmp_path):
     ],
 )
 def test_a_damaged_shard_is_made_anew(packed, tmp_path, end):
-    """What can be read of it counts; the set has the same bytes then."""
+    """Its readable samples count; afterwards the set has the same bytes."""
     folder = tmp_path / "set"
     shutil.copytree(packed, folder)
     shard = folder / "shard-000000.tar"
@@ -162,7 +162,7 @@ def test_a_damaged_shard_is_made_anew(packed, tmp_path, end):
 
 
 def test_a_shard_grows_with_its_set(loose, packed, tmp_path):
-    """The last one is taken apart, and packed again with the samples that came on top."""
+    """The last shard is unpacked, and packed again with the new samples."""
     folder = SetFolder(tmp_path)
     for file in loose.glob("0*"):
         shutil.copy(file, tmp_path)
@@ -179,7 +179,7 @@ def test_a_shard_grows_with_its_set(loose, packed, tmp_path):
 
 
 def test_a_process_elsewhere_hands_samples_back(loose, tmp_path):
-    """Where it does not see the folder of the set: the files, as they would be there."""
+    """A process that cannot see the set's folder returns the files as they would be there."""
     brought = []
     make_samples(Share(request_for(tmp_path / "nowhere"), (1,), "seen-0"), brought.append)
     (sample,) = brought
@@ -194,14 +194,14 @@ def test_a_process_elsewhere_hands_samples_back(loose, tmp_path):
 
 
 def test_another_release_is_refused(tmp_path):
-    """It would draw other pictures."""
+    """Another release would draw other pictures."""
     request = replace(request_for(tmp_path), version="0.0.1")
     with pytest.raises(UserError, match=r"the set needs 0\.0\.1; install the same"):
         make_samples(Share(request, (1,)), print)
 
 
 def test_persons_of_a_seed_are_nobody_elses():
-    """Their numbers are those of other commands, with the shape and colours that these have."""
+    """Their numbers are those of other commands, with the same shape and colours."""
     table = load_table(None)
     persons = [{draw(table, seed, k).person for k in range(300)} for seed in (0, 1, 7)]
     assert all(len(some) > 100 for some in persons)
@@ -238,7 +238,7 @@ def test_the_table_chooses_persons(tmp_path, text, is_so):
 
 @pytest.mark.slow
 def test_a_cluster_hands_bytes_back(loose, cluster, tmp_path):
-    """Where its workers do not see the folder."""
+    """This is for workers that do not see the folder."""
     folder = SetFolder(tmp_path / "set")
     (folder.path / UNFINISHED).mkdir(parents=True)
     share = Share(request_for(tmp_path / "nowhere"), (0, 1))
@@ -251,7 +251,7 @@ def test_a_cluster_hands_bytes_back(loose, cluster, tmp_path):
 
 @pytest.mark.slow
 def test_a_cluster_loses_nothing_with_its_workers(packed, tmp_path):
-    """Computers are lost at random moments, and others join; the set has the same bytes."""
+    """Computers leave and join at random moments; the set has the same bytes."""
     distributed = pytest.importorskip("distributed")
     folder = tmp_path / "set"
     is_made = threading.Event()
@@ -262,7 +262,7 @@ def test_a_cluster_loses_nothing_with_its_workers(packed, tmp_path):
 
         def lose_computers() -> None:
             while not is_made.wait(0.05) and not any(folder.glob("[0-9]*.json")):
-                pass  # a worker is lost amid the work, however fast the machine is
+                pass  # a worker is lost during work, however fast the machine is
             workers[0].kill()
             workers.append(joined(address))
             while len(workers) < 2 + KILLS and not is_made.wait(moments.uniform(8.0, 16.0)):

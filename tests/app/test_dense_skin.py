@@ -1,4 +1,4 @@
-"""Heads of too many triangles: a simplified mesh is simulated, their own triangles follow it."""
+"""Heads with too many triangles: a simplified mesh is simulated, and their own triangles follow."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ from tests.heads import stranger
 
 @pytest.fixture(scope="module")
 def dense() -> FaceScene:
-    """A head above the limit, which is lower here than it is."""
+    """A head above the limit, which is set low here."""
     other = stranger()
     colours = np.tile(np.array([180, 140, 120], np.uint8), (len(other.mesh.vertices), 1))
     mesh = Mesh(other.mesh.vertices, other.mesh.faces, colours=colours)
@@ -32,7 +32,7 @@ def dense() -> FaceScene:
 
 
 def test_its_own_triangles_are_drawn(dense):
-    """All triangles of the file are there, where the file has them, and few are simulated."""
+    """All triangles of the file are there, in their places, and few are simulated."""
     other = stranger()
     assert np.array_equal(dense.faces, other.mesh.faces)
     rest = dense.head.to_millimetres.points(other.mesh.vertices)
@@ -45,7 +45,7 @@ def test_its_own_triangles_are_drawn(dense):
 
 
 def test_it_follows_and_comes_back(dense):
-    """It smiles as the simulated mesh does, a twin stays where it was, and rest is rest."""
+    """It smiles like the simulated mesh, its copy stays still, and it returns to rest."""
     dense.reset()
     twin = dense.clone()
     dense.pose({"joy": 1.0, "jaw_open": 0.5})
@@ -84,7 +84,7 @@ def test_it_follows_when_somebody_looks(dense, monkeypatch):
 
 
 def test_its_simplified_mesh_is_a_head(dense):
-    """It moves as the mesh under the dense skin does, with the same picture in another layout."""
+    """It moves like the mesh under the dense skin, with the same picture in another layout."""
     alone = FaceScene(simplified_head(dense.head))
     assert np.array_equal(alone.faces, dense.simulation.faces)
     for scene in (alone, dense):
@@ -106,7 +106,7 @@ def test_its_simplified_mesh_is_a_head(dense):
 
 
 def test_lips_keep_their_own_vertices(dense):
-    """An opened mouth parts the lips: no vertex of one goes with the other."""
+    """An open mouth parts the lips: no vertex of one lip goes with the other."""
     dense.reset()
     dense.pose({"jaw_open": 1.0})
     for _ in range(30):
@@ -121,7 +121,7 @@ def test_lips_keep_their_own_vertices(dense):
 
 
 def test_a_fold_of_the_scan_stays_on_its_own_side():
-    """Where a scan is folded a vertex looks the wrong way; it goes with its neighbours."""
+    """In a fold of a scan a vertex may face the wrong way; it moves with its neighbours."""
     sheet, triangles = make_grid(4, 4, 8.0)
     gap = np.array([0.0, 0.0, 1.0])
     coarse = Mesh(
@@ -142,7 +142,7 @@ def test_a_fold_of_the_scan_stays_on_its_own_side():
 
 
 def growth(faces, positions, rest):
-    """How much longer than at rest the edge is that grew most [mm]."""
+    """Growth of the edge that grew most since rest [mm]."""
     lengths = [
         norm(points[faces] - points[np.roll(faces, 1, axis=1)], axis=2)
         for points in (positions, rest)

@@ -1,4 +1,4 @@
-"""`risorius doctor`: its verdict is what works, for every way in which something may be missing."""
+"""`risorius doctor`: its verdict agrees with what works, whichever parts are missing."""
 
 import itertools
 from pathlib import Path
@@ -82,7 +82,7 @@ def test_refinement_on_the_card(able, is_software, message, monkeypatch):
 
 @pytest.mark.parametrize("missing", [(), ("offscreen",), ("window", "films")])
 def test_offscreen_alone(ill, missing):
-    """A command that nobody asked for is neither missing nor there."""
+    """A command that was not asked for is reported neither as missing nor as there."""
     ill(*missing)
     result = ask("--offscreen")
     assert result.exit_code == (2 if "offscreen" in missing else 0)
@@ -93,7 +93,7 @@ def test_offscreen_alone(ill, missing):
 
 @pytest.mark.parametrize("program", ["exec sleep 100", "exec >&-; exit 3", None])
 def test_an_ffmpeg_that_does_not_answer(ill, tmp_path, monkeypatch, program):
-    """One that hangs, fails or is not there is missing, and nobody waits for long."""
+    """One that hangs, fails or does not exist counts as missing, without a long wait."""
     ill()
     monkeypatch.setattr(doctor, "PATIENCE", 0.3)
     fake = tmp_path / "ffmpeg"

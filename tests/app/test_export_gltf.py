@@ -1,4 +1,4 @@
-"""glTF files hold the whole clip: every vertex at every frame, read back by other readers."""
+"""glTF files hold the whole clip: every vertex at every frame, read by other readers."""
 
 import functools
 import io
@@ -26,7 +26,7 @@ from risorius.geometry.normals import vertex_normals
 from .command_line import positions_in_blender
 from .glb_player import Player
 
-NEAR = 0.1e-3  # [m] as promised
+NEAR = 0.1e-3  # [m] as the documentation promises
 SCRIPT = """
 title = "All that moves"
 [[pose]]
@@ -57,12 +57,12 @@ mouthSmileLeft = [{ time = 0.0, value = 0.0 }, { time = 0.5, value = 0.8 }]
 
 @pytest.fixture(scope="module")
 def clip() -> Clip:
-    """A face that moves all it has."""
+    """A face that moves all its parts."""
     return record(parse_script(SCRIPT, source="test"), None, 24.0, progress=False)
 
 
 def written(clip, path):
-    """Write the clip; what there is to say of it."""
+    """Write the clip; return the remark on it."""
     return write(clip, path, format_for(path, None), ExportRequest())
 
 
@@ -79,7 +79,7 @@ def glb(clip: Clip, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def farthest(player, clip, name):
-    """How far any vertex of a surface is off in any frame [m]."""
+    """Largest error of any vertex of a surface in any frame [m]."""
     surface = next(each for each in clip.surfaces if each.name == name)
     return max(
         float(norm(player.positions(name, frame) - surface.at(frame) / 1000.0, axis=1).max())
@@ -93,7 +93,7 @@ def test_every_vertex_is_where_the_clip_has_it(clip, glb):
     assert {surface.name for surface in clip.surfaces} <= set(player.numbers)
     assert np.array_equal(player.times, clip.times.astype(np.float32))
     moved = np.ptp(np.stack([clip.skin.at(k) for k in range(clip.frame_count)]), axis=0)
-    assert moved.max() > 50.0  # mm: the check below would see a face that stands still
+    assert moved.max() > 50.0  # mm: the check below would notice a face that stands still
     for surface in clip.surfaces:
         assert farthest(player, clip, surface.name) < NEAR, surface.name
         assert np.array_equal(
@@ -102,7 +102,7 @@ def test_every_vertex_is_where_the_clip_has_it(clip, glb):
 
 
 def test_normals_follow_the_motion(clip, glb):
-    """Engines add up normals: nearly everywhere they are those of the moved mesh."""
+    """Engines add up normals: nearly everywhere the sums are those of the moved mesh."""
     player = Player(glb)
     for frame in range(0, clip.frame_count, 4):
         shape = player.shape("skin", frame)
@@ -114,7 +114,7 @@ def test_normals_follow_the_motion(clip, glb):
 
 
 def test_the_mesh_at_rest_is_read_by_trimesh(clip, glb):
-    """A reader without morph targets shows the neutral face, in metres, and whose parts fit."""
+    """A reader without morph targets shows the neutral face, in metres, with parts that fit."""
     scene = trimesh.load_scene(glb, process=False)
     assert len(scene.geometry) == len(clip.surfaces)
     skin = scene.geometry["skin"]
@@ -127,7 +127,7 @@ def test_the_mesh_at_rest_is_read_by_trimesh(clip, glb):
 
 
 def test_the_file_is_as_validators_want_it(glb):
-    """Chunks, alignment, bounds, counts, weights; unit normals, shares that add up to 1."""
+    """Chunks, alignment, bounds, counts and weights; unit normals, and shares with the sum 1."""
     data = glb.read_bytes()
     magic, version, length = struct.unpack_from("<4sII", data)
     assert (magic, version, length) == (b"glTF", 2, len(data))
@@ -202,7 +202,7 @@ def test_the_texture_is_the_right_way_up(clip, glb):
     there = (np.column_stack([uv[:, 0], 1.0 - uv[:, 1]]) * size).astype(int).clip(0, size - 1)
     expected = albedo[there[:, 1], there[:, 0]].astype(np.float64)
     assert np.abs(image[here[:, 1], here[:, 0]] - expected).mean() < 4.0
-    assert expected.std(axis=0).min() > 8.0  # or any coordinate would do
+    assert expected.std(axis=0).min() > 8.0  # otherwise any coordinate would pass
 
 
 def test_fine_shape_is_a_normal_map(clip, glb):
@@ -228,7 +228,7 @@ def test_fine_shape_is_a_normal_map(clip, glb):
         slope = (fine.slopes[row, column] - 128.0) * fine.steepest / 127.0
         uv_steps = np.diff(uv, axis=0)
         if abs(np.linalg.det(uv_steps)) < 4.0 / size.prod():
-            continue  # smaller than a few texels: another may have drawn there
+            continue  # smaller than a few texels: others may have drawn there
         along, aside = np.linalg.solve(uv_steps, np.diff(points, axis=0))
         outward = np.cross(along, aside)
         normal = outward / norm(outward)
@@ -243,7 +243,7 @@ def test_fine_shape_is_a_normal_map(clip, glb):
 
 
 def test_vertex_colours_are_linear_light(clip, glb):
-    """glTF has linear colours: shown again as sRGB, they are as the eyes were painted."""
+    """glTF has linear colours: converted to sRGB, they are the painted colours of the eyes."""
     painted = next(s.colours for s in clip.surfaces if s.name == "eyeball_left")
     assert painted is not None
     light = Player(glb).attribute("eyeball_left", "COLOR_0").astype(np.float64)
@@ -253,7 +253,7 @@ def test_vertex_colours_are_linear_light(clip, glb):
 
 
 def test_scenes_without_a_face_are_written_too(tmp_path):
-    """A sheet by its targets."""
+    """A sheet is written with its targets."""
     text = 'scene = "plane"\n[[pose]]\ntime = 0\n[[pose]]\ntime = 0.6\namplitude = 1\nphase = 0.4\n'
     clip = record(parse_script(text, source="test"), None, 20.0, progress=False)
     assert written(clip, tmp_path / "sheet.glb").startswith("0 named targets and ")
@@ -264,7 +264,7 @@ def test_scenes_without_a_face_are_written_too(tmp_path):
 
 @pytest.mark.blender
 def test_blender_sees_the_same(clip, glb, tmp_path):
-    """Imported and stepped through in Blender, each vertex is where the clip has it."""
+    """Blender imports it and steps through it; each vertex is in the clip's place."""
     found = positions_in_blender(glb, tmp_path, 24.0, clip.frame_count)
     with np.load(found) as positions:
         assert set(positions) >= {surface.name for surface in clip.surfaces}
@@ -276,7 +276,7 @@ def test_blender_sees_the_same(clip, glb, tmp_path):
 
 @pytest.mark.slow
 def test_what_targets_cannot_follow_is_reported(clip, tmp_path, monkeypatch):
-    """A clip that needs more targets than may be is written, and the error that remains is said."""
+    """A clip that needs more targets than allowed is written, and the remaining error reported."""
     monkeypatch.setattr(gltf, "decompose", functools.partial(decompose, most=4))
     remark = written(clip, tmp_path / "rough.glb")
     player = Player(tmp_path / "rough.glb")
@@ -288,7 +288,7 @@ def test_what_targets_cannot_follow_is_reported(clip, tmp_path, monkeypatch):
 
 
 def test_targets_have_the_names_and_the_forms_of_an_avatar(clip, glb):
-    """ARKit's 52, each where the simulation rests with it alone; others hold what is left."""
+    """ARKit's 52 are the rest shapes of single controls in the simulation; others hold the rest."""
     player = Player(glb)
     names = player.target_names("skin")
     assert tuple(names[:52]) == ARKIT
@@ -303,13 +303,13 @@ def test_targets_have_the_names_and_the_forms_of_an_avatar(clip, glb):
 
 
 def test_named_targets_alone_follow_the_motion(clip, tmp_path):
-    """Without residual ones; the line says how far off that is, and no weight leaves 0 to 1."""
+    """Without residual targets, a line reports the error, and all weights are from 0 to 1."""
     path = tmp_path / "named.glb"
     remark = write(clip, path, format_for(path, None), ExportRequest(named_only=True))
     player = Player(path)
     assert tuple(player.target_names("skin")) == ARKIT
     assert "52 named targets and 0 residual ones" in remark
-    assert 0.5 < 1000.0 * farthest(player, clip, "skin") < 8.0  # of 50 that the skin moves
+    assert 0.5 < 1000.0 * farthest(player, clip, "skin") < 8.0  # of 50 mm that the skin moves
     # No shape of ARKit's moves the tongue but tongueOut.
     error = 1000.0 * farthest(player, clip, "tongue")
     assert f"at most {error:.2f} mm from the simulation (tongue)" in remark
@@ -318,7 +318,7 @@ def test_named_targets_alone_follow_the_motion(clip, tmp_path):
 
 
 def test_weights_say_what_their_names_say(tmp_path):
-    """A take of ARKit's shapes comes back under their names, as late as the face shows it."""
+    """A take of ARKit's shapes comes back under their names, with the face's delay."""
     script = parse_script(TAKE, source="test")
     path = tmp_path / "take.glb"
     written(record(script, None, 12.0, progress=False), path)
@@ -332,7 +332,7 @@ def test_weights_say_what_their_names_say(tmp_path):
 
 @pytest.mark.slow
 def test_our_own_file_is_a_head_to_fit(head, glb, tmp_path):
-    """Its hair is cards that are no surface; the skin is fitted, and stands as it was."""
+    """Its hair is cards without a closed surface; the skin is fitted, and stays in place."""
     marks = tmp_path / "own.json"
     marks.write_text(json.dumps((head.vertices[head.landmarks] / 1000.0).tolist()))
     fitted = fit_head(glb, marks)

@@ -1,4 +1,4 @@
-"""Exported meshes, read back by readers that are not ours, and compared in millimetres."""
+"""Exported meshes, read by readers of other projects, and compared in millimetres."""
 
 import struct
 import zipfile
@@ -28,7 +28,7 @@ Points = npt.NDArray[np.float64]
 
 RATE = 24.0  # frames a second
 FRAMES = 8
-NEAR = 1e-3  # [mm] that single precision may be off in a head's size
+NEAR = 1e-3  # [mm] largest error of single precision at a head's size
 METRES = 0.001
 SCRIPT = """
 duration = 0.3
@@ -47,12 +47,12 @@ REFINED = Refinement()
 
 @pytest.fixture(scope="module")
 def clip() -> Clip:
-    """A face that moves all it has."""
+    """A face that moves all its parts."""
     return record(parse_script(SCRIPT, source="test"), FaceScene(), RATE, progress=False)
 
 
 def written(clip, path, name=None, refinement=None):
-    """The file that a clip was written to."""
+    """Write a clip to a file."""
     write(clip, path, format_for(path, name), ExportRequest(refinement, progress=False))
     return path
 
@@ -69,7 +69,7 @@ def refined_skins(clip):
 
 
 def is_near(found, wanted, unit=1.0):
-    """Whether points in a unit of so many metres a ... are where they should be, in order."""
+    """Whether points, in a unit of this number of metres, are in the right places, in order."""
     points = np.asarray(found, np.float64)
     return points.shape == wanted.shape and float(np.abs(points / unit - wanted).max()) < NEAR
 
@@ -78,7 +78,7 @@ def is_near(found, wanted, unit=1.0):
 
 
 def usd_points(stage, name, frame):
-    """Where USD has a mesh's points [mm]."""
+    """Places of a mesh's points in USD [mm]."""
     prim = stage.GetPrimAtPath(f"/face/{name}")
     points = np.array(UsdGeom.Mesh(prim).GetPointsAttr().Get(frame), np.float64)
     matrix = np.array(UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(frame))
@@ -127,7 +127,7 @@ def test_usd_has_the_texture_and_colours(clip, tmp_path):
 
 
 def test_usd_is_sound(clip, tmp_path):
-    """Pixar's own validators, all of them, have nothing to say of the package."""
+    """Pixar's own validators report nothing about the package."""
     validation = pytest.importorskip("pxr.UsdValidation")
     try:
         validators = validation.ValidationRegistry().GetOrLoadAllValidators()
@@ -140,7 +140,7 @@ def test_usd_is_sound(clip, tmp_path):
 
 
 def test_usd_has_the_refined_skin(clip, tmp_path):
-    """Triangles of each frame's own, with normals and coordinates for every point."""
+    """Each frame has its own triangles, with normals and coordinates for every point."""
     path = written(clip, tmp_path / "fine.usdz", refinement=REFINED)
     stage = Usd.Stage.Open(str(path))
     mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/face/skin"))
@@ -181,7 +181,7 @@ def vtk_steps(path):
 
 
 def test_vtkhdf_has_every_frame(clip, tmp_path):
-    """VTK finds times, points, triangles and what rides along; the triangles are stored once."""
+    """VTK finds times, points, triangles and attributes; the triangles are stored once."""
     path = written(clip, tmp_path / "face.vtkhdf")
     steps = vtk_steps(path)
     assert np.allclose([time for time, _ in steps], np.arange(FRAMES) / RATE)
@@ -191,7 +191,7 @@ def test_vtkhdf_has_every_frame(clip, tmp_path):
         assert is_near(points, whole(clip, frame))
         lengths = norm(vtk_to_numpy(data.GetPointData().GetArray("Normals")), axis=1)
         assert np.allclose(lengths, 1.0, atol=1e-5)
-        if vtkVersion().GetVTKVersion() >= "9.5":  # that is what VTK lights it by
+        if vtkVersion().GetVTKVersion() >= "9.5":  # VTK takes its lighting from that
             assert data.GetPointData().GetNormals() is not None
         moved = vtk_to_numpy(data.GetPointData().GetArray("displacement"))
         assert np.abs(moved - (whole(clip, frame) - rest)).max() < NEAR
@@ -217,7 +217,7 @@ def obj_rows(path, name):
 
 
 def test_pc2_moves_the_mesh_beside_it(clip, tmp_path):
-    """By its published layout: a head of 32 bytes, then little-endian floats, metres."""
+    """It follows the published layout: a header of 32 bytes, then little-endian floats, metres."""
     data = written(clip, tmp_path / "face.pc2").read_bytes()
     head = struct.unpack("<12siiffi", data[:32])
     vertices = len(whole(clip, 0))
@@ -307,7 +307,7 @@ def test_npz_has_all_of_a_clip(clip, tmp_path):
 @pytest.mark.blender
 @pytest.mark.parametrize("name", ["face.usdz", "fine.usdz", "face.pc2"])
 def test_blender_sees_the_same(clip, tmp_path, name):
-    """Imported and stepped through in Blender, each vertex is where the clip has it."""
+    """Blender imports it and steps through it; each vertex is in the clip's place."""
     is_fine = name.startswith("fine")
     path = written(clip, tmp_path / name, refinement=REFINED if is_fine else None)
     found = positions_in_blender(path, tmp_path, RATE, FRAMES)

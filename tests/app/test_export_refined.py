@@ -42,7 +42,7 @@ def clip() -> Clip:
 
 @pytest.fixture(scope="module")
 def refined(clip: Clip) -> RefinedClip:
-    """The same with the skin of the paper's rule."""
+    """The same clip with skin refined by the paper's rule."""
     return with_refined_skin(clip, Refinement("paper"))
 
 
@@ -63,7 +63,7 @@ def test_one_topology_that_no_frame_is_finer_than(clip, refined):
 
 
 def test_frames_are_those_of_a_refiner_with_the_same_splits(clip, refined):
-    """Vertices and normals are the refiner's own in every frame; parts stay as they were."""
+    """Vertices and normals are the refiner's own in every frame; parts stay unchanged."""
     scene = clip.scene
     changing = refine.create(
         "kahler", scene.faces, scene.rest_positions, scene.skin.uv, scene.skin.face_uv
@@ -89,7 +89,7 @@ def test_frames_are_those_of_a_refiner_with_the_same_splits(clip, refined):
 
 
 def test_gltf_plays_the_refined_skin(refined, tmp_path):
-    """Morph targets and the bone of the head put the refined vertices within a tenth of a mm."""
+    """Morph targets and the head's bone bring the refined vertices within a tenth of a mm."""
     path = tmp_path / "face.glb"
     remark = written(refined, path)
     assert remark is not None and "at most 0." in remark
@@ -107,7 +107,7 @@ def test_gltf_plays_the_refined_skin(refined, tmp_path):
     head = np.asarray(refined.clip.bones["cranium"][last])[:3, :3]
     normals = player.shape("skin", last, "NORMAL")
     normals /= norm(normals, axis=1, keepdims=True)
-    turned = normals[indices] @ head.T  # of vertices that go with the head in full
+    turned = normals[indices] @ head.T  # of vertices that follow the head fully
     share = skin.carried(refined.clip.scene.simulation.bones.head_weight)
     goes_along = share[skin.faces] > 0.999
     angles = (turned * skin.normals[last][skin.faces]).sum(axis=2)[goes_along]
@@ -141,7 +141,7 @@ def test_arrays_and_point_caches_have_the_refined_vertices(refined, tmp_path):
 
 @pytest.mark.parametrize("look", ["paper", "smooth"])
 def test_a_pose_that_is_held(look):
-    """All frames have the same triangles, and rest others; the file has those of the frames."""
+    """All frames have the same triangles, and rest has others; the file has those of the frames."""
     held = "duration = 0.2\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
     scene = FaceScene()
     scene.pose({"joy": 1.0})
@@ -176,7 +176,7 @@ def test_a_refiner_that_never_changes_needs_no_splits(clip):
     ],
 )
 def test_mistakes_are_reported(name, request_, error, tmp_path: Path):
-    """A format without room for other triangles, or without a mesh, is refused in one line."""
+    """A format that cannot hold other triangles, or has no mesh, is refused in one line."""
     path = tmp_path / name
     with pytest.raises(UserError, match=error):
         check_request(path, format_for(path, None), request_)

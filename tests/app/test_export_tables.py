@@ -1,4 +1,4 @@
-"""Exported curves: read by our own readers of recordings, they play the same face again."""
+"""Exported curves: our readers of recordings read them, and the face moves in the same way."""
 
 import csv
 
@@ -65,14 +65,14 @@ def replayed(path, scene, playback):
 
 
 def apart(first, second):
-    """How far two clips are apart: at most, and root mean square [mm]."""
+    """Distance between two clips: largest, and root mean square [mm]."""
     count = min(first.frame_count, second.frame_count)
     off = np.linalg.norm(first.skin.shapes[:count] - second.skin.shapes[:count], axis=2)
     return float(off.max()), float(np.sqrt((off**2).mean()))
 
 
 def test_arkit_plays_the_same_again(scene, tmp_path):
-    """A script of ARKit's shapes, eyes and head: the replay is nowhere half a millimetre off."""
+    """A script of ARKit's shapes, eyes and head: the replay is less than half a millimetre off."""
     clip = record(script_of(SHAPES), scene, RATE, progress=False)
     path = tmp_path / "take.csv"
     table(clip, path)
@@ -92,7 +92,7 @@ def test_arkit_plays_the_same_again(scene, tmp_path):
 
 
 def test_arkit_shows_set_values(scene, tmp_path):
-    """Values of the script itself, as much later as the muscles are; header of Live Link Face."""
+    """They are the script's own values, with the delay of the muscles; header of Live Link Face."""
     clip = record(script_of(SHAPES), scene, RATE, progress=False)
     columns = table(clip, tmp_path / "take.csv")
     names = list(columns)
@@ -110,7 +110,7 @@ def test_arkit_shows_set_values(scene, tmp_path):
 
 
 def test_expressions_become_shapes(scene, tmp_path):
-    """Controls that are no shapes are solved for, and look alike."""
+    """Controls that are not shapes are solved for, and the result looks the same."""
     text = "duration = 0.6\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\njoy = 1.0\n"
     clip = record(script_of(text), scene, RATE, progress=False)
     path = tmp_path / "take.csv"

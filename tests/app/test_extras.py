@@ -1,4 +1,4 @@
-"""Without extras: pictures are drawn, and a missing library is named with its cure."""
+"""Without extras: pictures are drawn, and a missing library is named with its remedy."""
 
 import json
 import os
@@ -43,7 +43,7 @@ ask([], main)
 
 
 def plain(*words, folder, code=RUN):
-    """The command as `pip install risorius` alone has it."""
+    """The command, as installed by `pip install risorius` alone."""
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
     return subprocess.run(
         [sys.executable, "-c", WITHOUT + code, *words],
@@ -52,7 +52,7 @@ def plain(*words, folder, code=RUN):
 
 
 def each_of(*commands, folder):
-    """Exit codes and lines of errors of commands, one after the other in one process."""
+    """Exit codes and error lines of commands, run one after the other in one process."""
     (folder / "take.csv").write_text("time,jawOpen\n0,0\n0.1,0.5\n0.2,0\n")
     (folder / "list.txt").write_text("export --set joy -o joy.npz\n")
     ended = plain(*commands, folder=folder, code=EACH)
@@ -64,7 +64,7 @@ def each_of(*commands, folder):
 
 
 def test_a_picture_needs_no_extra(tmp_path):
-    """Nor does a glTF file."""
+    """A glTF file needs none, either."""
     picture = "capture --set joy -o joy.png --size 64x48 --quiet"
     ended = each_of(picture, "export --set joy -o joy.glb --quiet", folder=tmp_path)
     assert [code for code, _ in ended] == [0, 0], ended
@@ -73,7 +73,7 @@ def test_a_picture_needs_no_extra(tmp_path):
 
 
 def test_help_needs_no_extra(tmp_path):
-    """Of the command and of each below it."""
+    """This is the help of the command and of each command below it."""
     ended = plain(folder=tmp_path, code=EVERY_HELP)
     assert ended.returncode == 0, ended.stderr
     lines = [line.rstrip() for line in ended.stdout.splitlines()]
@@ -82,7 +82,7 @@ def test_help_needs_no_extra(tmp_path):
 
 
 def test_the_doctor_says_what_is_missing(tmp_path):
-    """And what installs it; without extras there are pictures, neither films nor a window."""
+    """It also says what installs it; without extras there are pictures, but no films or window."""
     ended = plain("doctor", folder=tmp_path)
     assert ended.returncode == 1, ended.stderr
     lines = dict(line.split(": ", 1) for line in ended.stdout.splitlines() if ": " in line)
@@ -95,7 +95,7 @@ def test_the_doctor_says_what_is_missing(tmp_path):
 
 
 def test_what_is_missing_is_named(tmp_path):
-    """In one line, with the command that installs it; nothing is left behind."""
+    """One line names it, with the command that installs it; no files are left."""
     missing = {
         "view": "window",
         "replay take.csv --quiet": "window",
@@ -116,7 +116,7 @@ def test_what_is_missing_is_named(tmp_path):
 
 
 def test_extras_bring_what_they_are_named_for():
-    """And `all` brings every extra that a user of the program may want."""
+    """`all` also contains every extra that a user of the program may want."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extras = project["optional-dependencies"]
     packages = {"pxr": "usd-core", "imgui_bundle": "imgui-bundle", "pythonosc": "python-osc"}

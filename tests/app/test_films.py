@@ -1,4 +1,4 @@
-"""Films of every kind: their frames, in order and complete, at any size."""
+"""Films of every kind: their frames, complete and in order, at any size."""
 
 import subprocess
 from dataclasses import replace
@@ -27,7 +27,7 @@ SMALL = CaptureOptions(size=(64, 48), samples=0)
 
 
 def numbered_frames():
-    """Pictures of a bar that moves to the right, a step with each."""
+    """Pictures of a bar that moves one step to the right with each picture."""
     frames = []
     for number in range(COUNT):
         frame = np.full((HEIGHT, WIDTH, 3), 60, np.uint8)
@@ -37,7 +37,7 @@ def numbered_frames():
 
 
 def decoded(path, size):
-    """All pictures of a film, (n, H, W, 3), read by another program where there is one."""
+    """All pictures of a film, (n, H, W, 3), read by another program if possible."""
     if path.suffix in (".gif", ".webp"):
         with PIL.Image.open(path) as film:
             assert film.size == size
@@ -54,14 +54,14 @@ def decoded(path, size):
 
 
 def seconds_of(path):
-    """How long a film is."""
+    """Length of a film."""
     if path.suffix not in (".gif", ".webp"):
         return float(imageio_ffmpeg.count_frames_and_secs(str(path))[1])
     total = 0.0
     with PIL.Image.open(path) as film:
         for number in range(getattr(film, "n_frames", 1)):
             film.seek(number)
-            film.load()  # only then Pillow knows how long a WebP's picture stays
+            film.load()  # only then Pillow knows the duration of a WebP's picture
             total += film.info["duration"] / 1000.0
     return total
 
@@ -74,19 +74,19 @@ def test_frames_are_in_order_and_complete(tmp_path, suffix):
     with outputs.film(path, (WIDTH, HEIGHT), RATE) as add:
         for frame in frames:
             add(frame)
-    is_even = suffix == ".mp4"  # as H.264 wants it, without the last column and row
+    is_even = suffix == ".mp4"  # H.264 needs even sizes, so the last column and row are removed
     size = (WIDTH - is_even, HEIGHT - is_even)
     found = decoded(path, size)
     assert len(found) == COUNT
     for picture, frame in zip(found, frames, strict=True):
         off = np.abs(picture.astype(int) - frame[: size[1], : size[0]])
-        assert off.mean() < 6.0  # the next frame is off by 20
+        assert off.mean() < 6.0  # the next frame differs by 20
     assert seconds_of(path) == pytest.approx(COUNT / RATE, abs=0.02)
     assert list(tmp_path.iterdir()) == [path]
 
 
 def test_a_gif_is_not_asked_for_frames_that_players_slow_down(tmp_path):
-    """Two hundredths of a second a frame, or one line."""
+    """Frames last two hundredths of a second or more; a shorter time is refused in one line."""
     with (
         pytest.raises(UserError, match=r"film.gif: has at most 50 frames a second, and"),
         outputs.film(tmp_path / "film.gif", (96, 64), 60.0),
@@ -98,7 +98,7 @@ def test_a_gif_is_not_asked_for_frames_that_players_slow_down(tmp_path):
 @pytest.mark.parametrize("samples", [0, 4])
 @pytest.mark.parametrize("colour", [(255, 255, 255), (0, 0, 0), (0, 177, 64)])
 def test_a_transparent_picture_lies_over_any_colour(samples, colour):
-    """Over white, black and green it is the picture that is drawn before that: no fringe."""
+    """Over white, black and green it equals the picture drawn before that colour: no fringe."""
     flat = tuple(part / 255.0 for part in colour)
     background = render.Background(flat, flat)
     pictures = []
@@ -122,7 +122,7 @@ def test_a_transparent_picture_lies_over_any_colour(samples, colour):
     [("white", (255, 255, 255)), ("black", (0, 0, 0)), ("#00B140", (0, 177, 64))],
 )
 def test_backgrounds_by_name(tmp_path, word, corner):
-    """The corner of a picture has exactly the colour that was asked for."""
+    """The corner of a picture has exactly the requested colour."""
     path = tmp_path / "picture.png"
     arguments = ["capture", "--scene", "plane", "--size", "64x48", "--time", "0", "-o", str(path)]
     succeeded(*arguments, "--background", word)
@@ -135,7 +135,7 @@ def test_backgrounds_by_name(tmp_path, word, corner):
 
 
 def several(count, monkeypatch):
-    """Let so many processes draw, however little there is to do."""
+    """Let this number of processes draw, even for little work."""
     monkeypatch.setattr(processes, "worthwhile", lambda *_: count)
 
 

@@ -8,7 +8,7 @@ from risorius.app.viewer.session.physics import FrameTimes
 
 
 def test_phases_and_frames_agree():
-    """They are of the same frames; pauses are none, and another scene has nothing of the last."""
+    """They describe the same frames; pauses do not count, and another scene begins anew."""
     times = FrameTimes()
     for elapsed in (0.0, 0.02, 0.02, 0.02):
         times.next_frame(elapsed)

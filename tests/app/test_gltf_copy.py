@@ -1,4 +1,4 @@
-"""Copies of glTF files have all data in one chunk, named as they are."""
+"""Copies of glTF files have all data in one chunk, under unchanged names."""
 
 import io
 
@@ -11,7 +11,7 @@ from tests.assets.gltf_files import GltfMaker
 
 @pytest.mark.parametrize("kind", ["png", "jpeg", "webp"])
 def test_a_picture_beside_a_document_keeps_its_kind(tmp_path, kind):
-    """A texture of EXT_texture_webp alone stays as it is; its image is an image/webp."""
+    """A texture with only EXT_texture_webp stays unchanged; its image is an image/webp."""
     content = io.BytesIO()
     PIL.Image.new("RGB", (4, 4), (250, 10, 20)).save(content, kind)
     (tmp_path / "skin").write_bytes(content.getvalue())

@@ -1,4 +1,4 @@
-"""The hairline of the built-in head, as a picture shows it."""
+"""The hairline of the built-in head in a picture."""
 
 import numpy as np
 import pytest
@@ -11,11 +11,11 @@ from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
 
 SIZE = (480, 360)
-HEIGHT = 105.0  # [mm] of the picture
+HEIGHT = 105.0  # [mm] height of the picture
 
 
 def forehead(scene):
-    """The light of pixels, (H, W), around the hairline; top row first."""
+    """Brightness of pixels around the hairline, (H, W); top row first."""
     scene.reset()
     nasion = scene.rest_positions[scene.landmarks[27]]
     camera = render.OrbitCamera.framing(scene.rest_positions)
@@ -31,7 +31,7 @@ def forehead(scene):
 
 @pytest.mark.parametrize("person", [None, 40])
 def test_the_front_is_no_saw_and_throws_no_hard_patch(scene, person):
-    """Its edge goes up and down by little from pixel to pixel, and the forehead below is clean."""
+    """Its edge varies little from pixel to pixel, and the forehead below is clean."""
     light = forehead(scene if person is None else FaceScene(person_called(person)))
     columns = slice(160, 320)
     skin = np.median(light[240:280, columns])
@@ -44,7 +44,7 @@ def test_the_front_is_no_saw_and_throws_no_hard_patch(scene, person):
 
 
 def test_no_dots_lie_along_the_front():
-    """Smooth edges take no dark pixels of dense hair down into the hem, which fades by itself."""
+    """Smooth edges do not spread dark pixels of dense hair into the hem, which fades by itself."""
     scene = FaceScene(person_called(40))
     front = slice(100, 250), slice(250, 470)
     pictures = []

@@ -1,4 +1,4 @@
-"""Landmarks of pictures: on the borders that the picture shows, the jaw's on its outline."""
+"""Landmarks in pictures: on visible borders, and those of the jaw on its outline."""
 
 from collections.abc import Iterator
 
@@ -26,7 +26,7 @@ LEFT_JAW = slice(8, 17)
 
 
 class Portrait:
-    """A face that is drawn from somewhere, with its classes and landmarks."""
+    """A face drawn from some view, with its classes and landmarks."""
 
     def __init__(self, studio: Capture, yaw: float = 0.0, pitch: float = 0.0) -> None:
         scene = studio.scene
@@ -43,13 +43,13 @@ class Portrait:
         self.millimetres = far / camera.intrinsics[0, 0]  # of a pixel at each landmark
 
     def away(self, numbers, segments):
-        """How far landmarks are from the nearest pixel of some classes [mm]."""
+        """Distances of landmarks from the nearest pixel of some classes [mm]."""
         far = distance_transform_edt(~np.isin(self.classes, segments))
         columns, rows = np.floor(self.found.pixels[numbers]).astype(int).T
         return far[rows, columns] * self.millimetres[numbers]
 
     def off_border(self, numbers, segments):
-        """How far landmarks are from the border of some classes [mm]."""
+        """Distances of landmarks from the border of some classes [mm]."""
         inside = np.isin(self.classes, segments)
         far = np.maximum(distance_transform_edt(inside), distance_transform_edt(~inside))
         columns, rows = np.floor(self.found.pixels[numbers]).astype(int).T
@@ -93,11 +93,11 @@ def test_mesh_picture_and_label_agree(studio):
 
 
 def test_the_jaw_lies_on_the_outline_that_is_seen(studio):
-    """In front on both sides, turned on the far side; the bone's points do not slide."""
+    """In front on both sides, turned on the far side; the points on the bone do not slide."""
     face = [Segment.SKIN, Segment.NOSE, Segment.TOP_LIP, Segment.BOTTOM_LIP]
-    chin = range(6, 11)  # whose edge is soft; the throat has the tone of the skin
+    chin = range(6, 11)  # with a soft edge; the throat has the tone of the skin
     sides = [number for number in range(17) if number not in chin]
-    steepest = 2.5  # [mm] beside an ear, whose root is no sharp border
+    steepest = 2.5  # [mm] beside an ear, which has no sharp border at its root
     portrait = Portrait(studio)
     assert (portrait.off_border(sides, face) < steepest).all()
     for yaw, far in ((-35.0, [12, 13, 14]), (35.0, [2, 3, 4])):
@@ -110,7 +110,7 @@ def test_the_jaw_lies_on_the_outline_that_is_seen(studio):
 
 
 def test_an_outline_without_hair_over_it_is_visible(scene):
-    """All of it in front; a turned head hides none of the far side."""
+    """All of it is visible in front; a turned head hides none of the far side."""
     scene.reset()
     with Capture(scene, CaptureOptions(size=SIZE)) as opened:
         assert Portrait(opened).found.visible[:17].all()
@@ -118,7 +118,7 @@ def test_an_outline_without_hair_over_it_is_visible(scene):
 
 
 def test_points_of_the_jaw_are_spread_evenly(studio):
-    """As annotators set them, from the height of the eyes to the chin."""
+    """They are spaced as by annotators, from the height of the eyes to the chin."""
     portrait = Portrait(studio)
     pixels = portrait.found.pixels
     for side in (RIGHT_JAW, LEFT_JAW):
@@ -129,7 +129,7 @@ def test_points_of_the_jaw_are_spread_evenly(studio):
 
 
 def test_an_outline_ends_at_one_height_of_the_head(studio):
-    """That of the outer corners of the eyes, also where the camera looks from above or below."""
+    """It is the height of the outer eye corners, also for cameras above or below."""
     for pitch in (-20.0, 0.0, 20.0):
         points = Portrait(studio, pitch=pitch).found.points
         above = points[[0, 16], 1] - points[[36, 45], 1]
@@ -137,7 +137,7 @@ def test_an_outline_ends_at_one_height_of_the_head(studio):
 
 
 def test_a_head_of_ones_own_keeps_its_marks(tmp_path):
-    """Where its owner put them; the jaw slides over its surface."""
+    """They stay where the owner put them; the jaw's slide over the surface."""
     scene = FaceScene(fit_head(*stranger().write(tmp_path)))
     with Capture(scene, CaptureOptions(size=SIZE)) as opened:
         portrait = Portrait(opened)

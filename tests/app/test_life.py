@@ -1,4 +1,4 @@
-"""The life of a face that nobody moves: how often, how far, the same each time, beneath all."""
+"""The life of a face without input: how often, how far, repeatable, and below all other motion."""
 
 import numpy as np
 import pytest
@@ -22,13 +22,13 @@ NOBODY = frozenset[str]()
 
 
 def lids_gap(scene):
-    """How wide the right eye is open [mm], in the middle of its lids."""
+    """Opening of the right eye in the middle of its lids [mm]."""
     points = scene.positions[scene.landmarks]
     return float((points[[37, 38]] - points[[41, 40]])[:, 1].mean())
 
 
 def pupils(scene):
-    """Where each eyeball is now and which way it looks, by side."""
+    """Present place and direction of each eyeball, by side."""
     bones = scene.bone_transforms()
     found = {}
     for eye in scene.head.eyes:
@@ -40,7 +40,7 @@ def pupils(scene):
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_eyes_blink_as_often_as_people_do_at_rest(seed):
-    """17 a minute (Bentivoglio et al. 1997), none while another lasts."""
+    """17 a minute (Bentivoglio et al. 1997), and never two at once."""
     waits = np.diff(life_blinks(Life(seed), 300.0))
     assert 15.0 < len(waits) / 5.0 < 19.0
     assert waits.min() > 0.5
@@ -50,19 +50,19 @@ def test_eyes_blink_as_often_as_people_do_at_rest(seed):
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_eyes_are_with_the_viewer_most_of_the_time(seed):
-    """Glances over his face, and at times beside it; they come back within some seconds."""
+    """Glances go over the viewer's face, at times beside it, and return within some seconds."""
     life = Life(seed)
     off = []
     for time in np.arange(0.0, 600.0, 0.1):
         eyes = life.parts(time)["eyes"]
         off.append(EYE_RANGE * np.hypot(eyes["gaze_horizontal_left"], eyes["gaze_vertical_left"]))
-    assert max(off[:13]) == 0.0  # at the start straight at him
+    assert max(off[:13]) == 0.0  # at the start straight at the viewer
     assert 0.03 < np.mean(np.array(off) > 3.0) < 0.2
     assert max(off) < 12.5
 
 
 def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene):
-    """The simulation follows late, and yet lids meet; down they are faster than up."""
+    """Lids meet although the simulation is delayed; they move down faster than up."""
     life = Life(0)
     gaps = []
     start = life_blinks(life)[0]
@@ -87,7 +87,7 @@ def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene):
 
 
 def life_blinks(life, seconds=30.0):
-    """When the lids of a life begin to shut in its first seconds."""
+    """Times when lids begin to shut in the first seconds of a life."""
     frames = range(round(60.0 * seconds))
     drawn = [0.0, *(life.parts(frame / 60.0)["lids"][f"{LID}_left"] for frame in frames)]
     return [frame / 60.0 for frame in frames if drawn[frame + 1] == 1.0 > drawn[frame]]
@@ -95,7 +95,7 @@ def life_blinks(life, seconds=30.0):
 
 @pytest.mark.parametrize("view", ["front", "three-quarter", "-20,15", "40,-10"])
 def test_both_eyes_meet_the_camera(scene, view):
-    """Each looks at it, closer than one sees (2 degrees), while the head takes its share."""
+    """Each looks at it with an invisible error (2 degrees), and the head turns with them."""
     eye = camera_for(scene, view).eye
     _look(scene, eye)
     assert _off(scene, eye) < 1.5
@@ -105,7 +105,7 @@ def test_both_eyes_meet_the_camera(scene, view):
 
 
 def _off(scene, viewer):
-    """How far the eye that looks least at a point looks past it [degrees]."""
+    """Angle between a point and the gaze of the eye that misses it most [degrees]."""
     off = []
     for centre, way in pupils(scene).values():
         there = (viewer - centre) / np.linalg.norm(viewer - centre)
@@ -114,7 +114,7 @@ def _off(scene, viewer):
 
 
 def test_who_stands_aside_is_not_followed(scene):
-    """In profile, and from behind, the face looks straight ahead; nothing jumps on the way."""
+    """In profile, and from behind, the face looks straight ahead; no motion jumps on the way."""
     for view in ("profile", "180,0", "0,80"):
         parts = looking_at(scene.face, camera_for(scene, view).eye)
         assert all(value == 0.0 for part in parts.values() for value in part.values())
@@ -127,7 +127,7 @@ def test_who_stands_aside_is_not_followed(scene):
 
 
 def _look(scene, viewer):
-    """Let the face look at a point until it does."""
+    """Simulate until the face looks at a point."""
     idle = Idle(scene)
     scene.reset()
     for _ in range(90):
@@ -136,7 +136,7 @@ def _look(scene, viewer):
 
 
 def test_what_others_move_is_left_to_them(scene):
-    """With all that belongs to it: one lid stands for both, one way of the gaze for both eyes."""
+    """All related controls are left, too: one lid means both, one direction of gaze both eyes."""
     viewer = np.array([100.0, 0.0, 900.0])
     idle = Idle(scene)
     whole = idle.beneath(NOBODY, viewer, 5.6)
@@ -155,7 +155,7 @@ def test_what_others_move_is_left_to_them(scene):
 
 
 def test_a_speaking_head_nods(scene):
-    """By two degrees at most, however wide the mouth; not where others move the head."""
+    """By at most two degrees, however wide the mouth; not if others move the head."""
     viewer = np.array([100.0, 0.0, 900.0])
     idle = Idle(scene)
     silent = idle.beneath(NOBODY, viewer, 5.6)
@@ -191,7 +191,7 @@ def test_a_recording_without_a_head_lives(tmp_path):
 
 @pytest.mark.slow
 def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone():
-    """A control that a script names belongs to it for the whole film; the rest lives beneath."""
+    """A control that a script names is the script's for the whole film; life moves the others."""
     keys = (Key(0.0, 0.0), Key(2.9, 0.0), Key(3.0, 0.4))
     script = Script(
         "smile", 3.0, "here", tracks={"AU12": Channel.of(keys), "AU1": Channel.of(keys)}

@@ -23,7 +23,7 @@ HEAD = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n"
 
 
 def pixels():
-    """A sky that darkens downward, with a sun of 60 times its light."""
+    """A sky that darkens downward, with a sun 60 times as bright."""
     light = np.linspace(1.0, 0.25, 32)[:, None, None] * np.array([0.5, 0.75, 1.0])
     light = np.broadcast_to(light, (32, 64, 3)).copy()
     light[6:9, 40:44] = 60.0
@@ -38,7 +38,7 @@ def rgbe(light):
 
 
 def packed(lines):
-    """Channel by channel, equal values as a run."""
+    """Channel by channel, with equal values as a run."""
     found = b""
     for line in lines:
         found += bytes([2, 2, 0, len(line)])
@@ -69,7 +69,7 @@ def _write_openexr(path, size):
 
 
 def _count_calls(monkeypatch, owner, name, count):
-    """Have a function's arguments counted before it is called."""
+    """Count a function's arguments before each call."""
     function = getattr(owner, name)
 
     def counted(*given, **named):
@@ -81,7 +81,7 @@ def _count_calls(monkeypatch, owner, name, count):
 
 @pytest.mark.parametrize("is_packed", [True, False])
 def test_radiance_is_read(tmp_path, is_packed):
-    """Packed by runs or not, to the precision of its bytes."""
+    """Packed by runs or not, up to the precision of its bytes."""
     path = tmp_path / "sky.hdr"
     content = rgbe(pixels())
     path.write_bytes(HEAD + (packed(content) if is_packed else content.tobytes()))
@@ -90,7 +90,7 @@ def test_radiance_is_read(tmp_path, is_packed):
 
 
 def test_openexr_is_read(tmp_path):
-    """Channels R, G and B, beside any others."""
+    """Channels R, G and B are read, whichever others there are."""
     path = tmp_path / "sky.exr"
     _write_openexr(path, (32, 64))
     assert_allclose(read_light_map(path).radiance[::4, ::4], pixels(), rtol=1e-3)
@@ -111,7 +111,7 @@ def test_openexr_is_read(tmp_path):
     ],
 )
 def test_others_are_refused_in_one_line(tmp_path, name, content, message):
-    """With the file's name and what is allowed."""
+    """The line has the file's name and the allowed kinds."""
     path = tmp_path / name
     path.write_bytes(content)
     with pytest.raises(UserError, match=message) as raised:
@@ -121,7 +121,7 @@ def test_others_are_refused_in_one_line(tmp_path, name, content, message):
 
 @pytest.mark.parametrize("size", ["Y 99999 +X 65535", "Y 16383 +X 32767"])
 def test_a_header_reserves_no_memory(tmp_path, size):
-    """A size that is wrong, or more than the file can hold, is refused before there is room."""
+    """A wrong size, or one larger than the file can hold, is refused before memory is reserved."""
     path = tmp_path / "sky.hdr"
     path.write_bytes(HEAD.replace(b"Y 32 +X 64", size.encode()))
     tracemalloc.start()
@@ -129,11 +129,11 @@ def test_a_header_reserves_no_memory(tmp_path, size):
         read_light_map(path)
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert most < 2**29  # as long as a file may be, and some
+    assert most < 2**29  # a little more than the largest allowed file
 
 
 def test_openexr_is_not_read_into_memory_first(tmp_path, monkeypatch):
-    """The library reads the file; beside it, only its first bytes are read."""
+    """The library reads the file; before it, only the first bytes are read."""
     path = tmp_path / "sky.exr"
     _write_openexr(path, (32, 64))
     read = []
@@ -143,7 +143,7 @@ def test_openexr_is_not_read_into_memory_first(tmp_path, monkeypatch):
 
 
 def test_a_size_of_openexr_is_refused_by_its_header(tmp_path):
-    """As for Radiance."""
+    """This is as for Radiance."""
     path = tmp_path / "sky.exr"
     _write_openexr(path, (32, 32))
     with pytest.raises(UserError, match="has 32 x 32 pixels"):
@@ -152,7 +152,7 @@ def test_a_size_of_openexr_is_refused_by_its_header(tmp_path):
 
 @pytest.mark.slow
 def test_maps_of_a_set_are_read_once(tmp_path, monkeypatch):
-    """Each of 10, however often samples draw it; its light is found once a sample."""
+    """Each of 10 is read once, however many samples use it; its light is found once per sample."""
     for number in range(10):
         (tmp_path / f"{number}.hdr").write_bytes(HEAD + rgbe(pixels()).tobytes())
     (tmp_path / "folder.hdr").mkdir()
@@ -181,7 +181,7 @@ def test_every_map_of_a_folder_is_checked(tmp_path):
 
 @pytest.mark.slow
 def test_a_set_is_lit_by_files(tmp_path):
-    """Each sample by one of them, turned, with the map behind; labels say so."""
+    """One of them lights each sample, turned, and is its background; labels report it."""
     maps = tmp_path / "maps"
     maps.mkdir()
     (maps / "sky.hdr").write_bytes(HEAD + rgbe(pixels()).tobytes())
@@ -214,7 +214,7 @@ def _painted(background, lens=40.0):
 
 
 def test_what_lies_behind_is_the_middle_of_the_map(map_ahead):
-    """It is out of focus, and moves to the right where the map is turned so."""
+    """It is out of focus, and moves to the right if the map is turned so."""
     rows = [_painted(map_ahead.background(turn))[30] for turn in (0.0, 12.0)]
     assert abs(int(rows[0].argmin()) - 40) <= 3
     assert rows[1].argmin() > rows[0].argmin() + 8
@@ -222,7 +222,7 @@ def test_what_lies_behind_is_the_middle_of_the_map(map_ahead):
 
 
 def test_a_longer_lens_shows_less_of_the_map(map_ahead):
-    """A spot is twice as wide where the lens sees half as much."""
+    """A spot is twice as wide if the lens shows half as much."""
     behind = map_ahead.background()
     wide, near = (
         (picture[30] < picture[30].max() - 20).sum()
@@ -232,14 +232,14 @@ def test_a_longer_lens_shows_less_of_the_map(map_ahead):
 
 
 def test_a_map_is_seen_as_bright_as_it_is(map_ahead):
-    """A place of the map has its light, exposed as the scene is, by the screen's curve."""
+    """A place of the map has its own light, exposed like the scene, by the screen's curve."""
     painted = _painted(map_ahead.background(exposure=2.0))
     assert_allclose(painted[5, 5], 255.0 * to_screen(0.6), atol=2)
 
 
 @pytest.mark.parametrize("lit", ["file", "name"])
 def test_capture_shows_the_map_behind(tmp_path, lit):
-    """A file's map, or one of ours by name; without a map one line says what to add."""
+    """The map is a file, or one of ours by name; without a map one line says what to add."""
     path = tmp_path / "sky.hdr"
     path.write_bytes(HEAD + rgbe(pixels()).tobytes())
     light = ("--light", path) if lit == "file" else ("--style", "light=room")

@@ -1,4 +1,4 @@
-"""A face that is sent: sockets on loopback, calibration, and rest when nobody sends."""
+"""A face driven by a sender: sockets on loopback, calibration, and rest without a sender."""
 
 import socket
 import time
@@ -28,7 +28,7 @@ APPLY = "/VMC/Ext/Blend/Apply"
 
 
 class Clock:
-    """A clock that stands until it is set."""
+    """A clock that only moves when it is set."""
 
     def __init__(self):
         self.now = 100.0
@@ -50,30 +50,30 @@ class Wire:
         self.woken += 1
 
     def send(self, *packets):
-        """Send packets, and wait until they are there."""
+        """Send packets, and wait until they have arrived."""
         wanted = self.face.received + len(packets)
         for packet in packets:
             self._socket.sendto(packet, (LOOPBACK, self.face.port))
         assert until(lambda: self.face.received == wanted)
 
     def take(self, *packets, seconds=0.0):
-        """Send packets and let the face take them in, so much later."""
+        """Send packets, and let the face take them after this time."""
         self.send(*packets)
         self.pass_time(seconds)
 
     def pass_time(self, seconds):
-        """Let time go by in one step."""
+        """Let time pass in one step."""
         self.clock.now += seconds
         self.face.advance(seconds)
 
     def close(self):
-        """End both."""
+        """Close both."""
         self.face.close()
         self._socket.close()
 
 
 def until(condition, seconds=10.0):
-    """Wait until something has come true, or too long."""
+    """Wait until a condition is true, or too long."""
     end = time.monotonic() + seconds
     while not condition() and time.monotonic() < end:
         time.sleep(0.001)
@@ -82,14 +82,14 @@ def until(condition, seconds=10.0):
 
 @pytest.fixture
 def wire(request: pytest.FixtureRequest) -> Iterator[Wire]:
-    """A face of the protocol that the test is parametrized with, Live Link Face unless it is."""
+    """A face of the test's protocol; Live Link Face by default."""
     opened = Wire(getattr(request, "param", "livelink"))
     yield opened
     opened.close()
 
 
 def test_a_frame_leads_the_controls(wire):
-    """Shapes come out as controls, blinks a little stronger; the line names the sender."""
+    """Shapes become controls, with slightly stronger blinks; the line names the sender."""
     assert wire.face.state is State.WAITING
     assert wire.face.presence == 0.0
     wire.take(live_link({"JawOpen": 0.5, "EyeBlinkLeft": 0.5, "HeadYaw": -0.3927}, subject="Ada"))
@@ -127,7 +127,7 @@ def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire):
     steps = [before - after for before, after in pairwise(presences)]
     assert min(steps) >= 0.0
     assert max(steps) < 0.08
-    assert wire.face.controls()["jawOpen"] == 0.5  # from which it fades away
+    assert wire.face.controls()["jawOpen"] == 0.5  # its value before it fades away
     wire.take(frame, seconds=1.0 / 60.0)
     assert 0.0 < wire.face.presence < 0.1
     wire.take(frame, seconds=EASING_IN)
@@ -147,7 +147,7 @@ def test_a_sender_that_sees_no_face_lets_go_of_ours(wire):
 
 
 def test_calibrating_takes_the_neutral_face_away(wire):
-    """The median of half a second, which a blink within it does not move."""
+    """It takes the median of half a second, which a blink within this time does not change."""
     neutral = {"BrowDownLeft": 0.3, "HeadPitch": 0.2}
     wire.take(live_link(neutral))
     wire.face.calibrate()
@@ -167,7 +167,7 @@ def test_calibrating_takes_the_neutral_face_away(wire):
 
 
 def test_gains_and_mirror_may_be_given_from_the_start():
-    """As for recordings; mistakes are reported before the program listens."""
+    """They work as for recordings; mistakes are reported before the program listens."""
     listening = Listening("livelink", port=0, gains=("jawOpen=2", "mouth*=0.5"), mirror=True)
     face = LiveFace(listening)
     try:
@@ -193,7 +193,7 @@ def test_what_is_not_named_keeps_its_value(wire):
 
 @pytest.mark.parametrize("wire", ["vmc"], indirect=True)
 def test_parts_of_a_frame_count_together(wire):
-    """Nothing moves before Apply, and nobody is woken."""
+    """No control moves before Apply, and the window is not woken."""
     wire.take(osc((VALUE, "jawOpen", 0.5), (VALUE, "eyeBlinkLeft", 0.6)))
     assert wire.face.state is State.WAITING
     assert not wire.face.channels
@@ -211,7 +211,7 @@ def test_parts_of_a_frame_count_together(wire):
     ["192.0.2.1", "nobody.invalid", "x" * 300, "é" * 70 + ".de", "::1", "<broadcast>", ""],
 )
 def test_an_address_of_another_computer_is_refused(address):
-    """One can only listen on an address of one's own; an empty one must not mean all of them."""
+    """Only own addresses can be listened on; an empty one must not mean all of them."""
     with pytest.raises(UserError, match=r"cannot listen|write a computer's name"):
         Receiver(Listening("livelink", address, 0)).close()
 

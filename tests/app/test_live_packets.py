@@ -1,4 +1,4 @@
-"""Packets of live faces: their meaning, and that nothing in a network can do harm."""
+"""Packets of live faces: their meaning, and safety against any data from a network."""
 
 import math
 import struct
@@ -28,7 +28,7 @@ GOOD = {
 
 
 def channels_of(frame):
-    """The channels of what must be a frame."""
+    """The channels of a valid frame."""
     return dict(frame.channels)
 
 
@@ -36,7 +36,7 @@ def channels_of(frame):
 
 
 def test_a_live_link_packet_has_a_name_and_every_shape_in_its_place():
-    """Each of the 52 in turn is alone at its value; left and right of jaw and mouth among them."""
+    """Each of the 52 in turn has its value alone, including left and right of jaw and mouth."""
     for name, shape in zip(LIVE_LINK, SHAPES, strict=False):
         frame = parse_live_link(live_link({name: 0.75}, subject="Ada"))
         channels = channels_of(frame)
@@ -47,7 +47,7 @@ def test_a_live_link_packet_has_a_name_and_every_shape_in_its_place():
 
 
 def test_live_link_angles_are_radians_to_the_right_and_down():
-    """They become degrees to the subject's left and up; eyes that look ahead stand outwards."""
+    """They become degrees to the subject's left and up; eyes that look ahead point outward."""
     angles = {"HeadYaw": 0.5, "HeadPitch": -0.25, "LeftEyePitch": 0.61, "RightEyeYaw": -0.62}
     channels = channels_of(parse_live_link(live_link(angles)))
     assert channels["head_yaw"] == approx(-math.degrees(0.5))
@@ -62,7 +62,7 @@ def test_live_link_angles_are_radians_to_the_right_and_down():
 
 
 def test_without_a_face_live_link_sends_no_values():
-    """With a count of 0, with a count that nothing follows, and without any."""
+    """The count is 0, or nothing follows it, or it is missing."""
     packet = live_link(None)
     for cut in (packet, packet[:-1] + b"\x3d", packet[:-1]):
         frame = parse_live_link(cut)
@@ -71,7 +71,7 @@ def test_without_a_face_live_link_sends_no_values():
 
 
 def test_nonsense_among_values_is_left_out():
-    """NaN, a shape far from 0 and 1, an angle beyond half a turn are left out; 1.2 is noise."""
+    """NaN, a shape far from 0 and 1, and an angle over half a turn are left out; 1.2 is noise."""
     odd = {"JawOpen": -9.8e5, "MouthPucker": 1.2, "CheekPuff": math.nan, "TongueOut": math.inf}
     odd |= {"HeadYaw": 9.8e5, "HeadPitch": math.nan}
     channels = channels_of(parse_live_link(live_link(odd)))
@@ -80,7 +80,7 @@ def test_nonsense_among_values_is_left_out():
 
 
 def test_other_versions_and_every_torn_packet_are_none():
-    """Cut anywhere but where the values may be missing, nothing is left of it."""
+    """A packet cut anywhere is refused, except where values may be missing."""
     assert parse_live_link(live_link({}, version=5)) is None
     packet = GOOD["livelink"]
     values = len(packet) - 4 * 61
@@ -90,7 +90,7 @@ def test_other_versions_and_every_torn_packet_are_none():
 
 
 def test_a_name_is_shown_only_as_far_as_it_can_be():
-    """Neither control characters nor a novel come into the window."""
+    """Control characters and very long texts do not get into the window."""
     frame = parse_live_link(live_link({}, subject="A\x1b[2J\n" + 300 * "x"))
     assert frame.subject.isprintable()
     assert len(frame.subject) <= 40
@@ -116,18 +116,18 @@ def test_vmc_shapes_come_by_name_however_they_are_spelled(spelled):
     [((0, 1, 0), "head_yaw", -1.0), ((1, 0, 0), "head_pitch", -1.0), ((0, 0, 1), "head_roll", 1.0)],
 )
 def test_vmc_bones_turn_in_unitys_axes(axis, angle, sign):
-    """Left-handed: about y to the right, about x down, about z to the left shoulder."""
+    """They are left-handed: about y to the right, about x down, about z to the left shoulder."""
     half = math.radians(10.0)
     turn = [math.sin(half) * each for each in axis]
     frame = parse_vmc(osc((BONE, "Head", 0.0, 0.0, 0.0, *map(float, turn), math.cos(half))))
     channels = channels_of(frame)
-    assert frame is not None and frame.is_complete  # no shapes wait for an Apply
+    assert frame is not None and frame.is_complete  # no shapes need an Apply
     assert channels[angle] == approx(sign * 20.0, abs=1e-4)
     assert sum(abs(value) for value in channels.values()) == approx(20.0, abs=1e-3)
 
 
 def test_vmc_head_turns_on_its_neck_and_eyes_turn_apart():
-    """Two bones of 10 degrees make 20; each eye has its own; a bone that turns nothing is none."""
+    """Two bones of 10 degrees make 20; each eye has its own; bones without a turn do not count."""
     tenth = (0.0, math.sin(math.radians(5.0)), 0.0, math.cos(math.radians(5.0)))
     none = (0.0, 0.0, 0.0, 0.0)
     place = (0.0, 1.5, 0.0)
@@ -146,13 +146,13 @@ def test_vmc_head_turns_on_its_neck_and_eyes_turn_apart():
 
 @pytest.mark.parametrize("size", [-4, -8, -(2**31), 2**31 - 1, 5])
 def test_a_bundle_with_a_wrong_length_is_none(size):
-    """A negative one would keep a reader that believes it busy for ever."""
+    """A reader that trusts a negative length would loop for ever."""
     inner = osc((APPLY,))[16:]
     assert parse_vmc(b"#bundle\0" + struct.pack(">Qi", 1, size) + inner) is None
 
 
 def test_bundles_in_bundles_end_somewhere():
-    """Three levels are read, a thousand are not."""
+    """Three levels are read, a thousand are refused."""
     packet = vmc({"JawOpen": 0.5})
     for _ in range(3):
         packet = b"#bundle\0" + struct.pack(">Qi", 1, len(packet)) + packet
@@ -163,7 +163,7 @@ def test_bundles_in_bundles_end_somewhere():
 
 
 def test_messages_that_we_do_not_read_are_passed_over(caplog):
-    """Other addresses, other values, and unknown types of values, without a word in the log."""
+    """Other addresses, other values and unknown types are ignored, without a line in the log."""
     packet = osc(("/VMC/Ext/OK", 1), (VALUE, 3, "JawOpen"), (VALUE, "JawOpen", 0.5), (APPLY,))
     assert channels_of(parse_vmc(packet)) == {"jawOpen": 0.5}
     assert parse_vmc(b"/VMC/Ext/Blend/Val\0\0,zz\0") is None
@@ -175,7 +175,7 @@ def test_messages_that_we_do_not_read_are_passed_over(caplog):
 
 
 def test_what_is_sent_is_what_is_read(generator):
-    """A packet as our sender writes it holds every shape and angle."""
+    """A packet from our sender contains every shape and angle."""
     shapes = {name: float(generator.random()) for name in ARKIT}
     angles = {name: float(generator.uniform(-40.0, 40.0)) for name in (*HEAD_ANGLES, *EYE_ANGLES)}
     packet = packet_of({**shapes, **angles}, subject="x", frame=1)
@@ -183,7 +183,7 @@ def test_what_is_sent_is_what_is_read(generator):
 
 
 def is_sound(frame):
-    """Whether there is no frame, or one that may be believed."""
+    """Whether there is no frame, or a plausible one."""
     if frame is None:
         return True
     known = {*ARKIT, *VISEMES, *ANGLES}
@@ -199,7 +199,7 @@ def is_sound(frame):
 @pytest.mark.parametrize("kind", KINDS)
 @given(data=st.data())
 def test_hypothesis_finds_no_packet_that_does_harm(kind, data):
-    """Good packets with a piece replaced by anything, or text of anything."""
+    """Packets are good ones with a piece replaced by any bytes, or by any text."""
     good = GOOD[kind]
     begin = data.draw(st.integers(0, len(good)))
     end = data.draw(st.integers(begin, len(good)))

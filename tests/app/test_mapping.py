@@ -16,7 +16,7 @@ def test_angles_become_shares_of_what_neck_and_eyes_can():
 
 
 def test_eyes_move_by_their_angles_or_else_by_their_shapes():
-    """Each eye and each direction for itself; an angle that is always 0 was not measured."""
+    """Each eye and each direction is separate; an angle that is always 0 was not measured."""
     shapes = {"eyeLookInLeft": 0.5, "eyeLookUpLeft": 0.2, "eyeLookInRight": 0.1, "jawOpen": 0.1}
     measured = {"eye_yaw_left": -3.0, "eye_pitch_left": 0.0, "eye_yaw_right": np.array([0.0, 2.0])}
     assert set(chosen({**shapes, **measured})) == {

@@ -1,4 +1,4 @@
-"""Memory: thousands of pictures in one process need no more of it than the first ones."""
+"""Memory: thousands of pictures in one process need no more than the first ones."""
 
 import subprocess
 import sys
@@ -43,10 +43,10 @@ for _ in range(36):
 
 
 def test_captures_that_are_opened_and_closed_take_no_memory():
-    """A hundred of one scene: the least that is held while the last are made is as at first.
+    """The least memory while the last of a hundred are made is as at the start.
 
-    Memory goes up and down by tens of megabytes, as drivers give back pictures late. A process
-    of its own makes the captures: pictures of other tests are given back in it as late.
+    Memory goes up and down by tens of megabytes, because drivers release pictures late. A separate
+    process makes the captures: pictures of other tests would be released in it just as late.
     """
     command = [sys.executable, "-c", CAPTURES]
     printed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout

@@ -1,4 +1,4 @@
-"""Parts in the mouth: the farther back, the darker."""
+"""Parts in the mouth: those farther back are darker."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from risorius.app.scenes.mouth import shaded_mouth
 
 
 def test_a_mouth_gets_darker_toward_the_back(face):
-    """Molars lose more than incisors, eyes nothing."""
+    """Molars are darkened more than incisors, and eyes not at all."""
     head = face.head.parts
     shown = face.parts
     for given, drawn in zip(head, shown, strict=False):
@@ -28,7 +28,7 @@ def test_a_mouth_gets_darker_toward_the_back(face):
 
 
 def test_a_tongue_has_a_groove_a_pale_coat_and_red_edges(face):
-    """It is no egg in one tone."""
+    """It must not look like an egg in one tone."""
     tongue = next(part for part in face.parts if part.name == "tongue")
     rest = next(part for part in face.head.parts if part.name == "tongue")
     depth = rest.vertices[:, 2].max() - rest.vertices[:, 2]
@@ -42,5 +42,5 @@ def test_a_tongue_has_a_groove_a_pale_coat_and_red_edges(face):
     ]
     assert redness[0] > 1.15 * redness[1]
     assert tongue.shine > rest.shine
-    assert (tongue.unlit[:, 0] / tongue.unlit[:, 1]).mean() < 1.8  # flesh, and no bubble gum
+    assert (tongue.unlit[:, 0] / tongue.unlit[:, 1]).mean() < 1.8  # flesh, not bubble gum
     assert tongue.unlit[:, 0].mean() < 0.68

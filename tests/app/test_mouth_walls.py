@@ -1,4 +1,4 @@
-"""The mouth's inside stays in the mouth: in turned heads, with open jaws, on masks."""
+"""The mouth's inside stays inside: in turned heads, with open jaws, on masks."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -49,7 +49,7 @@ class Sitter:
         self.passes = Passes(self.pipeline, self.drawn)
 
     def outside_lips(self, yaw, pitch):
-        """How many pixels that show the mouth's inside lie outside the outline of the lips."""
+        """Number of pixels that show the mouth's inside outside of the outline of the lips."""
         scene = self.scene
         camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
         camera.orbit(yaw, pitch)
@@ -60,13 +60,13 @@ class Sitter:
         outline = places[ConvexHull(places).vertices]
         lips = PIL.Image.new("1", SIZE)
         PIL.ImageDraw.Draw(lips).polygon([tuple(place) for place in outline.tolist()], fill=1)
-        within = binary_dilation(np.asarray(lips))  # by the pixel that the outline runs through
+        within = binary_dilation(np.asarray(lips))  # by the pixel that contains the outline
         return int(((classes == Segment.MOUTH_INTERIOR) & ~within).sum())
 
 
 @pytest.mark.slow
 def test_nothing_of_the_mouth_pierces_the_throat(renderer):
-    """Thirty persons with heads turned as far as they go, jaws shut, open and aside, from below."""
+    """Thirty persons turn their heads to the limits, with jaws shut, open and aside, from below."""
     found = {}
     for number in (*range(28), 63, 189):
         sitter = Sitter(FaceScene(make_person(sample_identity(number))), renderer)
@@ -98,7 +98,7 @@ def mask(lowest):
 
 
 def seen_from_in_front(sitter, pitches):
-    """Pixels of the mouth's inside beside the lips, by the view that shows any."""
+    """Pixels of the mouth's inside beside the lips, for each view with any."""
     views = product((-80.0, -40.0, 0.0, 40.0, 80.0), pitches)
     counts = {view: sitter.outside_lips(*view) for view in views}
     return {view: count for view, count in counts.items() if count}
@@ -109,7 +109,7 @@ def seen_from_in_front(sitter, pitches):
 def test_nothing_hangs_below_a_mask(renderer, lowest):
     """A skin without a neck hides the inside of its mouth, at rest and with an open jaw.
 
-    Only who looks up into a mask whose jaw is open sees what lies in it.
+    Its inside is only visible from below, if the jaw is open.
     """
     sitter = Sitter(FaceScene(mask(lowest)), renderer)
     assert seen_from_in_front(sitter, (-10.0, 0.0, 20.0)) == {}
@@ -119,17 +119,17 @@ def test_nothing_hangs_below_a_mask(renderer, lowest):
 
 
 def test_a_mask_has_no_neck_that_fades():
-    """Its border goes around the face, so none of its chin is see-through."""
+    """Its border goes around the face, so no part of its chin may be transparent."""
     assert mask(-118.0).fade() is None
 
 
 def lower_edge(walls):
-    """The vertices of walls that go with the mandible most, where they are now."""
+    """Present places of the wall vertices that follow the mandible most."""
     return walls.vertices[walls.shares > 0.9]
 
 
 def test_walls_stretch_with_the_jaw(face):
-    """Their edge follows the mandible, their root the skull; at rest they are the same array."""
+    """Their edge follows the mandible, their root the skull; at rest the array is the same."""
     face.reset()
     walls = next(part for part in face.parts if isinstance(part, MouthWalls))
     rest = walls.vertices
@@ -156,7 +156,7 @@ def test_walls_stretch_with_the_jaw(face):
 
 
 def test_walls_end_above_the_chin(face):
-    """Skin below the chin does not follow the head wholly; what lies deeper would pierce it."""
+    """Skin below the chin does not follow the head fully; a deeper wall would pierce it."""
     for head in (face.head, make_person(sample_identity(63)), make_person(sample_identity(6))):
         chin = head.vertices[head.landmarks[8], 1]
         walls = [part.vertices for part in head.parts if part.name.startswith("oral_cavity")]

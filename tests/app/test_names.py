@@ -1,4 +1,4 @@
-"""Names of files: those that are no UTF-8, and outputs in whose place a symbolic link lies."""
+"""Names of files: those that are not UTF-8, and outputs at the place of a symbolic link."""
 
 import csv
 import json
@@ -23,7 +23,7 @@ from risorius.app.text import as_text, in_one_line
 from .command_line import refusal, risorius, succeeded
 from .recording_files import timecodes, written
 
-RAW = "l\udce4cheln"  # "lächeln" in Latin-1, as an old archive has it
+RAW = "l\udce4cheln"  # "lächeln" in Latin-1, as in an old archive
 SHOWN = r"l\xe4cheln"
 SMALL = ("--size", "64x64")
 needs_bytes = pytest.mark.skipif(
@@ -38,14 +38,14 @@ def take(path):
 
 
 def pose(path, *more):
-    """A pose that holds for a fifth of a second; more: lines at the head of its file."""
+    """A pose held for a fifth of a second; more: lines at the head of its file."""
     lines = (*more, "duration = 0.2", "[[pose]]", "time = 0.0", "jaw_open = 0.5")
     path.write_text("\n".join(lines), "utf-8")
     return path
 
 
 def test_names_as_text():
-    """Bytes that are no UTF-8 are escaped, and all else stays."""
+    """Bytes that are not UTF-8 are escaped, and all others stay."""
     assert as_text(Path(f"/a/{RAW}.csv")) == f"/a/{SHOWN}.csv" == in_one_line(f"/a/{RAW}.csv")
     assert as_text("schöner & größer \\ 笑") == "schöner & größer \\ 笑"
     as_text("\ud800 alone").encode()
@@ -53,7 +53,7 @@ def test_names_as_text():
 
 @needs_bytes
 def test_a_recording_with_such_a_name_becomes_a_script(tmp_path):
-    """Its title and preface are text; it is written under such a name as well, and read again."""
+    """Its title and preface are text; it is also written under such a name, and read again."""
     recording = take(tmp_path / f"{RAW}.csv")
     script = tmp_path / f"{RAW}.toml"
     output = succeeded("convert", recording, "-o", script)
@@ -68,7 +68,7 @@ def test_a_recording_with_such_a_name_becomes_a_script(tmp_path):
 
 @needs_bytes
 def test_a_script_names_no_such_sound(tmp_path):
-    """TOML is UTF-8, so one line says which file is to be renamed."""
+    """TOML is UTF-8, so one line says which file must be renamed."""
     script = Script("a", 1.0, source="a", poses=(Pose(0.0),), sound=tmp_path / f"{RAW}.wav")
     with pytest.raises(UserError, match=r"l\\xe4cheln.wav: a script cannot name .* rename it"):
         save_script(tmp_path / "a.toml", script)
@@ -81,7 +81,7 @@ def test_a_script_names_no_such_sound(tmp_path):
 @pytest.mark.parametrize("end", [".pc2", ".usdz", ".glb", ".vtkhdf", ".npz", ".csv"])
 @pytest.mark.parametrize("where", ["name", pytest.param("folder", marks=pytest.mark.slow)])
 def test_motion_with_such_a_name_is_exported(where, end, tmp_path):
-    """The file, its folder, or its source may be called so."""
+    """The file, its folder, or its source may have such a name."""
     script = pose(tmp_path / f"{RAW}.toml")
     folder = tmp_path / (RAW if where == "folder" else "folder")
     target = folder / f"{'plain' if where == 'folder' else RAW}{end}"
@@ -104,7 +104,7 @@ def test_motion_with_such_a_name_is_exported(where, end, tmp_path):
 
 @needs_bytes
 def test_pictures_with_such_a_name_have_their_passes(tmp_path):
-    """EXR files, too, whose library takes no such name."""
+    """This includes EXR files, although their library accepts no such name."""
     OpenEXR = pytest.importorskip("OpenEXR")  # noqa: N806 - a module
     script = pose(tmp_path / "pose.toml")
     picture = tmp_path / RAW / f"{RAW}.png"
@@ -157,7 +157,7 @@ def test_sets_and_lists_with_such_names(tmp_path):
     ],
 )
 def test_such_a_name_is_reported_in_one_line(words, tmp_path, monkeypatch):
-    """Where nothing is, or where it means nothing."""
+    """This holds for missing files, and for words with no meaning."""
     monkeypatch.chdir(tmp_path)
     line = refusal(risorius(*(word.replace("NAME", RAW) for word in words)))
     assert "cheln" in line
@@ -166,13 +166,13 @@ def test_such_a_name_is_reported_in_one_line(words, tmp_path, monkeypatch):
 
 @pytest.fixture
 def secret(tmp_path: Path) -> Path:
-    """A file of the user's own, and the folder `shared`, where others have put links to it."""
+    """A file of the user's own, and the folder `shared` with links to it made by others."""
     kept = tmp_path / "mine" / "secret"
     kept.parent.mkdir()
     kept.write_text("mine")
     shared = tmp_path / "shared"
     shared.mkdir()
-    shared.chmod(0o1777)  # as /tmp is
+    shared.chmod(0o1777)  # like /tmp
     names = ("face.png", "face.json", "face.toml", "face.csv", "face.npz", "face.obj", "face.pc2")
     for name in (*names, "face.mtl", "face_skin.png", "face.mp4"):
         (shared / name).symlink_to(kept)
@@ -182,13 +182,13 @@ def secret(tmp_path: Path) -> Path:
 
 
 def check_untouched(secret):
-    """It is as it was, and alone in its folder."""
+    """Check that it is unchanged, and alone in its folder."""
     assert secret.read_text() == "mine"
     assert [*secret.parent.iterdir()] == [secret]
 
 
 def test_an_output_takes_the_place_of_a_link(secret, tmp_path):
-    """And the target of the link stays as it is, whether it is there or not."""
+    """The target of the link stays unchanged, or missing."""
     shared = tmp_path / "shared"
     grey = np.full((8, 8, 3), 128, np.uint8)
     for name in ("face.png", "nowhere.png"):
@@ -227,7 +227,7 @@ def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(secret, tmp
 
 @pytest.mark.slow
 def test_frames_and_samples_follow_no_link(secret, tmp_path):
-    """Nor do pictures in folders that are there already, or unfinished samples of a set."""
+    """This also holds for pictures in existing folders, and unfinished samples of a set."""
     shared = tmp_path / "shared"
     script = pose(tmp_path / "pose.toml")
     frames = shared / "frames"
@@ -249,7 +249,7 @@ def test_frames_and_samples_follow_no_link(secret, tmp_path):
 
 
 def test_a_link_is_no_way_around_what_is_read(tmp_path):
-    """An output that would take the place of an input is refused under any name."""
+    """An output that would replace an input is refused under any name."""
     real, link, other = (tmp_path / name for name in ("real.toml", "link.toml", "other.toml"))
     real.write_text("mine")
     link.symlink_to(real)
@@ -259,4 +259,4 @@ def test_a_link_is_no_way_around_what_is_read(tmp_path):
             check_apart((output,), (read,))
     with pytest.raises(UserError, match="is the name of two outputs"):
         check_apart((other, tmp_path / "here" / "other.toml"), ())
-    check_apart((link, other), (real,))  # the link gives way, and its target is left
+    check_apart((link, other), (real,))  # the link is replaced, and its target stays

@@ -1,4 +1,4 @@
-"""The end of a head's neck: it fades, and nothing else does, wherever jaw and head go."""
+"""The end of a head's neck: only it fades, wherever jaw and head go."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -31,7 +31,7 @@ def renderer() -> Iterator[render.Renderer]:
 
 @pytest.fixture(scope="module")
 def short_necked() -> FaceScene:
-    """The built-in head with a quarter of its neck, cut off without a shirt, as a head of yours."""
+    """The built-in head with a quarter of its neck, cut off without a shirt, like a user's head."""
     head = assets.load("head")
     vertices = head.vertices.copy()
     below = np.minimum(vertices[:, 1] - vertices[head.landmarks[8], 1], 0.0)
@@ -40,7 +40,7 @@ def short_necked() -> FaceScene:
 
 
 class Sitter:
-    """A scene before a camera, as one refiner has it drawn."""
+    """A scene before a camera, drawn by one refiner."""
 
     def __init__(self, scene, renderer, refiner):
         self.pipeline = Pipeline(scene, renderer)
@@ -71,10 +71,10 @@ class Sitter:
 @pytest.mark.parametrize("refiner", [None, "none"])
 @pytest.mark.parametrize("pose", POSES)
 def test_an_open_chin_does_not_fade_beside_a_short_neck(short_necked, renderer, pose, refiner):
-    """Jaw and mouth have the colours that they have in a head that does not fade.
+    """Jaw and mouth have the same colours as in a head that does not fade.
 
-    The fade stood still in space, and a nodding head lost its chin where that sank below the edge
-    of its neck.
+    Once the fade was fixed in space, and a nodding head lost its chin when the chin sank below the
+    edge of its neck.
     """
     scene = short_necked
     scene.reset()

@@ -1,4 +1,4 @@
-"""The light in eyes and mouth, as a picture shows it."""
+"""The light in eyes and mouth in a picture."""
 
 import numpy as np
 from pytest import approx
@@ -16,7 +16,7 @@ AREA = (0, 0, *SIZE)
 
 
 def close_picture(scene, pose, landmarks, height):
-    """The light of pixels, (H, W), and their classes, close to the middle of some landmarks."""
+    """Brightness of pixels, (H, W), and their classes, near the middle of some landmarks."""
     scene.reset()
     scene.pose(pose)
     scene.step(SETTLING)
@@ -49,7 +49,7 @@ def test_rims_run_through_the_landmarks(scene):
 
 
 def test_lids_take_light_from_the_eyeball(scene, monkeypatch):
-    """Below the upper lid and in the corners the eye is darker than in the open, its middle not."""
+    """Below the upper lid and in the corners the eye is darker, but not in its middle."""
     shown, classes = close_picture(scene, {"surprise": 1.0}, range(42, 48), 40.0)
     monkeypatch.setattr(scene, "rims", lambda point_count: {})
     in_the_open, _ = close_picture(scene, {"surprise": 1.0}, range(42, 48), 40.0)
@@ -64,7 +64,7 @@ def test_lids_take_light_from_the_eyeball(scene, monkeypatch):
 
 
 def test_disgust_shows_no_scraps_of_gums(scene):
-    """What is seen through the slit between lips is dark, as no light gets there."""
+    """The visible gap between lips is dark, because no light gets there."""
     light, classes = close_picture(scene, {"disgust": 1.0}, range(48, 68), 60.0)
     in_mouth = light[classes == Segment.MOUTH_INTERIOR]
     lips = light[(classes == Segment.TOP_LIP) | (classes == Segment.BOTTOM_LIP)]
@@ -73,7 +73,7 @@ def test_disgust_shows_no_scraps_of_gums(scene):
 
 
 def test_teeth_in_a_smile_are_darker_under_the_lip(scene):
-    """A row of teeth is no white block: it is lit in its middle, less beside and above."""
+    """A row of teeth is not equally white: it is bright in its middle, darker beside and above."""
     light, classes = close_picture(scene, {"joy": 1.0}, range(60, 68), 30.0)
     rows, columns = np.nonzero(classes == Segment.MOUTH_INTERIOR)
     middle = int(np.median(columns)) + 8  # beside the line between the incisors

@@ -1,4 +1,4 @@
-"""Outputs are whole or not there."""
+"""Outputs are complete or missing."""
 
 import numpy as np
 import pytest
@@ -43,7 +43,7 @@ def test_frames_in_a_folder(tmp_path):
 
 
 def test_broken_frames_leave_the_folder_as_it_was(tmp_path):
-    """If the program fails in the middle, old frames stay, and a new folder goes."""
+    """If the program fails in the middle, old frames stay, and a new folder is removed."""
     for name in ("old", "new"):
         if name == "old":
             with outputs.folder(tmp_path / name, overwrite=False) as add:
@@ -71,7 +71,7 @@ def test_broken_frames_leave_the_folder_as_it_was(tmp_path):
     ],
 )
 def test_a_film_that_ffmpeg_does_not_finish(tmp_path, monkeypatch, program, message):
-    """No ffmpeg, one that gives up, or fails at the end: it is reported, and the old film stays."""
+    """If ffmpeg is missing, stops, or fails at the end, it is reported, and the old film stays."""
     fake = tmp_path / "ffmpeg"
     film = tmp_path / "films" / "film.mp4"
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(fake))

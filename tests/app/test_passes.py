@@ -26,7 +26,7 @@ EXPRESSIONS = {
 
 
 def passes_of(studio, wanted):
-    """The passes of these names of the last picture."""
+    """These passes of the last picture."""
     passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
     return passes.draw(studio.camera, studio.options.style, wanted)
 
@@ -42,7 +42,7 @@ def posed(studio, controls):
 
 @pytest.fixture(scope="module")
 def studio(scene: FaceScene) -> Iterator[Capture]:
-    """A square picture of the face as it is usually refined."""
+    """A square picture of the face with the usual refinement."""
     with Capture(scene, CaptureOptions(size=SIZE, camera="front")) as opened:
         yield opened
 
@@ -56,7 +56,7 @@ def plain(scene: FaceScene) -> Iterator[Capture]:
 
 
 def seen_from(studio, yaw=0.0, pitch=0.0):
-    """Draw the face from somewhere, as it is now."""
+    """Draw the face in its present state from a view."""
     studio.camera = render.OrbitCamera.framing(studio.scene.framing.extent)
     studio.camera.orbit(yaw, pitch)
     studio.draw_image()
@@ -64,7 +64,7 @@ def seen_from(studio, yaw=0.0, pitch=0.0):
 
 
 def first_hits(points, faces, eye, ways):
-    """By casting a ray at every triangle: number of the first one hit and how far, (n, 2).
+    """Number of the first triangle on each ray, and its distance, (n, 2), from all triangles.
 
     Source: Möller and Trumbore 1997; -1 and infinity for no triangle.
     """
@@ -89,7 +89,7 @@ def first_hits(points, faces, eye, ways):
 
 @pytest.mark.parametrize("yaw", [0.0, 70.0])
 def test_triangles_and_depth_are_those_that_rays_hit(plain, yaw):
-    """At 400 places of the mesh as it is: more than 99 in 100 hit the same triangle."""
+    """At 400 places of the unrefined mesh, more than 99 in 100 hit the same triangle."""
     scene = posed(plain, EXPRESSIONS["smile"])
     camera = seen_from(plain, yaw, 5.0)
     found = passes_of(plain, ["depth", "triangle"])
@@ -105,7 +105,7 @@ def test_triangles_and_depth_are_those_that_rays_hit(plain, yaw):
 
 
 def test_nothing_parts_and_skin_differ(studio):
-    """One background in all passes; no triangle of the mesh on teeth and eyes."""
+    """All passes have the same background; teeth and eyes have no triangle of the mesh."""
     posed(studio, EXPRESSIONS["open mouth"])
     seen_from(studio)
     found = passes_of(studio, IMAGES)
@@ -127,7 +127,7 @@ def test_nothing_parts_and_skin_differ(studio):
 
 
 def test_splits_are_those_of_the_triangle_that_is_seen(studio):
-    """As the refiner reports them."""
+    """They are those that the refiner reports."""
     posed(studio, EXPRESSIONS["smile"])
     seen_from(studio)
     found = passes_of(studio, ["triangle", "splits"])
@@ -157,7 +157,7 @@ def test_classes_are_the_subjects_own_sides_and_mirror(studio):
 
 
 def test_an_open_mouth_has_an_inside(studio):
-    """Between the lips, and none of it where they are closed; closed lids hide the eyes."""
+    """It is between the lips, and missing if they are closed; closed lids hide the eyes."""
     found = {}
     for name, controls in (("open", {"jaw_open": 0.9}), ("shut", {"AU43": 1.0})):
         posed(studio, controls)
@@ -172,7 +172,7 @@ def test_an_open_mouth_has_an_inside(studio):
 @pytest.mark.parametrize("expression", list(EXPRESSIONS))
 @pytest.mark.parametrize("view", [(0.0, 0.0), (-40.0, 10.0), (65.0, -15.0)])
 def test_landmarks_lie_on_the_depth_map(studio, expression, view):
-    """All that are visible: each within 2 mm, and half of them within half a millimetre.
+    """All visible ones are within 2 mm, and half of them within half a millimetre.
 
     Those of the jaw lie where the skin bends away from the camera (test_landmarks.py).
     """

@@ -1,4 +1,4 @@
-"""What `capture --passes` writes: read back as other programs do, whole or not at all."""
+"""Files of `capture --passes`: read as other programs do, complete or missing."""
 
 import json
 from pathlib import Path
@@ -25,7 +25,7 @@ AU12 = 1.0
 
 
 def channels_of(path):
-    """All channels of an OpenEXR file, by its own library."""
+    """All channels of an OpenEXR file, read by its own library."""
     with OpenEXR.File(str(path), separate_channels=True) as file:
         return {name: np.array(channel.pixels) for name, channel in file.channels().items()}
 
@@ -36,7 +36,7 @@ def names_in(folder):
 
 
 def test_every_frame_has_its_passes_beside_it(tmp_path):
-    """Five files a frame, of one picture; passes agree with one another and with the numbers."""
+    """Five files for each frame, of one picture; passes agree with each other and the numbers."""
     script = tmp_path / "smile.toml"
     frames = tmp_path / "frames"
     script.write_text(SMILE)
@@ -86,7 +86,7 @@ def test_only_what_is_asked_for_is_written(tmp_path):
 
 @pytest.mark.slow
 def test_the_colours_are_those_without_passes(tmp_path):
-    """To the last byte, and so are the passes of two runs."""
+    """They are equal to the last byte, and so are the passes of two runs."""
     for name, passes in (("a", ("--passes", ALL)), ("b", ("--passes", ALL)), ("c", ())):
         assert (
             risorius(*CAPTURE, "--set", "joy", *passes, "-o", tmp_path / f"{name}.png").exit_code
@@ -98,7 +98,7 @@ def test_the_colours_are_those_without_passes(tmp_path):
 
 
 def test_no_input_is_written_over(tmp_path):
-    """A recording take.json and a picture take.png: the numbers would take its place."""
+    """For a recording take.json and a picture take.png, the numbers would replace the recording."""
     recording = tmp_path / "take.json"
     recording.write_text("[]")
     result = risorius(*CAPTURE, recording, "--passes", "depth", "-o", tmp_path / "take.png")

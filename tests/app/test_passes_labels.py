@@ -1,4 +1,4 @@
-"""Cameras, poses and gazes as numbers: against OpenGL's matrices and the pose of the face."""
+"""Cameras, poses and gazes as numbers: compared with OpenGL's matrices and the face's pose."""
 
 import json
 import math
@@ -18,7 +18,7 @@ ANGLES = {"yaw": st.floats(-180.0, 180.0), "pitch": st.floats(-89.0, 89.0)}
 
 
 def camera_at(yaw, pitch):
-    """A camera on the head's level, off its middle."""
+    """A camera at the head's height, not in its middle."""
     camera = render.OrbitCamera.framing(np.array([[-80.0, -160.0, -90.0], [80.0, 130.0, 120.0]]))
     camera.orbit(yaw, pitch)
     camera.pan(0.1, -0.05)
@@ -28,7 +28,7 @@ def camera_at(yaw, pitch):
 @settings(max_examples=60, deadline=None)
 @given(size=SIZES, **ANGLES)
 def test_points_are_projected_where_opengl_draws_them(size, yaw, pitch):
-    """K, R and t against the matrices that the shaders get, from the upper left corner."""
+    """K, R and t agree with the matrices of the shaders, from the upper left corner."""
     camera, (width, height) = camera_at(yaw, pitch), size
     points = np.random.default_rng(1).uniform(-80.0, 80.0, (20, 3))
     labels = CameraLabels.of(camera, size)
@@ -64,9 +64,9 @@ def test_a_head_at_rest_is_turned_as_the_camera_is_not(scene, yaw, pitch):
 
 
 def test_angles_are_those_that_the_head_was_turned_by(face):
-    """Before a camera in front: left, up, to the left shoulder, alone and all at once.
+    """Before a camera in front: left, up, to the left shoulder, singly and all at once.
 
-    The axes about which it turns are found by landmarks, 2 degrees off those of the scene.
+    The axes of the turn are found by landmarks, 2 degrees off those of the scene.
     """
     names = ("yaw", "pitch", "roll")
 
@@ -87,7 +87,7 @@ def test_angles_are_those_that_the_head_was_turned_by(face):
 
 
 def test_eyes_look_where_they_were_set(face):
-    """Each in the scene: straight ahead at rest, to the subject's left is x, up is y."""
+    """For each eye in the scene: straight ahead at rest, to the subject's left is x, up is y."""
     face.reset()
     assert np.allclose(gaze(face.face, "right"), [0.0, 0.0, 1.0])
     face.pose({"gaze_horizontal_left": 1.0, "gaze_vertical_right": 1.0})
@@ -99,7 +99,7 @@ def test_eyes_look_where_they_were_set(face):
 
 
 def test_labels_hold_what_was_set_and_what_it_moves(face):
-    """Controls and activations that are not 0, and plain numbers that JSON keeps."""
+    """Controls and activations other than 0, and plain numbers that JSON can store."""
     face.reset()
     face.pose({"AU12_left": 0.5})
     face.step(0.5)

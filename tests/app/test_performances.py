@@ -1,4 +1,4 @@
-"""Recordings as scripts: in time, in few keys, with a report; and the commands that take them."""
+"""Recordings as scripts: on time, in few keys, with a report; and the commands that read them."""
 
 from functools import partial
 
@@ -24,13 +24,13 @@ take_of = partial(recording_files.take_of, seconds=3.0, rate=RATE)
 
 
 def wave():
-    """A channel that comes and goes, from 0 to 1."""
+    """A channel that rises and falls between 0 and 1."""
     times = np.arange(3 * RATE + 1) / RATE
     return 0.5 - 0.5 * np.cos(5.0 * times)
 
 
 def written(folder, seconds=1.0):
-    """A recording in a file, of a smile that comes and a head that turns to its right."""
+    """A recording in a file: a smile begins and a head turns to its right."""
     times = np.arange(round(seconds * RATE) + 1) / RATE
     path = folder / "take.csv"
     rows = [f"{t:.4f},{t / seconds:.4f},{20.0 * t / seconds:.4f},7" for t in times]
@@ -49,7 +49,7 @@ def test_the_lead_shifts_what_is_played(lead, moment):
 
 
 def test_the_usual_lead_is_what_the_skin_is_late(face):
-    """A jaw that opens in a wave is open when it was recorded open, within a frame."""
+    """A jaw that opens in a wave is open at the recorded moment, within a frame."""
     scene = face
     take = take_of(jawOpen=0.6 * wave())
     lips = scene.landmarks[[62, 66]]
@@ -130,9 +130,9 @@ def test_what_a_file_seems_to_be_is_what_the_error_speaks_of(tmp_path, name, con
 @pytest.mark.parametrize(
     ("channel", "degrees", "axis", "towards"),
     [
-        ("head_yaw", 20.0, 2, 0),  # forward goes to the subject's left, which is +x
-        ("head_pitch", 20.0, 2, 1),  # forward goes up
-        ("head_roll", 20.0, 1, 0),  # the crown goes to the left shoulder
+        ("head_yaw", 20.0, 2, 0),  # the face turns to the subject's left, which is +x
+        ("head_pitch", 20.0, 2, 1),  # the face turns up
+        ("head_roll", 20.0, 1, 0),  # the crown moves to the left shoulder
         ("eye_yaw_left", 15.0, 2, 0),
         ("eye_pitch_right", 15.0, 2, 1),
     ],

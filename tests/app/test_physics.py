@@ -1,4 +1,4 @@
-"""When the face of the window is at rest, so that it is drawn in full and the window sleeps."""
+"""When the window's face is at rest, so that it is drawn in full and the window sleeps."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from risorius.app.viewer.session.session import Session
 
 @pytest.mark.parametrize("control", ["anger", "mentalis", "joy"])
 def test_a_held_pose_comes_to_rest(face, control):
-    """Also where lips in contact tremble without end: by some thousandths of a millimetre."""
+    """This includes lips in contact that always tremble by some thousandths of a millimetre."""
     session = Session(face, script_for(None, "face"))
     physics = Physics(session, FrameTimes())
     session.set(control, 1.0)
@@ -22,5 +22,5 @@ def test_a_held_pose_comes_to_rest(face, control):
     rested = session.scene.positions.copy()
     for _ in range(120):
         session.scene.step(STEP)
-    assert np.abs(session.scene.positions - rested).max() < 0.05  # nothing was about to move
+    assert np.abs(session.scene.positions - rested).max() < 0.05  # no motion was left
     assert np.abs(rested - session.scene.rest_positions).max() > 1.0

@@ -1,4 +1,4 @@
-"""Figure 1 as a whole: a stranger's refiner fits in, and the mesh stays as it is."""
+"""Figure 1 as a whole: a refiner from outside fits in, and the mesh stays unchanged."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -34,7 +34,7 @@ def image(pipeline, drawn):
 
 
 def test_the_mesh_and_the_simulation_never_notice(surface):
-    """With and without refinement the simulation runs through the same bytes."""
+    """The simulation has the same bytes in each step with and without refinement."""
     scenes = [FaceScene(), FaceScene()]
     renderer = render.Renderer(surface)
     for scene, name in zip(scenes, ("none", "kahler"), strict=True):
@@ -60,7 +60,7 @@ def test_refined_and_static_agree_where_nothing_moved(surface):
 @pytest.mark.parametrize(("first", "settling"), [(0.0, 0.0), (0.5, SETTLING)])
 @pytest.mark.parametrize("rate", [24.0, 30.0])
 def test_a_film_takes_as_long_as_its_script(first, settling, rate):
-    """As much time passes in the scene as between the frames, each of which has its pose."""
+    """Time in the scene equals the time between frames, and each frame has its pose."""
     text = f"[[pose]]\ntime = 0\namplitude = {first}\n[[pose]]\ntime = 0.5\namplitude = 1\n"
     script = parse_script(text, source="wave")
     options = CaptureOptions(size=SIZE, samples=0, frames_per_second=rate)

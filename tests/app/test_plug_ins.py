@@ -1,4 +1,4 @@
-"""A package of somebody else, installed beside the application, brings refinement of its own."""
+"""A separate package, installed beside the application, adds its own refinement."""
 
 import os
 from collections.abc import Iterator
@@ -157,7 +157,7 @@ everywhere = theirs_for_a_test:Everywhere
 
 @pytest.fixture(autouse=True)
 def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Install the package, as pip lays it, and forget it afterwards."""
+    """Install the package, in the way of pip, and remove it afterwards."""
     site = tmp_path / "site"
     notes = site / "theirs-1.0.dist-info"
     notes.mkdir(parents=True)
@@ -205,12 +205,12 @@ def test_all_kinds_are_drawn(tmp_path, options, count):
     ],
 )
 def test_what_is_of_no_use_is_reported_in_one_line(tmp_path, options, text):
-    """A wrong name brings the right ones, and a package that is broken its reason."""
+    """A wrong name is reported with the right ones, and a broken package with its reason."""
     assert text in refusal(capture(tmp_path, *options))
 
 
 def test_they_are_offered():
-    """The window lists them beside the built-in ones, and so does the doctor."""
+    """The window and the doctor list them beside the built-in ones."""
     assert "straight" in mechanism.choices_of("scheme")
     assert "everywhere" in mechanism.choices_of("criterion")
     lines = risorius("doctor").output.splitlines()
@@ -236,7 +236,7 @@ BROKEN = {
 
 
 def chosen(name: str) -> tuple[str, ...]:
-    """Options that choose one of the broken ones."""
+    """Options that choose one of the broken plug-ins."""
     if "scheme" in name:
         return ("--option", name, "--option", "criterion=normal")
     return ("--option", name) if "=" in name else ("--refiner", name)
@@ -248,7 +248,7 @@ def test_an_error_in_one_is_reported_with_its_name(tmp_path, name):
     draw = ("capture", "-o", tmp_path / "face.png", "--size", "64x48")
     move = ("export", "-o", tmp_path / "face.vtkhdf", "--refined", "--fps", "5")
     for words in (draw, move):
-        if name == "empty" and words is move:  # which asks for no room
+        if name == "empty" and words is move:  # it asks for no room
             continue
         assert BROKEN[name] in refusal(risorius(*words, "--set", "joy", *chosen(name)))
     assert not [item for item in tmp_path.iterdir() if item.name.startswith("face")]
@@ -268,7 +268,7 @@ def test_the_traceback_is_there_for_whoever_asks(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_one_in_other_processes(tmp_path, monkeypatch):
-    """Samples of a set, frames of a film and lines of a list are made there: the same line."""
+    """Samples of a set, frames of a film and lines of a list are made there, with the same line."""
     sample = ("dataset", "--count", "1", "-o", tmp_path / "set", "--size", "64x64", "--quiet")
     assert BROKEN["lost"] in refusal(risorius(*sample, "--refiner", "lost"))
     still = ("--set", "joy", "--size", "64x48", *chosen("criterion=moody"))
@@ -290,7 +290,7 @@ def test_one_in_other_processes(tmp_path, monkeypatch):
 @pytest.mark.window
 @pytest.mark.skipif("DISPLAY" not in os.environ, reason="needs a display; `make test` brings one")
 def test_a_window_that_is_opened_with_a_broken_one_says_so(tmp_path):
-    """And does not stay; what fails as soon as the face moves ends no window that is open."""
+    """The window closes; a plug-in that fails after the face moves does not end an open window."""
     view = ("view", "--size", "300x200")
     assert BROKEN["criterion=unborn"] in refusal(risorius(*view, *chosen("criterion=unborn")))
     assert BROKEN["lost"] in refusal(risorius(*view, *chosen("lost")))

@@ -1,4 +1,4 @@
-"""Looks: each can be drawn on every scene by every refiner, and the paper's is the paper's."""
+"""Looks: every refiner draws each on every scene, and the look paper follows the paper's rule."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -41,7 +41,7 @@ def scenes() -> dict[str, Scene]:
 @pytest.mark.parametrize("look", PRESETS)
 @pytest.mark.parametrize("name", SCENES)
 def test_every_look_is_drawn_by_every_refiner(surface, scenes, name, look, refiner):
-    """On every scene, without a crack, and as something that can be seen."""
+    """It is drawn on every scene, without a crack, and visibly."""
     scene = scenes[name]
     refinement = Refinement(look, refiner)
     pipeline = Pipeline(scene, render.Renderer(surface))
@@ -58,7 +58,7 @@ def test_every_look_is_drawn_by_every_refiner(surface, scenes, name, look, refin
 
 
 def test_the_papers_look_is_the_papers_rule(scenes):
-    """On the face the very triangles of `kahler` as it is made without options; smooth has more."""
+    """On the face it makes the triangles of `kahler` without options; smooth makes more."""
     face = scenes["face"]
     skin = face.skin
     plain = refine.create("kahler", face.faces, face.rest_positions, skin.uv, skin.face_uv)
@@ -72,11 +72,11 @@ def test_the_papers_look_is_the_papers_rule(scenes):
 
 @pytest.mark.usefixtures("own_refiners")
 def test_a_comparison_is_of_looks_and_refiners():
-    """In their order; a refiner gets the options of the look, also one of a plug-in."""
+    """Both are in their order; a refiner gets the options of the look, also one of a plug-in."""
     refine.refiners.register("far", refine.PassThrough)
     shown = Refinement("paper", "kahler", {"blend": True})
     assert parse_comparison("none,smooth,far", shown) == (
         Refinement("paper", "none"), Refinement("smooth"), Refinement("paper", "far"),
     )  # fmt: skip
     assert parse_comparison(None, shown) == ()
-    assert parse_comparison("paper", shown) == (Refinement("paper"),)  # it is not changed
+    assert parse_comparison("paper", shown) == (Refinement("paper"),)  # unchanged

@@ -1,4 +1,4 @@
-"""Takes in JSON: shapes as MediaPipe and pages that use it write them, and speech as visemes."""
+"""Takes in JSON: shapes as written by MediaPipe and pages that use it, and speech as visemes."""
 
 import json
 
@@ -16,7 +16,7 @@ NAMES = [name for name in sorted(ARKIT) if name != "tongueOut"]
 
 
 def written(path, document):
-    """The document in a file that is known as a recording."""
+    """The document in a file that counts as a recording."""
     path.write_text(json.dumps(document))
     assert is_recording(path)
     return path
@@ -28,7 +28,7 @@ def take_in(folder, document):
 
 
 def categories(jaw, key="category_name", as_text=False):
-    """The answer of the landmarker for one face."""
+    """The landmarker's answer for one face."""
     scores = {name: jaw if name == "jawOpen" else 0.125 for name in ("_neutral", *NAMES)}
     return [
         {"index": number, "score": str(score) if as_text else score, key: name, "displayName": ""}
@@ -39,7 +39,7 @@ def categories(jaw, key="category_name", as_text=False):
 @pytest.mark.parametrize("key", ["category_name", "categoryName"])
 @pytest.mark.parametrize("as_text", [False, True])
 def test_one_picture(key, as_text, tmp_path):
-    """Both spellings of keys, scores as numbers and as texts; `_neutral` is no shape."""
+    """Both spellings of keys, scores as numbers and as texts; `_neutral` is not a shape."""
     take = take_in(tmp_path, categories(0.75, key, as_text))
     assert take.kind == "MediaPipe JSON"
     assert take.duration == 0.0
@@ -89,14 +89,14 @@ DOCUMENTS = {
 
 @pytest.mark.parametrize("kind", DOCUMENTS)
 def test_a_film(kind, tmp_path):
-    """However the frames are packed, the take is the same."""
+    """The take is the same for all ways to pack frames."""
     take = take_in(tmp_path, DOCUMENTS[kind])
     assert take.channels["jawOpen"] == approx(JAW)
     assert take.times == approx(np.arange(4) / 30.0)
 
 
 def test_what_stands_in_columns_beside_shapes(tmp_path):
-    """The head turns, rows without a face are known, and what nobody knows is listed."""
+    """The head turns, rows without a face are found, and unknown columns are listed."""
     columns = ["jawOpen", "faceDetected", "headYaw", "mood"]
     rows = [[jaw, row != 1, 10.0 * row, 0.5] for row, jaw in enumerate(JAW)]
     over_time = dict(zip(columns, map(list, zip(*rows, strict=True)), strict=True))
@@ -109,7 +109,7 @@ def test_what_stands_in_columns_beside_shapes(tmp_path):
 
 
 def test_frames_without_a_face(tmp_path):
-    """An empty list is a frame in which nobody was."""
+    """An empty list is a frame without a face."""
     frames = [{"faceBlendshapes": [categories(jaw)] if jaw else []} for jaw in (0.2, 0, 0.4)]
     take = take_in(tmp_path, {"frames": frames})
     assert take.channels["jawOpen"] == approx([0.2, 0.3, 0.4])
@@ -117,7 +117,7 @@ def test_frames_without_a_face(tmp_path):
 
 
 def test_several_faces(tmp_path):
-    """The first face is taken, and no other can be asked for."""
+    """The first face is taken; another cannot be chosen."""
     frames = [{"faceBlendshapes": [categories(0.2), categories(0.6)]} for _ in range(3)]
     path = written(tmp_path / "take", frames)
     assert read_take(path).channels["jawOpen"] == approx([0.2] * 3)
@@ -192,7 +192,7 @@ def tracks():
 
 
 def test_tracks_of_visemes(tmp_path):
-    """Its I, O, U are our ih, oh, ou; where lips are to meet they do, and silence is silent."""
+    """Its I, O, U are our ih, oh, ou; lips meet where they should, and silence is silent."""
     take = take_in(tmp_path, tracks())
     assert take.kind == "Viseme tracks"
     assert take.is_calibrated
@@ -222,7 +222,7 @@ CUES = [(0.0, "X"), (0.4, "A"), (0.5, "D"), (1.0, "F"), (1.4, "X")]
 
 
 def test_mouth_shapes_of_rhubarb(tmp_path):
-    """Each shape holds, and goes over into the next around the moment of change."""
+    """Each shape holds, and changes into the next around the given moment."""
     ends = [start for start, _ in CUES[1:]] + [1.6]
     cues = [
         {"start": start, "end": end, "value": value}
@@ -233,7 +233,7 @@ def test_mouth_shapes_of_rhubarb(tmp_path):
     assert take.kind == "Rhubarb Lip Sync"
 
     def value(name, time):
-        """Of a channel at a time."""
+        """Value of a channel at a time."""
         return float(np.interp(time, take.times, take.channels[name]))
 
     assert take.channels.keys() == {f"viseme_{sound}" for sound in ("sil", "PP", "aa", "ou")}
@@ -252,6 +252,6 @@ def test_mouth_shapes_of_rhubarb(tmp_path):
      ([{"start": "x"}], "'start': was 'x', must be a number")],
 )  # fmt: skip
 def test_wrong_mouth_shapes(cues, words, tmp_path):
-    """The cue is counted, and the allowed ones are named."""
+    """The message has the number of the cue, and the allowed names."""
     with pytest.raises(UserError, match=words):
         take_in(tmp_path, {"mouthCues": cues})

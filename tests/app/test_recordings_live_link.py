@@ -1,4 +1,4 @@
-"""Takes of Live Link Face: times, names, units and signs are found from the content of the file."""
+"""Takes of Live Link Face: times, names, units and signs are found from the file's content."""
 
 import math
 
@@ -13,7 +13,7 @@ from .recording_files import ANGLES, has_note, live_link, take_in, timecodes, wr
 
 
 def test_a_raw_take(tmp_path):
-    """All 52 shapes and seven angles are there, as they were, in degrees with our signs."""
+    """All 52 shapes and seven angles have their values, in degrees with our signs."""
     columns = live_link()
     take = take_in(tmp_path, columns)
     assert take.kind == "Live Link Face"
@@ -52,7 +52,7 @@ def test_fewer_columns(left_out, tmp_path):
 
 
 def test_values_that_are_none(tmp_path):
-    """A value like -9.8e5 is no measurement, the frames beside it count; 1.2 is one."""
+    """A value like -9.8e5 is not a measurement; frames beside it count, and 1.2 does."""
     columns = live_link()
     jaw = np.full(120, 0.5)
     jaw[7] = -9.8e5
@@ -65,7 +65,7 @@ def test_values_that_are_none(tmp_path):
 
 @pytest.mark.parametrize(("name", "unit"), [("radians", 1.0), ("degrees", math.pi / 180.0)])
 def test_units_of_angles(name, unit, tmp_path):
-    """Their size shows the unit, for no head turns by more than a quarter of a circle."""
+    """Their size shows the unit, because no head turns by more than a quarter of a circle."""
     take = take_in(tmp_path, live_link(unit=unit))
     assert has_note(take.notes, f"taken for {name}")
     known = live_link()
@@ -75,7 +75,7 @@ def test_units_of_angles(name, unit, tmp_path):
 
 
 def test_axes_of_the_eyeballs(tmp_path):
-    """The app's axes stand 4 degrees outwards of where an eye looks; a face must not squint out."""
+    """The app's axes point 4 degrees outward from the gaze; a face must not squint outward."""
     take = take_in(tmp_path, live_link())
     left = take.channels["eye_yaw_left"]
     right = take.channels["eye_yaw_right"]
@@ -86,7 +86,7 @@ def test_axes_of_the_eyeballs(tmp_path):
 
 
 def test_angles_that_are_switched_off(tmp_path):
-    """The app writes 0 where the head's rotation is off: then the head is not held at 0."""
+    """The app writes 0 if the head's rotation is off; the head is then not held at 0."""
     off = {name: np.zeros(120) for name in ("HeadYaw", "HeadPitch", "HeadRoll")}
     take = take_in(tmp_path, live_link() | off)
     assert "head_yaw" not in take.channels
@@ -95,7 +95,7 @@ def test_angles_that_are_switched_off(tmp_path):
 
 
 def test_a_calibrated_take(tmp_path):
-    """A calibrated take has brows and a nose that rest; those of a raw one never do."""
+    """A calibrated take has brows and a nose at rest; a raw one never has."""
     columns = live_link()
     shapes = {name[0].upper() + name[1:] for name in ARKIT}
     calibrated = {
@@ -121,7 +121,7 @@ def take_of(path, codes, rate=None):
 
 
 def test_the_fraction_of_a_frame(tmp_path):
-    """Where frames come a little slower than 60 a second, the fraction gives each one's time."""
+    """If frames are a little slower than 60 a second, the fraction gives the time of each."""
     frames = 37.867 + 1.003 * np.arange(400)
     times, notes = take_of(tmp_path, timecodes(frames))
     assert times == approx(1.003 * np.arange(400) / 60.0, abs=1e-4)
@@ -129,7 +129,7 @@ def test_the_fraction_of_a_frame(tmp_path):
 
 
 def test_a_rate_that_the_user_knows(tmp_path):
-    """It counts more than an inferred one."""
+    """It takes precedence over an inferred one."""
     times, _ = take_of(tmp_path, timecodes(np.arange(10)), rate=30.0)
     assert times[-1] == approx(9 / 30.0)
 

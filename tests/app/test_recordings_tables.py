@@ -37,7 +37,7 @@ def german(quoting=csv.QUOTE_MINIMAL, separator=";"):
 
 
 def of_r():
-    """What R's write.csv makes: a column of row names, and quotes around all names."""
+    """The output of R's write.csv: a column of row names, and quotes around all names."""
     header, *rows = cells()
     lines = [",".join(f'"{name}"' for name in ("", *header))]
     lines += [",".join((f'"{number}"', *row)) for number, row in enumerate(rows, 1)]
@@ -45,7 +45,7 @@ def of_r():
 
 
 def aligned(*, has_row_names=False):
-    """The table in columns of one width, as pandas' `to_string` writes it."""
+    """The table in columns of one width, as by pandas' `to_string`."""
     rows = [[str(number), *row] for number, row in enumerate(cells(), -1)]
     rows[0][0] = ""
     begin = 0 if has_row_names else 1
@@ -53,7 +53,7 @@ def aligned(*, has_row_names=False):
 
 
 def of_r_table():
-    """What R's write.table makes: row names without a name above."""
+    """The output of R's write.table: row names without a name above."""
     return of_r().replace('"",', "", 1)
 
 
@@ -93,7 +93,7 @@ TEXTS = {
 
 @pytest.mark.parametrize("kind", TEXTS)
 def test_layouts(kind, tmp_path):
-    """However cells are parted and quoted, times and values are the same; the guess is reported."""
+    """For all separators and quotes, times and values are the same; the guess is reported."""
     make, note = TEXTS[kind]
     path = tmp_path / "take.csv"
     path.write_text(make(), encoding="utf-8")
@@ -107,7 +107,7 @@ def test_layouts(kind, tmp_path):
 
 
 def test_a_separator_in_a_name(tmp_path):
-    """The delimiter is the one that parts the rows, too; quotes keep others in a name."""
+    """The delimiter must also separate the rows; names keep other separators in quotes."""
     path = tmp_path / "take.csv"
     path.write_text("head|jawOpen,head|mouthClose\n0.1,0.2\n0.2,0.3\n")
     assert read_take(path).channels.keys() == {"jawOpen", "mouthClose"}
@@ -121,14 +121,14 @@ def test_a_separator_in_a_name(tmp_path):
     "text", ["jawOpen = 0.5\nmouthClose = 0.2\n", "jawOpen is a shape\nand so is mouthClose\n"]
 )
 def test_words_are_no_table(text, tmp_path):
-    """Blanks part cells above numbers only."""
+    """Blanks only separate cells above numbers."""
     path = tmp_path / "notes"
     path.write_text(text)
     assert not is_recording(path)
 
 
 def test_a_plain_table_needs_no_word(tmp_path):
-    """Commas, points and UTF-8 are no guess."""
+    """Commas, points and UTF-8 are not reported as guesses."""
     path = tmp_path / "take.csv"
     path.write_text(table(COLUMNS), encoding="utf-8-sig")
     assert read_take(path).notes == ()
@@ -140,7 +140,7 @@ def test_a_plain_table_needs_no_word(tmp_path):
      ("latin-1", "Windows-1252")],
 )  # fmt: skip
 def test_encodings(codec, name, tmp_path):
-    """Names that are no ASCII are read right, and the encoding is reported."""
+    """Names beyond ASCII are read correctly, and the encoding is reported."""
     path = tmp_path / "take.csv"
     path.write_bytes(table({"für später": np.ones(180)} | COLUMNS).encode(codec))
     assert is_recording(path)
@@ -171,7 +171,7 @@ def test_a_quoted_text_beside_numbers(tmp_path):
 
 @pytest.mark.parametrize("is_first", [True, False])
 def test_a_quote_that_is_not_closed(tmp_path, is_first):
-    """It costs its own row and no other, and the line is reported, also where two are open."""
+    """Its own row is lost and no other, and the line is reported, also if two are open."""
     path = tmp_path / "take.csv"
     broken = '0.1,"0.2\n' if is_first else '"0.1,0.2\n'
     path.write_text(f'time,"jawOpen"\n0,0.1\n{broken}0.2,0.3\n0.3,"0.4\n0.4,0.5\n')

@@ -1,4 +1,4 @@
-"""Recordings as text: encodings, line ends, comments, rows that do not belong."""
+"""Recordings as text: encodings, line ends, comments, rows that do not belong there."""
 
 import math
 import os
@@ -16,7 +16,7 @@ COLUMNS = {"time": np.arange(6) / 30.0, "jawOpen": np.arange(6) / 10.0, "AU4": n
 
 
 def check(path):
-    """The table above is in the file; its notes."""
+    """Check that the table above is in the file; return its notes."""
     assert is_recording(path)
     take = read_take(path)
     assert take.channels["jawOpen"] == approx(COLUMNS["jawOpen"], abs=1e-6)
@@ -27,7 +27,7 @@ def check(path):
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
 def test_encodings(encoding, tmp_path):
-    """With or without a mark, a name that is no ASCII stays as it is."""
+    """With or without a byte order mark, a name beyond ASCII stays unchanged."""
     path = tmp_path / "take.csv"
     text = table({"Stimmung für später": [1] * 6} | COLUMNS)
     path.write_bytes(text.encode(encoding))
@@ -37,7 +37,7 @@ def test_encodings(encoding, tmp_path):
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
 def test_line_ends(ending, tmp_path):
-    """Those of all systems."""
+    """Line ends of all systems are read."""
     path = tmp_path / "take.csv"
     path.write_bytes(table(COLUMNS).replace("\n", ending).encode())
     check(path)
@@ -54,7 +54,7 @@ def test_line_ends(ending, tmp_path):
     ids=["empty lines", "comment", "blanks", "comma at the end"],
 )
 def test_odd_tables(change, tmp_path):
-    """What spreadsheets and scripts add is passed over."""
+    """Additions of spreadsheets and scripts are ignored."""
     path = tmp_path / "take.csv"
     assert callable(change)
     path.write_text(change(table(COLUMNS)))
@@ -121,7 +121,7 @@ def test_a_rate_that_is_none(rate, tmp_path):
     ],
 )
 def test_files_of_ours_are_no_recordings(text, tmp_path):
-    """Scripts, landmarks and heads are not taken for recordings: their content differs."""
+    """Scripts, landmarks and heads are not taken as recordings, because their content differs."""
     path = tmp_path / "take.csv"
     path.write_text(text)
     assert not is_recording(path)

@@ -1,4 +1,4 @@
-"""When rows were seen: timecode of any rate, clocks, time stamps; and `--rate` beside them."""
+"""Times of rows: timecode of any rate, clocks, time stamps; and `--rate` with them."""
 
 import datetime
 import json
@@ -28,7 +28,7 @@ def timecode(frame, base, *, separator=":", start=36000):
 
 
 def drop_frame(frame, base, separator=";"):
-    """The label of a frame by SMPTE's rule: at each minute but every tenth numbers are dropped."""
+    """The label of a frame by SMPTE's rule: all minutes but every tenth skip numbers."""
     dropped = base // 15
     tens, rest = divmod(frame, 600 * base - 9 * dropped)
     minutes = max(rest - dropped, 0) // (60 * base - dropped)
@@ -38,7 +38,7 @@ def drop_frame(frame, base, separator=";"):
 @pytest.mark.parametrize("base", [24, 25, 30, 48, 50, 60, 72, 75, 90, 100, 120, 144, 240])
 @pytest.mark.parametrize("step", [1, 2])
 def test_any_timecode(base, step, tmp_path):
-    """Three seconds are three seconds, also where only every other frame has a row."""
+    """Three seconds stay three seconds, even if only every other frame has a row."""
     frames = range(0, 3 * base, step)
     cells = [timecode(frame, base) for frame in frames]
     for rate in (None, float(base), 30.0, base / step):
@@ -48,7 +48,7 @@ def test_any_timecode(base, step, tmp_path):
 
 @pytest.mark.parametrize(("rate", "base"), [(23.976, 24), (29.97, 30), (47.952, 48), (59.94, 60)])
 def test_the_true_rate_of_timecode(rate, base, tmp_path):
-    """A rate that is a thousandth less than the count is the real rate of the camera."""
+    """A rate that is a thousandth below the count is the camera's real rate."""
     cells = [timecode(frame, base) for frame in range(3 * base)]
     take = take_of(tmp_path, cells, name="Timecode", rate=rate)
     assert take.duration == approx((3 * base - 1) / rate)
@@ -65,7 +65,7 @@ def test_a_rate_that_timecode_contradicts(tmp_path):
 @pytest.mark.parametrize("separator", [";", ":"])
 @pytest.mark.parametrize("base", [30, 60, 120])
 def test_drop_frame(base, separator, tmp_path):
-    """Eleven minutes and more: no jump where numbers are left out, and the true rate counts."""
+    """Over eleven minutes there is no jump at skipped numbers, and the true rate counts."""
     frames = np.arange(700 * base // 5) * 5
     cells = [drop_frame(int(frame), base, separator) for frame in frames]
     take = take_of(tmp_path, cells, name="Timecode")
@@ -75,14 +75,14 @@ def test_drop_frame(base, separator, tmp_path):
 
 @pytest.mark.parametrize(("start", "step"), [(0, 1), (3, 5), (7, 10)])
 def test_colons_that_drop_nothing(start, step, tmp_path):
-    """Rows that happen to miss the first numbers of minutes are no drop-frame timecode."""
+    """Rows that miss the first numbers of minutes by chance are not drop-frame timecode."""
     frames = range(start, 7200, step)
     take = take_of(tmp_path, [timecode(frame, 30) for frame in frames], name="Timecode")
     assert take.times == approx((np.array(frames) - start) / 30.0)
 
 
 def test_a_semicolon_that_drops_nothing(tmp_path):
-    """Numbers that drop-frame timecode leaves out show that it is none."""
+    """Numbers that drop-frame timecode skips show that it is not drop-frame."""
     frames = range(0, 2100)
     cells = [timecode(frame, 30, separator=";", start=0) for frame in frames]
     take = take_of(tmp_path, cells, name="Timecode")
@@ -91,7 +91,7 @@ def test_a_semicolon_that_drops_nothing(tmp_path):
 
 @pytest.mark.parametrize("base", [24, 25, 30, 48, 60])
 def test_frames_behind_a_point(base, tmp_path):
-    """Two digits that never reach 60 count frames; hundredths of a second do reach it."""
+    """Two digits that never reach 60 count frames; hundredths of a second do reach 60."""
     frames = range(3 * base)
     cells = [timecode(frame, base, separator=".") for frame in frames]
     take = take_of(tmp_path, cells, name="Timecode")
@@ -101,7 +101,7 @@ def test_frames_behind_a_point(base, tmp_path):
 
 
 def test_rows_that_share_a_frame_of_timecode(tmp_path):
-    """60 rows a second with timecode of 30 are 60 a second."""
+    """60 rows a second with timecode of 30 frames are 60 a second."""
     cells = [timecode(row // 2, 30) for row in range(180)]
     take = take_of(tmp_path, cells, name="Timecode")
     assert take.times == approx(np.arange(180) / 60.0)
@@ -120,7 +120,7 @@ def clock(form):
 
 
 def timedelta_of_pandas(seconds):
-    """As pandas prints a time delta."""
+    """A time delta as pandas prints it."""
     return f"0 days 00:00:{seconds:09.6f}"
 
 
@@ -163,7 +163,7 @@ CLOCKS = {
 
 @pytest.mark.parametrize("kind", CLOCKS)
 def test_clocks_and_stamps(kind, tmp_path):
-    """90 frames last 89 / 30 s, however their times are written, in tables and in JSON."""
+    """90 frames last 89 / 30 s for all forms of times, in tables and in JSON."""
     times = np.arange(90) / 30.0
     cells = [CLOCKS[kind](float(time)) for time in times]
     for rate in (None, 30.0):

@@ -1,4 +1,4 @@
-"""Takes of OpenFace and py-feat, and of tables that name shapes and units in ways of their own."""
+"""Takes of OpenFace and py-feat, and of tables with other names for shapes and units."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from .recording_files import has_note, openface, pyfeat, pyfeat_2, table, take_i
 
 
 def test_openface(tmp_path):
-    """Units from 0 to 5, presence where there is no more, and angles with our signs."""
+    """Units are from 0 to 5, or presence without intensity, and angles have our signs."""
     columns = openface()
     take = take_in(tmp_path, columns)
     assert take.kind == "OpenFace 2"
@@ -102,7 +102,7 @@ def test_rows_of_nan(tmp_path):
 
 
 def test_several_faces(tmp_path):
-    """The face that most rows show is taken, or the one that is asked for."""
+    """The face in most rows is taken, or the chosen one."""
     one = openface()
     other = openface(20)
     rows = table(one).splitlines() + table(other | {"face_id": [3] * 20}).splitlines()[1:]
@@ -133,7 +133,7 @@ def test_pyfeat_1(tmp_path):
 
 
 def test_pyfeat_2(tmp_path):
-    """Every other frame; radians; the shapes count, and only units that they do not know."""
+    """Every other frame; radians; shapes count, and only those units that shapes lack."""
     take = take_in(tmp_path, pyfeat_2())
     assert take.kind == "py-feat 2"
     assert not take.unknown
@@ -150,7 +150,7 @@ def test_pyfeat_2(tmp_path):
 
 
 def test_pyfeat_names_persons(tmp_path):
-    """Its faces are called Person_0 and so on, and come in turn."""
+    """Its faces are called Person_0 and so on, and their rows alternate."""
     columns = pyfeat_2(20)
     columns["Identity"] = ["Person_0", "Person_1"] * 10
     columns["frame"] = np.repeat(np.arange(10), 2).tolist()
@@ -169,7 +169,7 @@ def test_pyfeat_names_persons(tmp_path):
      " mouthSmileLeft ", "Mouth Smile Left"],
 )  # fmt: skip
 def test_spellings_of_a_shape(spelled, tmp_path):
-    """Capitals, underscores, blanks, and what stands before the last dot do not count."""
+    """Capitals, underscores, blanks, and text before the last dot do not count."""
     columns = {"time": np.arange(5) / 30.0, spelled: np.arange(5) / 10.0}
     take = take_in(tmp_path, columns)
     assert take.channels.keys() == {"mouthSmileLeft"}
@@ -187,7 +187,7 @@ def test_spellings_of_a_shape(spelled, tmp_path):
     ],
 )
 def test_spellings_of_units_and_visemes(spelled, meant, tmp_path):
-    """`_R` is the right side where there is a left one."""
+    """`_R` is the right side if there is a left one."""
     columns = {name: np.full(3, 0.1 + place / 10.0) for place, name in enumerate(spelled)}
     take = take_in(tmp_path, columns)
     assert {name: values[0] for name, values in take.channels.items()} == approx(
@@ -205,7 +205,7 @@ def test_units_of_action_units(largest, tmp_path):
 
 
 def test_a_table_of_something_else(tmp_path):
-    """A table of unknown columns is another fault than no table at all."""
+    """A table of unknown columns gives another message than no table."""
     path = written(tmp_path / "take.csv", {"date": ["x"] * 3, "price": [1.0] * 3})
     with pytest.raises(UserError, match=r"no column is known \('date', 'price'.*Live Link Face"):
         read_take(path)

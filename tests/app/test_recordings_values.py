@@ -62,7 +62,7 @@ UNITS = {
 
 @pytest.mark.parametrize("kind", UNITS)
 def test_units(kind, tmp_path):
-    """A channel peaks at its share of the greatest value; a guess is reported."""
+    """A channel's peak is its share of the greatest value; a guess is reported."""
     columns, channel, peak, note = UNITS[kind]
     take = of_table(tmp_path, columns)
     assert take.channels.keys() == {channel}
@@ -72,7 +72,7 @@ def test_units(kind, tmp_path):
 
 
 def test_stray_values_are_no_percent(tmp_path):
-    """A few values that are far off leave the others as they are."""
+    """A few wrong values leave the others unchanged."""
     jaw = RISE.copy()
     jaw[[20, 70]] = 80.0
     take = of_table(tmp_path, {"jawOpen": jaw})
@@ -103,7 +103,7 @@ def lost_columns(value):
 )
 @pytest.mark.parametrize("is_json", [False, True])
 def test_rows_without_a_face(flag, seen, unseen, is_json, tmp_path):
-    """Zeros are no rest: the pose is held, the neutral face is known, nothing is calibrated."""
+    """Zeros are not rest: the pose is held, the neutral face is known, nothing is calibrated."""
     columns, lost = lost_columns(0.0)
     if flag:
         columns[flag] = [unseen if each else seen for each in lost]
@@ -125,14 +125,14 @@ def test_rows_without_a_face(flag, seen, unseen, is_json, tmp_path):
 
 @pytest.mark.parametrize("flag", ["faceDetected", "BlendShapeCount"])
 def test_a_frozen_face(flag, tmp_path):
-    """Values that a tracker repeats while it sees nobody do not count."""
+    """Values that a tracker repeats without a face do not count."""
     columns, lost = lost_columns(0.9)
     take = of_table(tmp_path, columns | {flag: np.where(lost, 0, 52).tolist()})
     assert take.channels["browDownLeft"].max() < 0.5
 
 
 def test_zeros_of_a_calibrated_face_are_rest(tmp_path):
-    """A face that often is at 0 is seen there."""
+    """A face that often is at 0 is really at rest there."""
     shapes = {name: np.maximum(RISE - 0.5, 0.0) for name in RESTING}
     take = of_table(tmp_path, shapes)
     assert take.is_calibrated
@@ -159,7 +159,7 @@ def heads():
 
 @pytest.mark.parametrize("layout", heads())
 def test_heads_beside_shapes(layout, tmp_path):
-    """The head turns by 20 degrees, however its turn is written."""
+    """The head turns by 20 degrees in all notations."""
     values, key, sign = heads()[layout]
     take = of_json(
         tmp_path, [{**frame, key: value} for frame, value in zip(FRAMES, values, strict=True)]
@@ -177,7 +177,7 @@ def test_heads_that_are_not_clear(value, tmp_path):
 
 
 def in_categories(frame):
-    """The shapes as MediaPipe's web page has them."""
+    """The shapes in the form of MediaPipe's web page."""
     shapes = [{"categoryName": n, "score": v} for n, v in frame["blendshapes"].items()]
     return [{"categories": shapes}]
 
@@ -203,7 +203,7 @@ LAYOUTS = {
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_layouts_of_json(layout, tmp_path):
-    """Shapes are found in tables in one another, and under names that stand once."""
+    """Shapes are found in nested tables, and under names that occur once."""
     take = of_json(tmp_path, LAYOUTS[layout])
     assert take.channels["jawOpen"] == approx(RISE)
     assert take.times == approx(TIMES)
@@ -211,7 +211,7 @@ def test_layouts_of_json(layout, tmp_path):
 
 
 def test_what_json_says_besides(tmp_path):
-    """Keys that nobody knows, and a shape under two names, are reported."""
+    """Unknown keys, and a shape under two names, are reported."""
     frames = [{**frame, "emotion": "joy"} for frame in FRAMES]
     frames[3]["blendshapes"] = {"jawOpen": 0.25, "JawOpen": 0.75}
     take = of_json(tmp_path, frames)
@@ -222,7 +222,7 @@ def test_what_json_says_besides(tmp_path):
 
 @pytest.mark.parametrize("form", ["{:.1f}%", "{:.1f} %"])
 def test_percent_signs_in_cells(form, tmp_path):
-    """A half is a half, whichever column has the sign, also of a face that does little."""
+    """A half is a half, whichever column has the sign, also for a face that moves little."""
     values = np.linspace(0.0, 0.02, 30).round(3)
     rows = [[form.format(100.0 * value), form.format(20.0 + 75.0 * (value > 0.01)), "0.5"]
             for value in values]  # fmt: skip

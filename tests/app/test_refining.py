@@ -1,4 +1,4 @@
-"""The options of refiners: read from their declarations, with any version of numpy."""
+"""The options of refiners: read from their declarations, for any version of numpy."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def test_only_switches_numbers_and_words_are_options():
         grown: bool | None = None,
         share: float = 0.5,
     ) -> refine.PassThrough:
-        """A refiner of somebody else, whose annotations are text."""
+        """A refiner of another author, with annotations as text."""
         return refine.PassThrough(faces, rest_positions)
 
     refine.refiners.register("declared", declared)
@@ -58,7 +58,7 @@ def test_what_may_be_left_open_is_a_choice():
 
 @pytest.mark.parametrize("criterion", ["rest", "silhouette", "displacement+rest", "normal"])
 def test_levels_and_thresholds_of_criteria(criterion):
-    """Every criterion has its own, by its name; fewer levels split no edge more often than that."""
+    """Every criterion has its own, by its name; a lower level limits the splits of each edge."""
     plane = PlaneScene()
     plane.pose({"amplitude": 1.0, "phase": 0.3})
     plane.step(0.5)
@@ -85,7 +85,7 @@ def test_levels_and_thresholds_of_criteria(criterion):
 
 
 def test_options_of_criteria_that_do_not_fit():
-    """One that is not asked, one that there is not, and a value beyond its range."""
+    """An option for an unused or unknown criterion, and a value beyond its range, are refused."""
     plane = PlaneScene()
     for options, wanted in (
         ({"rest.levels": 1}, "unknown option rest.levels; it takes .*normal.levels"),

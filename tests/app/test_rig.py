@@ -1,4 +1,4 @@
-"""Avatars move as the simulation does: named shapes, on the vertices of the file."""
+"""Avatars move like the simulation: named shapes, on the vertices of the file."""
 
 import json
 import re
@@ -34,7 +34,7 @@ from .glb_player import Player, document
 from .rig_files import LIBRARY, PICTURE, write_whole_head
 
 METRES = 0.001
-SEEN = 0.02  # [mm] that nobody sees
+SEEN = 0.02  # [mm], an invisible distance
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +61,7 @@ def test_shapes_are_where_the_simulation_rests(built_in, face):
 
 
 def test_an_avatar_of_ours_needs_no_landmarks(built_in, face):
-    """It is known by its vertices, of which seams of the texture have doubled some."""
+    """It is known by its vertices, although seams of the texture double some."""
     mesh = read_mesh(built_in)
     known = recognised(mesh)
     assert known.name == "the built-in head"
@@ -70,7 +70,7 @@ def test_an_avatar_of_ours_needs_no_landmarks(built_in, face):
 
 
 def test_shares_of_bones_stay_within_their_limits(face):
-    """A share that rounding left above 1 is 1: validators refuse what is below 0."""
+    """A share that rounding left above 1 becomes 1: validators refuse values below 0."""
     surface = MovingSurface("skin", face.rest_positions, face.faces)
     none = np.zeros((0, *surface.rest.shape))
     normals = vertex_normals(surface.rest, surface.faces)
@@ -85,7 +85,7 @@ def test_shares_of_bones_stay_within_their_limits(face):
 
 
 def test_mouth_close_shuts_an_open_jaw(built_in, face):
-    """It is added to jawOpen, as ARKit means it."""
+    """It is added to jawOpen, as defined by ARKit."""
     shapes = Player(built_in).shapes("skin")
     shut = (shapes["jawOpen"] + shapes["mouthClose"]) / METRES + face.rest_positions
     upper, lower = face.landmarks[[62, 66]]
@@ -111,7 +111,7 @@ def test_parts_have_the_shapes_that_move_them(built_in):
 
 @pytest.mark.blender
 def test_blender_has_the_shapes_by_name(built_in, tmp_path):
-    """Shape keys with ARKit's names, each of which moves the vertices as the file says."""
+    """Shape keys with ARKit's names each move the vertices as in the file."""
     found = shape_keys_in_blender(built_in, tmp_path)
     shapes = Player(built_in).shapes("skin")
     with np.load(found) as keys:
@@ -157,7 +157,7 @@ def whole(scene: FaceScene, tmp_path_factory: pytest.TempPathFactory) -> Whole:
 
 
 def test_a_file_keeps_its_vertices_in_their_order(whole):
-    """All of them, and all triangles, with texture coordinates, material and picture."""
+    """All of them and all triangles are there, with texture coordinates, material and picture."""
     mesh = read_mesh(whole.mesh)
     player = Player(whole.avatar)
     points = player.attribute("head", "POSITION")
@@ -177,7 +177,7 @@ def test_a_file_keeps_its_vertices_in_their_order(whole):
 
 
 def test_each_piece_of_a_file_moves_as_what_it_is(whole, face):
-    """Teeth with the jaw, lashes with the lids, the tongue out; hair and body stand still."""
+    """Teeth move with the jaw, lashes with the lids, the tongue out; hair and body stand still."""
     shapes = {
         name: 100.0 * each / 10.0 for name, each in Player(whole.avatar).shapes("head").items()
     }
@@ -196,11 +196,11 @@ def test_each_piece_of_a_file_moves_as_what_it_is(whole, face):
     assert "body or clothes, still" in whole.lines
     skin = rest_in(face, {"jawOpen": 1.0}).skin - face.rest_positions
     off = np.abs(own["skin"]["jawOpen"] - skin)
-    assert np.median(off) < 0.5  # its organs were fitted anew
+    assert np.median(off) < 0.5  # its organs were fitted again
 
 
 def test_eyeballs_of_a_file_become_nodes(whole, face):
-    """Each stands where its ball turns; the file's unit becomes metres at the root."""
+    """Each is at the centre of its ball; the file's unit becomes metres at the root."""
     nodes = {node["name"]: node for node in document(whole.avatar)["nodes"]}
     for eye in face.head.eyes:
         centre = 10.0 * np.array(nodes[f"eye_{eye.name}"]["translation"])
@@ -210,14 +210,14 @@ def test_eyeballs_of_a_file_become_nodes(whole, face):
 
 
 def test_the_file_is_read_by_trimesh(whole):
-    """Another reader finds the head, as large as it is."""
+    """Another reader finds the head, at the same size."""
     scene = trimesh.load_scene(whole.avatar, process=False)
     assert 0.3 < scene.extents[1] < 0.8
 
 
 @pytest.mark.slow
 def test_an_option_corrects_what_a_piece_is(whole, tmp_path):
-    """Beside it eyes turn by the shapes, where that is asked for."""
+    """With another option, eyes turn by the shapes."""
     landmarks = whole.mesh.with_suffix(".json")
     path = tmp_path / "other.glb"
     given = ("--piece", "tongue=hair", "--eyes", "targets", "--shapes", "expressions,arkit")
@@ -229,7 +229,7 @@ def test_an_option_corrects_what_a_piece_is(whole, tmp_path):
 
 
 def test_correctives_make_sums_come_true(tmp_path, face):
-    """A shape of a pair, times the product of both weights; the file says so."""
+    """They are shapes of pairs, times the product of both weights; the file says so."""
     path = tmp_path / "head.glb"
     succeeded("rig", "-o", path, "--correctives", 2, "--quiet")
     found = document(path)
@@ -247,7 +247,7 @@ def test_correctives_make_sums_come_true(tmp_path, face):
 
 
 def test_what_is_printed_of_sums_has_the_correctives(face):
-    """The table of pairs is that of the file: a pair that has a shape of its own is met."""
+    """The table of pairs describes the file: a pair with a shape of its own has no error."""
     pair = ("jawOpen", "mouthPucker")
     rest = rest_in(face, {})
     poses = {name: (rest_in(face, {name: 1.0}), rest) for name in pair}
@@ -259,7 +259,7 @@ def test_what_is_printed_of_sums_has_the_correctives(face):
 
 @pytest.mark.slow
 def test_a_take_shows_how_far_sums_are_off(tmp_path, face):
-    """A take of one shape is met; where two are at 1, the line has the distance of the pair."""
+    """A take of one shape has no error; if two are at 1, the line has the error of the pair."""
     take = tmp_path / "take.toml"
     still = 'title = "Still"\nduration = 1.0\n[[pose]]\ntime = 0.0\n'
     off = {}
@@ -289,7 +289,7 @@ def test_a_take_shows_how_far_sums_are_off(tmp_path, face):
 
 @pytest.mark.slow
 def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
-    """A mesh with more triangles than can be simulated has shapes on all of its own vertices."""
+    """A mesh with too many triangles for simulation has shapes on all of its own vertices."""
     monkeypatch.setattr(simplifying, "MOST_SIMULATED", 5000)
     monkeypatch.setattr(simplifying, "SIMPLIFIED", 4000)
     fine = stranger(1)
@@ -311,7 +311,7 @@ def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
 
 @pytest.fixture(scope="module")
 def copied(scene, tmp_path_factory):
-    """A GLB with bones, shapes and motion of its own, marked with extras; and its avatar."""
+    """A GLB with its own bones, shapes and motion, marked with extras; and its avatar."""
     folder = tmp_path_factory.mktemp("glb")
     own = folder / "own.glb"
     words = ("--set", "joy=0.5", "--fps", 5, "--quiet")
@@ -354,7 +354,7 @@ def test_a_glb_comes_back_as_it_was(copied):
 
 
 def test_shapes_of_a_glb_are_those_of_the_simulation(copied, face):
-    """Under bones, and for vertices that the file doubles along seams."""
+    """This holds under bones, and for vertices that the file doubles along seams."""
     player = Player(copied[1])
     shapes = player.shapes("skin")
     # The file has shapes of these names, so others follow ours.
@@ -368,7 +368,7 @@ def test_shapes_of_a_glb_are_those_of_the_simulation(copied, face):
 
 
 def test_motion_of_a_glb_goes_on(copied):
-    """Its weights are as they were; those of the new shapes are 0."""
+    """Its weights are unchanged; those of the new shapes are 0."""
     own, path = copied
     before = Player(own)
     after = Player(path)
@@ -378,7 +378,7 @@ def test_motion_of_a_glb_goes_on(copied):
 
 
 def test_a_folder_of_objs_keeps_the_lines_of_the_file(whole, tmp_path):
-    """One a shape, the same vertices in the same order; only lines of moved vertices change."""
+    """One for each shape, the same vertices in order; only lines of moved vertices change."""
     landmarks = whole.mesh.with_suffix(".json")
     folder = tmp_path / "shapes"
     output = succeeded("rig", whole.mesh, "--landmarks", landmarks, "--as", "obj", "-o", folder)
@@ -419,7 +419,7 @@ def test_wrong_options_are_refused(whole, tmp_path):
 
 
 def test_a_ball_is_found_where_it_is():
-    """Also by half of it; a part that is no ball leaves the guess as it was."""
+    """Half of it is enough; a part that is not a ball does not change the guess."""
     points = 12.0 * ball(3).vertices + (30.0, 1.0, 70.0)
     front = points[points[:, 2] > 68.0]
     centre, radius = sphere_of(front, np.array([31.0, 0.0, 72.0]), 11.0)
@@ -431,7 +431,7 @@ def test_a_ball_is_found_where_it_is():
 
 @pytest.mark.parametrize("change", ["moved", "fewer"])
 def test_a_file_that_changed_since_it_was_read_is_refused(tmp_path, change):
-    """The window makes an avatar long after it has read the head; vertex numbers may be others."""
+    """The window makes an avatar long after reading the head; vertex numbers may differ."""
     brought = stranger()
     mesh, marks = brought.write(tmp_path)
     head = fit_head(mesh, marks)

@@ -1,4 +1,4 @@
-"""A head whose lips are sealed: cut along its landmarks, given back with a few vertices more."""
+"""A head with sealed lips: cut along its landmarks, and written with a few vertices more."""
 
 import json
 from dataclasses import replace
@@ -29,7 +29,7 @@ def shut() -> Stranger:
 
 @pytest.mark.slow
 def test_an_avatar_keeps_what_fills_its_mouth_and_eyes(tmp_path):
-    """All vertices and triangles of the file in their order; the filling goes with the lips."""
+    """All vertices and triangles stay in the file's order; the filling moves with the lips."""
     mask = masked()
     mesh, marks = mask.write(tmp_path)
     path = tmp_path / "avatar.glb"
@@ -43,7 +43,7 @@ def test_an_avatar_keeps_what_fills_its_mouth_and_eyes(tmp_path):
 
 
 def write_glb(shut, folder):
-    """The sealed head as a GLB, its left and right half with vertices of their own on the seam."""
+    """The sealed head as a GLB; its halves have separate vertices on the seam."""
     vertices = shut.mesh.vertices
     faces = shut.mesh.faces
     is_left = vertices[faces, 0].mean(axis=1) > 0.0
@@ -65,7 +65,7 @@ def write_glb(shut, folder):
 
 
 def test_sealed_lips_are_cut_and_part(shut, tmp_path):
-    """A line says how many vertices are doubled; an open jaw parts them, and the corners hold."""
+    """A line has the number of doubled vertices; an open jaw parts them, and the corners hold."""
     head = fit_head(*shut.write(tmp_path))
     (note,) = head.notes
     added = len(head.vertices) - len(shut.mesh.vertices)
@@ -84,7 +84,7 @@ def test_sealed_lips_are_cut_and_part(shut, tmp_path):
 
 
 def test_a_cut_runs_along_edges_of_the_mesh(shut):
-    """Whatever the unit; both lips keep all their triangles, and no other vertex is doubled."""
+    """This holds in any unit; both lips keep all triangles, and no other vertex is doubled."""
     mesh = shut.mesh
     tiny = replace(mesh, vertices=METRES * mesh.vertices)
     cut = lip_cut(tiny, shut.landmarks, tiny.vertices[shut.landmarks])
@@ -100,7 +100,7 @@ def test_a_cut_runs_along_edges_of_the_mesh(shut):
 
 
 def test_skin_across_an_open_mouth_is_not_cut(shut):
-    """Lips that are apart are not sealed: what fills the mouth is the owner's to remove."""
+    """Lips that are apart are not sealed; the owner must remove the filling."""
     places = shut.mesh.vertices[shut.landmarks]
     places[61:64, 1] += 5.0
     places[65:68, 1] -= 5.0
@@ -108,7 +108,7 @@ def test_skin_across_an_open_mouth_is_not_cut(shut):
 
 
 def test_a_fault_of_a_cut_head_names_the_cut(shut, tmp_path):
-    """Skin over an eye is found after the lips are cut: the owner learns both."""
+    """Skin over an eye is found after the lips are cut: the message names both."""
     landmarks = shut.landmarks
     covered = Stranger(closed(shut.mesh, landmarks[42:48]), landmarks)
     with pytest.raises(AssetError, match=r"lips were sealed: .*; but the left eye has no opening"):
@@ -132,7 +132,7 @@ def test_a_cut_takes_the_vertices_of_the_mesh_that_is_cut(shut, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["obj", "glb"])
 def test_an_avatar_has_the_files_vertices_and_few_more(shut, tmp_path, kind):
-    """The file's own come first, with all that paints them; jawOpen parts those that were one."""
+    """The file's vertices come first, with their attributes; jawOpen parts the doubled ones."""
     if kind == "glb":
         mesh, marks, own, uv = write_glb(shut, tmp_path)
         unit = METRES
@@ -155,7 +155,7 @@ def test_an_avatar_has_the_files_vertices_and_few_more(shut, tmp_path, kind):
         if kind == "glb":
             coordinates = player.attribute("head", "TEXCOORD_0")
             assert np.abs(uv[same] - coordinates[place]).sum(axis=1).min() < 1e-6
-    if kind == "glb":  # a scalar, as Blender writes attributes of the user's own
+    if kind == "glb":  # a scalar, as Blender writes users' attributes
         mask = player.attribute("head", "_MASK").ravel()
         assert len(mask) == len(points)
         assert np.abs(mask[: len(own)] - np.linspace(0.0, 1.0, len(own))).max() < 1e-6
@@ -206,7 +206,7 @@ def write_polygons(shut, mesh):
 
 
 def polygons_of(path):
-    """The corners of the polygons of an OBJ whose numbers are absolute."""
+    """The corners of the polygons of an OBJ with absolute numbers."""
     lines = path.read_text().splitlines()
     rows = [line.split()[1:] for line in lines if line.startswith("f ")]
     return [[int(corner.split("/")[0]) - 1 for corner in row] for row in rows]
@@ -214,7 +214,7 @@ def polygons_of(path):
 
 @pytest.mark.slow
 def test_a_folder_of_objs_has_the_cut(shut, tmp_path):
-    """All files have the same vertices, those of the file first, and its polygons and groups."""
+    """All files have the same vertices, with the file's first, and its polygons and groups."""
     mesh, marks = shut.write(tmp_path)
     quads = write_polygons(shut, mesh)
     folder = tmp_path / "shapes"

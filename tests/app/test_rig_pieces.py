@@ -1,4 +1,4 @@
-"""The pieces of a head's file: what each is taken for, how lines and options name it."""
+"""Pieces of a head's file: the role found for each, and their names in lines and options."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ class Maker:
     scene: FaceScene
 
     def landmark(self, number: int) -> Points:
-        """Where a landmark lies."""
+        """Place of a landmark."""
         place: Points = self.scene.rest_positions[self.scene.landmarks[number]]
         return place
 
@@ -33,7 +33,7 @@ class Maker:
         return np.array(part.vertices, np.float64), np.array(part.faces, np.int64)
 
     def shell(self, chosen: npt.NDArray[np.bool_], off: float) -> tuple[Points, Faces]:
-        """A piece that lies so far outside of chosen skin."""
+        """A piece at this distance outside of chosen skin."""
         points = self.scene.rest_positions
         faces = self.scene.faces
         used, number = np.unique(faces[chosen[faces].all(axis=1)], return_inverse=True)
@@ -41,7 +41,7 @@ class Maker:
         return points[used] + off * normals[used], number.reshape(-1, 3)
 
     def ball(self, side: str, share: float, forward: float) -> tuple[Points, Faces]:
-        """A ball in an eye, of a share of its radius, moved forward by another share."""
+        """A ball in an eye: `share` of the eye's radius, moved forward by `forward` of it."""
         eye = next(each for each in self.scene.face.head.eyes if each.name == side)
         ball = trimesh.creation.icosphere(subdivisions=2, radius=share * eye.radius)
         centre = eye.centre + np.array([0.0, 0.0, forward * eye.radius])
@@ -49,7 +49,7 @@ class Maker:
 
 
 def beard(maker: Maker) -> tuple[Points, Faces]:
-    """Skin of the chin and the jaw, once more; long hairs hang below it."""
+    """A copy of the skin of chin and jaw, with long hairs below."""
     points = maker.scene.rest_positions
     lip = maker.landmark(57)[1]
     chin = maker.landmark(8)[1]
@@ -69,7 +69,7 @@ def sideburns(maker: Maker) -> tuple[Points, Faces]:
 
 
 def glasses(maker: Maker) -> tuple[Points, Faces]:
-    """Two rims and a bridge before the eyes, which touches the nose."""
+    """Two rims and a bridge before the eyes; the bridge touches the nose."""
     ring = trimesh.creation.torus(22.0, 1.2, 24, 6)
     rims = []
     for side in ("left", "right"):
@@ -92,7 +92,7 @@ def deep_tongue(maker: Maker) -> tuple[Points, Faces]:
 
 
 def incisor(maker: Maker) -> tuple[Points, Faces]:
-    """An upper tooth of its own, with a long root."""
+    """A separate upper tooth, with a long root."""
     points, _ = maker.part("teeth_upper")
     front = points[points[:, 2].argmax()]
     tooth = trimesh.creation.box((8.0, 30.0, 6.0)).subdivide().subdivide()
@@ -117,7 +117,7 @@ CASES = {
 
 
 def pieces_with(scene: FaceScene, own: tuple[Points, Faces], name: str = "") -> list[FilePiece]:
-    """The pieces of a file with the built-in skin and something else."""
+    """The pieces of a file with the built-in skin and another piece."""
     points, faces = own
     count = len(scene.rest_positions)
     places = np.vstack([scene.rest_positions, points])
@@ -128,13 +128,13 @@ def pieces_with(scene: FaceScene, own: tuple[Points, Faces], name: str = "") -> 
 
 @pytest.mark.parametrize("case", CASES)
 def test_a_piece_is_taken_for_what_it_is(face, case):
-    """Eyes by layers, teeth with roots, a tongue into the throat, a beard, glasses."""
+    """Eyes in layers, teeth with roots, a tongue into the throat, a beard, glasses."""
     make, role = CASES[case]
     assert {piece.role for piece in pieces_with(face, make(Maker(face)))} == {role}
 
 
 def test_lines_have_the_names_of_the_file(face):
-    """A piece, a few pieces and many of one role are named as objects of the file are."""
+    """A piece, a few pieces and many with one role have the names of the file's objects."""
     (piece,) = pieces_with(face, Maker(face).part("tongue"), "Tongue")
     (line,) = described([piece])
     assert line.startswith("piece 1 (Tongue): ") and line.endswith("tongue, bends")
@@ -145,7 +145,7 @@ def test_lines_have_the_names_of_the_file(face):
 
 
 def test_an_option_names_pieces_by_number_or_name():
-    """All of a name; a name or number that there is not is refused in one line."""
+    """It means all of a name; an unknown name or number is refused in one line."""
     middle = np.zeros(3)
     pieces = [FilePiece(n, np.arange(4), "hair", middle, name) for n, name in enumerate("abba", 1)]
     roles = [piece.role for piece in corrected(pieces, ["a=on_skin", "2-3=body", "3=tongue"])]

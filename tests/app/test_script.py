@@ -1,4 +1,4 @@
-"""Scripts: their meaning, and messages when they are wrong."""
+"""Scripts: their meaning, and messages for mistakes."""
 
 import numpy as np
 import pytest
@@ -57,7 +57,7 @@ def test_lines_are_keys_as_tables_are():
 
 @st.composite
 def channels(draw):
-    """Channels of few keys and of many, of one easing and of all."""
+    """Channels with few and many keys, with one easing and all of them."""
     times = draw(
         st.lists(st.floats(0.0, LARGEST), unique=True, min_size=1, max_size=60).map(sorted)
     )
@@ -71,7 +71,7 @@ def channels(draw):
 
 @given(tracks=st.dictionaries(st.text(max_size=5), channels(), max_size=3))
 def test_what_is_written_reads_back(tracks):
-    """To the last digit, whether a track is written as tables or as lines, and in its order."""
+    """To the last digit and in order, for tracks as tables and as lines."""
     script = Script("t", 1.0, "t", poses=(Pose(0.0),), tracks=tracks)
     read = parse_script(script_text(script), source="t")
     assert read == script
@@ -81,7 +81,7 @@ def test_what_is_written_reads_back(tracks):
 
 @given(channel=channels(), data=st.data())
 def test_a_channel_has_the_values_of_its_keys(channel, data):
-    """At a key its own value; between two keys what their easing makes of them."""
+    """At a key it has the key's value; between two keys it follows their easing."""
     keys = channel.keys
     assert channel == Channel.of(keys)
     assert len(channel) == len(keys)
@@ -97,7 +97,7 @@ def test_a_channel_has_the_values_of_its_keys(channel, data):
 
 @given(channel=channels(), start=st.floats(0.0, LARGEST), span=st.floats(1e-3, 1e4))
 def test_a_drawn_curve_is_what_is_played(channel, start, span):
-    """Few keys: each point of the outline has the value that is played, and no key is left out."""
+    """For few keys each point of the outline has the played value, and no key is left out."""
     times, values = channel.outline(start, start + span, 40)
     keys = [time for time in channel.times.tolist() if start <= time <= start + span]
     if len(keys) <= 40:
@@ -191,14 +191,14 @@ def test_unknown_names_get_a_suggestion():
     ],
 )
 def test_values_out_of_limits_are_named(text, message):
-    """Too much, or too little, is reported with the control, the time and its limits."""
+    """A value too high or too low is reported with the control, the time and its limits."""
     script = parse_script(text, source="bad.toml")
     with pytest.raises(UserError, match=message):
         script.check({"joy": (0.0, 1.0), "jaw": (-1.0, 1.0)})
 
 
 def test_missing_and_unreadable_files(tmp_path):
-    """A script that is not there, or is no text, is one clear line."""
+    """A missing script, or one that is not text, gives one clear line."""
     with pytest.raises(UserError, match="no such script"):
         load_script(tmp_path / "nothing.toml")
     binary = tmp_path / "binary.toml"
@@ -213,7 +213,7 @@ def test_missing_and_unreadable_files(tmp_path):
 
 
 def test_names_are_reported_on_one_line():
-    """Codes that a terminal obeys, and ends of lines, are escaped; long names are cut."""
+    """Terminal codes and line ends are escaped; long names are shortened."""
     for name, shown in (
         ("a\\nrisorius: b", r"a\nrisorius: b"),
         ("\\u001b[2J", r"\x1b[2J"),

@@ -1,4 +1,4 @@
-"""Places of keys as arrays: they do what sets and loops over keys would do."""
+"""Places of keys as arrays: they do the same as sets and loops over keys."""
 
 import numpy as np
 from hypothesis import given
@@ -9,7 +9,7 @@ from risorius.app.script.easings import EASINGS
 from risorius.app.script.keyframes import POSES, places_of
 from risorius.app.script.places import KeyPlace, Places
 
-TIMES = st.integers(0, 40).map(lambda step: step / 8.0)  # few, so that they often meet
+TIMES = st.integers(0, 40).map(lambda step: step / 8.0)  # few values, so that keys often meet
 TRACKS = st.sampled_from([POSES, "joy", "blink"])
 PLACES = st.frozensets(st.builds(KeyPlace, TRACKS, TIMES))
 EASING = st.sampled_from(sorted(EASINGS))
@@ -47,7 +47,7 @@ def test_places_in_a_stretch_and_near(places, ends, reach):
 
 @given(script=scripts(), places=PLACES, steps=st.integers(-9, 9), are_copies=st.booleans())
 def test_keys_arrive_as_one_by_one(script, places, steps, are_copies):
-    """Moved or copied keys keep all but their time, and take the place of other keys."""
+    """Moved or copied keys only change their time, and replace other keys there."""
     places &= places_of(script)
     shift = max(steps / 8.0, -min((place.time for place in places), default=0.0))
     before = dict(keyed_by_place(script))
@@ -82,7 +82,7 @@ def test_keys_go_and_are_eased_as_one_by_one(script, places, easing):
 
 @given(script=scripts(), time=TIMES)
 def test_the_next_key(script, time):
-    """Forward and back, among the keys of all tracks; where there is none, one stays."""
+    """Forward and back, among the keys of all tracks; without another key the time stays."""
     times = {place.time for place in places_of(script)}
     assert keyframes.time_beyond(script, time, 1) == min(
         (t for t in times if t > time), default=time
@@ -93,7 +93,7 @@ def test_the_next_key(script, time):
 
 
 def keyed_by_place(script):
-    """Each key but for its time, by its place, of poses and tracks."""
+    """Each key without its time, by its place, for poses and tracks."""
     found = []
     for pose in script.poses:
         found.append((KeyPlace(POSES, pose.time), (pose.values, pose.name, pose.easing)))

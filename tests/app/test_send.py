@@ -1,4 +1,4 @@
-"""`risorius send`: a recording goes out as packets, in its own time, and comes in as it was."""
+"""`risorius send`: packets leave in the recording's own time, and the values arrive unchanged."""
 
 import socket
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ STEP = 1.0 / 60.0
 
 
 def take_of(**channels):
-    """A take with these values, 60 to a second."""
+    """A take with these values, 60 per second."""
     count = len(next(iter(channels.values())))
     arrays = {name: np.array(values) for name, values in channels.items()}
     return Take("test", "test.csv", np.arange(count) * STEP, arrays)
@@ -28,7 +28,7 @@ def take_of(**channels):
 
 @pytest.fixture
 def heard() -> Iterator[socket.socket]:
-    """A socket that hears packets."""
+    """A socket that receives packets."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as opened:
         opened.bind((LOOPBACK, 0))
         opened.settimeout(10.0)
@@ -36,7 +36,7 @@ def heard() -> Iterator[socket.socket]:
 
 
 def test_a_take_comes_in_as_it_went_out(heard):
-    """Every frame, in order."""
+    """Every frame arrives, in order."""
     smile = [0.0, 0.25, 0.5, 0.75]
     turn = [0.0, 5.0, 10.0, -15.0]
     take = take_of(mouthSmileLeft=smile, head_yaw=turn)
@@ -52,7 +52,7 @@ def test_a_take_comes_in_as_it_went_out(heard):
 
 
 def test_a_recording_comes_along(monkeypatch, tmp_path, heard):
-    """Without a recording one is sent that is installed, which speaks, and blinks."""
+    """Without a file, an installed recording is sent; it speaks and blinks."""
     monkeypatch.chdir(tmp_path)
     sent = []
     monkeypatch.setattr(Sender, "play", lambda _, take, **__: sent.append(take))
@@ -64,7 +64,7 @@ def test_a_recording_comes_along(monkeypatch, tmp_path, heard):
 
 
 class Stopped(Exception):  # noqa: N818, what ends the test is no error
-    """Time is over."""
+    """The end of the test's time."""
 
 
 def clock_until(end):
@@ -73,7 +73,7 @@ def clock_until(end):
     slept = []
 
     def sleep(seconds):
-        """Move on."""
+        """Move the clock."""
         slept.append(seconds)
         now[0] += seconds
         if now[0] > end:
@@ -83,7 +83,7 @@ def clock_until(end):
 
 
 def test_a_take_keeps_its_time_and_may_go_round(heard):
-    """A frame goes out when it is due; the first follows the last as any other."""
+    """A frame leaves when it is due; in a loop the first follows the last like any other."""
     clock, sleep, slept = clock_until(0.5)
     take = take_of(jawOpen=[0.0, 0.5, 1.0])
     with (
@@ -97,7 +97,7 @@ def test_a_take_keeps_its_time_and_may_go_round(heard):
 
 
 def test_a_take_without_anything_to_send_is_refused():
-    """One line, with the file."""
+    """One line reports it, with the file."""
     with (
         Sender(LOOPBACK, None, "test") as sender,
         pytest.raises(UserError, match=r"test\.csv: test has nothing that can be sent"),
@@ -106,7 +106,7 @@ def test_a_take_without_anything_to_send_is_refused():
 
 
 def test_the_command_sends_a_file(tmp_path, heard):
-    """It says what goes where."""
+    """It prints what it sends, and where."""
     file = tmp_path / "take.csv"
     file.write_text("time,jawOpen,AU38\n0.0,0.5,0.1\n0.05,0.25,0.2\n")
     port = heard.getsockname()[1]

@@ -1,4 +1,4 @@
-"""The fine shape of the skin as it is worn: by both sides of a comparison, passes and persons."""
+"""The fine shape of the skin: in both sides of a comparison, in passes, and on persons."""
 
 from dataclasses import replace
 
@@ -31,7 +31,7 @@ def images(scene):
 
 
 def test_both_sides_wear_it(scene):
-    """Static and refined skin change alike; so do normals of passes; the background stays."""
+    """Static and refined skin change equally, and so do passes' normals; the background stays."""
     (shown, plain), normals = images(scene)
     changed = np.abs(shown - plain).max(axis=2) > 3
     static, refined = (half.mean() for half in np.split(changed, 2, axis=1))

@@ -1,4 +1,4 @@
-"""Lashes and tears stand on the skin, however it moves."""
+"""Lashes and tears follow the skin in all its motion."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ def attached(scene):
     st.lists(st.floats(-50.0, 50.0), min_size=3, max_size=3),
 )
 def test_a_skin_that_only_moves_takes_them_along(scene, turn, shift):
-    """A turn and a shift of the whole skin carry them along; with their bone, nothing."""
+    """A turn and a shift of the whole skin move them; a motion of their bone does not."""
     turned = Rotation.from_rotvec(turn)
     skin = turned.apply(np.array(scene.rest_positions)) + shift
     bone = np.eye(4)
@@ -48,7 +48,7 @@ def test_a_skin_that_only_moves_takes_them_along(scene, turn, shift):
 
 
 def test_slivers_carry_nothing(scene):
-    """Needles of 1 mm and 1e-11 mm on the very roots, as files may have them, change no lash."""
+    """Needles of 1 mm and 1e-11 mm right at the roots, possible in files, change no lash."""
     skin = np.array(scene.rest_positions)
     for part in assets.load("head").parts:
         if part.roots is not None:

@@ -1,4 +1,4 @@
-"""Sound files: read, named by scripts, heard in films, seen at every zoom, played in step."""
+"""Sound files: read, named by scripts, heard in films, drawn at every zoom, played in step."""
 
 import os
 import shutil
@@ -33,7 +33,7 @@ FRAME = 1.0 / 30.0  # [s]
 
 
 def lag(heard, source):
-    """By how much one sound comes later than the other that is in it [s]."""
+    """Delay of one sound within another that contains it [s]."""
     first, second = (each.samples[:, 0].astype(float) for each in (heard, source))
     length = len(first) + len(second)
     spectrum = np.fft.rfft(first, length) * np.conj(np.fft.rfft(second, length))
@@ -45,7 +45,7 @@ def lag(heard, source):
 
 
 def test_a_wav_is_read_to_the_sample(tmp_path):
-    """At the rate that everything has, nothing changes, with one side or two; more become two."""
+    """At the usual rate nothing changes, with one channel or two; more become two."""
     for sides in (1, 2):
         samples = np.stack([noise(0.5, 48_000, seed=seed) for seed in range(sides)], axis=1)
         sound = load_sound(write_wav(tmp_path / "a b, ü.wav", samples, 48_000))
@@ -58,7 +58,7 @@ def test_a_wav_is_read_to_the_sample(tmp_path):
 
 @pytest.mark.parametrize("rate", [8_000, 22_050, 44_100])
 def test_other_rates_are_in_step(tmp_path, rate):
-    """A sound of another rate lasts as long, and nothing in it is elsewhere."""
+    """A sound of another rate has the same length, and all of it keeps its time."""
     source = noise(1.0, 48_000)
     write_wav(tmp_path / "high.wav", source, 48_000)
     low = scipy.signal.resample(source, rate)
@@ -68,7 +68,7 @@ def test_other_rates_are_in_step(tmp_path, rate):
 
 
 def test_what_is_no_sound_is_reported_in_one_line(tmp_path):
-    """Missing, empty, damaged, mute, a folder, a pipe: the fault, and the cure."""
+    """Missing, empty, damaged, mute, a folder, a pipe: the line has the fault and the remedy."""
     (tmp_path / "text.wav").write_text("no sound")
     (tmp_path / "empty.wav").touch()
     write_wav(tmp_path / "mute.wav", np.zeros(0))
@@ -93,7 +93,7 @@ def test_what_is_no_sound_is_reported_in_one_line(tmp_path):
 
 
 def test_a_script_names_its_sound_as_seen_from_itself(tmp_path):
-    """Wherever the program was started: beside the script, or by its whole path."""
+    """From any working directory: a path relative to the script, or a whole path."""
     for name in ("speech.wav", "sounds/speech.wav", "../speech.wav", str(tmp_path / "speech.wav")):
         script = parse_script(f"sound = '{name}'\n{POSE}", source=str(tmp_path / "deep" / "s.toml"))
         assert script.sound == Path(os.path.normpath(tmp_path / "deep" / name))
@@ -104,7 +104,7 @@ def test_a_script_names_its_sound_as_seen_from_itself(tmp_path):
 
 
 def test_a_project_stays_together(tmp_path):
-    """Saved elsewhere the sound is found; moved as a whole, too."""
+    """A script saved elsewhere finds its sound; so does a project that was moved as a whole."""
     home = tmp_path / "home"
     (home / "sounds").mkdir(parents=True)
     sound = home / "sounds" / "a.wav"
@@ -129,7 +129,7 @@ def test_a_project_stays_together(tmp_path):
 @pytest.mark.parametrize("suffix", HEARD)
 @pytest.mark.parametrize(("seconds", "rate"), [(2.0, 48_000), (0.6, 22_050)])
 def test_a_film_is_heard_in_step(tmp_path, suffix, seconds, rate):
-    """Its first frame is the first sample; a longer sound is cut, a shorter one cuts nothing."""
+    """Its first frame is at the first sample; a longer sound is cut, a shorter one cuts nothing."""
     source = write_wav(tmp_path / "noise.wav", noise(seconds, rate), rate)
     film = tmp_path / f"film{suffix}"
     with outputs.film(film, (64, 48), 30.0, Heard(source, 1.0)) as add:
@@ -144,7 +144,7 @@ def test_a_film_is_heard_in_step(tmp_path, suffix, seconds, rate):
 
 
 def test_capture_takes_the_sound_of_script_and_option(tmp_path, monkeypatch):
-    """--sound goes before the script's own; pictures are silent, and only films take the option."""
+    """--sound overrides the script's own; pictures are silent, and only films have the option."""
     monkeypatch.chdir(tmp_path)
     write_wav(tmp_path / "own.wav", noise(0.4))
     write_wav(tmp_path / "other.wav", noise(0.4, seed=1))
@@ -173,7 +173,7 @@ def test_capture_takes_the_sound_of_script_and_option(tmp_path, monkeypatch):
 
 
 class HandDevice:
-    """A device that asks for samples when a test says so, by a clock of the test's."""
+    """A device that requests samples when a test says so, by a clock of the test."""
 
     def __init__(self):
         self.running = False
@@ -206,14 +206,14 @@ def device(monkeypatch: pytest.MonkeyPatch) -> HandDevice:
 
 
 def ramp(seconds):
-    """A sound whose samples hold their own time [ms]."""
+    """A sound whose samples are their own times [ms]."""
     samples = (np.arange(round(seconds * 48_000)) // 48).astype(np.int16)
     return Sound(Path("ramp"), np.stack([samples, samples], axis=1))
 
 
 @pytest.mark.parametrize("speed", [0.25, 1.0, 2.0])
 def test_a_player_gives_the_sound_from_the_place_on(device, speed):
-    """At each speed the samples are those of the time; behind the end there is silence."""
+    """At each speed the samples are those of the time; after the end there is silence."""
     played = Player(ramp(2.0), clock=lambda: device.now)
     played.play(1.0, speed)
     first = device.ask(COUNT)
@@ -244,7 +244,7 @@ def test_a_player_gives_the_sound_from_the_place_on(device, speed):
 @pytest.mark.parametrize("pace", [0.99, 1.0, 1.01])
 @pytest.mark.parametrize("frames_per_second", [12.0, 60.0, 144.0])
 def test_the_picture_keeps_to_the_sound(device, pace, frames_per_second, monkeypatch):
-    """Over a minute both are less than a frame apart, with any clock of the device.
+    """Over a minute they differ by less than a frame, for any clock of the device.
 
     pace: seconds of the device for one of ours. The steps of physics are the window's own.
     """
@@ -263,7 +263,7 @@ def test_the_picture_keeps_to_the_sound(device, pace, frames_per_second, monkeyp
     clock = Clock()
     soundtrack.refresh()
     session.toggle_playing()
-    soundtrack.elapsed(0.0)  # it begins to play, and the device fills itself
+    soundtrack.elapsed(0.0)  # playback starts, and the device fills its buffer
     for _ in range(player.PERIODS):
         device.ask(COUNT)
     due = player.PERIOD / pace

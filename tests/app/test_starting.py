@@ -1,4 +1,4 @@
-"""What commands import: no more than their work needs, so that they start at once."""
+"""Imports of commands: no more than their work needs, so that they start at once."""
 
 import os
 import subprocess
@@ -14,7 +14,7 @@ print("loaded:", *sys.modules)
 
 
 def loaded_by(*words, cache):
-    """The packages that a command loads, ours as two words; `cache`: of compiled code."""
+    """The packages that a command loads, ours as two words; `cache`: folder of compiled code."""
     result = subprocess.run(
         [sys.executable, "-c", PROGRAM, *words],
         env={**os.environ, "NUMBA_CACHE_DIR": str(cache)},
@@ -28,7 +28,7 @@ def loaded_by(*words, cache):
 
 
 def test_help_loads_no_library_but_click(tmp_path):
-    """Help of all commands, and of one, is printed by modules that compute nothing."""
+    """Modules that compute nothing print the help of all commands, and of one."""
     slow = {"PIL", "moderngl", "numba", "numpy", "pydantic", "risorius.assets", "scipy", "tqdm"}
     for words in (("--help",), ("capture", "--help"), ("reproduce", "--help")):
         assert not loaded_by(*words, cache=tmp_path) & slow, words

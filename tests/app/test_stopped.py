@@ -1,4 +1,4 @@
-"""The command as a process: stopped, and hung up."""
+"""The command as a process: stopped by signals and closed terminals."""
 
 import os
 import signal
@@ -13,10 +13,10 @@ SLOW = ("capture", "--scene", "face", "--size", "320x240")
 
 
 def is_there(folder, pattern):
-    """Whether a file of this name is somewhere in the folder."""
+    """Whether a file with this name is anywhere in the folder."""
     try:
         return any(folder.glob(pattern))
-    except FileNotFoundError:  # a folder in it that went away while it was looked at
+    except FileNotFoundError:  # a folder inside was removed during the search
         return False
 
 
@@ -25,14 +25,14 @@ def is_there(folder, pattern):
 @pytest.mark.parametrize(
     ("output", "pattern", "number"),
     [
-        ("film.mp4", "*", signal.SIGINT),  # the place is tried: OpenGL is set up next
+        ("film.mp4", "*", signal.SIGINT),  # the output's folder is tested: OpenGL starts next
         ("film.mp4", "**/film.mp4", signal.SIGHUP),
         ("frames", "*", signal.SIGHUP),
         ("frames", "**/*.png", signal.SIGINT),
     ],
 )
 def test_nothing_half_written_is_left(tmp_path, output, pattern, number):
-    """Ctrl-C, or a closed terminal, while a film or frames are begun and while they are written."""
+    """Ctrl-C, or a closed terminal, at the start of a film or frames and while they are written."""
     words = ("-m", "risorius", *SLOW, "-o", tmp_path / output, "--quiet")
     process = started(*words, start_new_session=True)
     while process.poll() is None and not is_there(tmp_path, pattern):
@@ -40,7 +40,7 @@ def test_nothing_half_written_is_left(tmp_path, output, pattern, number):
     os.killpg(process.pid, number)
     _, message = process.communicate(timeout=60)
     assert process.returncode == -number
-    # The first start on a machine also says that it compiles.
+    # The first start on a machine also reports compilation.
     lines = [line for line in message.splitlines() if not line.startswith(b"Compiling")]
     assert lines == ([b"risorius: stopped"] if number == signal.SIGINT else [])
     assert list(tmp_path.iterdir()) == []
@@ -48,7 +48,7 @@ def test_nothing_half_written_is_left(tmp_path, output, pattern, number):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
 def test_a_film_can_be_stopped_while_it_is_finished(tmp_path):
-    """Ctrl-C while all frames are handed over and ffmpeg is still at work: the end, and no film."""
+    """Ctrl-C after all frames are sent, while ffmpeg still works, ends it without a film."""
     slow = tmp_path / "slow_ffmpeg"
     slow.write_text("#!/bin/sh\ncat > /dev/null\ntouch $0.has_all\nexec sleep 100\n")
     slow.chmod(0o755)

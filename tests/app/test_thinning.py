@@ -1,4 +1,4 @@
-"""Thinning: how far the keys may be off, and how few of them there are."""
+"""Thinning: the errors of keys, and their number."""
 
 import numpy as np
 from hypothesis import given
@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from risorius.app.script.thinning import thinned
 
-SAMPLE = st.tuples(st.integers(1, 10**7), st.floats(-1.0, 1.0))  # [us] after the one before
+SAMPLE = st.tuples(st.integers(1, 10**7), st.floats(-1.0, 1.0))  # [us] after the previous one
 
 
 @given(
@@ -26,7 +26,7 @@ def test_no_sample_is_further_off_than_the_tolerance(samples, tolerance):
 
 
 def test_keys_are_few():
-    """A ramp has two, and a smooth curve of 120 samples is not recorded sample by sample."""
+    """A ramp has two, and a smooth curve of 120 samples has far fewer keys than samples."""
     times = np.round(np.arange(120) / 60.0, 6)
     assert len(thinned(times, 3.0 * times - 1.0)) == 2
     assert len(thinned(times, np.sin(times))) <= 24

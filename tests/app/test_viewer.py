@@ -38,7 +38,7 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
 
 def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer):
-    """Search the jaw, drag its slider: the vertices move; Ctrl+Z closes the mouth again."""
+    """Search the jaw and drag its slider: vertices move; Ctrl+Z closes the mouth again."""
     show_controls(viewer, "jaw open")
     drag_and_release(viewer, middle(viewer, "jaw_open"), (60, 0))
     clear_search(viewer)
@@ -52,7 +52,7 @@ def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer):
 
 
 def test_a_number_can_be_typed(viewer):
-    """A double click turns a slider into a line to type in; its menu sets it back to 0."""
+    """A double click turns a slider into a text field; its menu sets it back to 0."""
     show_controls(viewer, "jaw open")
     click(viewer, "jaw_open", times=2)
     press_keys(viewer, "ctrl+a")
@@ -67,7 +67,7 @@ def test_a_number_can_be_typed(viewer):
 
 
 def test_linked_sides_move_together(viewer):
-    """One slider for both sides; unlinked, each has its own."""
+    """One slider sets both sides; unlinked, each has its own."""
     session = viewer.session
     show_controls(viewer, "zygom maj")
     left = "zygomaticus_major_left"
@@ -82,7 +82,7 @@ def test_linked_sides_move_together(viewer):
 
 
 def test_keys_show_expressions_and_refinement(viewer):
-    """1 shows the first expression, 1 again is neutral; R makes refined triangles come and go."""
+    """1 shows the first expression, 1 again the neutral face; R switches refined triangles."""
     press_keys(viewer, "1")
     assert viewer.session.is_alone(next(iter(viewer.session.scene.expressions)))
     assert until(viewer, lambda: moved(viewer) > 3.0)
@@ -96,7 +96,7 @@ def test_keys_show_expressions_and_refinement(viewer):
 
 
 def test_keys_change_the_picture(viewer):
-    """W, C, T, D and F2, the theme, each change the picture, and back."""
+    """W, C, T, D and F2, for the theme, each change the picture, and back."""
     viewer.session.toggle_alone("disgust")
     settle(viewer)
     assert until(viewer, lambda: viewer.schedule.is_idle)
@@ -127,7 +127,7 @@ def test_the_mouse_orbits_and_the_wheel_zooms(viewer):
 
 @pytest.mark.parametrize("number", [30, 54, 19, -1])
 def test_the_wheel_zooms_to_the_mouse(viewer, number):
-    """The point under it, on skin or beside it, stays there, zoomed in and out again."""
+    """The point under it, on skin or beside it, stays there while zooming in and out again."""
     camera = viewer.face.view.camera
     scene = viewer.session.scene
     camera.orbit(20.0, -10.0)
@@ -144,7 +144,7 @@ def test_the_wheel_zooms_to_the_mouse(viewer, number):
 
 
 def test_the_skin_is_dragged_and_swings_back(viewer):
-    """With Ctrl, drag the tip of the nose: it comes along; let go, and it is back soon."""
+    """With Ctrl, a drag moves the tip of the nose; released, it is soon back."""
     xdotool(viewer, "keydown", "ctrl")
     drag(viewer, nose(viewer), (40, 30))
     assert until(viewer, lambda: moved(viewer) > 4.0)
@@ -154,7 +154,7 @@ def test_the_skin_is_dragged_and_swings_back(viewer):
 
 
 def test_a_hovered_expression_lights_its_muscles(viewer):
-    """Joy lights both sides alike; a kiss lights the lips and no forehead."""
+    """Joy lights both sides equally; a kiss lights the lips and not the forehead."""
     xdotool(viewer, "mousemove", *middle(viewer, "show joy"))
     pulled = [f"{MAJOR}_{side}" for side in ("left", "right")]
     assert until(viewer, lambda: pulled[0] in viewer.face.view.pointed)
@@ -174,7 +174,7 @@ def test_a_hovered_expression_lights_its_muscles(viewer):
 
 
 def test_a_look_is_chosen(viewer):
-    """In the panel, by the menu and by its key; it undoes changes of the one before."""
+    """In the panel, by the menu and by its key; it undoes changes of the previous look."""
     viewer.session.toggle_alone("disgust")
     click(viewer, "tab Mechanism")
     display = viewer.settings.display
@@ -209,7 +209,7 @@ def test_a_look_is_chosen(viewer):
 
 
 def test_unsaved_work_is_asked_for(viewer):
-    """Closing with a pose made by hand asks; going back keeps it, going on closes."""
+    """Closing with a pose made by hand asks; "back" keeps the pose, "on" closes."""
     viewer.session.set("jaw_open", 0.5)
     press_keys(viewer, "ctrl+q")
     assert viewer.context.question.is_open
@@ -224,7 +224,7 @@ def test_unsaved_work_is_asked_for(viewer):
 
 
 def test_an_idle_window_rests(viewer):
-    """With nothing to do neither physics nor the scene is computed again."""
+    """Without input neither physics nor the scene is computed again."""
     assert until(viewer, lambda: viewer.schedule.is_idle)
     times = {name: list(column) for name, column in viewer.context.times.milliseconds.items()}
     settle(viewer)
@@ -245,7 +245,7 @@ def test_the_window_remembers(tmp_path):
     command = [sys.executable, "-m", "risorius", "replay", str(script), "--once"]
 
     def replayed(*options):
-        """The settings that are remembered after a replay with these options."""
+        """The stored settings after a replay with these options."""
         result = subprocess.run(
             [*command, *options], capture_output=True, text=True, timeout=60, check=False,
             env=environment, cwd=Path(__file__).parents[2],
@@ -322,7 +322,7 @@ def pulled_corner(viewer, by, steps):
 
 
 def test_a_corner_drawn_up_and_out_smiles_at_any_speed(viewer):
-    """Slow or at once, near or far: the same muscle, a smile; the line stays while it is held."""
+    """Slow or at once, near or far, the same muscle smiles; the line stays during the drag."""
     found = [pulled_corner(viewer, 60, steps) for steps in (6, 1, 1)]
     assert found[0].keys() == {f"{MAJOR}_left", f"{MAJOR}_right"}
     assert min(found[0].values()) > 0.9
@@ -332,7 +332,7 @@ def test_a_corner_drawn_up_and_out_smiles_at_any_speed(viewer):
 
 @pytest.mark.slow
 def test_a_pull_is_the_same_beside_busy_processes(viewer):
-    """Short and far, slow and at once: muscles go as far as on a quiet one; far is a smile."""
+    """Short and far, slow and at once: muscles go as far as on an idle machine; far is a smile."""
     far = pulled_corner(viewer, 60, 6)
     quiet = pulled_corner(viewer, 12, 6)
     assert 0.2 < max(quiet.values()) < 0.95
@@ -362,7 +362,7 @@ def test_the_muscle_under_the_mouse_shows_softly(viewer):
 
 
 def test_a_click_shows_the_muscle_in_the_panel(viewer):
-    """Its group opens, and its slider is scrolled to."""
+    """Its group opens, and the panel scrolls to its slider."""
     viewer.context.wanted_tab = "Live"
     x, y = landmark(viewer, 54)
     xdotool(viewer, "mousemove", x + 15, y - 15, "click", 1)

@@ -45,25 +45,25 @@ class Desk:
         self.file_drop = FileDrop(self.files, self.scripts, lambda _: None, lambda *_: lambda: None)
 
     def drop(self, *paths: Path) -> str:
-        """Open dropped files; the line that is shown then."""
+        """Open dropped files; return the message."""
         self.messages.carry_out(partial(self.file_drop.open, [str(path) for path in paths]))
         return self.messages.text
 
     def save(self) -> str:
-        """Save the script; the line that is shown then."""
+        """Save the script; return the message."""
         self.messages.carry_out(self.scripts.save)
         return self.messages.text
 
 
 @pytest.fixture
 def desk(session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Desk:
-    """It, in a folder of the test's own."""
+    """A desk in a folder for this test alone."""
     monkeypatch.chdir(tmp_path)
     return Desk(session)
 
 
 def test_a_bad_file_is_reported_and_survived(desk, tmp_path):
-    """Nonsense gives one line, and the script that was there stays."""
+    """Nonsense gives one line, and the present script stays."""
     before = desk.session.script
     bad = tmp_path / "bad.toml"
     bad.write_text(POSE.replace("jaw_open", "no_such_muscle"))
@@ -81,13 +81,13 @@ def test_a_bad_file_is_reported_and_survived(desk, tmp_path):
 
 
 def test_saving_asks_where_it_did_not_open(desk, tmp_path):
-    """New scripts and the program's own ask for a name; a file changed elsewhere is not lost."""
+    """New and built-in scripts ask for a name; a file changed by others is not lost."""
     taken = tmp_path / "script.toml"
     taken.write_text("precious")
     desk.scripts.new()
     desk.session.set_key()
     desk.save()
-    assert desk.files.request.confirmed() is None  # the name is taken, as a line says
+    assert desk.files.request.confirmed() is None  # the name exists already, as a line says
     assert "is there already" in desk.files.request.complaint
     assert taken.read_text() == "precious"
     desk.files.request = None
@@ -107,7 +107,7 @@ def test_saving_asks_where_it_did_not_open(desk, tmp_path):
 
 
 def test_the_sound_is_kept_with_the_script(desk, tmp_path):
-    """The file has it, undo and the menu take it away, a lost file is reported once."""
+    """The file names it, undo and the menu remove it, and a lost file is reported once."""
     session = desk.session
     soundtrack = Soundtrack(session)
     script = tmp_path / "s.toml"
@@ -145,12 +145,12 @@ def test_the_sound_is_kept_with_the_script(desk, tmp_path):
 
 
 def times(session):
-    """When the script has poses [s]."""
+    """Times of the script's poses [s]."""
     return [pose.time for pose in session.script.poses]
 
 
 def test_delete_and_paste(session):
-    """Selected keys are pasted at the time shown, and deleted; both can be undone."""
+    """Selected keys are pasted at the playhead, and deleted; both can be undone."""
     selection = KeySelection(session)
     selection.places = Places.of(KeyPlace(POSES, 1.0))
     session.seek(2.0)
@@ -171,7 +171,7 @@ def test_delete_and_paste(session):
 
 
 def test_a_script_moves_the_face_alone(session):
-    """While it plays, and where it is stopped; at its end the face is left to its life."""
+    """During play and at the place where it stops; after its end the face has its own life."""
     life = IdleLife(session, lambda: True, lambda: np.array([0.0, 0.0, 500.0]))
     assert life.is_on
     session.toggle_playing()
@@ -185,7 +185,7 @@ def test_a_script_moves_the_face_alone(session):
 
 
 def test_live_leads_controls_it_names_and_sliders_keep_the_rest(session):
-    """A slider of a control that is led has its value again when the lead is over."""
+    """A slider of a live control has its own value again after the live face ends."""
     session.set("jawOpen", 0.2)
     session.set("AU9", 0.3)
     session.live_override.take({"jawOpen": 0.8}, 1.0)
@@ -208,7 +208,7 @@ def listening(session: Session) -> Iterator[LiveCommands]:
 
 
 def test_a_port_that_is_taken_is_refused(session, listening):
-    """A line names it, and nobody listens."""
+    """A line names it, and no face is listened to."""
     other = LiveCommands(session, lambda: None, lambda: None)
     other.wanted = Listening("livelink", port=listening.face.port)
     with pytest.raises(UserError, match="cannot listen"):

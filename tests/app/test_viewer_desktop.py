@@ -1,4 +1,4 @@
-"""The window among others: its first picture, hidden panels, minimised, the first size."""
+"""The window on the desktop: its first picture, hidden panels, minimised, the first size."""
 
 import contextlib
 import os
@@ -33,7 +33,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def ask_to_close(window):
-    """Send the message of a click on the cross above the window."""
+    """Send the message of a click on the window's close button."""
     screen = display.Display()
     target = screen.create_resource_object("window", window)
     words = [screen.intern_atom("WM_DELETE_WINDOW"), X.CurrentTime, 0, 0, 0]
@@ -43,21 +43,21 @@ def ask_to_close(window):
 
 
 def windows_of(process, screen):
-    """Those on the screen that a process has opened."""
+    """Windows on the screen that a process has opened."""
     number = screen.get_atom("_NET_WM_PID")
     for window in screen.screen().root.query_tree().children:
-        with contextlib.suppress(XError):  # it is not there any more
+        with contextlib.suppress(XError):  # it has closed meanwhile
             owner = window.get_full_property(number, X.AnyPropertyType)
             if owner is not None and owner.value[0] == process.pid:
                 yield window
 
 
 def first_pictures(process):
-    """Pictures of the window of a process that starts, again and again, (H, W, 3)."""
+    """Pictures of the window of a starting process, again and again, (H, W, 3)."""
     screen = display.Display()
     while process.poll() is None:
         for window in windows_of(process, screen):
-            with contextlib.suppress(XError):  # it is not shown yet
+            with contextlib.suppress(XError):  # it is not visible yet
                 size = window.get_geometry()
                 read = window.get_image(0, 0, size.width, size.height, X.ZPixmap, 0xFFFFFFFF)
                 pixels = np.frombuffer(read.data, np.uint8).reshape(size.height, size.width, 4)
@@ -67,7 +67,7 @@ def first_pictures(process):
 
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Callable[[], subprocess.Popen[bytes]]]:
-    """Start `risorius view` as on a machine where nothing is compiled yet."""
+    """Start `risorius view` as on a machine without compiled code."""
     begun = []
     folders = {"XDG_CONFIG_HOME": tmp_path / "config", "NUMBA_CACHE_DIR": tmp_path / "compiled"}
     environment = {**os.environ, **{name: str(path) for name, path in folders.items()}}
@@ -107,7 +107,7 @@ def test_a_line_is_seen_before_anything_is_compiled(start, tmp_path):
 
 @pytest.mark.slow
 def test_a_plane_has_no_settings_of_a_face():
-    """Neither in panels nor in menus; those of any scene are there."""
+    """They are in no panel or menu; settings for all scenes are there."""
     with Viewer(script_for(None, "plane"), SIZE, Display()) as viewer:
         for tab, there, missing in (
             ("Face", {"search", "Neutral"}, {"Mirror", "Link sides", "tab Live", "menu Live"}),

@@ -37,12 +37,12 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
 SCRIPT = "duration = 0.5\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.5\nname = 'j'\njoy = 1.0\n"
 SMALL = (160, 120)
-LONG = 120.0  # [s] for an export, whose process starts anew
+LONG = 120.0  # [s] limit for an export, which starts a new process
 
 
 @pytest.fixture(autouse=True)
 def _at_first(viewer: Viewer, tmp_path: Path, calm: None) -> Iterator[None]:
-    """A script of half a second, small pictures, few of them, into the test's folder."""
+    """A script of half a second, few small pictures, in the test's folder."""
     open_script(viewer, SCRIPT)
     viewer.settings.export = ExportChoices("frames", size=SMALL, rate=12.0)
     yield
@@ -52,12 +52,12 @@ def _at_first(viewer: Viewer, tmp_path: Path, calm: None) -> Iterator[None]:
 
 
 def open_script(viewer, text):
-    """Take a script of this text in place of the one before."""
+    """Replace the script by one with this text."""
     viewer.session.work.open(parse_script(text, source="smile.toml"))
 
 
 def finish(viewer, *key):
-    """Open the dialog, take its present choices, and wait until the file is written."""
+    """Open the dialog, accept its present choices, and wait until the file is written."""
     press_keys(viewer, *(key or ("F10",)))
     assert until(viewer, lambda: "export: begin" in viewer.gui.places)
     begin(viewer)
@@ -66,7 +66,7 @@ def finish(viewer, *key):
 
 
 def begin(viewer, name=""):
-    """Go on to the file chooser, and take the name that it proposes, or another."""
+    """Go on to the file chooser, and accept its suggested name, or give another."""
     click(viewer, "export: begin")
     assert viewer.files.is_waiting
     if name:
@@ -82,7 +82,7 @@ def pictures(folder):
 
 
 def test_a_film_is_that_of_capture(viewer, tmp_path):
-    """`capture` writes the same frames with the same options; the face stays."""
+    """`capture` writes the same frames with the same options; the face is unchanged."""
     scene = viewer.session.scene
     viewer.face.view.camera = camera_for(scene, "three-quarter")
     viewer.settings.display.light = "side"
@@ -101,12 +101,12 @@ def test_a_film_is_that_of_capture(viewer, tmp_path):
     assert ours.shape == captured.shape == (7, 120, 160, 3)
     assert np.abs(ours - captured).max() <= 2
     press_keys(viewer, "n")
-    assert not viewer.messages.text  # which the next command takes away
+    assert not viewer.messages.text  # the next command removes it
 
 
 @pytest.mark.slow
 def test_motion_is_exported_by_the_same_dialog(viewer, tmp_path):
-    """The file of `risorius export`, under the name that was typed."""
+    """It is the file of `risorius export`, under the typed name."""
     press_keys(viewer, "ctrl+e")
     click(viewer, "Write")
     click(viewer, "Write: Motion: numpy arrays (.npz)")
@@ -121,7 +121,7 @@ def test_motion_is_exported_by_the_same_dialog(viewer, tmp_path):
 
 @pytest.mark.slow
 def test_the_window_lives_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatch):
-    """While a film is made the face answers; cancelled, no file is left, nor a part of one."""
+    """The face responds while a film is made; cancel leaves no file and no part of one."""
     monkeypatch.setattr(workers, "GRACE", LONG)
     viewer.settings.export.kind = "mp4"
     open_script(viewer, SCRIPT.replace("0.5", "600.0"))
@@ -135,7 +135,7 @@ def test_the_window_lives_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatc
     assert "mp4 is being written" in viewer.messages.text
     assert not viewer.surface.should_close
     process = job.task._pool._workers[0].process
-    process.send_signal(signal.SIGSTOP)  # it takes its time to end
+    process.send_signal(signal.SIGSTOP)  # it takes time to end
     click(viewer, "export: stop")
     press_keys(viewer, "2")
     assert viewer.session.is_alone("sadness")
@@ -149,7 +149,7 @@ def test_the_window_lives_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatc
 
 @pytest.mark.parametrize("kind", ["mp4", "npz"])
 def test_a_bad_folder_is_one_line(viewer, kind):
-    """The error is shown at once, and all choices are there when it is tried again."""
+    """The error appears at once, and all choices are still there for another try."""
     viewer.settings.export.kind = kind
     press_keys(viewer, "F10")
     begin(viewer, "/proc/none/moved")
@@ -162,7 +162,7 @@ def test_a_bad_folder_is_one_line(viewer, kind):
 
 @pytest.mark.parametrize("words", ["blendshape", "morph", "shape key", "ARKit", "avatar", "gltf"])
 def test_search_finds_the_avatar(viewer, words):
-    """Each word that people use shows a button that asks for the avatar's file."""
+    """Each of several usual words shows a button that asks for the avatar's file."""
     show_controls(viewer, words)
     click(viewer, "found Avatar ...")
     assert viewer.files.is_waiting

@@ -1,4 +1,4 @@
-"""Files that come into the window and leave it, and sounds."""
+"""Files that the window opens and saves, and sounds."""
 
 import os
 import subprocess
@@ -43,7 +43,7 @@ POSE = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
 
 
 def test_files_can_be_dropped_onto_the_window(viewer, tmp_path):
-    """A script, then a pose with an awkward name, from another program, by the X protocol."""
+    """A script, then a pose with a difficult name, from another program, by the X protocol."""
     script = tmp_path / "smile.toml"
     pose = tmp_path / "schöner & 50% größer.toml"
     script.write_text(SCRIPT)
@@ -76,13 +76,13 @@ def test_the_chooser_walks_through_folders(viewer, tmp_path):
     assert viewer.session.script.duration == 2.0
     assert not viewer.files.is_waiting
     press_keys(viewer, "ctrl+o")
-    assert "file smile.toml" in viewer.gui.places  # begins where it was last
+    assert "file smile.toml" in viewer.gui.places  # it begins in the last folder
     press_keys(viewer, "Escape")
     assert not viewer.files.is_waiting
 
 
 def test_the_chooser_replaces_nothing_unasked(viewer, tmp_path):
-    """A name that is taken needs a second word; a folder that is missing is reported."""
+    """An existing name needs a second confirmation; a missing folder is reported."""
     taken = tmp_path / "pose.toml"
     taken.write_text("precious")
     viewer.session.set("jaw_open", 0.4)
@@ -104,7 +104,7 @@ def test_the_chooser_replaces_nothing_unasked(viewer, tmp_path):
 
 
 def test_closing_while_recording_saves_it_first(viewer, tmp_path):
-    """Save, in answer to the question, keeps the recording in a file and then closes."""
+    """The answer Save stores the recording in a file and then closes."""
     press_keys(viewer, "ctrl+r")
     viewer.session.set("jaw_open", 0.6)
     assert until(viewer, lambda: viewer.session.recorded_seconds > 0.3)
@@ -129,7 +129,7 @@ def title_of(viewer):
 
 
 def test_saving_goes_to_the_known_file(viewer, tmp_path):
-    """A script that was opened is saved without a question; the title shows its name and state."""
+    """An opened script is saved without a question; the title shows its name and state."""
     script = tmp_path / "smile.toml"
     script.write_text(f"# mine\n{SCRIPT}")
     put(viewer, script)
@@ -154,7 +154,7 @@ def test_saving_goes_to_the_known_file(viewer, tmp_path):
 
 
 def test_examples_are_opened_by_the_menu(viewer):
-    """*File > Examples* has the scripts that come along; one of them then lies in the timeline."""
+    """*File > Examples* has the installed scripts; the chosen one is then in the timeline."""
     click(viewer, "menu File")
     click(viewer, "menu File: Examples")
     click(viewer, "menu File: Speech")
@@ -164,7 +164,7 @@ def test_examples_are_opened_by_the_menu(viewer):
 
 @pytest.mark.slow
 def test_a_head_and_a_script_are_dropped_together(viewer, tmp_path):
-    """The face is another one, the script plays on it; unsaved work is still there."""
+    """The face changes, and the script plays on it; unsaved work is still there."""
     session = viewer.session
     before = session.scene
     mesh, landmarks = stranger().write(tmp_path)
@@ -198,7 +198,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer, tmp_path):
 
 
 def test_a_head_is_opened_by_the_menu(viewer, tmp_path):
-    """The mesh is asked for, and its own landmarks lie beside it; each kind is listed alone."""
+    """The dialog asks for the mesh; its own landmarks are beside it; each kind is listed alone."""
     before = viewer.session.scene
     mesh, landmarks = stranger().write(tmp_path)
     landmarks = landmarks.rename(tmp_path / "stranger.landmarks.json")
@@ -214,14 +214,14 @@ def test_a_head_is_opened_by_the_menu(viewer, tmp_path):
 
 
 def written(path):
-    """A table of a jaw that opens within a second, and of a column that nobody knows."""
+    """A table of a jaw that opens within a second, and of an unknown column."""
     rows = [f"{k / 30:.4f},{k / 60:.4f},7" for k in range(31)]
     path.write_text("\n".join(["time,jawOpen,mood", *rows]), encoding="utf-8")
     return path
 
 
 def test_a_recording_is_dropped_played_and_saved_as_a_script(viewer, tmp_path):
-    """The window names its kind; unsaved work is asked about before; saving asks for a name.
+    """The window names its kind, and first asks about unsaved work; saving asks for a name.
 
     The recording itself is never written.
     """
@@ -251,7 +251,7 @@ LONG_SCRIPT = "duration = 8.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy =
 
 @pytest.fixture(params=["null device", "no device"])
 def has_device(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> bool:
-    """A device that plays into nothing, or none at all."""
+    """A device that plays into nothing, or no device."""
     is_there = request.param == "null device"
     found = [pytest.importorskip("miniaudio").Backend.NULL] if is_there else []
     monkeypatch.setattr(player, "backends", lambda: found)
@@ -260,7 +260,7 @@ def has_device(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) 
 
 @pytest.fixture
 def sound(viewer: Viewer, tmp_path: Path) -> Iterator[Path]:
-    """Half a second of silence, then noise; not in the window yet."""
+    """Half a second of silence, then noise; not yet in the window."""
     samples = np.concatenate([np.zeros(8_000), noise(2.5)])
     (tmp_path / "s.toml").write_text(LONG_SCRIPT)
     viewer.session.work.open(load_script(tmp_path / "s.toml"))
@@ -269,7 +269,7 @@ def sound(viewer: Viewer, tmp_path: Path) -> Iterator[Path]:
 
 
 def test_a_sound_is_dropped_and_played(viewer, sound, has_device):
-    """It gets a row of its own, plays and pauses with the script; without a device in peace."""
+    """It gets its own row, plays and pauses with the script; without a device no error appears."""
     session = viewer.session
     before = viewer.face.timeline.height()
     put(viewer, sound)
@@ -293,7 +293,7 @@ def test_a_sound_is_dropped_and_played(viewer, sound, has_device):
 
 
 def test_the_waveform_is_seen_and_scrubs(viewer, sound, has_device):
-    """Silence is a line, noise is not; a press in it goes to that time, as in the ruler."""
+    """Silence is a line, noise is wide; a press in it goes to that time, as in the ruler."""
     put(viewer, sound)
     viewer.face.time_axis.show_whole()
     viewer.messages.text = ""
@@ -346,7 +346,7 @@ def test_a_name_that_is_no_utf8(viewer, tmp_path):
 
 @pytest.mark.slow
 def test_a_known_head_needs_no_marking(viewer, tmp_path):
-    """A mesh alone, whose vertices are those of a known head, is shown with its muscles."""
+    """A mesh with the vertices of a known head is shown with its muscles, without landmarks."""
     before = viewer.session.scene
     head = coarse_head()
     known = replace(stranger(), mesh=Mesh(head.vertices, head.faces), landmarks=head.landmarks)

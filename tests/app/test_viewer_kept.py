@@ -1,4 +1,4 @@
-"""Files that outlive the window: settings, and unsaved work, which the next one offers."""
+"""Files that outlast the window: settings, and unsaved work, which the next window offers."""
 
 import errno
 import json
@@ -32,12 +32,12 @@ GOOD = {"theme": "dark", "zoom": 1.5, "folds": {"Jaw": True}, "display": {"wiref
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    """Where settings are, alone in a folder."""
+    """The path of settings, in a folder of their own."""
     return tmp_path / "viewer.json"
 
 
 def test_settings_come_back(tmp_path):
-    """Settings that are written are read again."""
+    """Written settings are read again."""
     path = tmp_path / "deep" / "viewer.json"
     settings = Settings(size=(900, 700), theme="dark", folds={"Jaw": True}, recent=["a"])
     settings.display.look = "paper"
@@ -63,7 +63,7 @@ def test_settings_come_back(tmp_path):
     ],
 )
 def test_one_value_gives_way_alone(path, where, value):
-    """It is reported by its name, and is as at first; all others stay."""
+    """It is reported by its name, and gets its default; all others stay."""
     stored = json.loads(json.dumps(GOOD))
     *tables, name = where.split(".")
     table = stored
@@ -91,7 +91,7 @@ def test_one_value_gives_way_alone(path, where, value):
     [b"", b"not json", b"[]", b"\xff\xfe\x00", 100_000 * b'{"display":', b" " * (2**20 + 1)],
 )
 def test_a_file_of_no_use_is_reported(path, content):
-    """All is as at first; a line says so; written anew, it is of use."""
+    """All settings have their defaults; a line says so; the next write makes the file valid."""
     path.write_bytes(content)
     settings, complaint = load_settings(path)
     assert settings == Settings()
@@ -106,7 +106,7 @@ def test_a_file_of_no_use_is_reported(path, content):
 @NEEDS_A_SCREEN[1]
 @pytest.mark.parametrize("name", ["theme", "display"])
 def test_no_settings_keep_the_window_shut(path, name):
-    """Everything wrong at once, or an option that a refiner refuses: it opens, and says so."""
+    """With all values wrong, or an option that a refiner refuses, it opens with a message."""
     wrong = {name: "zzz" for name in vars(Settings())}
     if name == "display":
         wrong = {name: {"options": {"kahler": {"threshold_once": "x"}}}}
@@ -167,14 +167,14 @@ def clock() -> Clock:
 
 @pytest.fixture
 def recovery(session: Session, tmp_path: Path, clock: Clock) -> Iterator[Recovery]:
-    """Of a window that lives."""
+    """The recovery of a window that is open."""
     made = Recovery(tmp_path, session, clock)
     yield made
     made.close()
 
 
 def watch(recovery, clock):
-    """Let the time pass in which a change is written."""
+    """Let enough time pass for a change to be written."""
     recovery.watch()
     clock.now += INTERVAL
     recovery.watch()
@@ -186,21 +186,21 @@ def stored(folder):
 
 
 def found_by_next(folder, session):
-    """The file that a window which opens now finds."""
+    """The file that a newly opened window finds."""
     other = Recovery(folder, session)
     other.close()
     return None if other.found is None else load_script(other.found)
 
 
 def leave(folder, session):
-    """Work that a window has which then ends."""
+    """Leave unsaved work of a window that then ends."""
     recovery = Recovery(folder, session)
     recovery.save()
     recovery.close()
 
 
 def test_work_is_written_soon_and_goes_when_it_is_undone(session, recovery, clock, tmp_path):
-    """Nothing at first; a pose a moment later, though it is dragged on; nothing when undone."""
+    """Nothing at first; a pose a moment later, even during a drag; nothing after undo."""
     recovery.watch()
     assert recovery.due_in() == float("inf")
     assert not stored(tmp_path)
@@ -218,7 +218,7 @@ def test_work_is_written_soon_and_goes_when_it_is_undone(session, recovery, cloc
 
 
 def test_all_of_it_comes_back(session, recovery, tmp_path):
-    """A script with the present recording, to each digit, its comments at the head and all."""
+    """A script with the present recording, to each digit, with the comments at its head."""
     session.set("jaw_open", 0.25)
     session.set_key()
     session.set("jaw_open", 1.0 / 3.0)
@@ -226,7 +226,7 @@ def test_all_of_it_comes_back(session, recovery, tmp_path):
     session.set("jaw_open", 0.5)
     run(session, 20)
     recovery.save()
-    assert found_by_next(tmp_path, session) is None  # its window still lives
+    assert found_by_next(tmp_path, session) is None  # its window is still open
     recovery.close()
     found = found_by_next(tmp_path, session)
     session.toggle_recording()
@@ -234,7 +234,7 @@ def test_all_of_it_comes_back(session, recovery, tmp_path):
 
 
 def test_a_found_file_stays_and_is_found_once(session, tmp_path):
-    """Changes, saving and giving up leave it alone, and so does a window with the plane."""
+    """Changes, saves and discards leave it, and so does a window with the plane."""
     session.set("jaw_open", 0.4)
     leave(tmp_path, session)
     assert found_by_next(tmp_path, Session(PlaneScene(), script_for(None, "plane"))) is None
@@ -251,7 +251,7 @@ def test_a_found_file_stays_and_is_found_once(session, tmp_path):
 
 
 def test_a_folder_that_takes_nothing_is_reported_once(session, clock):
-    """A message says that work is not safe, and the user works on."""
+    """A message says that work is not safe, and the window goes on."""
     recovery = Recovery(Path("/proc/none"), session, clock)
     session.set("jaw_open", 0.4)
     with pytest.raises(UserError, match=r"not kept safe: .*/proc/none"):
@@ -266,19 +266,20 @@ def test_a_folder_that_takes_nothing_is_reported_once(session, clock):
 
 @pytest.fixture
 def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
-    """`risorius view`, with settings of its own, in which somebody has made a face just now."""
+    """`risorius view`, with its own settings, and a face that was changed just now."""
     process = subprocess.Popen(
         [sys.executable, "-m", "risorius", "view", "--size", "700x500"],
         cwd=ROOT, stderr=subprocess.PIPE, text=True,
         env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)}, start_new_session=True,
-        # Tests that run behind an `&` or `nohup` have signals ignored, and pass that on.
+        # Tests that run behind an `&` or `nohup` ignore signals, and so do their children.
         preexec_fn=lambda: [signal.signal(n, signal.SIG_DFL) for n in (1, 2, 15)],
     )  # fmt: skip
     search = ["xdotool", "search", "--onlyvisible", "--name"]
 
     def is_posed() -> bool:
-        # Keys are lost until the window listens. Each answer is awaited: the next try begins with
-        # "neutral", and nothing would be there to be recovered if the process ended at that moment.
+        # Keys are lost until the window listens. The test waits for each answer: the next try
+        # begins with "neutral", and a process that ended at that moment would leave no work to
+        # recover.
         subprocess.run(["xdotool", "mousemove", "450", "200", "key", "n", "1", "m"], check=True)
         title = [*search, r"^Risorius: Untitled \*$"]
         end = time.monotonic() + 5.0
@@ -303,7 +304,7 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
     "how", [pytest.param(signal.SIGHUP, marks=pytest.mark.slow), signal.SIGKILL]
 )
 def test_a_window_that_ended_is_recovered(at_work, tmp_path, how):
-    """Stopped, or killed some seconds after the last change: a line says where it is."""
+    """It was stopped, or killed some seconds after the last change: a line names the file."""
     folder = tmp_path / "risorius"
     if how == signal.SIGKILL:
         wait_for(lambda: stored(folder))
@@ -321,7 +322,7 @@ def test_a_window_that_ended_is_recovered(at_work, tmp_path, how):
 
 
 def test_pictures_of_persons_are_drawn_once(tmp_path, monkeypatch):
-    """They are kept for the program as it is; those of another one leave, a broken one is none."""
+    """They are stored for this version; those of another one are removed, broken ones ignored."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(portraits, "give_way", lambda _: None)
     stale = tmp_path / "risorius" / "portraits-0" / "coarse.png"

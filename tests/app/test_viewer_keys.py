@@ -1,4 +1,4 @@
-"""Clicks, keys and words as they come to a window that draws slowly: each has its effect."""
+"""Clicks, keys and words sent to a window that draws slowly: each has its effect."""
 
 import re
 
@@ -42,7 +42,7 @@ def test_each_command_has_its_own_name_and_keys(viewer):
 
 
 def test_the_manual_is_read_and_searched(viewer):
-    """F1 opens all pages; links and Ctrl+F find their places; keys are for it until it closes."""
+    """F1 opens all pages; links and Ctrl+F find their places; it gets all keys until it closes."""
     press_keys(viewer, "F1")
     manual = viewer.context.manual
     assert manual.is_open
@@ -66,7 +66,7 @@ def test_the_manual_is_read_and_searched(viewer):
 
 
 def test_all_keys_are_listed(viewer):
-    """*Help > Keys and mouse* shows a section for each menu, made of the commands."""
+    """*Help > Keys and mouse* shows a section for each menu, made from the commands."""
     click(viewer, "menu Help")
     click(viewer, "menu Help: Keys and mouse")
     assert viewer.context.manual.is_open
@@ -77,7 +77,7 @@ def test_all_keys_are_listed(viewer):
 
 
 def test_the_citation_is_copied(viewer):
-    """*Help > Copy citation* puts the paper and the program into the clipboard, as BibTeX."""
+    """*Help > Copy citation* copies the paper and the program to the clipboard, as BibTeX."""
     click(viewer, "menu Help")
     click(viewer, "menu Help: Copy citation")
     citation = imgui.get_clipboard_text()
@@ -87,7 +87,7 @@ def test_the_citation_is_copied(viewer):
 
 
 def test_recent_files_are_opened_again(viewer, tmp_path):
-    """The latest comes first; one that is gone is reported in one line."""
+    """The latest is first; a missing one is reported in one line."""
     paths = [tmp_path / f"{name}.toml" for name in ("first", "second")]
     for path in paths:
         path.write_text("duration = 1.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")

@@ -1,4 +1,4 @@
-"""The face lives in the window while nobody moves it; a user or a script takes control of it."""
+"""The face has a life in the window without input; a user or a script takes control of it."""
 
 from collections.abc import Iterator
 
@@ -23,7 +23,7 @@ def alive(viewer: Viewer, calm: None) -> Iterator[None]:
 
 
 def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer):
-    """The eyes turn to the camera; sliders, undo and unsaved work stay as they were."""
+    """The eyes turn to the camera; sliders, undo and unsaved work are unchanged."""
     session = viewer.session
     assert until(viewer, lambda: session.scene.values["gaze_horizontal_left"] != 0.0)
     assert until(viewer, lambda: moved(viewer) > 0.5)
@@ -37,7 +37,7 @@ def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer):
 
 
 def test_a_key_switches_it_off_and_on(viewer):
-    """A lets the face come to rest, so that the window sleeps; A again wakes it."""
+    """A lets the face come to rest, so the window sleeps; A again wakes it."""
     assert until(viewer, lambda: moved(viewer) > 0.1)
     press_keys(viewer, "a")
     assert not viewer.settings.is_alive

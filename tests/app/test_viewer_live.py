@@ -24,11 +24,11 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "silent")]
 class FrameClock:
     """Counts seconds as the window shows frames: a frame lasts a twentieth at most.
 
-    So no face is lost, and nothing is missed, because a machine is slow.
+    So a slow machine loses no face and misses no event.
     """
 
     def __init__(self, frame):
-        """frame: the window's own, which draws one."""
+        """frame: the window's own function, which draws a frame."""
         self._frame = frame
         self._now = 0.0
         self._last = time.perf_counter()
@@ -37,7 +37,7 @@ class FrameClock:
         return self._now
 
     def frame(self):
-        """A frame goes by."""
+        """Draw a frame and advance the clock."""
         last, self._last = self._last, time.perf_counter()
         self._now += min(self._last - last, 0.05)
         self._frame()
@@ -54,7 +54,7 @@ def clock(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> FrameClock:
 
 @pytest.fixture
 def silent(viewer: Viewer, clock: FrameClock) -> Iterator[None]:
-    """Listen to nobody before and after."""
+    """Listen to no sender before and after."""
     viewer.context.live.stop()
     viewer.context.live.wanted = Listening("livelink", port=0)
     yield
@@ -71,7 +71,7 @@ def listen(viewer):
 
 @contextmanager
 def sending(face, file):
-    """Another process plays a recording to the window, again and again."""
+    """Another process sends a recording to the window in a loop."""
     words = ["send", file, "--loop", "--port", face.port]
     process = subprocess.Popen(
         [sys.executable, "-m", "risorius", *map(str, words)], stdout=subprocess.DEVNULL
@@ -84,13 +84,13 @@ def sending(face, file):
 
 
 def hold(viewer, clock, seconds, **channels):
-    """Send the same face with every frame of the window, for a while and until it leads."""
+    """Send the same face with every frame of the window, at least this time and until it leads."""
     face = viewer.context.live.face
     end = clock() + seconds
     with Sender(LOOPBACK, face.port, "Ada") as sender:
 
         def leads():
-            """Whether that is enough; if not, send it once more."""
+            """Whether that is enough; otherwise send it once more."""
             is_enough = clock() >= end and face.presence == 1.0
             if not is_enough:
                 sender.send(channels)
@@ -111,7 +111,7 @@ def write_take(file, **channels):
 
 
 def test_a_recording_that_is_sent_moves_the_face(viewer, tmp_path):
-    """The mouth opens; when nothing comes any more it closes and all is idle."""
+    """The mouth opens; when packets end it closes and the window is idle."""
     face = listen(viewer)
     assert until(viewer, lambda: "live state" in viewer.gui.places)
     with sending(face, write_take(tmp_path / "take.csv", jawOpen=0.9, browInnerUp=0.5)):
@@ -128,7 +128,7 @@ def test_a_recording_that_is_sent_moves_the_face(viewer, tmp_path):
 
 
 def test_buttons_listen_calibrate_mirror_and_stop(viewer, clock):
-    """All by hand, in the panel; the neutral face does not move ours any more."""
+    """All are clicked in the panel; the calibrated neutral face no longer moves ours."""
     session = viewer.session
     click(viewer, "tab Live")
     click(viewer, "listen")
@@ -154,7 +154,7 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer, clock):
 
 
 def test_a_packet_wakes_an_idle_window(viewer):
-    """It sleeps while nothing comes, and does not wait for its time when something does."""
+    """It sleeps without packets, and a packet wakes it at once."""
     face = listen(viewer)
     viewer.messages.text = ""
     assert until(viewer, lambda: viewer.schedule.is_idle)

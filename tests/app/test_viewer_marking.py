@@ -39,7 +39,7 @@ from .driving import (
     xdotool,
 )
 
-NEAR = 6.0 * METRES  # of the built-in head's own shape, guesses are that good
+NEAR = 6.0 * METRES  # [m] the error of guesses for the built-in head's own shape
 
 
 @pytest.fixture
@@ -50,18 +50,18 @@ def mesh(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def marking(mesh: Path) -> Marking:
-    """It, with nothing marked."""
+    """Marking of the mesh, still empty."""
     return Marking(mesh, FileDialogs())
 
 
 def true_places():
-    """Where its landmarks are."""
+    """Places of its landmarks."""
     other = stranger()
     return other.mesh.vertices[other.landmarks]
 
 
 def mark_first(marking):
-    """Place the first five, as they are asked for, exactly."""
+    """Place the first five exactly, in the order of the questions."""
     for number in FIRST:
         assert marking.current == number
         marking.put(number, marking.placing.points(true_places()[number]))
@@ -69,13 +69,13 @@ def mark_first(marking):
 
 
 def off(marking):
-    """How far marks are from where they belong [m]."""
+    """Distances of marks from their true places [m]."""
     found = np.array([marking.marks.places[number] for number in range(68)])
     return norm(found - true_places(), axis=1)
 
 
 def test_a_known_head_opens_without_marking(mesh, tmp_path, monkeypatch):
-    """`view --head MESH` fits it; where its landmarks do not fit, a line leads to marking."""
+    """`view --head MESH` fits it; if its landmarks do not fit, a line leads to marking."""
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     opened = []
     monkeypatch.setattr(commands, "open_window", lambda *given, **_: opened.append(given))
@@ -119,14 +119,14 @@ def test_half_done_marks_are_kept_and_continued(marking, tmp_path):
     third.open(target)
     assert third.marks == again.marks and third.is_upright  # guessed points stay guessed
     third.undo()
-    assert not third.marks.places and not third.is_upright  # and may be turned again
+    assert not third.marks.places and not third.is_upright  # it may be turned again
     third.undo(-1)
     assert third.marks == again.marks
     assert third.is_upright
 
 
 def test_vertex_numbers_can_be_corrected(marking, tmp_path):
-    """A landmark file of another program is taken up, and saved as points."""
+    """A landmark file of another program is read, and saved as points."""
     _, numbers = stranger().write(tmp_path)
     marking.open(numbers)
     assert off(marking).max() < 1e-8
@@ -144,7 +144,7 @@ def test_vertex_numbers_can_be_corrected(marking, tmp_path):
 
 
 def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path):
-    """Before anybody has marked 68 points on it."""
+    """The refusal comes before the user marks 68 points on it."""
     mesh = tmp_path / "fan.obj"
     mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 2 0\nv 0 3 1\nf 1 2 3\nf 1 2 4\nf 2 1 5\n")
     with pytest.raises(UserError, match=r"fan\.obj: the mesh is not manifold"):
@@ -152,7 +152,7 @@ def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path):
 
 
 def test_pieces_beside_the_skin_may_be_anything(tmp_path):
-    """A card of hair that is no surface keeps nobody from marking the skin."""
+    """A card of hair without a proper surface does not prevent marking of the skin."""
     other = stranger()
     mesh = with_card(other.mesh)
     path, _ = other.write(tmp_path, vertices=mesh.vertices, faces=mesh.faces)
@@ -160,13 +160,13 @@ def test_pieces_beside_the_skin_may_be_anything(tmp_path):
 
 
 class TestInTheWindow:
-    """With real events."""
+    """Tests with real events."""
 
     pytestmark: ClassVar = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
     @pytest.fixture(autouse=True)
     def back(self, viewer: Viewer) -> Iterator[None]:
-        """Leave the window as it was."""
+        """Restore the window."""
         before = viewer.session.scene
         yield
         viewer.context.question.task = None
@@ -182,7 +182,7 @@ class TestInTheWindow:
         return viewer.marking_mode
 
     def place(self, viewer, point):
-        """Where a point of the mesh is, on the screen."""
+        """Screen place of a point of the mesh."""
         mode = self.mode(viewer)
         seen = mode.marking.placing.points(point[None])
         return on_screen(viewer, *places_in(mode.view.area, mode.view.camera, seen)[0])
@@ -214,7 +214,7 @@ class TestInTheWindow:
         ways = placing(dict(enumerate(true_places()))).inverse.vectors(np.eye(3))
 
         def axes():
-            """To the left, up and out of the face, as they are seen."""
+            """Directions to the left, up and out of the face, in the view."""
             turned = marking.placing.vectors(ways)
             return turned / norm(turned, axis=1, keepdims=True)
 
@@ -244,7 +244,7 @@ class TestInTheWindow:
         assert "No skin looks at you" in viewer.messages.text
 
     def test_a_head_is_marked_from_the_first_click_to_the_picture(self, viewer, mesh, tmp_path):
-        """Dropped, five clicks, one drag, undone, saved; then capture takes the file."""
+        """A drop, five clicks, one drag, undo and save; then capture reads the file."""
         drop(viewer, mesh)
         marking = self.mode(viewer).marking
         self.mark_first(viewer)
@@ -268,7 +268,7 @@ class TestInTheWindow:
         assert number in marking.marks.by_hand
         press_keys(viewer, "Right")
         assert marking.current == ORDER[ORDER.index(number) + 1]
-        self.mode(viewer).view.camera.orbit(80.0, 0.0)  # whose side hides it
+        self.mode(viewer).view.camera.orbit(80.0, 0.0)  # this side view hides it
         press_keys(viewer, "Left")
         settle(viewer)
         assert number == marking.current
@@ -282,7 +282,7 @@ class TestInTheWindow:
         assert len(viewer.session.scene.faces) == len(stranger().mesh.faces)
         image = tmp_path / "joy.png"
         marks = mesh.with_name("marked.json")
-        assert viewer.exporter.head.files == (mesh, marks)  # of which an avatar can be made
+        assert viewer.exporter.head.files == (mesh, marks)  # an avatar can be made of it
         options = ("--set", "joy", "--size", "160x160", "-o", image)
         words = ("capture", "--head", mesh, "--landmarks", marks, *options)
         result = CliRunner().invoke(command(), [str(word) for word in words])
@@ -291,11 +291,11 @@ class TestInTheWindow:
 
     @pytest.mark.slow
     def test_marks_are_not_lost_without_a_question(self, viewer, mesh):
-        """Leaving and closing ask; a second mesh, too; saving in answer goes on."""
+        """Leaving and closing ask, and so does a second mesh; saving as the answer goes on."""
         viewer.session.set("jaw_open", 0.5)
         viewer.read(mesh)()
         press_keys(viewer, "ctrl+w")
-        assert viewer.marking_mode is None  # nothing was marked, and the pose is not in danger
+        assert viewer.marking_mode is None  # nothing was marked, and the pose stays safe
         viewer.read(mesh)()
         self.mark_first(viewer)
         mode = viewer.marking_mode

@@ -40,14 +40,14 @@ SMILE = "zygomaticus_major"
 
 
 def in_panel(viewer, *rows):
-    """Choose in lists of the Mechanism panel."""
+    """Choose items in lists of the Mechanism panel."""
     for row, choice in rows:
         click(viewer, row)
         click(viewer, f"{row}: {choice}")
 
 
 def only_open(viewer, title):
-    """Fold all of the Mechanism panel but one heading, so that there is room for it."""
+    """Fold all headings of the Mechanism panel but one, so that there is room for it."""
     viewer.context.wanted_tab = "Mechanism"
     titles = ("Refinement", "Advanced", "Style", "Anatomy", "Milliseconds")
     viewer.settings.folds.update({each: each == title for each in titles})
@@ -55,7 +55,7 @@ def only_open(viewer, title):
 
 
 def seen_labels(viewer, page, origin):
-    """Whether each label of the window is in a picture whose lower left corner is there."""
+    """Whether each label of the window is in a picture with its lower left corner there."""
     seen = []
     for x, y, image in viewer.surface.labels:
         bottom = len(page) - (y - origin[1])
@@ -66,7 +66,7 @@ def seen_labels(viewer, page, origin):
 
 
 def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
-    """In the window and in a screenshot alike; none where nothing is compared or coloured."""
+    """In the window and in a screenshot; none without a comparison or colours."""
     assert not viewer.surface.labels
     only_open(viewer, "Style")
     click(viewer, "Colour by splits")
@@ -93,7 +93,7 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
 
 
 def test_any_look_stands_at_the_left(viewer):
-    """Chosen by the mouse beside the look of the right; the picture has both names."""
+    """The mouse chooses it, beside the look at the right; the picture has both names."""
     viewer.settings.display = Display(compare="side by side")
     only_open(viewer, "Refinement")
     in_panel(viewer, ("Beside", "paper"))
@@ -108,7 +108,7 @@ def test_any_look_stands_at_the_left(viewer):
 
 
 def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
-    """Chosen by the mouse it draws from the card, and the picture is as it was; set back, too."""
+    """Chosen by the mouse, it draws from the card, with the same picture; it can be set back."""
     only_open(viewer, "Advanced")
     pictures = [viewer.context.stage.draw_image(viewer.face.view)]
     in_panel(viewer, ("Refiner", "kahler-gl"))
@@ -117,7 +117,7 @@ def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
     assert viewer.context.stage.refined.label == "kahler-gl"
     assert not viewer.messages.text
     assert np.array_equal(*pictures)
-    in_panel(viewer, ("scheme", "loop"))  # of those that it has; what does not go with the look
+    in_panel(viewer, ("scheme", "loop"))  # an option of its own, which is no part of the look
     assert 'criterion "displacement" needs scheme="cubic"' in viewer.messages.text
     changed = viewer.settings.display
     click(viewer, "Reset all")
@@ -130,7 +130,7 @@ def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
 
 @pytest.mark.slow
 def test_persons_are_chosen_by_their_pictures(viewer):
-    """Each has a picture of its own, which a process draws; a click shows that person."""
+    """Each has its own picture, which a process draws; a click shows this person."""
     viewer.context.wanted_tab = "Scene"
     click(viewer, "Person")
     people = [name for name in viewer.gui.places if name.startswith("Person: ")]
@@ -138,7 +138,7 @@ def test_persons_are_chosen_by_their_pictures(viewer):
     assert len(people) == 2 + len(NAMED) + 20
     portraits = viewer.context.portraits
     first = ("built-in", "coarse", "ada")
-    # The process has a low priority: others go first.
+    # The process has a low priority, so others run first.
     assert until(viewer, lambda: all(map(portraits.of, first)), 600.0)
     settle(viewer)
     shot = viewer.surface.read()
@@ -155,7 +155,7 @@ def test_persons_are_chosen_by_their_pictures(viewer):
 
 
 def test_pictures_of_persons_come_while_another_panel_is_open(viewer):
-    """They are taken in, and the window comes to rest."""
+    """They are received, and the window comes to rest."""
     viewer.context.wanted_tab = "Scene"
     settle(viewer)
     viewer.context.wanted_tab = "Face"
@@ -165,7 +165,7 @@ def test_pictures_of_persons_come_while_another_panel_is_open(viewer):
 
 
 def test_the_scene_has_light_lens_and_hair(viewer):
-    """Set by the mouse; a reset of the mechanism leaves them, F brings back the lens alone."""
+    """The mouse sets them; a reset of the mechanism keeps them, F restores only the lens."""
     viewer.context.wanted_tab = "Scene"
     settle(viewer)
     whole = viewer.context.stage.draw_image(viewer.face.view).astype(int)
@@ -210,11 +210,11 @@ def test_the_number_pad_looks_from_all_sides(viewer):
         press_keys(viewer, keys)
         assert (camera.yaw, camera.pitch) == (yaw, pitch), keys
     assert (camera.distance, camera.target.tolist()) == place
-    assert not any(viewer.session.values.values())  # alt+3 is no expression
+    assert not any(viewer.session.values.values())  # alt+3 sets no expression
 
 
 def test_a_key_shows_the_muscles_as_capture_draws_them(viewer):
-    """U switches them on and off; nothing stays behind."""
+    """U switches them on and off; afterwards the picture is as before."""
     settle(viewer)
     usual = viewer.context.stage.draw_image(viewer.face.view).astype(int)
     press_keys(viewer, "u")
@@ -236,7 +236,7 @@ def test_a_key_shows_the_muscles_as_capture_draws_them(viewer):
 
 
 def test_headings_stay_folded(viewer):
-    """A heading that was folded is folded the next time; one that is searched only meanwhile."""
+    """A folded heading is folded the next time; a search only unfolds it meanwhile."""
     click(viewer, "Expressions")
     assert "joy" not in viewer.gui.places
     click(viewer, "Jaw")
@@ -250,7 +250,7 @@ def test_headings_stay_folded(viewer):
 
 
 def test_the_panel_can_be_made_wider(viewer):
-    """Its edge follows the mouse, as far as the picture keeps more than half of the window."""
+    """Its edge follows the mouse, but the picture keeps more than half of the window."""
     left, top, _, height = viewer.face.view.area
     drag_and_release(viewer, on_screen(viewer, left - 1, top + 0.5 * height), (-90, 0))
     assert viewer.face.view.area[0] == approx(left - 90, abs=3)
@@ -262,7 +262,7 @@ def test_the_panel_can_be_made_wider(viewer):
 
 @pytest.mark.parametrize("zoom", [1.0, 3.0])
 def test_everything_stays_inside_its_panel(viewer, zoom):
-    """However large the words are, no button is cut off and nothing hides the picture."""
+    """For any size of text, no button is cut off and no panel hides the picture."""
     try:
         viewer.settings.zoom = zoom
         settle(viewer)
@@ -295,15 +295,15 @@ def test_any_size_can_be_drawn(viewer):
         settle(viewer)
     assert until(viewer, lambda: viewer.schedule.is_idle)
     assert viewer.surface.read().shape == (SIZE[1], SIZE[0], 3)
-    assert viewer.face.view.area == before  # the panel is as wide as it was
+    assert viewer.face.view.area == before  # the panel has its old width
 
 
 def test_what_is_not_keyed_is_read_in_a_small_window(viewer):
-    """The line has its whole length; without room a script's name is left out, not cut."""
+    """The line is shown in full; without room a script's name is left out, not cut."""
     import glfw
 
     def shown(*size):
-        """The line below the timeline: left and right, None where it is left out."""
+        """Ends of the line below the timeline: left and right, None if it is left out."""
         glfw.set_window_size(viewer.surface.handle, *size)
         settle(viewer)
         left, _, right, _ = viewer.gui.places.get("status", (0.0,) * 4)
@@ -322,7 +322,7 @@ def test_what_is_not_keyed_is_read_in_a_small_window(viewer):
 
 @pytest.mark.slow
 def test_a_dense_screen_has_everything_twice_as_large(viewer):
-    """At a content scale of 2 words, sliders and lines are doubled, and the mouse still hits."""
+    """At a content scale of 2, text, sliders and lines are doubled, and the mouse still hits."""
     left, top, right, bottom = viewer.gui.places["Neutral"]
     result = subprocess.run(
         [sys.executable, "-m", "tests.app.dense_window"],
@@ -330,10 +330,10 @@ def test_a_dense_screen_has_everything_twice_as_large(viewer):
     )  # fmt: skip
     assert result.returncode == 0, result.stderr
     found = json.loads(result.stdout)
-    # Letters are as wide as whole pixels allow, which at twice the size is not quite twice as much.
+    # Letters have widths of whole pixels, so at twice the size they are not exactly twice as wide.
     assert found["button"] == approx([2.0 * (right - left), 2.0 * (bottom - top)], abs=6.0)
     assert found["line"] == 2.0
-    assert found["is_settled"]  # the first picture is where all others are
+    assert found["is_settled"]  # the first picture has the same arrangement as all others
     assert found["frame"] == found["window"] == [1200, 800]
     assert found["slid"] > 0.3
     assert found["dragged"] > 4.0

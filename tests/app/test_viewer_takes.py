@@ -1,4 +1,4 @@
-"""Recordings into a script while it plays, without a window."""
+"""Recordings into a script during play, without a window."""
 
 import itertools
 from dataclasses import replace
@@ -71,7 +71,7 @@ def scripts(draw):
 
 
 def cut_by(script, name, times, moment):
-    """Whether a moment is on the way between two keys of a track that one of the times parts."""
+    """Whether a moment is between two keys of a track that one of the times separates."""
     keys = script.tracks.get(name, Channel([], [])).times
     ways = itertools.pairwise(keys)
     return any(a < moment < b and any(a < time < b for time in times) for a, b in ways)
@@ -84,9 +84,10 @@ def cut_by(script, name, times, moment):
 )
 @settings(max_examples=100, deadline=None)
 def test_punching_in_changes_nothing_else(played, start, moves):
-    """Outside of the recording every key is as it was, and so is each control not touched.
+    """Outside of the recording every key is the same, and so is each control not touched.
 
-    To the bit, but for an eased way that is cut: that is followed as closely as can be seen.
+    They are equal to the bit, except in an eased way that is cut: it is followed to an invisible
+    error.
     """
     recorder = Recorder(played, start)
     held = dict[str, float]()
@@ -143,7 +144,7 @@ def paused(session):
 
 
 def test_moves_in_a_pause_stay_by_hand_when_it_ends(session):
-    """They are no part of the recording, as a line says, and still there to be keyed."""
+    """They are not part of the recording, as a line says, and can still be keyed."""
     paused(session)
     session.set("AU4", 0.8)
     session.set("jaw_open", 0.1)
@@ -165,7 +166,7 @@ def test_moves_in_a_pause_stay_by_hand_when_it_ends(session):
 
 
 def test_a_recording_plays_back_to_the_same_positions(session, tmp_path):
-    """Record, save, load, replay: every vertex ends where it was, to a hundredth of a mm."""
+    """Record, save, load, replay: every vertex comes back, to a hundredth of a mm."""
     session.work.begin_script()
     session.edit(replace(session.script, duration=1.0))
     session.toggle_recording()
@@ -191,7 +192,7 @@ def test_a_recording_plays_back_to_the_same_positions(session, tmp_path):
 
 
 def test_the_face_that_is_led_becomes_keys_poses_and_recordings(session, tmp_path):
-    """They take the face as it is seen, not the sliders' values beneath it."""
+    """They store the visible face, not the sliders' values beneath it."""
     session.live_override.take({"jaw_open": 0.5}, 1.0)
     session.work.save_pose(tmp_path / "pose.toml")
     assert load_script(tmp_path / "pose.toml").at(0.0)["jaw_open"] == 0.5

@@ -1,4 +1,4 @@
-"""The timeline in the real window: keys, in rows and as curves, that are dragged, and undone."""
+"""The timeline in the real window: keys, in rows and as curves, are dragged and undone."""
 
 from pathlib import Path
 
@@ -38,13 +38,13 @@ REST = KeyPlace(POSES, 3.0)
 
 
 def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
-    """A drag goes to whole frames, the face follows, the file keeps it, one undo takes it back."""
+    """A drag goes to whole frames, the face follows, the file stores it, one undo reverts it."""
     session = viewer.session
     before = session.script
     session.seek(1.0)
     drag(viewer, key_at(viewer, JOY), (40, 0))
     xdotool(viewer, "mousemove_relative", "--", 13, 0)
-    assert session.values["joy"] < 1.0  # seen while it is dragged
+    assert session.values["joy"] < 1.0  # visible during the drag
     xdotool(viewer, "mouseup", 1)
     time = pose_times(viewer)[1]
     assert time == on_frame(time) > 1.1
@@ -64,7 +64,7 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
 
 
 def test_a_click_selects_a_key_and_goes_there(viewer):
-    """The pose under the mouse is selected and shown; Shift adds another and stays."""
+    """The pose under the mouse is selected and shown; Shift adds another without moving there."""
     session = viewer.session
     press(viewer, key_at(viewer, JOY))
     assert viewer.face.selection.places == {JOY}
@@ -82,7 +82,7 @@ def test_a_click_selects_a_key_and_goes_there(viewer):
 
 
 def test_a_box_selects_keys_that_then_move_together(viewer):
-    """A drag over nothing takes the keys inside, of poses and tracks; they keep their distance."""
+    """A drag over empty space selects the keys inside, of poses and tracks; distances stay."""
     session = viewer.session
     x, y = key_at(viewer, JOY)
     right, low = key_at(viewer, KeyPlace("blink", 2.4))
@@ -102,7 +102,7 @@ def test_a_box_selects_keys_that_then_move_together(viewer):
 
 
 def test_the_face_becomes_a_key(viewer):
-    """Go to a time, move a slider, press Shift+K: a pose is there that shows just this face."""
+    """Go to a time, move a slider, press Shift+K: a pose there shows exactly this face."""
     session = viewer.session
     session.seek(2.0)
     open_jaw(viewer)
@@ -121,7 +121,7 @@ def test_the_face_becomes_a_key(viewer):
 
 
 def test_the_menu_of_a_bar_keys_one_control(viewer):
-    """A right click on a bar keys that control over the poses, deletes the key, clears it."""
+    """A right click on a bar keys this control over the poses, deletes the key, and clears it."""
     viewer.session.seek(2.0)
     show_controls(viewer, "jaw open")
     drag_and_release(viewer, middle(viewer, "jaw_open"), (40, 0))
@@ -169,7 +169,7 @@ def test_the_ruler_scrubs_and_the_wheel_zooms(viewer):
 
 
 def test_tracks_unfold_into_rows(viewer):
-    """A click on the arrow gives each track a row; its keys are then selected alone."""
+    """A click on the arrow gives each track a row; its keys can then be selected alone."""
     left = viewer.gui.places["keys"][0]
     rows = viewer.face.timeline.height()
     _, y = where_key(viewer, KeyPlace("blink", 2.0))
@@ -184,7 +184,7 @@ def test_tracks_unfold_into_rows(viewer):
 
 
 def open_jaw(viewer):
-    """Drag the jaw's slider with the mouse, and let it go; its value then."""
+    """Drag the jaw's slider with the mouse, and release it; return its value."""
     show_controls(viewer, "jaw open")
     drag_and_release(viewer, middle(viewer, "jaw_open"), (40, 0))
     clear_search(viewer)
@@ -200,7 +200,7 @@ def scrub(viewer, time):
 
 
 def test_auto_key(viewer):
-    """Switched on by its button, a slider let go is a key of its control; off, it is none."""
+    """With its button on, a released slider makes a key of its control; off, it makes none."""
     scrub(viewer, 2.0)
     click(viewer, "auto-key")
     value = open_jaw(viewer)
@@ -217,30 +217,30 @@ def test_auto_key(viewer):
 
 @pytest.fixture
 def curves(viewer: Viewer, own: Path) -> None:
-    """Values in place of the rows."""
+    """The timeline shows curves in place of rows."""
     viewer.settings.shows_curves = True
     settle(viewer)
 
 
 def place_of(viewer, when, value):
-    """Where a time and a value are in the graph [window units]."""
+    """Place of a time and a value in the graph [window units]."""
     return viewer.face.time_axis.x(when), float(viewer.face.timeline.dope_sheet.graph.y(value))
 
 
 def at(viewer, when, value):
-    """The same, on the screen."""
+    """Place of a time and a value on the screen."""
     return on_screen(viewer, *place_of(viewer, when, value))
 
 
 def move(viewer, x, y):
-    """Move the mouse on, in two steps, and let go."""
+    """Move the mouse on, in two steps, and release."""
     xdotool(viewer, "mousemove_relative", "--", round(x), round(y))
     xdotool(viewer, "mouseup", 1)
 
 
 @pytest.mark.usefixtures("curves")
 def test_a_key_is_dragged_in_time_and_value(viewer):
-    """Both at once, to frames and within limits; Escape puts it back."""
+    """Both at once, to frames and within limits; Escape reverts it."""
     session = viewer.session
     before = session.script
     drag(viewer, at(viewer, 1.0, 1.0), (-10, 10))
@@ -267,7 +267,7 @@ def test_easings_are_chosen_and_seen(viewer):
     played = [script.posed(when)["joy"] for when in times.tolist()]
     assert drawn == approx(played)
     assert max(np.abs(np.diff(drawn))) == approx(0.4)  # it jumps
-    xdotool(viewer, "mousemove", *at(viewer, 2.9, 1.0))  # on the curve that now stays
+    xdotool(viewer, "mousemove", *at(viewer, 2.9, 1.0))  # on the curve, which is now constant
     graph = viewer.face.timeline.dope_sheet.graph
     hit = graph.at(*place_of(viewer, 2.9, 1.0))
     assert hit.curve.name == "pose joy"
@@ -276,7 +276,7 @@ def test_easings_are_chosen_and_seen(viewer):
 
 @pytest.mark.usefixtures("curves")
 def test_handles_set_slopes(viewer):
-    """Handles of the way to a selected key bend it; face and file get the same; undo, Escape."""
+    """Handles bend the way to a selected key; face and file agree; undo and Escape work."""
     session = viewer.session
     before = session.script
     viewer.face.selection.places = Places.of(KeyPlace(POSES, 1.0))

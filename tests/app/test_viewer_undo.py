@@ -26,7 +26,7 @@ SHARES = st.integers(0, 100).map(lambda percent: percent / 100.0)
 
 @pytest.mark.parametrize("how", ["seek", "key", "play", "button"])
 def test_a_pose_that_is_let_go_is_reported_and_comes_back(session, how):
-    """Each way to let go says so in a line; one undo brings the pose back to where it was made."""
+    """Each way to discard it prints a line; one undo restores the pose at its own time."""
     session.seek(2.0)
     set_by_hand(session, jaw_open=0.6)
     assert session.differing == {"jaw_open"}
@@ -69,16 +69,16 @@ COMMANDS = {
 
 
 class Still(FaceScene):
-    """A face that takes no time."""
+    """A face that needs no time."""
 
     def step(self, seconds):
-        """Stay."""
+        """Do nothing."""
 
 
 @given(st.lists(st.tuples(st.sampled_from(sorted(COMMANDS)), SHARES), max_size=12))
 @settings(max_examples=60, deadline=None)
 def test_undo_gives_the_state_before(steps):
-    """After any commands: back through all states, and forward again to the last one."""
+    """After any commands, it goes back through all states, and forward again to the last."""
     session = Session(SHARED, load_script(HELLO))
 
     def state():
@@ -111,7 +111,7 @@ SHARED = Still()
 
 
 def test_keys_are_pasted_in_another_script(session, scene):
-    """Copied keys stay as they were if their script changes; they are pasted at the playhead."""
+    """Copied keys are unchanged if their script changes; they are pasted at the playhead."""
     selection = KeySelection(session)
     assert not selection.copied
     selection.places = Places.of(KeyPlace(POSES, 1.0), KeyPlace("blink", 2.12))
@@ -156,7 +156,7 @@ def test_detail_falls_once_and_does_not_flicker():
     ],
 )
 def test_one_side_is_copied_to_the_other(session, source, copied):
-    """In all spellings of sides; eyes and jaw stay where they are."""
+    """For all spellings of sides; eyes and jaw do not change."""
     middle = {"gaze_horizontal_left": 0.4, "jaw_sideways": 0.1, "AU61": 0.2}
     session.neutral()
     set_by_hand(session, AU12_left=0.5, mouthSmileRight=0.3, wink=0.2, **middle)
@@ -165,7 +165,7 @@ def test_one_side_is_copied_to_the_other(session, source, copied):
 
 
 def test_words_are_of_controls_that_there_are(session):
-    """Names, synonyms and filters of the table all mean something."""
+    """Names, synonyms and filters of the table all have a meaning."""
     limits = session.controls.limits
     words = read_words()
 

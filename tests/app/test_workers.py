@@ -1,4 +1,4 @@
-"""Processes that work: their results, their deaths, and nothing left when they are stopped."""
+"""Worker processes: their results, their deaths, and no process left after a stop."""
 
 import os
 import signal
@@ -35,7 +35,7 @@ def run(work, *arguments, jobs=1, **options):
 
 
 def wait_until(is_so):
-    """Wait for something; a failure where it does not come."""
+    """Wait for a condition; fail if it never becomes true."""
     for _ in range(6000):
         if is_so():
             return
@@ -44,7 +44,7 @@ def wait_until(is_so):
 
 
 def is_running(process):
-    """Whether a process is there, and not only its end that nobody has asked for."""
+    """Whether a process runs, and is not only an ended one that awaits collection."""
     try:
         state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:
@@ -53,7 +53,7 @@ def is_running(process):
 
 
 def test_every_share_is_done_in_a_process_of_its_own():
-    """What each hands over comes in its order, and none of them is this process."""
+    """Their messages arrive in order, and none of them is this process."""
     shares = [[1, 2, 3], [10, 20], []]
     found = list(run_all(working.double, shares))
     assert sorted(number for number, _ in found) == [2, 4, 6, 20, 40]
@@ -67,7 +67,7 @@ def test_what_dies_is_done_again(tmp_path):
     """A killed process is replaced, and the log names the cause of death."""
     log = tmp_path / "log"
     other = tmp_path / ".risorius-0123456789ab"
-    other.mkdir()  # what another process is at
+    other.mkdir()  # the work of another process
     assert run(working.die_once, tmp_path / "mark", log=log) == ["mark"]
     assert "risorius: the process of attempt 1 died of SIGKILL\n" in log.read_text()
     names = {path.name for path in tmp_path.iterdir()}
@@ -75,7 +75,7 @@ def test_what_dies_is_done_again(tmp_path):
 
 
 def test_what_kills_every_process_is_given_up(tmp_path):
-    """After three attempts, in one line; a fault says in the log where it was."""
+    """It ends after three attempts, in one line; for a fault the log has the place."""
     log = tmp_path / "log"
     with pytest.raises(UserError, match="died 3 times, at last of SIGSEGV"):
         run(working.die, log=log)
@@ -92,7 +92,7 @@ def test_what_kills_every_process_is_given_up(tmp_path):
     ],
 )
 def test_what_is_raised_is_reported_and_not_tried_again(tmp_path, kind, message):
-    """In one line; a defect leaves a traceback in the log, one for the user does not."""
+    """In one line; a defect leaves a traceback in the log, a user's mistake does not."""
     log = tmp_path / "log"
     with pytest.raises(UserError, match=message):
         run(working.fail, kind, log=log)
@@ -101,7 +101,7 @@ def test_what_is_raised_is_reported_and_not_tried_again(tmp_path, kind, message)
 
 
 def test_everything_that_is_printed_goes_to_its_log(tmp_path):
-    """By Python, by a library in C, and by programs that are started; nothing goes astray."""
+    """Output of Python, of a C library and of child programs is all there."""
     log = tmp_path / "log"
     run(working.talk, "nose", log=log)
     ways = ("as an error", "by Python", "by a child", "by a library")
@@ -109,7 +109,7 @@ def test_everything_that_is_printed_goes_to_its_log(tmp_path):
 
 
 def test_libraries_share_the_cores(monkeypatch):
-    """More processes than cores have one thread each; the number that the user allows is shared."""
+    """With more processes than cores each has one thread; a number set by the user is shared."""
     monkeypatch.delenv("LP_NUM_THREADS", raising=False)
     assert run(working.library_threads, jobs=1024) == ["1"]
     monkeypatch.setenv("LP_NUM_THREADS", "7")
@@ -121,7 +121,7 @@ def test_libraries_share_the_cores(monkeypatch):
 
 
 def test_whoever_stops_early_leaves_no_process():
-    """The caller breaks off after the first message."""
+    """The caller stops after the first message."""
     running = run_all(working.double, [list(range(10_000))])
     process = next(running)[1]
     running.close()
@@ -134,7 +134,7 @@ def test_whoever_stops_early_leaves_no_process():
     [signal.SIGINT, signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)],
 )
 def test_nothing_runs_on_when_it_is_stopped(tmp_path, number):
-    """Ctrl-C, `kill`, and even the end of the process that asked without a word."""
+    """Ctrl-C, `kill`, and even a sudden end of the calling process stop all work."""
     process = started("-c", STOPPED, tmp_path)
     wait_until(lambda: len(list(tmp_path.glob(".risorius-*/?"))) == 2)
     threads = Path(f"/proc/{process.pid}/task").glob("*/children")

@@ -1,4 +1,4 @@
-"""Wrinkles that follow the simulated skin: when, where, which way, and on which heads."""
+"""Wrinkles that follow the simulated skin: when, where, in which direction, and on which heads."""
 
 import numpy as np
 import pytest
@@ -12,12 +12,12 @@ SETTLED = 1.2  # [s]
 
 @pytest.fixture(scope="module")
 def wrinkling(scene: FaceScene) -> Compression:
-    """What measures it."""
+    """The measure of wrinkles."""
     return Compression(scene)
 
 
 def amounts(scene, wrinkling, **pose):
-    """How far the face wrinkles in a pose that it has settled in."""
+    """Strength of wrinkles in a settled pose."""
     scene.reset()
     scene.pose(pose)
     scene.step(SETTLED)
@@ -25,7 +25,7 @@ def amounts(scene, wrinkling, **pose):
 
 
 def region(scene, low, high):
-    """The vertices at rest in a box [mm]."""
+    """The vertices in a box at rest [mm]."""
     rest = scene.rest_positions
     return ((rest > low) & (rest < high)).all(axis=1)
 
@@ -35,7 +35,7 @@ def forehead(scene):
 
 
 def test_nothing_wrinkles_at_rest(scene, wrinkling):
-    """Exactly nothing, so that the picture without wrinkles is drawn."""
+    """They are exactly 0, so the picture without wrinkles is drawn."""
     found = amounts(scene, wrinkling)
     assert not found.any()
 
@@ -69,7 +69,7 @@ def test_amounts_grow_with_the_muscle_and_never_jump(scene, wrinkling, name):
     ],
 )
 def test_each_wrinkles_where_it_does_in_people(scene, wrinkling, name, low, high, slot):
-    """A clear amount there, and next to none on a forehead that nothing moves."""
+    """There is a clear amount in its place, and almost none on a still forehead."""
     found = amounts(scene, wrinkling, **{name: 1.0})
     assert found[region(scene, low, high), slot].max() > 0.3
     if name in ("AU6", "AU17", "AU18"):
@@ -77,7 +77,7 @@ def test_each_wrinkles_where_it_does_in_people(scene, wrinkling, name, low, high
 
 
 def test_furrows_of_age_are_pulled_flat():
-    """A kiss draws the cheek over the fold beside the nose tight; its wrinkled lips stay so."""
+    """A kiss pulls the cheek over the fold beside the nose tight; its wrinkled lips keep theirs."""
     person = person_called("maria")
     aged = FaceScene(person)
     measure = Compression(aged)

@@ -1,4 +1,4 @@
-"""What processes are asked to do in the tests of `app/workers.py`."""
+"""Work for the processes in tests of `app/workers.py`."""
 
 import os
 import signal
@@ -13,18 +13,18 @@ from risorius.app.workers import Send
 
 
 def double(numbers: list[int], send: Send) -> None:
-    """Twice each number, and the process that found it."""
+    """Twice each number, and the process that computed it."""
     for number in numbers:
         send((2 * number, os.getpid()))
 
 
 def library_threads(send: Send) -> None:
-    """How many threads software OpenGL may have."""
+    """Number of threads allowed for software OpenGL."""
     send(os.environ.get("LP_NUM_THREADS"))
 
 
 def die_once(mark: Path, send: Send) -> None:
-    """Die at the first call, when a file is all but whole."""
+    """Die at the first call, when a file is almost complete."""
     with written_atomically(mark.with_suffix(".txt")) as part:
         part.write_text("whole")
         if not mark.exists():
@@ -39,7 +39,7 @@ def die(send: Send) -> None:
 
 
 def fail(kind: str, send: Send) -> None:
-    """Raise the named error, or hand over a thing that cannot be sent."""
+    """Raise the named error, or send an object that cannot be sent."""
     if kind == "user":
         raise UserError("the nose is too long")
     if kind == "defect":
@@ -50,7 +50,7 @@ def fail(kind: str, send: Send) -> None:
 
 
 def talk(word: str, send: Send) -> None:
-    """Print in every way there is."""
+    """Print in every possible way."""
     print(f"{word} by Python", flush=True)
     print(f"{word} as an error", file=sys.stderr)
     os.write(1, f"{word} by a library\n".encode())
@@ -58,7 +58,7 @@ def talk(word: str, send: Send) -> None:
 
 
 def write_slowly(target: Path, send: Send) -> None:
-    """Write a file for ever; its folder shows that it has begun."""
+    """Write a file for ever; its folder shows that writing has begun."""
     with written_atomically(target) as part:
         part.write_text("half")
         while True:

@@ -1,4 +1,4 @@
-"""Questions that every head mesh must answer well: is it one clean, symmetric surface?"""
+"""Checks for every head mesh: it must be one clean, symmetric surface."""
 
 import numpy as np
 from numpy.linalg import norm
@@ -29,7 +29,7 @@ def is_manifold(faces: Integers32) -> bool:
 
 
 def component_count(faces: Integers32) -> int:
-    """Number of pieces that hang together by shared vertices."""
+    """Number of pieces connected by shared vertices."""
     used, corners = np.unique(faces, return_inverse=True)
     links = corners.reshape(-1, 3)[:, [0, 1, 1, 2]].reshape(-1, 2)
     graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(len(used),) * 2)
@@ -42,15 +42,15 @@ def euler_characteristic(vertices: Floats64, faces: Integers32) -> int:
 
 
 def mirror_error(vertices: Floats64, mirror: Integers32) -> float:
-    """Largest distance between a vertex' mirror image and the vertex that should lie there [mm]."""
+    """Largest distance between a vertex's mirror image and its partner vertex [mm]."""
     return float(np.abs(vertices * [-1.0, 1.0, 1.0] - vertices[mirror]).max())
 
 
 def is_mirrored(faces: Integers32, mirror: Integers32) -> bool:
-    """Whether the mirror image of every face is a face, turned over."""
+    """Whether the mirror image of every face is a face with reversed corners."""
 
     def normalised(triangles: Integers32) -> set[tuple[int, ...]]:
-        """Each triangle from its lowest vertex on."""
+        """Each triangle with its lowest vertex first."""
         start = triangles.argmin(axis=1)
         order = (start[:, None] + np.arange(3)) % 3
         return set(map(tuple, np.take_along_axis(triangles, order, axis=1).tolist()))
@@ -59,7 +59,7 @@ def is_mirrored(faces: Integers32, mirror: Integers32) -> bool:
 
 
 def check_part(part: Part, *, least_agreeing: float = 0.98) -> None:
-    """Arrays fit each other, and normals are unit and look to the side that is drawn."""
+    """Check that arrays fit, and that unit normals face the drawn side."""
     assert part.vertices.dtype == part.normals.dtype == part.colours.dtype == np.float32
     assert part.faces.dtype == np.int32
     rows = np.hstack([part.vertices, part.normals, part.colours])
@@ -76,14 +76,14 @@ def check_part(part: Part, *, least_agreeing: float = 0.98) -> None:
 
 
 def part(head: Head, name: str) -> Part:
-    """The part of that name."""
+    """The part with this name."""
     return next(found for found in head.parts if found.name == name)
 
 
 def winding_numbers(vertices: Floats64, faces: Integers32, points: Floats64) -> Floats64:
-    """How often a surface goes around points, shape (n,): 1 deep inside, 0 outside.
+    """Turns of a surface around points, shape (n,): 1 deep inside, 0 outside.
 
-    Less than 1 where it is open. Source: Jacobson et al. 2013, "Robust inside-outside
+    It is less than 1 near openings. Source: Jacobson et al. 2013, "Robust inside-outside
     segmentation using generalized winding numbers", equation 5 (van Oosterom, Strackee 1983).
     """
     a, b, c = (vertices[faces[:, k]] - points[:, None].astype(float) for k in range(3))

@@ -13,7 +13,7 @@ TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 
 
 class GltfMaker:
-    """A file in the making; `parts` is its document, to be changed at will."""
+    """A glTF file in the making; `parts` is its document, which tests may change."""
 
     def __init__(self) -> None:
         self.parts: dict[str, Any] = {"asset": {"version": "2.0"}, "scene": 0}
@@ -46,7 +46,7 @@ class GltfMaker:
         return self.described(array.shape, kind, **shown)
 
     def described(self, shape: tuple[int, int], kind: str, **more: Any) -> int:
-        """Add an accessor of so many rows."""
+        """Add an accessor for this number of rows."""
         count, width = shape
         known = {"componentType": COMPONENTS[kind], "count": count, "type": TYPES[width]}
         return self.add("accessors", {**known, **more})
@@ -58,9 +58,9 @@ class GltfMaker:
     def primitive(
         self, vertices: npt.ArrayLike, faces: npt.ArrayLike | None, **more: Any
     ) -> dict[str, Any]:
-        """A primitive of plain positions and, where there are faces, their indices.
+        """A primitive of plain positions and, if there are faces, their indices.
 
-        more: "attributes" are added to these; all else is its own.
+        more: "attributes" are added to these; other keys replace.
         """
         attributes = {"POSITION": self.accessor(vertices), **more.pop("attributes", {})}
         made: dict[str, Any] = {"attributes": attributes, **more}
@@ -78,12 +78,12 @@ class GltfMaker:
         self.add("scenes", {"nodes": [self.add("nodes", node) for node in nodes]})
 
     def document(self, **buffer: Any) -> bytes:
-        """The document as text; buffer: where its data lie."""
+        """The document as text; buffer: the place of its data."""
         own = [{"byteLength": len(self.data), **buffer}]
         return json.dumps({"buffers": own, **self.parts}).encode()
 
     def glb(self, version: int = 2) -> bytes:
-        """The whole as one file."""
+        """The whole file as one."""
         text = self.document()
         text += b" " * (-len(text) % 4)
         data = bytes(self.data) + bytes(-len(self.data) % 4)

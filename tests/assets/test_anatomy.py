@@ -1,4 +1,4 @@
-"""What stands on the skin: landmarks, names, rows, bone data."""
+"""Anatomy on the skin: landmarks, names, rows, bone data."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ ON_MIDLINE = (8, 27, 28, 29, 30, 33, 51, 57, 62, 66)
 
 
 def test_landmarks_are_68_different_vertices(head):
-    """No landmark is missing and no two share a vertex."""
+    """No landmark is missing, and no two have the same vertex."""
     assert len(set(head.landmarks.tolist())) == 68
     assert head.landmarks.min() >= 0
     assert head.landmarks.max() < len(head.vertices)
@@ -32,7 +32,7 @@ def test_landmarks_are_mirrored(head):
 
 
 def test_landmarks_lie_where_the_scheme_says(head):
-    """Order along jaw, brow and nose, and rows around eyes and lips."""
+    """Landmarks are in order along jaw, brow and nose, and in rows around eyes and lips."""
     at = head.vertices[head.landmarks]
     assert np.all(np.diff(at[0:17, 0]) > 0)  # from the right ear to the left
     assert at[8, 1] == at[0:17, 1].min()
@@ -56,7 +56,7 @@ def test_lip_landmarks_lie_on_the_lip_rows(head):
 
 
 def test_the_mouth_ends_at_the_corners_of_the_lips(head):
-    """Landmarks 48 and 54 are where anatomists have them, a little outside of 60 and 64."""
+    """Landmarks 48 and 54 are at the anatomical corners, a little outside of 60 and 64."""
     corners = [head.anatomy[f"cheilion_{side}"] for side in ("right", "left")]
     assert head.landmarks[[48, 54]].tolist() == corners
     wide, red = (np.ptp(head.vertices[head.landmarks[pair], 0]) for pair in ([48, 54], [60, 64]))
@@ -64,7 +64,7 @@ def test_the_mouth_ends_at_the_corners_of_the_lips(head):
 
 
 def test_lid_landmarks_lie_on_the_lid_margin(head):
-    """All twelve, on their own eye."""
+    """All twelve are there, on their own eye."""
     for numbers, side in ((range(36, 42), "right"), (range(42, 48), "left")):
         margin = set(head.rings[f"eye_2_{side}"].tolist())
         assert {int(head.landmarks[number]) for number in numbers} <= margin
@@ -95,7 +95,7 @@ def test_rows_exist_on_both_sides(head):
 
 
 def test_bone_depth_is_what_was_chosen(head):
-    """Thin on nose bridge and forehead, thick in the cheek; the same on both sides."""
+    """It is thin on nose bridge and forehead, thick in the cheek; equal on both sides."""
     depth = head.bone_depth
     anatomy = head.anatomy
     assert depth.min() > 2.0
@@ -112,7 +112,7 @@ def test_bone_depth_is_what_was_chosen(head):
 
 
 def test_mandible_carries_lower_lip_and_chin_only(head):
-    """Lower lip and chin 1, upper lip and all above 0, in between at the corners."""
+    """Lower lip and chin have 1, upper lip and all above 0; corners are in between."""
     weight = head.mandible_weight
     rings = head.rings
     assert weight.min() == 0.0
@@ -130,7 +130,7 @@ def test_mandible_carries_lower_lip_and_chin_only(head):
 
 
 def test_mandible_weight_is_smooth(head):
-    """No jump between neighbours: at most 0.07 per millimetre."""
+    """Neighbours never jump: at most 0.07 per millimetre."""
     edges = sides_of(head.faces)
     step = np.abs(head.mandible_weight[edges[:, 0]] - head.mandible_weight[edges[:, 1]])
     length = np.linalg.norm(head.vertices[edges[:, 0]] - head.vertices[edges[:, 1]], axis=1)
@@ -139,7 +139,7 @@ def test_mandible_weight_is_smooth(head):
 
 
 def test_jaw_axis_runs_through_both_condyles(head):
-    """Right first; in front of the ear, below the skin."""
+    """Right is first; they are in front of the ear, below the skin."""
     right, left = head.jaw_axis
     assert np.array_equal(right * [-1.0, 1.0, 1.0], left)
     assert left[0] > 0.0

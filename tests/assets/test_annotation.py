@@ -1,4 +1,4 @@
-"""Where annotators put points: on what a picture shows."""
+"""Annotators' places of points: on visible features of a picture."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from risorius.assets.identities import complexion, person_called
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [3, 8, 21])
 def test_a_brow_ends_where_its_hairs_do(monkeypatch, number):
-    """The tail's point is within 1.5 mm of the last hair that is seen, whatever way it turns."""
+    """The tail's point is within 1.5 mm of the last visible hair, whichever way it turns."""
     painted = complexion.painted
     pictures = []
 

@@ -1,4 +1,4 @@
-"""The coarse head: one clean, symmetric piece made of vertices of the built-in head."""
+"""The coarse head: one clean, symmetric piece made from vertices of the built-in head."""
 
 import numpy as np
 import pytest
@@ -19,13 +19,13 @@ def coarse():
 
 
 def test_coarse_head_has_a_quarter_of_the_triangles(coarse):
-    """About 500, and no vertex is unused."""
+    """It has about 500, and every vertex is used."""
     assert 480 <= len(coarse.faces) <= 540
     assert np.array_equal(np.unique(coarse.faces), np.arange(len(coarse.vertices)))
 
 
 def test_coarse_head_is_one_manifold_piece(coarse):
-    """With four holes: the rim of the neck, the mouth, both eyes."""
+    """It has four holes: the rim of the neck, the mouth, both eyes."""
     assert checks.is_manifold(coarse.faces)
     assert checks.component_count(coarse.faces) == 1
     assert checks.euler_characteristic(coarse.vertices, coarse.faces) == 2 - 4
@@ -33,13 +33,13 @@ def test_coarse_head_is_one_manifold_piece(coarse):
 
 
 def test_coarse_head_is_its_own_mirror_image(coarse):
-    """To the last bit, vertices and faces."""
+    """This holds to the last bit, for vertices and faces."""
     assert checks.mirror_error(coarse.vertices, coarse.mirror) == 0.0
     assert checks.is_mirrored(coarse.faces, coarse.mirror)
 
 
 def test_coarse_triangles_are_sound(coarse):
-    """No sliver, no vertex with two or with a dozen neighbours, no triangle that cuts another."""
+    """No slivers, no vertex with two or a dozen neighbours, no triangles that cross."""
     angles = np.degrees(trimesh.triangles.angles(coarse.vertices[coarse.faces]))
     assert angles.min() > 8.0
     assert np.percentile(angles.min(axis=1), 5) > 15.0
@@ -51,7 +51,7 @@ def test_coarse_triangles_are_sound(coarse):
 
 
 def test_coarse_head_lies_on_the_built_in_one(coarse, head):
-    """Its vertices and all landmarks are those of the built-in head; the rest lies near it."""
+    """Its vertices and all landmarks are those of the built-in head; its faces are near it."""
     assert np.array_equal(coarse.vertices, head.vertices[coarse.file_vertices])
     marked = coarse.vertices[coarse.landmarks]
     assert np.array_equal(marked, head.vertices[head.landmarks])
@@ -63,7 +63,7 @@ def test_coarse_head_lies_on_the_built_in_one(coarse, head):
 
 
 def test_coarse_triangles_look_outward(coarse, head):
-    """In front of the ears, which are sheets, each as the built-in head does at its corners."""
+    """Except at the ears, which are sheets, each faces as the built-in head does at its corners."""
     corners = coarse.file_vertices[coarse.faces]
     fine = np.zeros_like(head.vertices)
     for corner in range(3):

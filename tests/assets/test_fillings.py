@@ -1,4 +1,4 @@
-"""Masks whose mouth and eyes are filled with triangles: opened, and all else left alone."""
+"""Masks with mouth and eyes filled by triangles: these are opened, and all else is unchanged."""
 
 import json
 from dataclasses import replace
@@ -14,17 +14,17 @@ from risorius.assets.meshes import read_mesh
 
 from ..heads import SHIFT, TURN, Stranger, closed, filled, masked
 
-COUNT = 62  # triangles of `masked` across its mouth and eyes, which are the last ones
+COUNT = 62  # triangles of `masked` across its mouth and eyes, which are the last
 
 
 @pytest.fixture(scope="module")
 def mask() -> Stranger:
-    """A mask that is filled [mm]."""
+    """A filled mask [mm]."""
     return masked()
 
 
 def test_only_the_filling_is_left_out(mask):
-    """In any unit and place; where landmarks are half a millimetre off, corners may stay."""
+    """In any unit and place; if landmarks are half a millimetre off, corners may stay."""
     last = np.arange(len(mask.mesh.faces))[-COUNT:]
     turned = replace(mask.mesh, vertices=0.001 * mask.mesh.vertices @ TURN.T + SHIFT)
     points = turned.vertices[mask.landmarks]
@@ -59,7 +59,7 @@ def test_a_mask_is_opened_and_moves(mask, tmp_path):
 
 
 def test_a_picture_goes_on_without_the_triangles(mask, tmp_path):
-    """Triangles behind those that are left out keep their texture coordinates and picture."""
+    """Triangles after the removed ones keep their texture coordinates and picture."""
     path, _ = mask.write(tmp_path)
     faces = mask.mesh.faces[::-1] + 1
     uv = np.round(mask.mesh.vertices[:, :2] / 400.0 + 0.5, 6)
@@ -79,7 +79,7 @@ def test_a_picture_goes_on_without_the_triangles(mask, tmp_path):
 
 
 def test_skin_with_points_of_its_own_is_no_filling(mask, tmp_path):
-    """A fan around a middle over an eye is refused by name, as before."""
+    """A fan around a middle over an eye is refused by name."""
     landmarks = mask.landmarks
     opened = mask.mesh.without(np.arange(len(mask.mesh.faces))[-COUNT:])
     covered = closed(filled(opened, landmarks[60:68]), landmarks[42:48])

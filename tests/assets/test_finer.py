@@ -15,19 +15,19 @@ from tests.assets import checks
 
 @pytest.fixture(scope="module", params=[1, 2])
 def fine(request: pytest.FixtureRequest, head: Head) -> FineMesh:
-    """Its finer meshes, one after the other."""
+    """The finer meshes of the head, one after the other."""
     return head.finer(request.param)
 
 
 def test_triangle_counts_are_powers_of_four(head):
-    """About 8 and 32 thousand; one new vertex for each edge."""
+    """They are about 8 and 32 thousand; each edge gives one new vertex."""
     assert [len(head.finer(level).faces) for level in (1, 2)] == [8120, 32480]
     edges = quarter(head.faces, len(head.vertices)).edges
     assert len(head.finer(1).vertices) == len(head.vertices) + len(edges)
 
 
 def test_coarse_vertices_are_fine_vertices(head, fine):
-    """Bit for bit, under the same number: landmarks, rows and names hold as they are."""
+    """Bits and numbers are equal, so landmarks, rows and names stay valid."""
     count = len(head.vertices)
     assert np.array_equal(fine.vertices[:count], head.vertices)
     assert np.array_equal(np.unique(fine.faces), np.arange(len(fine.vertices)))
@@ -43,7 +43,7 @@ def test_map_reproduces_the_coarse_mesh(head, fine):
 
 
 def test_children_stand_in_the_place_of_their_parent(head, fine):
-    """Face k of the fine mesh lies in face k / 4^level of the coarse one, and covers its share."""
+    """Face k of the fine mesh is in face k / 4^level of the coarse one, and covers its share."""
     share = len(fine.faces) // len(head.faces)
     flat = fine.interpolate(head.vertices)
     parent = np.repeat(cross_products(head.vertices, head.faces), share, axis=0) / share
@@ -64,13 +64,13 @@ def test_each_level_comes_nearer_to_the_form(head):
 
 
 def test_finer_mesh_is_its_own_mirror_image(fine):
-    """To the last bit: the mirrored vertices are the vertices."""
+    """To the last bit, the mirrored vertices are the vertices."""
     mirrored = fine.vertices * [-1.0, 1.0, 1.0] + 0.0  # + 0.0: no negative zero
     assert np.array_equal(np.unique(mirrored, axis=0), np.unique(fine.vertices + 0.0, axis=0))
 
 
 def test_finer_mesh_is_one_manifold_piece(head, fine):
-    """The topology of the coarse mesh: the same holes, no more."""
+    """The topology is that of the coarse mesh, with the same holes."""
     assert checks.is_manifold(fine.faces)
     assert checks.component_count(fine.faces) == 1
     assert checks.euler_characteristic(fine.vertices, fine.faces) == (
@@ -79,7 +79,7 @@ def test_finer_mesh_is_one_manifold_piece(head, fine):
 
 
 def test_no_triangle_is_turned_over(head, fine):
-    """Every child looks about the way its parent does."""
+    """Every child faces about the same way as its parent."""
     cross = cross_products(fine.vertices, fine.faces)
     parent = np.repeat(
         cross_products(head.vertices, head.faces), len(fine.faces) // len(head.faces), axis=0
@@ -90,7 +90,7 @@ def test_no_triangle_is_turned_over(head, fine):
 
 
 def test_finer_mesh_does_not_cut_itself(fine):
-    """The lips nearly touch; curving them must not push them into each other."""
+    """The lips nearly touch; their curvature must not push them into each other."""
     assert len(self_intersections(fine.vertices, fine.faces)) == 0
 
 
@@ -113,7 +113,7 @@ def test_boundaries_become_smooth(head):
 
 
 def test_normals_are_unit_and_agree_with_the_faces(fine):
-    """A normal is that of the form, or of the mesh where the mesh left the form."""
+    """A normal is that of the form, or of the mesh where the mesh differs from the form."""
     assert np.allclose(norm(fine.normals, axis=1), 1.0)
     cross = cross_products(fine.vertices, fine.faces)
     total = np.zeros_like(fine.vertices)
@@ -125,7 +125,7 @@ def test_normals_are_unit_and_agree_with_the_faces(fine):
 
 
 def test_other_levels_are_refused(head):
-    """What there is is in the message."""
+    """The message has the available ones."""
     for level in (0, 3):
         with pytest.raises(ValueError, match=rf"level was {level}; allowed are 1 .* and 2"):
             head.finer(level)

@@ -1,4 +1,4 @@
-"""Any head: the built-in anatomy is carried over, and what cannot work says why in one line."""
+"""Any head: it gets the built-in anatomy, and each failure gives its reason in one line."""
 
 import json
 from dataclasses import replace
@@ -37,13 +37,13 @@ def fitted(other: Stranger) -> FittedHead:
 
 @pytest.fixture(scope="module")
 def simulation(fitted: FittedHead) -> sim.Simulation:
-    """A simulation of it."""
+    """A simulation of the fitted head."""
     return sim.create(fitted)
 
 
 @pytest.mark.slow
 def test_files_are_read_and_fitted(other, fitted, tmp_path):
-    """Vertex numbers and points give the same head; a bare list will do."""
+    """Vertex numbers and points give the same head; a bare list is enough."""
     mesh, numbers = other.write(tmp_path)
     by_number = fit_head(mesh, numbers)
     assert np.abs(by_number.vertices - fitted.vertices).max() < 1e-3
@@ -54,7 +54,7 @@ def test_files_are_read_and_fitted(other, fitted, tmp_path):
 
 
 def test_head_comes_to_millimetres_and_the_face_space(fitted):
-    """In any unit and axes, landmarks lie near those of the built-in head."""
+    """In any unit and axes, landmarks are near those of the built-in head."""
     known = assets.load("head")
     off = fitted.vertices[fitted.landmarks] - known.vertices[known.landmarks]
     assert norm(off, axis=1).mean() < 10.0
@@ -73,7 +73,7 @@ def test_eyes_lie_behind_their_lids(fitted):
 
 
 def test_the_built_in_head_fits_itself(head, tmp_path):
-    """Its own landmarks give it back its own eyes: lids close over them as they did."""
+    """Its own landmarks restore its own eyes: lids close over them as before."""
     mesh = tmp_path / "same.ply"
     numbers = tmp_path / "same.json"
     trimesh.Trimesh(head.vertices, head.faces, process=False).export(mesh)
@@ -85,7 +85,7 @@ def test_the_built_in_head_fits_itself(head, tmp_path):
 
 
 def test_the_edge_of_the_neck_fades(fitted):
-    """Nothing shows of a head where it ends, all of it at the chin; a closed neck has no end."""
+    """It is invisible at its end, and fully visible at the chin; a closed neck has no end."""
     shown = fitted.fade()[:, 0]
     edge = max(boundary_loops(fitted.faces), key=lambda x: -fitted.vertices[x, 1].mean())
     assert shown[edge].max() < 0.05
@@ -105,7 +105,7 @@ def test_the_inner_side_of_the_neck_does_not_show(fitted):
 
 
 def test_triangles_that_fade_are_drawn_last(fitted, other):
-    """They are blended over a chin that sinks in there; else the order is that of the file."""
+    """They are blended over a chin that sinks in there; otherwise the order is that of the file."""
     fades = (fitted.fade()[fitted.faces, 0] < 1.0).any(axis=1)
     assert fades.any()
     assert (np.diff(fades.astype(np.int8)) >= 0).all()
@@ -115,7 +115,7 @@ def test_triangles_that_fade_are_drawn_last(fitted, other):
 
 
 def test_teeth_lie_behind_the_skin(fitted):
-    """Seen from the front, no tooth is in front of the skin beside it."""
+    """From the front, no tooth is in front of the skin beside it."""
     front = fitted.vertices[fitted.vertices[:, 2] > 40.0]
     for part in fitted.parts:
         if part.name.startswith(("teeth", "gums")):
@@ -126,7 +126,7 @@ def test_teeth_lie_behind_the_skin(fitted):
 
 
 def test_depth_and_texture_come_from_the_same_place(fitted):
-    """The built-in head's values at its own vertices come back from its likeness."""
+    """A copy of the built-in head gets the built-in values at the same vertices."""
     known = assets.load("head")
     count = len(known.vertices)
     assert np.abs(fitted.bone_depth[:count] - known.bone_depth).mean() < 0.5
@@ -135,7 +135,7 @@ def test_depth_and_texture_come_from_the_same_place(fitted):
 
 
 def test_texture_runs_evenly_beside_the_mouth(fitted):
-    """Neighbouring triangles have nearly the same slopes in the picture: furrows do not break."""
+    """Slopes of neighbouring triangles in the picture are nearly equal, so furrows do not break."""
     corners = fitted.vertices[fitted.faces]
     uv = fitted.uv.astype(np.float64)[fitted.faces]
     slopes = np.linalg.pinv(corners[:, 1:] - corners[:, :1]) @ (uv[:, 1:] - uv[:, :1])
@@ -163,7 +163,7 @@ def test_a_fitted_head_makes_faces(fitted, simulation):
 
 
 def test_the_chin_goes_stiffly_with_the_jaw(fitted, simulation):
-    """An open jaw takes the tip of the chin along by nine tenths of the way of its bone."""
+    """An open jaw moves the tip of the chin by nine tenths of the bone's way."""
     chin = fitted.vertices[fitted.landmarks[8]]
     displacement = settled_displacement(simulation, {"jaw_open": 1.0})
     jaw = simulation.bones.transforms()["mandible"]
@@ -173,7 +173,7 @@ def test_the_chin_goes_stiffly_with_the_jaw(fitted, simulation):
 
 
 def test_the_neck_of_a_fitted_head_does_not_tear(fitted, simulation):
-    """Below an open jaw no edge of the neck's skin becomes twice as long."""
+    """Below an open jaw no edge of the neck's skin doubles its length."""
     settled_displacement(simulation, {"jaw_open": 1.0})
     edges = np.array(list(edge_faces(fitted.faces)))
     rest = fitted.vertices
@@ -187,7 +187,7 @@ def test_the_neck_of_a_fitted_head_does_not_tear(fitted, simulation):
 
 
 def test_the_tongue_of_a_fitted_head_comes_out(fitted, simulation):
-    """It lies on its own lips."""
+    """It rests on its own lips."""
     settled_displacement(simulation, {"jaw_open": 0.4, "tongue_out": 1.0})
     bent = simulation.anatomy.tongue()
     jaw = simulation.bones.transforms()["mandible"]
@@ -198,14 +198,14 @@ def test_the_tongue_of_a_fitted_head_comes_out(fitted, simulation):
 
 @pytest.mark.parametrize("name", ["joy", "sadness", "surprise", "anger", "disgust", "fear"])
 def test_expressions_keep_a_fitted_mesh_sound(fitted, simulation, name):
-    """Hardly a triangle of eight thousand is turned over."""
+    """Almost none of eight thousand triangles is turned over."""
     settled_displacement(simulation, {name: 1.0})
     assert inverted_triangles(fitted.faces, fitted.vertices, simulation.positions) <= 40
 
 
 @pytest.mark.slow
 def test_other_pieces_and_inside_out_meshes_do_no_harm(other):
-    """Eyeballs of the file's own are left away, triangles that face inward are turned."""
+    """Eyeballs of the file are left out, and triangles that face inward are reversed."""
     vertices = other.mesh.vertices
     faces = other.mesh.faces
     ball = vertices[:3] + 0.01
@@ -229,7 +229,7 @@ def _numbers(other, **places):
 
 @pytest.mark.parametrize(("off", "is_allowed"), [(0.04, True), (0.07, False)])
 def test_points_lie_on_the_mesh(other, tmp_path, off, is_allowed):
-    """A point may hover by a twentieth of the distance of the eyes; further off it is named."""
+    """A point may be off by a twentieth of the distance of the eyes; a farther one is named."""
     mesh, file = other.write(tmp_path)
     points = other.mesh.vertices[other.landmarks]
     tip = points[30]
@@ -245,7 +245,7 @@ def test_points_lie_on_the_mesh(other, tmp_path, off, is_allowed):
 
 
 def test_swapped_sides_are_noticed(other):
-    """Landmarks numbered from the viewer's side are the commonest mistake."""
+    """Landmarks numbered from the viewer's side are the most common mistake."""
     with pytest.raises(AssetError, match="left and right are swapped in the landmarks"):
         fit(other.mesh, other.landmarks[MIRRORED])
     mirrored = Mesh(other.mesh.vertices * (-1.0, 1.0, 1.0), other.mesh.faces[:, ::-1])
@@ -265,7 +265,7 @@ def test_swapped_sides_are_noticed(other):
     ],
 )
 def test_closed_openings_are_named(other, landmarks, message):
-    """Lips or lids that skin joins cannot part."""
+    """Lips or lids joined by skin cannot part."""
     mesh = closed(other.mesh, other.landmarks[list(landmarks)])
     with pytest.raises(AssetError, match=message):
         fit(mesh, other.landmarks)
@@ -281,7 +281,7 @@ def test_closed_openings_are_named(other, landmarks, message):
     ],
 )
 def test_meshes_that_are_no_surface_are_named(other, change, message):
-    """Doubled, flipped, too few and too many triangles."""
+    """Doubled, flipped, too few and too many triangles are named."""
     faces = np.ascontiguousarray(change(other.mesh.faces))
     with pytest.raises(AssetError, match=message):
         fit(Mesh(other.mesh.vertices, faces), other.landmarks)
@@ -295,9 +295,9 @@ def test_pieces_that_are_left_away_may_be_anything(other):
 
 
 def test_triangles_that_name_a_vertex_twice_are_left_away(other, fitted):
-    """As decimated files and joined corners have them: the skin is what it is without them."""
+    """They come from decimation and joined corners: without them the skin is the same."""
     vertices, faces = other.mesh.vertices, other.mesh.faces
-    alone = len(vertices)  # a vertex of no other triangle
+    alone = len(vertices)  # a vertex without another triangle
     flat = np.array([[5, 6, 5], [7, 7, 7], [9, alone, alone]], np.int32)
     mesh = Mesh(np.vstack([vertices, vertices[9:10]]), np.vstack([faces[:9], flat, faces[9:]]))
     head = fit(mesh, other.landmarks)
@@ -306,7 +306,7 @@ def test_triangles_that_name_a_vertex_twice_are_left_away(other, fitted):
 
 
 def test_landmarks_on_two_pieces_are_named(other):
-    """A landmark on an eyeball is no landmark of the skin."""
+    """A landmark on an eyeball is not on the skin."""
     count = len(other.mesh.vertices)
     mesh = Mesh(
         np.vstack([other.mesh.vertices, other.mesh.vertices[:3]]),
@@ -318,7 +318,7 @@ def test_landmarks_on_two_pieces_are_named(other):
 
 
 def test_the_warp_is_the_interpolant_of_scipy(generator):
-    """Through points, and beside points that give; at places in several blocks, and at none."""
+    """Through points, and near points with tolerance; at places in several blocks, and at none."""
     source = generator.normal(0.0, 50.0, (60, 3))
     target = source + generator.normal(0.0, 4.0, (60, 3))
     places = generator.normal(0.0, 60.0, (300, 3))
@@ -330,14 +330,14 @@ def test_the_warp_is_the_interpolant_of_scipy(generator):
 
 
 def test_no_warp_starts_from_a_plane(generator):
-    """Nothing would say where its other side goes."""
+    """The other side of a plane would be undetermined."""
     source = generator.normal(0.0, 50.0, (60, 3)) * [1.0, 1.0, 0.0]
     with pytest.raises(np.linalg.LinAlgError, match="plane"):
         ThinPlateSpline(source, source)
 
 
 def test_warp_meets_its_points_and_keeps_similarities(generator):
-    """Landmarks go exactly where they should; a similarity is carried on everywhere."""
+    """Landmarks go exactly to their targets; a similarity is continued everywhere."""
     source = generator.normal(size=(20, 3))
     target = source + 0.2 * generator.normal(size=(20, 3))
     assert np.abs(ThinPlateSpline(source, target).points(source) - target).max() < 1e-9
@@ -355,11 +355,11 @@ def test_warp_meets_its_points_and_keeps_similarities(generator):
 
 @pytest.mark.slow
 def test_a_bag_behind_the_lips_makes_room():
-    """The built-in mouth comes there; the skin outside, its landmarks and numbers stay."""
+    """The built-in mouth goes there; the outer skin, its landmarks and numbers stay."""
     other = stranger()
     bagged = closed(other.mesh, other.landmarks[60:68])
     vertices = bagged.vertices.copy()
-    vertices[-1, 1] -= 0.04  # back, in the stranger's axes
+    vertices[-1, 1] -= 0.04  # back, in the axes of this head
     bagged = replace(bagged, vertices=vertices)
     head = fit(bagged, other.landmarks)
     assert len(other.mesh.vertices) not in head.file_vertices

@@ -1,4 +1,4 @@
-"""The eyes of a head that somebody brings: nobody looks past the ball into the empty head."""
+"""The eyes of users' heads: no view passes the ball into the empty head."""
 
 from dataclasses import replace
 
@@ -27,7 +27,7 @@ SIDES, RINGS = 3, 30  # lines of sight beside each vertex of the edge, and from 
 
 @pytest.fixture(scope="module")
 def fitted() -> FittedHead:
-    """A head whose lids end where they touch the eyeball, as scans do."""
+    """A head whose lids end at the eyeball, as in scans."""
     head = assets.load("head")
     deepest = np.concatenate([head.rings["eye_0_left"], head.rings["eye_0_right"]])
     faces = head.faces[~np.isin(head.faces, deepest).any(axis=1)]
@@ -35,7 +35,7 @@ def fitted() -> FittedHead:
 
 
 def _across(edge):
-    """Where lines of sight go through a hole with this edge (n, 3), seen along z; shape (m, 2)."""
+    """Places of lines of sight through a hole with this edge (n, 3), along z; shape (m, 2)."""
     middle = edge.mean(axis=0)
     first, second = (each - middle for each in (edge, np.roll(edge, 1, axis=0)))
     enters = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] > 0.0  # faces the viewer
@@ -46,7 +46,7 @@ def _across(edge):
 
 
 def _meets(points, triangles):
-    """Where lines along z meet a triangle (m, 3, 3) that faces the viewer, shape (n,)."""
+    """Flags of lines along z that meet a triangle (m, 3, 3) facing the viewer, shape (n,)."""
     a, b, c = (triangles[:, corner, :2] for corner in range(3))
     u = b - a
     v = c - a
@@ -60,7 +60,7 @@ def _meets(points, triangles):
 
 @pytest.mark.parametrize("yaw", [-50.0, -40.0, -25.0, 0.0, 25.0, 40.0, 50.0])
 def test_nothing_is_seen_behind_an_eye(fitted, yaw):
-    """Every line of sight that goes in between the lids ends on the ball, or on flesh."""
+    """Every line of sight between the lids ends on the ball, or on flesh."""
     across = np.cos(np.radians(yaw))
     ahead = np.sin(np.radians(yaw))
     view = np.array([[across, 0.0, ahead], [0.0, 1.0, 0.0], [-ahead, 0.0, across]])
@@ -83,7 +83,7 @@ def test_the_flesh_of_the_eyes_is_well_formed(fitted):
 
 
 def test_the_wall_of_a_socket_moves_no_eye():
-    """A socket that is narrower than its ball faces it: it is no lid, and the ball stays before."""
+    """A socket narrower than its ball faces it: it is not a lid, and the ball stays in front."""
     head = assets.load("head")
     normals = vertex_normals(head.vertices, head.faces)
     points = head.vertices[head.landmarks]
@@ -112,7 +112,7 @@ def _ball(centre, radius):
 
 
 def test_eyeballs_of_the_file_say_where_eyes_are():
-    """Size and place are those of the balls behind its lids; irises keep the size of the face's."""
+    """They have the size and place of the balls behind the lids; irises keep the face's size."""
     head = assets.load("head")
     vertices = shape(head.vertices)
     faces = head.faces
@@ -133,7 +133,7 @@ def test_eyeballs_of_the_file_say_where_eyes_are():
 
 
 def test_an_iris_is_smaller_than_its_ball():
-    """Balls that are small for their face have no corners at nowhere."""
+    """Small balls for their face still have corners."""
     head = assets.load("head")
     points = head.vertices[head.landmarks]
     normals = vertex_normals(head.vertices, head.faces)
@@ -151,7 +151,7 @@ def test_an_iris_is_smaller_than_its_ball():
 
 
 def test_a_closed_socket_is_the_shell_of_its_ball():
-    """Its skin says how large the ball is, which touches the lids from behind."""
+    """Its skin gives the size of the ball, which touches the lids from behind."""
     head = assets.load("head")
     normals = vertex_normals(head.vertices, head.faces)
     points = head.vertices[head.landmarks]
@@ -173,7 +173,7 @@ def test_a_closed_socket_is_the_shell_of_its_ball():
 
 
 def test_a_closed_socket_has_no_other_flesh(fitted):
-    """Its own skin fills the corners; lumps of another head's would stand in them."""
+    """Its own skin fills the corners; flesh of another head would stick out there."""
     far = np.array([[0.0, 500.0, 0.0], [1.0, 500.0, 0.0], [0.0, 501.0, 0.0]])
     triangle = np.array([[0, 1, 2]], np.int32)
     head = assets.load("head")

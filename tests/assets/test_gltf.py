@@ -1,4 +1,4 @@
-"""glTF is read as its specification has it: every kind of numbers, places, pictures and colours."""
+"""glTF is read by its specification: every kind of numbers, places, pictures and colours."""
 
 import base64
 import io
@@ -33,7 +33,7 @@ def png(colour=RED, form="PNG"):
 
 
 def material(maker, texture, **more):
-    """Add a material of a picture."""
+    """Add a material with a picture."""
     pbr = {"baseColorTexture": texture, **more}
     return maker.add("materials", {"pbrMetallicRoughness": pbr})
 
@@ -54,7 +54,7 @@ def uv_of(mesh):
 
 
 def show_square(maker, attributes=None, **more):
-    """Show the square; more: what else its primitive has."""
+    """Show the square; more: other keys of its primitive."""
     square = maker.primitive(SQUARE, FACES, attributes=attributes or {}, **more)
     maker.shown({"mesh": maker.mesh(square)})
 
@@ -67,7 +67,7 @@ def painted(maker, uv, texture=None, **more):
 
 @pytest.mark.parametrize(("kind", "greatest"), [("f4", 1), ("u1", 255), ("u2", 65535)])
 def test_texture_coordinates_may_be_shares(maker, tmp_path, kind, greatest):
-    """Bytes and shorts that are normalized are shares of the greatest."""
+    """Normalized bytes and shorts are shares of the greatest."""
     rows = np.rint(UV * greatest) if greatest > 1 else UV
     painted(maker, maker.accessor(rows, kind, normalized=greatest > 1, gap=2))
     found = read(maker, tmp_path)
@@ -75,7 +75,7 @@ def test_texture_coordinates_may_be_shares(maker, tmp_path, kind, greatest):
 
 
 def test_a_picture_may_have_the_second_coordinates(maker, tmp_path):
-    """The material says which set; any number."""
+    """The material gives the number of the set, which may be any."""
     first = maker.accessor(np.zeros((4, 2)))
     third = maker.accessor(UV)
     painted(maker, first, {"texCoord": 2}, TEXCOORD_1=first, TEXCOORD_2=third)
@@ -87,7 +87,7 @@ def test_a_picture_may_have_the_second_coordinates(maker, tmp_path):
     [
         ({"offset": [0.25, 0.5]}, UV + np.array([0.25, 0.5])),
         ({"scale": [0.5, 2.0], "offset": [0.25, 0.0]}, UV * [0.5, 2.0] + [0.25, 0.0]),
-        # Counter-clockwise where v runs down: what lies along u comes to lie along -v.
+        # Counter-clockwise with v downward: u turns into -v.
         ({"rotation": np.pi / 2}, np.column_stack([UV[:, 1], -UV[:, 0]])),
         ({"rotation": np.pi / 2, "scale": [2.0, 1.0]}, np.column_stack([UV[:, 1], -2 * UV[:, 0]])),
         ({"texCoord": 1}, UV[::-1]),
@@ -118,7 +118,7 @@ def test_pictures_go_on_beyond_their_edge_as_the_file_says(maker, tmp_path):
     [("i1", True, 127), ("i2", True, 32767), ("u2", False, 1), ("i2", False, 1), ("u1", False, 1)],
 )
 def test_positions_may_be_integers(maker, tmp_path, kind, normalized, scale):
-    """KHR_mesh_quantization: a node brings them to their size; rows are padded to four bytes."""
+    """KHR_mesh_quantization: a node scales them to their size; rows are padded to four bytes."""
     maker.parts["extensionsRequired"] = ["KHR_mesh_quantization"]
     width = int(kind[1])
     rows = maker.accessor(SQUARE * 100, kind, gap=-3 * width % 4, normalized=normalized)
@@ -130,7 +130,7 @@ def test_positions_may_be_integers(maker, tmp_path, kind, normalized, scale):
 @pytest.mark.parametrize("width", [3, 4])
 @pytest.mark.parametrize(("kind", "greatest"), [("f4", 1), ("u1", 255), ("u2", 65535)])
 def test_colours_of_vertices_are_linear_light(maker, tmp_path, kind, greatest, width):
-    """0.2 0.5 0.9 of light are 124 188 243 on a screen, in any kind of numbers."""
+    """0.2 0.5 0.9 of light are 124 188 243 on a screen, for any kind of numbers."""
     rows = np.tile(np.array([0.2, 0.5, 0.9, 0.3])[:width] * greatest, (4, 1))
     rows = rows if greatest == 1 else np.rint(rows)
     colours = maker.accessor(rows, kind, normalized=greatest > 1, gap=-width * int(kind[1]) % 4)
@@ -140,7 +140,7 @@ def test_colours_of_vertices_are_linear_light(maker, tmp_path, kind, greatest, w
 
 
 def test_materials_tint(maker, tmp_path):
-    """Factors of light multiply colours and pictures; a picture without one is taken as it is."""
+    """Factors of light multiply colours and pictures; a picture without one is unchanged."""
     texture = maker.picture(png((200, 200, 200)))
     half = material(maker, {"index": texture}, baseColorFactor=[0.5, 1.0, 0.0, 1.0])
     plain = material(maker, {"index": texture})
@@ -170,7 +170,7 @@ def test_older_materials_have_a_picture(maker, tmp_path):
 
 
 def test_webp_and_transparent_pictures_are_read(maker, tmp_path):
-    """A texture may have its picture by EXT_texture_webp alone; how transparent it is is left."""
+    """A texture may have its picture only by EXT_texture_webp; transparency is ignored."""
     image = maker.add("images", {"bufferView": maker.view(png((*RED, 9), "WEBP"))})
     texture = maker.add("textures", {"extensions": {"EXT_texture_webp": {"source": image}}})
     number = material(maker, {"index": texture})
@@ -180,12 +180,12 @@ def test_webp_and_transparent_pictures_are_read(maker, tmp_path):
 
 
 def test_nodes_place_meshes(maker, tmp_path):
-    """Turned, scaled, shifted, by a matrix, one on the other; a mirrored one keeps its outside."""
+    """Turned, scaled, shifted, by a matrix, in a chain; a mirrored one keeps its outside."""
     half = np.sqrt(0.5)
     square = maker.mesh(maker.primitive(SQUARE, FACES))
     matrix = np.array([[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 7], [0, 0, 0, 1.0]])
     child = maker.add("nodes", {"mesh": square, "matrix": matrix.T.ravel().tolist()})
-    maker.add("nodes", {"mesh": square})  # which is in no scene
+    maker.add("nodes", {"mesh": square})  # it is in no scene
     turned = {"rotation": [0, 0, half, half], "scale": [2, 2, 2], "translation": [0, 0, 1]}
     maker.shown({"children": [child], **turned}, {"mesh": square})
     found = read(maker, tmp_path)
@@ -204,7 +204,7 @@ def test_nodes_place_meshes(maker, tmp_path):
     ],
 )
 def test_triangles_may_be_strips_and_fans(maker, tmp_path, mode, corners, wanted):
-    """In any kind of indices; lines and points are left away."""
+    """Any kind of indices is read; lines and points are left out."""
     square = maker.primitive(SQUARE, None, **({} if mode is None else {"mode": mode}))
     square["indices"] = maker.accessor(corners, "u2")
     line = maker.primitive(SQUARE, [0, 1, 2, 3], mode=1)
@@ -213,14 +213,14 @@ def test_triangles_may_be_strips_and_fans(maker, tmp_path, mode, corners, wanted
 
 
 def test_triangles_need_no_indices(maker, tmp_path):
-    """Three vertices each; those in one place are one."""
+    """Three vertices each are a triangle; vertices in one place are merged."""
     maker.shown({"mesh": maker.mesh(maker.primitive(SQUARE[FACES].reshape(-1, 3), None))})
     assert read(maker, tmp_path).faces.tolist() == [[0, 1, 2], [0, 2, 5]]
 
 
 @pytest.mark.parametrize("has_rows", [True, False])
 def test_sparse_rows_are_filled_in(maker, tmp_path, has_rows):
-    """In place of some rows there are others; where there are none at all, of zeros."""
+    """They replace some rows, or rows of zeros if there are none."""
     filled = (
         SQUARE + np.array([0, 0, 3]) if has_rows else np.where([[0], [1], [0], [1]], SQUARE, 0.0)
     )
@@ -238,7 +238,7 @@ def test_sparse_rows_are_filled_in(maker, tmp_path, has_rows):
 
 
 def halves(shift=0.0):
-    """The square as two triangles of their own vertices."""
+    """The square as two triangles with separate vertices."""
     return SQUARE[[0, 1, 2]], SQUARE[[0, 2, 3]] + [0, 0, shift]
 
 
@@ -255,7 +255,7 @@ def test_parts_of_a_mesh_hang_together(maker, tmp_path, is_one_mesh):
 
 @pytest.mark.parametrize("moved", ["shape", "bone", "nothing"])
 def test_vertices_that_move_apart_are_two(maker, tmp_path, moved):
-    """Lips that touch lie in one place; a shape or a bone of the file parts them."""
+    """Touching lips are in one place; a shape or a bone of the file parts them."""
     first, second = halves()
     joints = np.zeros((3, 4))
     attributes = [{}, {}]
@@ -294,7 +294,7 @@ def test_shapes_are_added_as_the_file_weighs_them(maker, tmp_path, where):
 
 
 def test_bones_bend_meshes(maker, tmp_path):
-    """They, and not the node, bring its vertices to where the file shows them; with many bones."""
+    """Bones, and not the node, give the places of vertices in the file; also many bones."""
     bind = np.stack([np.eye(4), np.eye(4)])
     bind[1, :3, 3] = [-1, 0, 0]
     joints = np.array([[0, 0, 0, 0], [1, 0, 0, 0], [1, 0, 0, 0], [0, 1, 0, 0]])
@@ -329,7 +329,7 @@ def _unknown(maker):
 
 
 def _draco_beside(maker):
-    """Compressed, but with plain numbers for those who cannot read that."""
+    """Compressed data, with plain numbers for readers that cannot decode them."""
     maker.parts["extensionsUsed"] = ["KHR_draco_mesh_compression"]
     primitive = maker.parts["meshes"][0]["primitives"][0]
     primitive["extensions"] = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {}}}
@@ -337,7 +337,7 @@ def _draco_beside(maker):
 
 @pytest.mark.parametrize("change", [_extras, _unknown, _draco_beside])
 def test_what_is_not_needed_is_left_alone(maker, tmp_path, change):
-    """Extras of any kind, extensions that are not required, cameras."""
+    """Extras of any kind, extensions that are not required, and cameras are ignored."""
     show_square(maker)
     change(maker)
     assert np.allclose(shape_of(read(maker, tmp_path)), SQUARE[FACES])
@@ -415,7 +415,7 @@ def _circle(maker):
     ],
 )
 def test_what_cannot_be_read_is_named(maker, tmp_path, change, message):
-    """One clear line each."""
+    """Each gives one clear line."""
     show_square(maker)
     change(maker)
     with pytest.raises(AssetError, match=message) as refusal:
@@ -425,7 +425,7 @@ def test_what_cannot_be_read_is_named(maker, tmp_path, change, message):
 
 @pytest.mark.parametrize("is_beside", [True, False])
 def test_a_document_may_have_its_data_beside_it(maker, tmp_path, is_beside):
-    """A file .gltf with data and picture in files, or in text within it."""
+    """A .gltf file has data and picture in files, or in text within it."""
     painted(maker, maker.accessor(UV))
     image = maker.parts["images"][0]
     del image["bufferView"]
@@ -445,7 +445,7 @@ def test_a_document_may_have_its_data_beside_it(maker, tmp_path, is_beside):
 
 @pytest.mark.parametrize("name", ["Haut für 顔.png", "Haut%20f%C3%BCr%20%E9%A1%94.png"])
 def test_a_picture_beside_it_may_have_any_letters(maker, tmp_path, name):
-    """Its name as it is, or as URIs write it."""
+    """The name is given directly, or in the encoding of URIs."""
     painted(maker, maker.accessor(UV))
     image = maker.parts["images"][0]
     del image["bufferView"]
@@ -458,7 +458,7 @@ def test_a_picture_beside_it_may_have_any_letters(maker, tmp_path, name):
 
 
 def test_pictures_of_a_kind_that_is_not_read_are_named(maker, tmp_path):
-    """And only when they are drawn: hair may have a kind that the skin has not."""
+    """They are only reported when drawn: hair may have another kind than the skin."""
     texture = maker.add("textures", {"extensions": {"KHR_texture_basisu": {"source": 0}}})
     number = material(maker, {"index": texture})
     show_square(maker, {"TEXCOORD_0": maker.accessor(UV)}, material=number)
@@ -478,7 +478,7 @@ def test_pictures_of_a_kind_that_is_not_read_are_named(maker, tmp_path):
     ],
 )
 def test_pictures_that_cannot_be_read_are_named(maker, tmp_path, change, message):
-    """When they are drawn, in one line."""
+    """They are reported when drawn, in one line."""
     painted(maker, maker.accessor(UV))
     maker.parts["images"][0].update({"name": "face", **change})
     found = read(maker, tmp_path)

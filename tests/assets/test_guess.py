@@ -1,4 +1,4 @@
-"""The first guess of 68 landmarks: near the true ones, on the skin, and refused where senseless."""
+"""The first guess of 68 landmarks: near the true ones, on the skin, and refused for wrong input."""
 
 import numpy as np
 import pytest
@@ -14,11 +14,11 @@ from risorius.assets.meshes import Mesh
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import METRES, stranger
 
-JAW = 17  # the first landmarks: of the line along the jaw nobody says where on it a point belongs
+JAW = 17  # the first landmarks, along the jaw: their places on this line are not defined exactly
 
 
 def errors(mesh, true):
-    """How far from the true points those lie that are guessed from the first ones."""
+    """Errors of the landmarks that are guessed from the first points."""
     found = guess(mesh, {number: true[number] for number in FIRST})
     off = norm(found - true, axis=1)
     assert not off[list(FIRST)].max() > 1e-9 * np.abs(true).max()
@@ -26,7 +26,7 @@ def errors(mesh, true):
 
 
 def test_the_built_in_head_is_found_again(head):
-    """Of finer triangles, all of it lies where it was."""
+    """With finer triangles, all of it is in the same place."""
     fine = head.finer(1)
     assert errors(Mesh(fine.vertices, fine.faces), head.vertices[head.landmarks]).max() < 1.0
 
@@ -66,7 +66,7 @@ def test_unit_axes_and_other_pieces_do_not_matter():
 
 @pytest.mark.slow
 def test_more_points_make_it_better_and_stay():
-    """A point placed by hand is left alone, and draws its neighbours along."""
+    """A point placed by hand stays, and draws its neighbours along."""
     person = make_person(sample_identity(1))
     mesh = Mesh(person.vertices, person.faces)
     true = person.vertices[person.landmarks]
@@ -95,7 +95,7 @@ def test_points_of_no_face_are_refused(head, order, words):
 
 
 def test_a_mesh_is_brought_into_the_middle():
-    """In any unit, as large as is asked."""
+    """It works in any unit, and gives the requested size."""
     vertices = assets.load("head").vertices
     seen = centred(0.001 * vertices + 7.0, 140.0).points(0.001 * vertices + 7.0)
     assert norm(seen, axis=1).max() == approx(140.0)

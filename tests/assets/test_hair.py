@@ -1,4 +1,4 @@
-"""Hair of persons: it grows on the scalp, stands off the head, and leaves the face free."""
+"""Hair of persons: it grows on the scalp, stands off the head, and does not cover the face."""
 
 from dataclasses import replace
 from functools import cache
@@ -29,7 +29,7 @@ from tests.assets.checks import check_part
 
 @cache
 def haired(cut, *, receded=0.0, length=1.0):
-    """Somebody with a cut."""
+    """A person with a cut."""
     identity = replace(sample_identity(0), cut=cut, hair=length)
     return coloured(
         make_person(identity), angle=30.0, features=Features(hairline=Hairline(front=receded))
@@ -37,13 +37,13 @@ def haired(cut, *, receded=0.0, length=1.0):
 
 
 def hair_of(person, name=HAIR):
-    """Its hair, seen from outside: on the scalp, or tied."""
+    """The person's hair, visible from outside: on the scalp, or tied."""
     return next(part for part in person.parts if part.name == name)
 
 
 @pytest.mark.parametrize("cut", CUTS)
 def test_hair_is_a_sound_part(cut):
-    """Arrays fit each other, and triangles are seen from the side to which normals point."""
+    """Arrays fit, and triangles are visible from the side to which normals point."""
     for part in [each for each in haired(cut).parts if each.name in (HAIR, HAIR + "_tied")]:
         check_part(part, least_agreeing=0.9)  # over its hairline the lower side of hair turns
         assert part.bone == "cranium"
@@ -53,7 +53,7 @@ def test_hair_is_a_sound_part(cut):
 
 @pytest.mark.parametrize("cut", CUTS)
 def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut):
-    """Where it is dense it is over the skin; none hangs before brows, eyes, nose and mouth."""
+    """Dense hair is above the skin; none hangs before brows, eyes, nose and mouth."""
     person = haired(cut)
     part = hair_of(person)
     way = part.striation[:, 2:5]
@@ -63,7 +63,7 @@ def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut):
     over = [((each - roots) * part.normals).sum(axis=1)[dense] for each in (part.vertices, tips)]
     assert over[0].min() >= 0.0
     assert np.median(over[1]) > 2.0
-    if not isinstance(CUTS[cut], Fall):  # which hangs beside the head
+    if not isinstance(CUTS[cut], Fall):  # it hangs beside the head
         nearest = cKDTree(person.vertices).query(roots)[1]
         heights = ((roots - person.vertices[nearest]) * part.normals).sum(axis=1)
         assert np.quantile(np.abs(heights[dense]), 0.95) < 4.0
@@ -86,14 +86,14 @@ def test_hair_is_as_long_and_begins_where_it_is_set():
 
 
 def test_cropped_hair_has_no_ring_of_light_around_its_whorl():
-    """It is dull, whatever light there is; longer hair shines as before."""
+    """It is dull in any light; longer hair shines as before."""
     shines = {cut: hair_of(haired(cut)).shine for cut in ("cropped", "short", "brushed")}
     assert shines["cropped"] < 0.25 * shines["short"]
     assert shines["short"] == shines["brushed"] == 0.12
 
 
 def test_a_tail_is_tied_behind_the_ears_and_touches_no_skin_below():
-    """It hangs, clear of neck and shoulders."""
+    """It hangs without touching neck and shoulders."""
     person = haired("tailed")
     tail = hair_of(person, HAIR + "_tied").vertices
     ear = person.anatomy["tragion_left"]
@@ -104,7 +104,7 @@ def test_a_tail_is_tied_behind_the_ears_and_touches_no_skin_below():
 
 
 def test_hair_keeps_its_colour_in_other_tones_of_skin():
-    """The scalp under it stays as it is where skin gets another tone; anew, hair follows it."""
+    """The scalp beneath is unchanged by another tone of skin; newly made hair follows the tone."""
     ada = person_called("ada")
     assert ada.in_tone is not None
     assert make_person(sample_identity(0)).in_tone is None
@@ -129,7 +129,7 @@ def label_of(person):
 
 
 def test_sparse_hair_is_called_what_is_behind_it():
-    """Where fewer than half of its strands are, as at its tips."""
+    """This holds where fewer than half of its strands are, as at its tips."""
     long = haired("parted")
     few = np.float32([1.0, 1.0, 1.0, 1.0, 1.0, 0.2])
     parts = [
