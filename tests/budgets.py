@@ -1,10 +1,10 @@
-"""Tokens of each room beside its budget: `python tests/budgets.py`; ends with 1 where one is over.
+"""Tokens of each room and its budget: `python tests/budgets.py`; ends with 1 if one is over.
 
 The budgets are `[tool.risorius.budgets]` in `pyproject.toml`. A file belongs to the longest folder
-that it lies in, so `app` is the rest of the application. Comments, docstrings and layout do not
+that contains it, so `app` is the rest of the application. Comments, docstrings and layout do not
 count: packing two statements into a line saves nothing, and a comment costs nothing.
 
-Further columns say how plainly each room is written:
+Further columns measure how plainly each room is written:
 
 - per line: tokens a line of code
 - packed: assignments `a, b = x, y` a thousand lines of code; swaps do not count
@@ -12,7 +12,8 @@ Further columns say how plainly each room is written:
 - told: the words "told", "tell" and "tells", for which set, given, reported or printed is plainer
 - what is: free relative clauses such as "what is", "who has" or "whoever", a thousand lines
 
-Below stand the words of `docs/*.md`, which have a letter or a digit: bars of tables do not count.
+Below is the number of words in `docs/*.md`. A word has a letter or a digit: bars of tables do not
+count.
 """
 
 import ast
@@ -75,7 +76,7 @@ class Count:
 
 
 def docstring_lines(tree: ast.AST) -> set[int]:
-    """Lines of strings that stand alone: docstrings, and those below attributes."""
+    """Lines of docstrings, and of strings below attributes."""
     strings = [
         node
         for node in ast.walk(tree)
@@ -100,7 +101,7 @@ def is_packed(node: ast.AST) -> bool:
 
 
 def constants_of(node: ast.stmt) -> int:
-    """How many names in capitals a statement of a module sets."""
+    """Number of names in capitals that a statement of a module sets."""
     if isinstance(node, ast.Assign):
         targets = node.targets
     elif isinstance(node, ast.AnnAssign):
@@ -128,18 +129,18 @@ def count_rooms(rooms: list[str]) -> dict[str, Count]:
 
 
 def find_room(path: Path, room_of: dict[Path, str]) -> str:
-    """Find the room of the longest folder that a file lies in."""
+    """Find the room of the longest folder that contains a file."""
     return next(room_of[parent] for parent in path.parents if parent in room_of)
 
 
 def sum_of(counts: list[Count]) -> Count:
-    """Add counts of rooms up."""
+    """Add counts of rooms."""
     names = [field.name for field in fields(Count)]
     return Count(**{name: sum(getattr(count, name) for count in counts) for name in names})
 
 
 def print_row(name: str, count: Count, budget: int) -> None:
-    """Print a row of the table, and whether its room is over its budget."""
+    """Print a row of the table; return whether its room is over its budget."""
     code = max(count.lines, 1)
     text = max(count.text_lines, 1)
     print(
@@ -151,7 +152,7 @@ def print_row(name: str, count: Count, budget: int) -> None:
 
 
 def main() -> int:
-    """Print the table; 1 where a room has more tokens than its budget."""
+    """Print the table; 1 if a room has more tokens than its budget."""
     budgets = read_budgets()
     counts = count_rooms(list(budgets))
     heads = ["tokens", "budget", "per line", "packed", "constants", "told", "what is"]

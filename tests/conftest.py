@@ -1,4 +1,4 @@
-"""What every test starts from: numpy's floating-point errors raise, random numbers have a seed."""
+"""Fixtures of every test: numpy's floating-point errors raise, random numbers have a seed."""
 
 import os
 import random
@@ -13,7 +13,8 @@ from risorius.assets.model import Head
 from risorius.refine.border.registry import refiners
 
 # No deadlines: a shared machine may stall any example. In continuous integration the examples are
-# the same every time, and more; at a developer's desk hypothesis keeps looking for new ones.
+# the same every time, and there are more; on a developer's machine hypothesis always tries new
+# ones.
 settings.register_profile("everywhere", deadline=None, max_examples=40)
 settings.register_profile("integration", deadline=None, derandomize=True)
 settings.load_profile("integration" if os.environ.get("CI") else "everywhere")
@@ -34,7 +35,7 @@ def fixed_seed() -> None:
 
 @pytest.fixture
 def own_refiners(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Forget afterwards which refiners a test registers."""
+    """Remove refiners that a test registers."""
     monkeypatch.setattr(refiners, "_factories", dict(refiners._factories))
 
 
@@ -46,5 +47,5 @@ def generator() -> np.random.Generator:
 
 @pytest.fixture(scope="session")
 def head() -> Head:
-    """The built-in head, whose arrays nobody can write."""
+    """The built-in head, with read-only arrays."""
     return assets.load("head")

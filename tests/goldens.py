@@ -1,13 +1,13 @@
 """The outputs of the program before and after a change of the code, compared file by file.
 
-    python tests/goldens.py make out/before    with the code as it was
-    python tests/goldens.py make out/after     with the code as it is
+    python tests/goldens.py make out/before with the old code
+    python tests/goldens.py make out/after with the new code
     python tests/goldens.py compare out/before out/after
 
-Both are made on one machine, so that bytes may be compared: another processor rounds otherwise. The
-commands of users make them, which outlive what moves between files. A picture may differ in a few
-pixels by a step that nobody sees, and says so; every other file has the same bytes, or compare ends
-with 1.
+Both are made on one machine, so that bytes may be compared: another processor rounds differently.
+They are made by users' commands, which stay valid when code moves between files. A picture may
+differ in a few pixels by an invisible step, which is printed; every other file has the same bytes,
+or compare ends with 1.
 """
 
 import shutil
@@ -31,7 +31,7 @@ LARGEST_STEP, FEW_PIXELS = 2, 0.001  # of 255; as a share of all
 
 
 def commands() -> Iterator[tuple[str, list[str]]]:
-    """Each by its name: files of 500 frames, of every look, of every format, and 20 pictures."""
+    """Commands by name: files of 500 frames, of every look, of every format, and 20 pictures."""
     yield "frames", ["export", "-o", "frames.npz", "--fps", "60"]
     for scene in SCRIPTS:
         for look in ("smooth", "paper"):
@@ -55,7 +55,7 @@ def commands() -> Iterator[tuple[str, list[str]]]:
 
 
 def make(folder: Path) -> bool:
-    """Run every command in the folder; true if all of them worked."""
+    """Run every command in the folder; true if all succeeded."""
     folder.mkdir(parents=True)
     for each in sorted(HEAD.iterdir()):
         shutil.copy(each, folder / f"head_{each.name}")
@@ -71,7 +71,7 @@ def make(folder: Path) -> bool:
 
 
 def compare(before: Path, after: Path) -> bool:
-    """Print what differs; true if nothing does that a user would notice."""
+    """Print differences; true if none is noticeable for a user."""
     names = {file.relative_to(root) for root in (before, after) for file in root.rglob("*.*")}
     same_all = True
     for name in sorted(each for each in names if not (before / each).is_dir()):
@@ -89,7 +89,7 @@ def compare(before: Path, after: Path) -> bool:
 
 
 def contents(file: Path) -> object:
-    """The bytes of a file; of a package those of its members, without the times of writing."""
+    """The bytes of a file; for a package those of its members, without the times of writing."""
     if file.suffix != ".usdz":
         return file.read_bytes()
     with zipfile.ZipFile(file) as package:
@@ -97,7 +97,7 @@ def contents(file: Path) -> object:
 
 
 def looks_the_same(old: Path, new: Path) -> bool:
-    """Whether two pictures differ in so few pixels, or by so little, that nobody sees it."""
+    """Whether two pictures differ in so few pixels, or by so little, that it is invisible."""
     first, second = (np.asarray(Image.open(each), dtype=np.int16) for each in (old, new))
     if first.shape != second.shape:
         return False

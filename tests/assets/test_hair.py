@@ -141,7 +141,7 @@ def test_sparse_hair_is_called_what_is_behind_it():
 
 
 def test_hair_is_seen_framed_and_labelled():
-    """It is in the picture as a whole, has its class, and is away over muscles and on clay."""
+    """It is in the frame as a whole, has its class, and is hidden over muscles and on clay."""
     scene = FaceScene(person_called("ada"))
     assert scene.skin.fade is None  # the shirt covers the end of the neck
     assert scene.framing.framed[:, 1].max() >= hair_of(person_called("ada")).vertices[:, 1].max()
@@ -160,7 +160,7 @@ def test_hair_is_seen_framed_and_labelled():
 
 
 def test_lobes_of_ears_stay_under_hair_that_falls():
-    """They come through no short bob whose tips curve to the face."""
+    """They do not come through a short bob with tips that curve to the face."""
     person = person_called(4)
     hair = hair_of(person)
     rings = load("head").rings
@@ -173,7 +173,7 @@ def test_lobes_of_ears_stay_under_hair_that_falls():
 
 
 def gaps(person, rows, camera="60,5"):
-    """How many pixels of some rows, from the left outline to the right one, show nothing."""
+    """Number of empty pixels in some rows, between the left outline and the right one."""
     options = CaptureOptions((700, 700), camera=camera, style=Style(background=None))
     with Capture(FaceScene(person), options) as capture:
         is_seen = capture.draw_image()[rows, :, 3] >= 128
@@ -183,19 +183,19 @@ def gaps(person, rows, camera="60,5"):
 
 
 def test_no_slit_is_between_hair_and_the_refined_nape():
-    """From behind the ear, where skin that is hollow lies deeper than its coarse triangles."""
+    """From behind the ear, where hollow skin lies deeper than its coarse triangles."""
     assert gaps(load("head"), slice(370, 450)) < 30
 
 
 def test_no_slit_is_below_the_hem_of_a_bald_crown():
-    """Where hair lies on a horizon of skin, it shows no light behind it."""
+    """Where hair lies on a horizon of skin, no light shows behind it."""
     features = Features(hairline=Hairline(front=6.0, temples=12.0, crown=0.5))
     person = make_person(replace(sample_identity(0), cut="swept", hair=1.0))
     assert gaps(coloured(person, angle=30.0, features=features), slice(30, 70)) < 40
 
 
 def test_no_slit_is_below_the_outline_of_hair_from_above():
-    """Layers of hair that is drawn back are closed where a look goes over them."""
+    """Layers of hair that is drawn back are closed for views over them."""
     assert gaps(haired("knotted"), slice(0, 330), camera="0,65") < 40
 
 

@@ -1,4 +1,4 @@
-"""Persons: heads of the wanted measures, and faces like the built-in one."""
+"""Persons: heads with the requested measures, and faces like the built-in one."""
 
 from dataclasses import replace
 
@@ -43,7 +43,7 @@ def person(request: pytest.FixtureRequest) -> Person:
 @given(SEEDS)
 @settings(max_examples=4, deadline=None)
 def test_a_number_is_one_person(seed):
-    """The same number gives the same bytes; nobody is beyond the deviations that are allowed."""
+    """The same number gives the same bytes; no person exceeds the allowed deviations."""
     first = sample_identity(seed)
     second = sample_identity(seed)
     assert first == second
@@ -68,9 +68,9 @@ def test_an_even_face_is_its_own_mirror_image(seed):
 
 
 def test_persons_are_spread_as_published():
-    """Of 400: both sexes lie apart as published, nearly, and long faces have long noses.
+    """Of 400: both sexes differ nearly as published, and long faces have long noses.
 
-    They are no sample of the people whose norms these are, but lie about them.
+    They are not a sample of the people behind these norms, but vary around them.
     """
     space = person_space()
     everyone = [sample_identity(seed) for seed in range(400)]
@@ -116,7 +116,7 @@ def test_women_and_men_differ_as_measured():
 
 
 def test_womens_necks_are_narrower():
-    """By a sixth, as they were measured, where all else is one person's."""
+    """By a sixth, as published, if all else is one person's."""
     identity = sample_identity(4, is_even=True)
     her, him = (make_person(replace(identity, sex=sex)) for sex in (Sex.WOMAN, Sex.MAN))
     is_neck = him.vertices[:, 1] < him.vertices[him.anatomy["menton"], 1] - 40.0
@@ -125,7 +125,7 @@ def test_womens_necks_are_narrower():
 
 
 def test_nine_of_ten_parts_of_what_differs_need_eight_ways():
-    """People are not three or four types: principal components of a hundred faces."""
+    """People are not of three or four types: principal components of a hundred faces."""
     space = person_space()
     x = np.array([space.moved(np.array(sample_identity(k).weights)) for k in range(100)])
     face = space.mean[:, 2] > 40.0
@@ -135,7 +135,7 @@ def test_nine_of_ten_parts_of_what_differs_need_eight_ways():
 
 
 def test_age_is_seen():
-    """Lips get thinner, and their skin longer; furrows show at rest."""
+    """Lips get thinner, and the skin of lips longer; furrows show at rest."""
     young, old = (make_person(sample_identity(4, age=age)) for age in (25.0, 70.0))
     assert old.measures["ls-sto"] < young.measures["ls-sto"] - 0.5
     assert old.measures["sn-ls"] > young.measures["sn-ls"] + 0.5
@@ -163,7 +163,7 @@ def test_furrows_of_old_persons_lie_in_places_of_their_own():
 
 
 def test_people_are_drawn_freely():
-    """No direction of form is narrower than people's own spread, but for the head's size."""
+    """No direction of form is narrower than people's own spread, except the head's size."""
     weights = np.array(
         [sample_identity(seed, sex=Sex.MAN, age=30.0).weights for seed in range(300)]
     )
@@ -174,7 +174,7 @@ def test_people_are_drawn_freely():
 
 
 def test_upper_lids_cover_a_part_of_the_iris():
-    """By half a millimetre to three, while the lower ones touch it: nobody stares."""
+    """They cover half a millimetre to three, and lower ones touch it, so no person stares."""
     for seed in range(8):
         person = make_person(sample_identity(seed))
         for eye in person.eyes:
@@ -186,7 +186,7 @@ def test_upper_lids_cover_a_part_of_the_iris():
 
 @pytest.mark.slow
 def test_named_persons_are_different_people(head):
-    """Of both sexes, in tones and ages far apart, and none has the built-in head's face."""
+    """They have both sexes, different tones and ages, and none has the built-in head's face."""
     people = [person_called(name) for name in NAMED]
     assert HEAD_NAMES == (*NAMED, COARSE)
     assert {each.identity.sex for each in people} == set(Sex)
@@ -199,7 +199,7 @@ def test_named_persons_are_different_people(head):
 
 
 def test_person_is_a_sound_head(person, head):
-    """Nothing is turned or pierces itself; eyes and mouth are open to what fitting asks."""
+    """No triangle is turned over or pierces another; eyes and mouth are open enough for fitting."""
     check_manifold(person.faces)
     check_openings(
         SkinPiece(
@@ -224,7 +224,7 @@ def test_person_is_a_sound_head(person, head):
 
 
 def test_expressions_work_on_persons(person, head, request):
-    """At rest it stays at rest, with lips that meet; it laughs, and shuts its eyes."""
+    """It stays still at rest, with lips that meet; it laughs, and shuts its eyes."""
     simulation = sim.create(person)
     usual = sim.create(head)
     for _ in range(30):
@@ -251,7 +251,7 @@ def test_expressions_work_on_persons(person, head, request):
 
 
 def test_person_is_a_scene(person, head):
-    """A scene takes it as any head, with light of its own at once: that of the built-in head."""
+    """A scene uses it like any head, with its own light at once: that of the built-in head."""
     scene = FaceScene(person)
     assert scene.skin.ambient_occlusion is person.ambient_occlusion
     assert scene.skin.albedo.shape == head.albedo.shape

@@ -1,4 +1,4 @@
-"""The search for intersections, against a plain comparison of all pairs."""
+"""The search for intersections, compared with a simple test of all pairs."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from risorius.assets.intersections import self_intersections
 
 
 def test_large_and_small_triangles_are_compared():
-    """Candidates are sought by classes of size; every crossing of a seeded heap is found."""
+    """Candidates are found by classes of size; every crossing of a seeded heap is found."""
     random = np.random.default_rng(5)
     sizes = np.exp(random.uniform(-2.0, 2.5, 50))
     points = random.uniform(-3.0, 3.0, (50, 1, 3)) + sizes[:, None, None] * random.normal(

@@ -1,4 +1,4 @@
-"""The jaw of a head that is brought turns about an axis in front of its ears."""
+"""The jaw of a user's head turns about an axis in front of its ears."""
 
 import numpy as np
 import pytest
@@ -7,27 +7,27 @@ from risorius.assets.fitting.jaw_place import jaw_axis_of, opening_as_people
 
 
 def found_axis(head, size):
-    """The axis found on a head whose parts are as large as `size` says."""
+    """The axis found on a head with parts scaled by `size`."""
     vertices = head.vertices * size
     return jaw_axis_of(vertices, head.faces, vertices[head.landmarks])
 
 
 def test_condyles_are_found_in_front_of_the_ears(head):
-    """On the built-in head they lie where its anatomy has them, within 3 mm."""
+    """On the built-in head they are within 3 mm of their places in its anatomy."""
     axis = found_axis(head, np.ones(3))
     assert np.abs(axis - head.jaw_axis).max() < 3.0
 
 
 @pytest.mark.parametrize("depth", [0.9, 1.1])
 def test_condyles_follow_the_ears(head, depth):
-    """In a flatter or deeper head the axis goes with the ears."""
+    """In a flatter or deeper head the axis moves with the ears."""
     axis = found_axis(head, np.array([1.0, 1.0, depth]))
     wanted = head.jaw_axis * (1.0, 1.0, depth)
     assert np.abs(axis - wanted)[:, 2].max() < 5.0
 
 
 def test_without_ears_no_axis_is_found(head):
-    """A mask that ends before its ears leaves the axis to the landmarks."""
+    """For a mask that ends before its ears, landmarks give the axis."""
     is_front = head.vertices[:, 2] > head.vertices[head.anatomy["tragion_left"], 2] + 15.0
     faces = head.faces[is_front[head.faces].all(axis=1)]
     assert jaw_axis_of(head.vertices, faces, head.vertices[head.landmarks]) is None

@@ -1,4 +1,4 @@
-"""Landmarks that are not in their order are refused by name; right ones, however rough, are not."""
+"""Landmarks in a wrong order are refused by name; right ones are accepted, however rough."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ def other() -> Stranger:
 @settings(deadline=None, max_examples=60)
 @given(seed=st.integers(0, 2**32 - 1), stretch=st.tuples(*[st.floats(0.85, 1.15)] * 3))
 def test_right_landmarks_are_taken(seed, stretch):
-    """Of another head, stretched, and each up to 2 mm beside its place."""
+    """They are those of another head, stretched, and each up to 2 mm off its place."""
     random = np.random.default_rng(seed)
     away = random.normal(size=(68, 3))
     away *= ROUGHNESS * random.random((68, 1)) / norm(away, axis=1, keepdims=True)
@@ -43,7 +43,7 @@ def test_right_landmarks_are_taken(seed, stretch):
 @settings(deadline=None, max_examples=10)
 @given(data=st.data())
 def test_a_group_in_another_order_is_named(group, data):
-    """Reversed, shifted, or both; wherever the group lies."""
+    """It is reversed, shifted, or both, at any place of the group."""
     own = np.arange(group.first, group.first + group.count)
     orders = [np.roll(own[::way], by) for way in (1, -1) for by in range(group.count)]
     orders = [each for each in orders if _moves(own, each) > 5.0]
@@ -54,13 +54,13 @@ def test_a_group_in_another_order_is_named(group, data):
 
 
 def _moves(own, order):
-    """How far an order moves the points of a group on average [mm]."""
+    """Mean motion of the points of a group by an order [mm]."""
     return float(norm(TEMPLATE[own] - TEMPLATE[order], axis=1).mean())
 
 
 @pytest.mark.parametrize("group", GROUPS, ids=lambda group: group.name)
 def test_a_group_in_disorder_is_refused_in_one_line(group, other):
-    """Reversed, or right and left swapped: the line has its numbers and the order that is right."""
+    """Reversed, or right and left swapped: the line has its numbers and the right order."""
     numbers = other.landmarks.copy()
     own = slice(group.first, group.first + group.count)
     is_pair = group.name.startswith("two")
@@ -70,14 +70,14 @@ def test_a_group_in_disorder_is_refused_in_one_line(group, other):
 
 
 def test_numbers_counted_from_1_are_refused(other, tmp_path):
-    """Each is the vertex behind the one that is meant."""
+    """Each is the vertex after the intended one."""
     mesh, numbers = other.write(tmp_path, landmarks=other.landmarks + 1)
     with pytest.raises(AssetError, match=r"\.obj: landmarks count vertices from 1"):
         fit_head(mesh, numbers)
 
 
 def test_a_point_on_a_lash_means_the_skin_beneath(other, tmp_path):
-    """The mesh may have lashes and eyeballs of its own, on which one clicks beside the eye."""
+    """The mesh may have its own lashes and eyeballs, which clicks beside the eye hit."""
     points = other.mesh.vertices[other.landmarks]
     count = len(other.mesh.vertices)
     lash = points[36] + 0.001 * np.eye(3)
@@ -91,6 +91,6 @@ def test_a_point_on_a_lash_means_the_skin_beneath(other, tmp_path):
 
 @pytest.mark.parametrize("by", [1, -1, 5])
 def test_a_list_that_begins_elsewhere_is_refused(by, other):
-    """Nothing is in its place then."""
+    """Then every landmark is in a wrong place."""
     with pytest.raises(AssetError, match="landmark"):
         fit(other.mesh, np.roll(other.landmarks, by))

@@ -1,4 +1,4 @@
-"""Lines of expression: their numbers by age and sex, and the maps that they are drawn in."""
+"""Lines of expression: their numbers by age and sex, and their maps."""
 
 from collections import Counter
 from dataclasses import replace
@@ -41,7 +41,7 @@ def drawn(shrink: int = 1, **own: object) -> np.ndarray:
 
 
 def about(name: str, high: int, wide: int) -> tuple[slice, slice]:
-    """The part of the map about a named point, that many texels up and down, and to each side."""
+    """The part of the map about a named point: so many texels up and down, and to each side."""
     head = load("head")
     size = len(head.wrinkles.map)
     column, row = (head.uv[head.anatomy[name]] * [size, -size] + [0.0, size]).astype(int)
@@ -49,13 +49,13 @@ def about(name: str, high: int, wide: int) -> tuple[slice, slice]:
 
 
 def furrows_along(depth: np.ndarray) -> int:
-    """The number of furrows that a way across them meets, shape (n,)."""
+    """The number of furrows on a way across them, shape (n,)."""
     is_deep = np.concatenate([[False], depth > 40])
     return int((is_deep[1:] & ~is_deep[:-1]).sum())
 
 
 def test_lines_get_more_and_deeper_with_age_and_in_men():
-    """At seventy beside twenty-five, in the mean of two hundred."""
+    """At seventy compared with twenty-five, as a mean of two hundred."""
     young, old = people(25.0), people(70.0)
     for name in ("forehead", "feet", "reach", "fine"):
         assert np.mean([getattr(x, name) for x in old]) > np.mean([getattr(x, name) for x in young])
@@ -69,7 +69,7 @@ def test_lines_get_more_and_deeper_with_age_and_in_men():
 
 
 def test_patterns_have_their_published_shares():
-    """Foreheads, frowns and fans, each within a tenth of all people."""
+    """Foreheads, frowns and fans are each within a tenth of all people."""
     lines = people(50.0)
     spreads, frowns, fans = (
         Counter(getattr(x, name) for x in lines) for name in ("spread", "frown", "fan")
@@ -83,7 +83,7 @@ def test_patterns_have_their_published_shares():
 
 
 def test_a_number_has_the_same_lines_and_map_every_time():
-    """The same bytes from the same number, others from another; nobody else's map is written."""
+    """A number always gives the same bytes, others give others; no shared map is written."""
     known = load("head").wrinkles
     before = known.map.copy()
     lines = [sample_identity(seed).lines for seed in (7, 7, 8)]
@@ -99,7 +99,7 @@ def test_a_number_has_the_same_lines_and_map_every_time():
 
 @pytest.mark.parametrize("count", [2, 4])
 def test_as_many_lines_are_drawn_as_the_record_says(count):
-    """On the forehead up its middle, between the brows from side to side."""
+    """They are counted on the forehead up its middle, between the brows from side to side."""
     rows, columns = about("metopion", 110, 60)
     counts = [
         furrows_along(depth)
@@ -114,7 +114,7 @@ def test_as_many_lines_are_drawn_as_the_record_says(count):
 
 
 def test_spread_fan_and_reach_are_where_the_record_says():
-    """Lines in the middle or at the sides, feet above or below, short or long."""
+    """Lines are in the middle or at the sides, crow's feet above or below, short or long."""
     rows, columns = about("metopion", 60, 170)
     ways = (Spread.MIDDLE, Spread.SIDES)
     middle, sides = (drawn(spread=each)[rows, columns, 2].sum(axis=0) for each in ways)
@@ -150,7 +150,7 @@ def test_folds_get_as_deep_as_the_record_says_and_all_else_stays():
 
 
 def test_small_pictures_have_fewer_texels_of_the_same_lines():
-    """Half as many each way, of the same depth and the same slopes; the smallest share one map."""
+    """Half the texels each way have the same depth and slopes; the smallest share one map."""
     whole, half = drawn(), drawn(2)
     assert half.shape == (640, 640, 4)
     means = whole.reshape(640, 2, 640, 2, 4).mean(axis=(1, 3))

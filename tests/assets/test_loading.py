@@ -1,4 +1,4 @@
-"""Loading: the promises of `assets.load`, and its messages when it cannot keep them."""
+"""Loading: the promises of `assets.load`, and its messages when it fails."""
 
 import shutil
 import subprocess
@@ -18,7 +18,7 @@ MOST_DATA = 3_600_000  # bytes of all data files together; a quarter of it is th
 
 
 def test_unknown_name_is_refused_with_the_known_ones():
-    """A typing error is answered with what there is."""
+    """A typing error is answered with the known names."""
     with pytest.raises(AssetError, match=r"'haed'; available: head, plane"):
         assets.load("haed")
 
@@ -35,7 +35,7 @@ def test_plane_is_that_of_the_paper():
 
 
 def test_types_and_shapes_are_those_of_the_docstrings(head):
-    """Other packages rely on dtypes without looking."""
+    """Other packages rely on dtypes without checks."""
     count = len(head.vertices)
     for array, kind, shape in (
         (head.vertices, np.float64, (count, 3)),
@@ -66,7 +66,7 @@ ASKED = {
 
 @pytest.mark.parametrize("name", ASKED)
 def test_missing_and_broken_files_are_reported_when_they_are_needed(name, tmp_path):
-    """The cure is in the message; neither garbage nor half a file is a traceback of a library."""
+    """The message has the remedy; neither garbage nor half a file gives a library's traceback."""
     folder = shutil.copytree(HEAD_FILE.parent, tmp_path / "data", symlinks=True)
     whole = (folder / name).read_bytes()
     for content in (b"nothing", whole[:5000], b""):
@@ -75,7 +75,7 @@ def test_missing_and_broken_files_are_reported_when_they_are_needed(name, tmp_pa
             ASKED[name](load_head(folder / "head.npz"))
     (folder / name).unlink()
     if name != "head.npz":
-        load_head(folder / "head.npz")  # which can still be simulated
+        load_head(folder / "head.npz")  # it can still be simulated
     with pytest.raises(AssetError, match=rf"{name} cannot be read \(.*No such file.*; install"):
         ASKED[name](load_head(folder / "head.npz"))
 
@@ -110,7 +110,7 @@ def test_layers_arrive_as_written(tmp_path, monkeypatch):
 
 
 def test_data_stay_small():
-    """The package must stay light."""
+    """The package must stay small."""
     assert sum(file.stat().st_size for file in tracked("assets/data")) < MOST_DATA
 
 

@@ -31,7 +31,7 @@ def png(colour=RED):
 
 
 def read(folder, material, library, /, **names):
-    """A triangle of one material of a library; names: of "material", "library" and "picture"."""
+    """A triangle with one material of a library; names: of "material", "library" and "picture"."""
     path = folder / "a.obj"
     named = names.get("library", "a.mtl")
     path.write_text(OBJ.format(library=named, material=names.get("material", material)))
@@ -85,7 +85,7 @@ def test_libraries_are_read_as_programs_write_them(tmp_path, library, picture):
     ],
 )
 def test_options_say_how_a_picture_lies(tmp_path, options, wanted):
-    """They are scaled first, and then shifted."""
+    """Coordinates are scaled first, and then shifted."""
     mesh = read(tmp_path, "skin", f"newmtl skin\nmap_Kd {options} skin.png\n")
     assert colour_of(mesh) == RED
     assert np.allclose(mesh.texture.uv[mesh.texture.face_uv], [wanted])
@@ -102,7 +102,7 @@ def test_options_say_how_a_picture_lies(tmp_path, options, wanted):
     ],
 )
 def test_lines_name_libraries(tmp_path, line, file):
-    """One whose name has blanks, or several; a remark may follow."""
+    """A name may have blanks, or there may be several; a comment may follow."""
     (tmp_path / "maps").mkdir()
     mesh = read(tmp_path, "skin", "newmtl skin\nmap_Kd skin.png\n", library=line, file=file)
     assert colour_of(mesh) == RED
@@ -110,7 +110,7 @@ def test_lines_name_libraries(tmp_path, line, file):
 
 @pytest.mark.parametrize("name", ["Material__25", "Material #25", "01 -  Default#1", "my\tskin"])
 def test_materials_may_have_any_names(tmp_path, name):
-    """With blanks and number signs; a remark may follow in the OBJ file."""
+    """They may have blanks and number signs; a comment may follow in the OBJ file."""
     library = f"newmtl Material\nmap_Kd other.png\nnewmtl {name}\nmap_Kd skin.png\n"
     assert colour_of(read(tmp_path, name, library)) == RED
     assert colour_of(read(tmp_path, name, library, material=f"{name} # of the face")) == RED
@@ -128,7 +128,7 @@ def test_materials_may_have_any_names(tmp_path, name):
     ],
 )
 def test_names_may_have_any_letters(tmp_path, name, encoding):
-    """Of library, material, group and picture; UTF-8, UTF-16, else Latin-1."""
+    """Names of library, material, group and picture; UTF-8, UTF-16, otherwise Latin-1."""
     obj = OBJ.format(library=f"{name}.mtl", material=name).replace("\nf", f"\ng {name}\nf")
     (tmp_path / f"{name}.obj").write_bytes(obj.encode(encoding))
     library = f"# {name}\nnewmtl {name}\nmap_Kd -s 1 1 1 maps\\{name}.png\n"
@@ -143,7 +143,7 @@ def test_names_may_have_any_letters(tmp_path, name, encoding):
 
 
 def test_letters_with_marks_may_be_written_in_two_ways(tmp_path):
-    """A folder has the letter and its mark apart, the library both in one, as after a copy."""
+    """A folder has the letter and its mark separate, the library both as one, as after a copy."""
     library = "newmtl skin\nmap_Kd für.png\n"
     apart = unicodedata.normalize("NFD", "für.png")
     assert apart != "für.png"
@@ -151,7 +151,7 @@ def test_letters_with_marks_may_be_written_in_two_ways(tmp_path):
 
 
 def test_a_wrong_line_may_have_any_letters(tmp_path):
-    """It is shown in one line, also where it is cut short within a letter."""
+    """It is shown in one line, even if it is cut within a letter."""
     path = tmp_path / "a.obj"
     path.write_text("v 0 0 0\nf 1 2 " + "ü" * 40, encoding="utf-8")
     with pytest.raises(AssetError, match="line 2: 'f 1 2 ü"):
@@ -165,7 +165,7 @@ def test_libraries_name_pictures_of_all_kinds():
 
 
 def test_pictures_may_lie_otherwise_each(tmp_path):
-    """Two materials of one picture, one of them shifted, and a triangle of none."""
+    """Two materials share one picture, one of them shifted, and a triangle has none."""
     path = tmp_path / "a.obj"
     obj = OBJ.format(library="a.mtl", material="b") + "usemtl a\nf 1/1 2/2 3/3\nf 1 2 3\n"
     path.write_text(obj)
@@ -210,7 +210,7 @@ def _palette():
     ],
 )
 def test_pictures_of_every_kind_keep_their_colours(content, wanted):
-    """Grey of 16 bits, palettes, ink, and how transparent they are."""
+    """Grey of 16 bits, palettes, ink, and transparency are read."""
     found = decoded(content, "skin")
     assert found.dtype == np.uint8
     assert found.shape[2] == 3
@@ -232,7 +232,7 @@ def test_colours_of_16_bits_keep_their_higher_bits():
 
 
 def test_other_formats_are_named():
-    """One line says which are read."""
+    """One line names the formats that are read."""
     content = _saved(PIL.Image.new("RGB", (4, 4)), "BMP")
     with pytest.raises(AssetError, match=r"its picture skin\.bmp: .* neither PNG, JPEG nor WebP"):
         decoded(content, "skin.bmp")

@@ -1,4 +1,4 @@
-"""The skin as a surface: one clean, symmetric piece with the holes it should have."""
+"""The skin as a surface: one clean, symmetric piece with the right holes."""
 
 from itertools import pairwise
 
@@ -30,7 +30,7 @@ def test_skin_is_one_manifold_piece(head):
 
 
 def test_boundary_loops_are_rim_mouth_and_eyes(head):
-    """Four loops, and they are the rows that carry these names."""
+    """The four loops are the rows with these names."""
     loops = [set(loop) for loop in boundary_loops(head.faces)]
     assert len(loops) == 4
     for name in ("rim", "mouth_0"):
@@ -48,7 +48,7 @@ def test_mesh_is_its_own_mirror_image(head):
 
 
 def test_mesh_does_not_cut_itself(head):
-    """Lips are closed and lids are folded, yet no two faces intersect."""
+    """Lips are closed and lids are folded, but no two faces intersect."""
     assert len(self_intersections(head.vertices, head.faces)) == 0
 
 
@@ -63,7 +63,7 @@ def test_triangles_are_well_shaped(head):
 
 
 def test_lips_are_closed_but_not_welded(head):
-    """Upper and lower lip nearly touch, and remain different vertices at least 0.3 mm apart."""
+    """Upper and lower lip nearly touch, and stay different vertices at least 0.3 mm apart."""
     row = head.rings["mouth_2_left"]
     columns = len(row) // 2
     upper = head.vertices[row[:columns]]
@@ -94,7 +94,7 @@ def test_edges_follow_the_nasolabial_fold(head):
 
 
 def test_outline_of_the_crown_is_smooth(head):
-    """From no side does one see long edges on the upper half of the skull."""
+    """From all sides, the upper half of the skull shows no long edges."""
     edges = sides_of(head.faces)
     ends = head.vertices[edges]
     on_crown = ends[:, :, 1].min(axis=1) > 45.0
@@ -104,7 +104,7 @@ def test_outline_of_the_crown_is_smooth(head):
 
 
 def test_head_is_closed_behind(head):
-    """The one free border is the collar."""
+    """The only free border is the collar."""
     rim = head.vertices[head.rings["rim_left"]]
     assert rim[:, 1].max() < -130.0
     assert rim[0, 0] == rim[-1, 0] == 0.0
@@ -112,7 +112,7 @@ def test_head_is_closed_behind(head):
 
 
 def test_no_face_is_inside_out(head):
-    """Outside of the tucked-in rows every face looks about the way its corners do."""
+    """Except in the tucked-in rows, every face points about the same way as its corners."""
     tucked = {
         vertex
         for name in TUCKED_ROWS
@@ -128,7 +128,7 @@ def test_no_face_is_inside_out(head):
 
 
 def ear_faces(head):
-    """Faces of both ears: all with a corner above their roots, shape (F,)."""
+    """Faces of both ears: those with a corner above the roots, shape (F,)."""
     on_ears = []
     for side in ("left", "right"):
         root = head.rings[f"ear_0_{side}"]
@@ -141,7 +141,7 @@ def test_ears_have_their_size_and_place(head):
     edge = head.vertices[head.rings["ear_1_left"]]
     high = edge[edge[:, 1].argmax()]
     low = edge[edge[:, 1].argmin()]
-    along = np.linalg.svd(edge - edge.mean(axis=0))[2][0]  # as long as it is at most
+    along = np.linalg.svd(edge - edge.mean(axis=0))[2][0]  # the direction of its greatest length
     along *= np.sign(along[1])
     assert 58.0 < np.ptp(edge @ along) < 67.0
     across = np.cross(along, [1.0, 0.0, 0.0])
@@ -158,7 +158,7 @@ def test_ears_have_their_size_and_place(head):
 
 
 def test_ear_looks_outward_in_front_and_toward_the_head_behind(head):
-    """Neither side is turned over: from the side one sees helix, scapha and concha."""
+    """Neither side is turned over: from the side helix, scapha and concha are visible."""
     rows = [set(head.rings[f"ear_{row}_left"].tolist()) for row in range(5)]
     root = rows[0]
     cross = cross_products(head.vertices, head.faces)
@@ -177,7 +177,7 @@ def test_ear_looks_outward_in_front_and_toward_the_head_behind(head):
 
 
 def _nostril_faces(head):
-    """Faces of the caps: all whose corners lie within 6 mm of a nostril's roof."""
+    """Faces of the caps: those with all corners within 6 mm of a nostril's roof."""
     near = np.zeros(len(head.vertices), dtype=bool)
     for side in ("left", "right"):
         roof = head.vertices[head.anatomy[f"nostril_roof_{side}"]]
@@ -197,7 +197,7 @@ def test_holes_that_meet_in_a_vertex_have_loops():
 
 
 def test_checks_find_faults():
-    """A check that cannot fail protects nobody."""
+    """A check that cannot fail is useless."""
     points = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1.5, 0.5]])
     crossing = np.array([[0, 1, 2], [3, 4, 5]], dtype=np.int32)
     assert self_intersections(points, crossing).tolist() == [[0, 1]]

@@ -1,4 +1,4 @@
-"""Meshes that somebody brings: order kept, mistakes reported."""
+"""Meshes of users: order kept, mistakes reported."""
 
 import struct
 
@@ -8,7 +8,7 @@ import trimesh
 
 from risorius import assets
 
-# Vertices 1 and 3 lie in the same place, vertex 4 is used by nothing: both have to stay.
+# Vertices 1 and 3 are in the same place, and vertex 4 is unused: both must stay.
 OBJ = """v 0 0 0
 v 1 0 0
 v 0 1 0
@@ -31,7 +31,7 @@ def test_order_and_doubles_are_kept(tmp_path):
 
 @pytest.mark.parametrize("suffix", ["ply", "off", "glb"])
 def test_other_formats(tmp_path, suffix):
-    """What trimesh writes comes back with as many vertices and triangles."""
+    """A file written by trimesh is read with the same number of vertices and triangles."""
     path = tmp_path / f"ball.{suffix}"
     ball = trimesh.creation.icosphere(subdivisions=1)
     ball.export(path)
@@ -42,7 +42,7 @@ def test_other_formats(tmp_path, suffix):
 
 @pytest.mark.parametrize("names", ["s t", "u v", "texture_u texture_v", "texcoord"])
 def test_a_ply_file_may_have_texture_coordinates(tmp_path, names):
-    """Under any of their names, or at the corners of each face: the mesh is read as it stands."""
+    """Under any of their names, or at the corners of each face: the mesh is read directly."""
     first, *second = names.split()
     at_vertices = f"property float {first}\nproperty float {second[0]}\n" if second else ""
     at_faces = "" if second else f"property list uchar float {first}\n"
@@ -81,7 +81,7 @@ def test_seams_and_materials_keep_vertices_together(tmp_path):
 
 
 def test_corners_of_stl_become_vertices(tmp_path):
-    """STL repeats each corner; what lies in one place is one vertex, in the order of the file."""
+    """STL repeats each corner; corners in one place become one vertex, in the order of the file."""
     path = tmp_path / "ball.stl"
     ball = trimesh.creation.icosphere(subdivisions=1)
     ball.export(path)
@@ -167,7 +167,7 @@ def test_ply_files_may_hold_strips(tmp_path, form):
     ],
 )
 def test_colours_of_ply_may_be_of_any_kind(tmp_path, form, colour_kind, row, names):
-    """Integers of 8 or 16 bits, or shares; by the names that programs write."""
+    """Integers of 8 or 16 bits, or shares, under the names that programs write."""
     path = tmp_path / "house.ply"
     colours = {"colours": [row] * 5, "colour_kind": colour_kind, "names": names}
     path.write_bytes(ply(form, HOUSE, **colours))
@@ -179,7 +179,7 @@ def test_colours_of_ply_may_be_of_any_kind(tmp_path, form, colour_kind, row, nam
 
 @pytest.mark.parametrize("end", ["\r\n", " \r\n", "\n"])
 def test_lines_may_end_anyhow(tmp_path, end):
-    """Of PLY as text, of the header of PLY in bytes, and of OBJ, joined by a backslash or not."""
+    """Text PLY, the header of binary PLY, and OBJ, with or without a joining backslash."""
     text = ply("ascii", HOUSE)
     head, body = ply("binary_little_endian", HOUSE).split(b"end_header\n")
     files = {

@@ -1,4 +1,4 @@
-"""The built-in head against published norms, and the page that shows both."""
+"""The built-in head compared with published norms, and the page with both."""
 
 from pathlib import Path
 
@@ -28,18 +28,18 @@ Angle Orthodontist 85:211-217, persons with a normal vertical pattern.
 
 @pytest.fixture(scope="module")
 def measures(head: Head) -> dict[str, float]:
-    """Its measures."""
+    """Measures of the head."""
     return measures_of(head.vertices, head.anatomy)
 
 
 @pytest.fixture(scope="module")
 def page() -> str:
-    """The page about it."""
+    """The page about the head."""
     return (Path(__file__).parents[2] / "docs" / "head.md").read_text(encoding="utf-8")
 
 
 def test_head_is_usual_in_every_measure_with_a_norm(measures):
-    """Within two deviations of the mean of women and of men: so it was when the norms came in."""
+    """All are within two deviations of the mean of women and of men."""
     for code, norm in NORMS.items():
         for sample in (norm.women, norm.men):
             assert abs(sample.score(measures[code])) <= 2.0, code
@@ -47,7 +47,7 @@ def test_head_is_usual_in_every_measure_with_a_norm(measures):
 
 
 def test_head_is_near_the_middle_on_the_whole(measures):
-    """Usual in each measure is not enough: between the sexes the scores must not pile up."""
+    """It is not enough that each measure is usual: scores must not all lean to one side."""
     scores = [
         0.5 * (norm.women.score(measures[code]) + norm.men.score(measures[code]))
         for code, norm in NORMS.items()
@@ -73,7 +73,7 @@ def test_lips_lie_a_little_behind_the_line_from_nose_to_chin(head, page):
 
 
 def test_norms_are_plausible_figures():
-    """Against slips of the pen: deviations of 4 to 25 %, men larger."""
+    """Against typing mistakes: deviations are 4 to 25 %, and men are larger."""
     for code, norm in NORMS.items():
         assert norm.men.mean > norm.women.mean, code
         for sample in (norm.women, norm.men):
@@ -81,7 +81,7 @@ def test_norms_are_plausible_figures():
 
 
 def test_the_page_shows_the_measures_and_the_norms(measures, page):
-    """All of them, with scores where there is a norm."""
+    """All of them are there, with scores if there is a norm."""
     for code, value in measures.items():
         row = f", {code} | {value:.1f} |"
         for sample in (NORMS[code].women, NORMS[code].men) if code in NORMS else ():
@@ -91,7 +91,7 @@ def test_the_page_shows_the_measures_and_the_norms(measures, page):
 
 
 def test_bone_lies_as_deep_as_was_published(head, page):
-    """Within two deviations wherever a figure could be read; every figure is on the page."""
+    """It is within two deviations of every published figure; each figure is on the page."""
     for name, (sample, source) in DEPTHS.items():
         depth = float(head.bone_depth[head.anatomy[name]])
         assert abs(sample.score(depth)) < 2.0, name

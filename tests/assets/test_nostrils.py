@@ -6,7 +6,7 @@ from risorius.assets.data_files import read_arrays
 
 
 def test_nostrils_are_no_black_holes(head):
-    """A quarter of the light gets to their walls; elsewhere the map is as it was."""
+    """A quarter of the light reaches their walls; elsewhere the map is unchanged."""
     lit = head.ambient_occlusion.astype(int)
     given = read_arrays(head.beside("_ambient_occlusion.npz"))["ambient_occlusion"].astype(int)
     size = len(lit)

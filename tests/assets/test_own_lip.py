@@ -1,4 +1,4 @@
-"""Full lips, of which one lies over the other: each has its own colour and its own bone."""
+"""Full lips, one over the other: each has its own colour and its own bone."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from risorius.assets.meshes import Mesh
 
 
 def test_a_lip_that_lies_over_the_other_is_itself(head):
-    """A lower lip 3 mm higher and 4 mm in front goes with the jaw, and is red, not dark."""
+    """A lower lip 3 mm higher and 4 mm in front moves with the jaw, and is red, not dark."""
     upper, lower = (
         path_lengths(head.vertices, head.faces, head.landmarks[lip]).min(axis=0)
         for lip in (slice(61, 64), slice(65, 68))

@@ -1,4 +1,4 @@
-"""Pictures that a mesh brings: read from beside it alone, and laid on its triangles as they are."""
+"""Pictures of users' meshes: read only from beside the mesh, and laid on its triangles."""
 
 import io
 import json
@@ -27,7 +27,7 @@ def other() -> Stranger:
 
 
 def _striped():
-    """A picture whose colour gives the place: red along u, green along v."""
+    """A picture whose colour codes the place: red along u, green along v."""
     steps = np.arange(SIZE, dtype=np.uint8) * (256 // SIZE)
     rows = np.dstack([*np.meshgrid(steps, steps[::-1]), np.full((SIZE, SIZE), 60, np.uint8)])
     return PIL.Image.fromarray(rows)
@@ -59,7 +59,7 @@ def _write_obj(folder, other, picture="skin.png"):
 
 
 def _write_glb(folder, other):
-    """The same as GLB, whose vertices are doubled along the seam."""
+    """The same head as GLB, whose vertices are doubled along the seam."""
     uv, face_uv = _uv(other)
     corners, numbers = np.unique(face_uv, return_inverse=True)
     vertices = np.vstack([other.mesh.vertices] * 2)[corners]
@@ -102,7 +102,7 @@ def test_own_picture_lies_where_the_file_has_it(write, other, tmp_path):
 
 @pytest.mark.slow
 def test_maps_go_along_to_the_own_layout(other, tmp_path):
-    """Lips are lips and furrows furrows wherever the mesh's texture coordinates lie."""
+    """Lips stay lips and furrows stay furrows for any texture coordinates of the mesh."""
     files = _write_obj(tmp_path, other)
     _striped().save(tmp_path / "skin.png")
     head = fit_head(*files)
@@ -123,7 +123,7 @@ def test_maps_go_along_to_the_own_layout(other, tmp_path):
 def test_maps_turn_with_the_layout(head):
     """In a layout turned by a quarter and half as large, slopes are turned and doubled."""
     smooth = ndimage.gaussian_filter(head.wrinkles.map.astype(np.float64), (12.0, 12.0, 0.0))
-    known = replace(assets.load("head"))  # one whose map may be another
+    known = replace(assets.load("head"))  # one with another possible map
     vars(known)["wrinkles"] = replace(head.wrinkles, map=smooth.round().astype(np.uint8))
     theirs = Layout(known.uv, known.face_uv)
     turned = 0.5 * np.column_stack([-known.uv[:, 1], known.uv[:, 0]]) + [0.5, 0.0]
@@ -177,7 +177,7 @@ def test_vertex_colours_are_drawn(other, tmp_path):
     ],
 )
 def test_pictures_that_cannot_be_used_are_refused(name, content, message, other, tmp_path):
-    """Broken, missing, or out of the folder: one line each."""
+    """Broken, missing, or outside the folder: one line each."""
     files = _write_obj(tmp_path, other, name)
     if content is not None:
         (tmp_path / name).write_bytes(content)
@@ -187,7 +187,7 @@ def test_pictures_that_cannot_be_used_are_refused(name, content, message, other,
 
 
 def test_a_link_out_of_the_folder_is_refused(other, tmp_path):
-    """The target of a name counts, not its look."""
+    """The target of a name counts, not the name itself."""
     folder = tmp_path / "inside"
     folder.mkdir()
     _striped().save(tmp_path / "secret.png")
@@ -197,7 +197,7 @@ def test_a_link_out_of_the_folder_is_refused(other, tmp_path):
 
 
 def test_huge_pictures_are_refused_before_they_unfold(other, tmp_path):
-    """A header claims more pixels than there is memory."""
+    """A header claims more pixels than fit into memory."""
     files = _write_obj(tmp_path, other)
     whole = io.BytesIO()
     PIL.Image.new("L", (4, 4)).save(whole, "PNG")
@@ -210,7 +210,7 @@ def test_huge_pictures_are_refused_before_they_unfold(other, tmp_path):
 
 @pytest.mark.slow
 def test_a_missing_library_paints_nothing(other, tmp_path):
-    """Many files name one that was never sent along; it is reported in one line."""
+    """Many files name one that is missing; one line reports it."""
     files = _write_obj(tmp_path, other)
     (tmp_path / "head.mtl").unlink()
     assert read_mesh(files[0]).texture is None
@@ -219,7 +219,7 @@ def test_a_missing_library_paints_nothing(other, tmp_path):
 
 
 def test_layouts_that_cover_a_picture_many_times_are_refused():
-    """A small file must not ask for hours."""
+    """A small file must not need hours."""
     uv = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], np.float32)
     layout = Layout(uv, np.tile(np.arange(3, dtype=np.int32), (100_000, 1)))
     with pytest.raises(AssetError, match="many times over"):
@@ -227,7 +227,7 @@ def test_layouts_that_cover_a_picture_many_times_are_refused():
 
 
 def test_pictures_are_drawn_from_one_layout_to_another():
-    """Mirrored once and again, a picture is as before."""
+    """Mirrored twice, a picture is as before."""
     picture = np.asarray(_striped())
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32)
     faces = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
@@ -240,7 +240,7 @@ def test_pictures_are_drawn_from_one_layout_to_another():
 
 @pytest.mark.slow
 def test_dense_heads_are_simplified_with_their_colours():
-    """Above what can be moved in time, a head keeps its form, openings and colours, and says so."""
+    """A head above the limit keeps its form, openings and colours, and a line reports it."""
     dense = stranger(2)
     vertices, faces = trimesh.remesh.subdivide(dense.mesh.vertices, dense.mesh.faces)
     colours = np.where(vertices[:, [0]] > dense.mesh.vertices[:, 0].mean(), 250, 10)

@@ -1,4 +1,4 @@
-"""The picture of the skin: where it is red, dark and hairy, in every tone, and how it is read."""
+"""The picture of the skin: red, dark and hairy places, in every tone, and reading of the file."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ LARGEST_IMAGE_FILE = 1_250_000  # bytes
 
 
 def test_albedo_is_a_picture(head):
-    """Square, 8 bits, three channels, read-only, light on disk, and read only once."""
+    """It is square, 8 bits, three channels, read-only, small on disk, and read only once."""
     assert head.albedo.dtype == np.uint8
     assert head.albedo.ndim == 3
     assert head.albedo.shape[0] == head.albedo.shape[1] >= 1024

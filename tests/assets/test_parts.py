@@ -20,19 +20,19 @@ def test_parts_are_well_formed(head):
 
 
 def test_what_belongs_to_the_jaw_moves_with_it(head):
-    """Lower teeth, lower gums, tongue and the floor of the mouth are the mandible's."""
+    """Lower teeth, lower gums, tongue and the floor of the mouth follow the mandible."""
     on_mandible = {found.name for found in head.parts if found.bone == "mandible"}
     assert on_mandible == {"teeth_lower", "gums_lower", "tongue", "oral_cavity_lower"}
 
 
 def test_parts_look_outward_or_into_the_mouth(head):
-    """Teeth and eyes face away from their middle; the cavity is seen from inside."""
+    """Teeth and eyes face away from their middle; the cavity is visible from inside."""
     for name in ("eyeball_left", "tongue"):
         found = part(head, name)
         away = found.vertices - found.vertices.mean(axis=0)
         assert (found.normals * away).sum(axis=1).mean() > 0.0
     flesh = part(head, "eye_corners")
-    assert flesh.normals[flesh.vertices[:, 2] > 79.5, 2].min() > 0.5  # its sides look aside
+    assert flesh.normals[flesh.vertices[:, 2] > 79.5, 2].min() > 0.5  # its sides face aside
     cavity = part(head, "oral_cavity_upper")
     inward = np.array([0.0, -75.0, 56.0]) - cavity.vertices
     assert ((cavity.normals * inward).sum(axis=1) > 0.0).mean() > 0.95
@@ -40,7 +40,7 @@ def test_parts_look_outward_or_into_the_mouth(head):
 
 
 def test_everything_in_the_mouth_is_inside_the_head(head):
-    """Nothing pokes through lips or cheeks at rest."""
+    """No part comes through lips or cheeks at rest."""
     for found in head.parts:
         if found.name.startswith(IN_MOUTH):
             assert winding_numbers(head.vertices, head.faces, found.vertices).min() > 0.65, (
@@ -49,7 +49,7 @@ def test_everything_in_the_mouth_is_inside_the_head(head):
 
 
 def test_teeth_darken_toward_the_corners_of_the_mouth(head):
-    """Molars and premolars stand in the shade of the cheeks, though their neighbours are white."""
+    """Molars and premolars are in the shade of the cheeks, although their neighbours are white."""
     teeth = part(head, "teeth_upper")
     lightness = teeth.colours.mean(axis=1)
     aside = np.abs(teeth.vertices[:, 0])
@@ -89,7 +89,7 @@ def test_upper_incisors_overlap_the_lower(head):
 
 
 def test_mouth_is_darker_toward_the_throat(head):
-    """Teeth and cheeks lose light with depth, yet the throat is no black hole."""
+    """Teeth and cheeks lose light with depth, but the throat is not black."""
     for name in ("teeth_lower", "teeth_upper", "oral_cavity_upper"):
         found = part(head, name)
         depth = found.vertices[:, 2]
@@ -100,7 +100,7 @@ def test_mouth_is_darker_toward_the_throat(head):
 
 
 def test_gums_hold_the_teeth(head):
-    """Every crown is rooted in gum, and what stands out of it is as high as in a mouth."""
+    """Every crown has its root in gum, and its visible height is that of real teeth."""
     for row, up in (("upper", 1.0), ("lower", -1.0)):
         teeth = part(head, f"teeth_{row}").vertices
         gums = part(head, f"gums_{row}").vertices
@@ -113,7 +113,7 @@ def test_gums_hold_the_teeth(head):
 
 
 def test_the_tongue_lies_against_the_lower_crowns(head):
-    """No more than 2.5 mm between, from the canines to the molars: their inner sides are hidden."""
+    """The gap is at most 2.5 mm, from the canines to the molars: their inner sides are hidden."""
     tongue, teeth = (part(head, name).vertices for name in ("tongue", "teeth_lower"))
     for z in (80.0, 75.0, 68.0, 59.0):
         crowns = teeth[
@@ -124,7 +124,7 @@ def test_the_tongue_lies_against_the_lower_crowns(head):
 
 
 def test_parts_cost_no_more_than_they_must(head):
-    """On a software renderer they cost as much as the skin: 8000 to 16 600 triangles."""
+    """In a software renderer they take as long as the skin: 8000 to 16 600 triangles."""
     assert 8000 <= sum(len(found.faces) for found in head.parts) <= 16600
 
 
@@ -141,7 +141,7 @@ def test_lids_rest_on_the_iris_as_in_a_calm_face(head):
 
 
 def test_lashes_are_rooted_in_the_lids_edges(head):
-    """Each stands on a margin, leaves the eye, and keeps clear of the eyeball."""
+    """Each begins on a margin, points away from the eye, and does not touch the eyeball."""
     lashes = part(head, "lashes")
     assert lashes.roots is not None
     assert lashes.strand_radius > 0.0
@@ -159,7 +159,7 @@ def test_lashes_are_rooted_in_the_lids_edges(head):
 
 
 def test_lower_lashes_are_short_and_lean_outward(head):
-    """Long ones that stand straight below the eye look like a doll's."""
+    """Long ones that stand straight below the eye would look like a doll's."""
     lashes = part(head, "lashes")
     eye = head.eyes[1]
     tips = np.flatnonzero(np.diff(lashes.roots, append=-1))
@@ -187,7 +187,7 @@ def test_wet_edges_lie_between_lid_and_eyeball(head):
 
 
 def test_eyeballs_fit_their_lids(head):
-    """The lid margin keeps clear of the ball, and the ball fills the fissure."""
+    """The lid margin does not touch the ball, and the ball fills the fissure."""
     for eye, side in zip(head.eyes, ("right", "left"), strict=True):
         ball = part(head, f"eyeball_{side}").vertices - eye.centre
         radius = norm(ball, axis=1)
@@ -215,7 +215,7 @@ def test_pupil_is_at_the_pole_and_the_iris_has_its_radius(head):
 
 
 def test_upper_lid_throws_a_shadow_on_the_eye(head):
-    """Painted: above, the sclera is darker than below, by a quarter to a half."""
+    """It is painted: above, the sclera is darker than below, by a quarter to a half."""
     ball = part(head, "eyeball_left")
     local = ball.vertices - head.eyes[1].centre
     sclera = (local[:, 2] > 6.0) & (np.hypot(local[:, 0], local[:, 1]) > 6.8)

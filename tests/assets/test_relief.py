@@ -32,7 +32,7 @@ def test_an_antihelix_parts_into_two_crura(head):
 
 
 def test_a_muscle_stands_out_of_each_side_of_the_neck(head):
-    """The slopes along the way across it go up and down again, on both sides alike."""
+    """The slopes on the way across it rise and fall, on both sides equally."""
     slopes = head.fine_shape.slopes[..., 0].astype(int) - 128
     row = slopes[930]
     left = row[512:]

@@ -28,7 +28,7 @@ def at(head, vertices):
 
 
 def test_every_texel_has_a_class(head):
-    """Of those that skin has: no background, nothing to ignore, nothing that is worn."""
+    """It is a class of skin: no background, nothing to ignore, nothing worn."""
     assert head.segments.shape == head.albedo.shape[:2]
     assert set(np.unique(head.segments)) == set(Segment) - {
         Segment.BACKGROUND, Segment.CLOTHING, Segment.GLASSES, Segment.FACE_WEAR, Segment.IGNORE,
@@ -36,7 +36,7 @@ def test_every_texel_has_a_class(head):
 
 
 def test_the_right_half_is_the_left_one_mirrored(head):
-    """With the classes of the subject's other side; left is where u is large."""
+    """It has the classes of the subject's other side; left is at large u."""
     mirrored = head.segments[:, ::-1]
     expected = head.segments.copy()
     for right, left in MIRRORED.items():
@@ -48,7 +48,7 @@ def test_the_right_half_is_the_left_one_mirrored(head):
 
 @pytest.mark.parametrize("place", list(PLACES))
 def test_named_places_are_what_they_are(head, place):
-    """Anatomical points that lie well within a region."""
+    """Anatomical points well within a region have its class."""
     assert at(head, head.anatomy[place]) == [PLACES[place]]
 
 

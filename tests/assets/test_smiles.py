@@ -1,4 +1,4 @@
-"""Smiles of persons: their own shares of muscles, in AU12 and joy alone, and lips that follow."""
+"""Smiles of persons: their own shares of muscles, only in AU12 and joy, and lips that follow."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from risorius.assets.loading import load
 
 
 def test_smiles_change_two_rows_within_their_limits():
-    """The usual one changes nothing; the strongest ones leave shares between 0 and 1."""
+    """The usual one changes nothing; the strongest ones keep shares between 0 and 1."""
     layers = load("head").layers
     plain = {name: row for layer in layers for name, row in layer.rows.items()}
 
@@ -31,7 +31,7 @@ def test_smiles_change_two_rows_within_their_limits():
 
 
 def test_a_lifted_smile_bares_more_teeth_and_a_shut_one_stays_shut():
-    """Joy raises the upper lip farther; AU12 alone parts no lips."""
+    """Joy raises the upper lip farther; AU12 alone does not part the lips."""
     identity = sample_identity(110)
     heights, slits = [], []
     for lift in (0.0, 1.0):
@@ -51,6 +51,6 @@ def test_a_lifted_smile_bares_more_teeth_and_a_shut_one_stays_shut():
 
 
 def test_a_third_of_people_smile_with_the_raisers_of_the_lip():
-    """Rubin 1974: 31 and 2 of 100; women's are lifted farther."""
+    """Rubin 1974: 31 and 2 of 100; women's lips are lifted farther."""
     lifts = np.array([sample_identity(seed).smile.lift for seed in range(300)])
     assert 0.27 < (lifts >= 0.4).mean() < 0.39

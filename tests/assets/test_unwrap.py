@@ -29,7 +29,7 @@ def stretches(head):
 
 
 def seen_in_front(head):
-    """Faces of the face itself, without those tucked in, shape (F,)."""
+    """Faces of the face itself, without tucked-in ones, shape (F,)."""
     tucked = [head.rings[f"{row}_{side}"] for row in TUCKED_ROWS for side in ("left", "right")]
     _, y, z = head.vertices[head.faces].mean(axis=1).T
     in_front = (z > 62.0) & (y < 62.0) & (y > -112.0)
@@ -47,12 +47,12 @@ def test_coordinates_are_one_piece_within_the_picture(head):
 
 
 def test_no_triangle_is_turned_over(head):
-    """Not even those behind lips and lids."""
+    """This includes those behind lips and lids."""
     assert signed_areas(head.uv.astype(np.float64), head.face_uv).min() > 0.0
 
 
 def test_no_two_triangles_share_a_texel(head):
-    """Two places of the skin must not get the same colour: samples lie in one face at most."""
+    """Two places of the skin must not share a colour: samples are in one face at most."""
     side = 300
     covered = np.zeros((side, side), dtype=np.int64)
     for a, b, c in head.uv.astype(np.float64)[head.face_uv] * side:
@@ -70,7 +70,7 @@ def test_no_two_triangles_share_a_texel(head):
 
 
 def test_face_is_hardly_stretched(head):
-    """A freckle is half again as long as wide at most, and detail is spread over the face."""
+    """A freckle's length is at most one and a half times its width; detail is spread evenly."""
     largest, smallest = stretches(head)[seen_in_front(head)].T
     ratio = largest / smallest
     assert np.median(ratio) < 1.55
@@ -81,7 +81,7 @@ def test_face_is_hardly_stretched(head):
 
 
 def test_face_gets_more_of_the_picture_than_the_rest(head):
-    """The back of the head must not eat up the brow's hairs."""
+    """The back of the head must not take texels from the brow's hairs."""
     scale = np.sqrt(stretches(head).prod(axis=1))
     behind = head.vertices[head.faces].mean(axis=1)[:, 2] < 10.0
     assert np.median(scale[seen_in_front(head)]) > 1.3 * np.median(scale[behind])

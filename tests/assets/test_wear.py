@@ -1,4 +1,4 @@
-"""Shirts and glasses: where frames lie on any person, and what else stays."""
+"""Shirts and glasses: the place of frames on any person, and other unchanged parts."""
 
 import numpy as np
 import pytest
@@ -44,7 +44,7 @@ def test_frames_lie_before_eyes_and_off_the_skin(people, name):
 
 
 def test_normals_point_out_of_the_frame(people):
-    """Faces run the way of their normals, or they would be culled."""
+    """Faces must agree with their normals, or they would be culled."""
     part = glasses(people[0], FRAMES["oval"])
     a, b, c = (part.vertices[part.faces[:, k]].astype(float) for k in range(3))
     across = np.cross(b - a, c - a)
@@ -52,7 +52,7 @@ def test_normals_point_out_of_the_frame(people):
 
 
 def test_shirts_keep_their_shades(people):
-    """Only the colours of the shirt differ; without glasses there are none."""
+    """Only the shirt's colours differ; without glasses there are none."""
     plain = people[0]
     white = wearing(plain, shirt="white")
     for before, after in zip(plain.parts, white.parts, strict=True):
@@ -95,7 +95,7 @@ def test_collars_lie_on_the_shirt_and_off_the_neck(people, collar):
 
 
 def test_a_v_shows_the_shirt_below(people):
-    """Its point lies in the middle; the shirt in it is white, or dark below a light jersey."""
+    """Its point is in the middle; the shirt in it is white, or dark below a light jersey."""
     person = people[0]
     count = len(shirt_of(person).vertices)
     below = shirt_of(wearing(person, shirt="red", collar="v")).colours[:count]

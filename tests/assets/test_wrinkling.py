@@ -1,4 +1,4 @@
-"""The map of wrinkles: furrows where skin wrinkles, and nothing where it does not."""
+"""The map of wrinkles: furrows in wrinkling skin, and none elsewhere."""
 
 import numpy as np
 import pytest
@@ -14,13 +14,13 @@ def texels(head, vertices):
 
 
 def is_plain(found):
-    """Whether there is no furrow in any of the texels, but for the last of one that fades out."""
+    """Whether none of the texels has a furrow, except the last of one that fades out."""
     slopes = np.abs(found[:, :2].astype(int) - 128)
     return bool(slopes.max() < 4 and found[:, 2].max() < 4)
 
 
 def test_arrays_fit_the_head(head):
-    """Shapes and types as `Wrinkles` says, directions of a sensible length, all read-only."""
+    """Shapes and types follow `Wrinkles`, directions have plausible lengths, all are read-only."""
     wrinkles = head.wrinkles
     assert wrinkles.map.ndim == 3
     assert wrinkles.map.shape[2] == 4
@@ -50,7 +50,7 @@ def test_no_furrows_where_skin_does_not_wrinkle(head, rings):
 
 @pytest.mark.parametrize(("place", "slot"), [("glabella", 255), ("metopion", 0), ("nasion", 0)])
 def test_furrows_follow_the_amount_of_their_own_region(head, place, slot):
-    """No other region has a say where it has no furrows."""
+    """Other regions have no effect outside of their own furrows."""
     size = len(head.wrinkles.map)
     column, row = (head.uv[head.anatomy[place]] * [size, -size] + [0.0, size]).astype(int)
     around = head.wrinkles.map[row - 12 : row + 13, column - 25 : column + 26].reshape(-1, 4)
@@ -60,20 +60,20 @@ def test_furrows_follow_the_amount_of_their_own_region(head, place, slot):
 
 
 def test_none_behind_the_face(head):
-    """Scalp, nape, throat."""
+    """Scalp, nape and throat have none."""
     _, y, z = head.vertices.T
     assert is_plain(texels(head, np.flatnonzero((z < 10.0) | (y > 78.0) | (y < -125.0))))
 
 
 def test_furrows_are_no_cliffs(head):
-    """Hardly a slope is cut off at the ends of a byte, and few are steep."""
+    """Very few slopes are cut off at the ends of a byte, and few are steep."""
     slopes = np.abs(head.wrinkles.map[..., :2].astype(int) - 128)
     assert (slopes > 126).sum() < 10
     assert (slopes > 127 * STEEPEST_FURROW).mean() < 1e-4
 
 
 def test_left_and_right_are_not_alike(head):
-    """Directions are mirrored; furrows lie in the same regions, and differ."""
+    """Directions are mirrored; furrows are in the same regions, and differ."""
     across = head.wrinkles.across
     mirrored = across[head.mirror] * [-1.0, 1.0, 1.0]
     same_way = np.sign((mirrored * across).sum(axis=2, keepdims=True))  # a sign has no meaning
@@ -87,7 +87,7 @@ def test_left_and_right_are_not_alike(head):
 
 
 def test_the_fold_of_the_cheek_runs_whole(head):
-    """Its slopes change little from texel to texel: other heads have no triangle's side there."""
+    """Slopes change little from texel to texel: other heads have no triangle's side there."""
     wrinkles = head.wrinkles
     size = len(wrinkles.map)
     slopes = (wrinkles.map[..., :2].astype(float) - 128.0) * (wrinkles.steepest / 127.0)

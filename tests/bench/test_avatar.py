@@ -1,4 +1,4 @@
-"""The benchmark of avatars: vertices in place, names, and distances of sums."""
+"""The benchmark of avatars: vertices in place, names, and errors of sums."""
 
 import numpy as np
 import pytest
@@ -23,14 +23,14 @@ def test_the_built_in_head_keeps_its_vertices():
 
 
 def test_turned_persons_are_guessed_as_others():
-    """In metres, on a side or on the head: half of the points are within 3 mm, none 8 mm off."""
+    """In metres, on a side or upside down: half of the points are within 3 mm, none 8 mm off."""
     for found in persons_turned():
         assert np.median(found.off[17:]) < 3.0
         assert found.off[17:].max() < 8.0
 
 
 def test_another_order_is_seen():
-    """Vertices that have changed places are not in place, nor are those that are missing."""
+    """Exchanged and missing vertices do not count as in place."""
     points = np.arange(30.0).reshape(10, 3)
     assert avatar.in_place(points, points) == 10
     assert avatar.in_place(points, points[[1, 0, *range(2, 10)]]) == 8
@@ -38,6 +38,6 @@ def test_another_order_is_seen():
 
 
 def test_a_folder_without_the_mesh_is_refused(tmp_path):
-    """In one line that says what the folder needs."""
+    """One line says what the folder needs."""
     with pytest.raises(UserError, match="folder needs base"):
         avatar.makehuman(tmp_path)

@@ -1,4 +1,4 @@
-"""The criterion of Fig. 10, made of public names: mouths that open."""
+"""The criterion of Fig. 10, made from public names: mouths that open."""
 
 from itertools import pairwise
 
@@ -55,7 +55,7 @@ def test_nothing_at_rest(seed, away, has_holes):
 @settings(max_examples=60, deadline=None)
 @given(soups())
 def test_any_triangles(soup):
-    """Fins, flips and debris split nothing at rest, and crack nowhere when they move."""
+    """Fins, flips and debris split nothing at rest, and do not crack when they move."""
     positions, faces = soup
     mesh = meshes.Mesh(positions, faces)
     assert not splits_of(mesh, positions).any()
@@ -82,7 +82,7 @@ def test_a_slit_that_opens_in_its_plane():
 @settings(max_examples=40, deadline=None)
 @given(heights, heights)
 def test_symmetric_in_symmetric_out(height, lower):
-    """A mirrored border is split alike left and right; and above and below, if opened so."""
+    """A mirrored border is split equally left and right; and above and below, if opened so."""
     for axis, sides in ((0, (height, lower)), (1, (height, height))):
         deformed = meshes.opened(SLIT, sides[0])
         is_below = deformed[:, 1] < 0.0
@@ -91,7 +91,7 @@ def test_symmetric_in_symmetric_out(height, lower):
         middles = deformed[EDGES].mean(axis=1)
         mirrored = middles * np.where(np.arange(3) == axis, -1.0, 1.0)
         distances = norm(mirrored[:, None] - middles, axis=2)
-        # The upper side lies on the lower one when the slit is shut; then both are alike anyway.
+        # In a shut slit the upper side lies on the lower one, and both are equal anyway.
         assert distances.min(axis=1).max() < 1e-9
         np.testing.assert_array_equal(splits, splits[distances.argmin(axis=1)])
 
@@ -116,7 +116,7 @@ def test_needs_are_continuous(seed, amplitude):
 
 
 def plain_metric(mesh, normals, pose, rest_normals):
-    """The criterion once more, by dictionaries, from the text of its file."""
+    """The criterion again, by dictionaries, from the text of its file."""
     around = Surroundings([tuple(int(v) for v in face) for face in mesh.faces])
 
     def unit(a, b, points):
@@ -163,7 +163,7 @@ def plain_metric(mesh, normals, pose, rest_normals):
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_equals_plain_twin(seed):
-    """Needs are those worked out plainly."""
+    """Needs equal those of the simple implementation."""
     mesh = meshes.irregular(seed, columns=16, rows=16)
     pose = meshes.wrinkled(mesh, seed)
     none = refine.create("none", mesh.faces, mesh.vertices)
@@ -178,7 +178,7 @@ def test_equals_plain_twin(seed):
 
 
 def outline(positions, triangles, middle, reach):
-    """Angles by which the border around a place turns, less its two corners [degrees]; sorted."""
+    """Angles of the border around a place, without its two corners [degrees]; sorted."""
     mesh = refine.connect(triangles, len(positions))
     after = dict(mesh.edges[~mesh.around.is_interior].tolist())
     before = {b: a for a, b in after.items()}

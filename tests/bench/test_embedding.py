@@ -1,4 +1,4 @@
-"""The benchmark of fine meshes that a coarse one carries."""
+"""The benchmark of fine meshes carried by a coarse one."""
 
 from risorius.bench import embedding
 

@@ -1,4 +1,4 @@
-"""Closed lips and lids stay closed, and the measure sees gaps."""
+"""Closed lips and lids stay closed, and the measure detects gaps."""
 
 import numpy as np
 import pytest
@@ -8,13 +8,13 @@ from risorius.bench.gaps import LARGEST_FAULTS, Pose, inverted_count, measure
 
 @pytest.fixture(scope="module")
 def poses() -> dict[str, Pose]:
-    """Every pose, measured once."""
+    """Every pose, with its one measurement."""
     return {pose.name: pose for pose in measure(0)}
 
 
 @pytest.mark.slow
 def test_closed_lips_stay_closed(poses):
-    """No unit parts the lips but those that are there for it, on either side or on both."""
+    """Only units with this purpose part the lips, on either side or on both."""
     slits = {name: pose.slit for name, pose in poses.items() if pose.slit is not None}
     assert len(slits) > 70
     assert {"AU12", "AU12_left", "AU17", "AU28", "AU29", "kiss"} < set(slits)
@@ -23,14 +23,14 @@ def test_closed_lips_stay_closed(poses):
 
 @pytest.mark.slow
 def test_shut_eyes_are_shut(poses):
-    """No eyeball is seen through closed lids, in any pose of the face."""
+    """No eyeball is visible through closed lids, in any pose of the face."""
     gaps = {name: pose.eye for name, pose in poses.items() if pose.eye is not None}
     assert {"AU43", "AU43_left", "AU45_right", "AU46_left", "blink", "wink", "yawn"} <= set(gaps)
     assert {name: gap for name, gap in gaps.items() if gap >= LARGEST_FAULTS["eye"]} == {}
 
 
 def test_a_folded_triangle_is_counted(head):
-    """One that turned over is found amid skin that turned as a whole, which is none."""
+    """One that turned over is found within skin that turned as a whole, which does not count."""
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     over = turn @ np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
     now = head.vertices @ over.T

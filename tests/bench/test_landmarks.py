@@ -1,4 +1,4 @@
-"""The bench of landmarks: how errors are counted, and what it says without a detector."""
+"""The benchmark of landmarks: how it counts errors, and its message without a detector."""
 
 import json
 
@@ -19,7 +19,7 @@ FACE[46:48] = 64.0, 50.0
 
 
 def labels_of_face(yaw=0.0, mask="none"):
-    """Labels of a flat face 500 mm before a camera that shows a millimetre as a pixel."""
+    """Labels of a flat face 500 mm before a camera with one pixel per millimetre."""
     points = np.column_stack([FACE, np.full(68, 500.0)])
     return {
         "camera": {
@@ -48,7 +48,7 @@ def measured(folder, labels, points):
 
 
 def test_a_constant_part_is_one_on_both_sides(tmp_path):
-    """A detector that sets every corner of the mouth outward by 3 %, the rest as labelled."""
+    """A detector moves every corner of the mouth outward by 3 %, and finds the rest exactly."""
     outward = np.zeros((68, 2))
     outward[48, 0] = -1.2
     outward[54, 0] = 1.2
@@ -64,13 +64,13 @@ def test_a_constant_part_is_one_on_both_sides(tmp_path):
 
 
 def test_masked_persons_are_left_out(tmp_path):
-    """A detector guesses what lies below."""
+    """A detector guesses the parts beneath."""
     found = measured(tmp_path, [labels_of_face(mask=mask) for mask in ("none", "white")], FACE)
     assert (found.picture_count, len(found.yaw)) == (1, 1)
 
 
 def test_a_tracker_s_mesh_gives_all_68_points():
-    """And every point of the left has its mirror image on the right."""
+    """Every point of the left has its mirror image on the right."""
     mesh = np.random.default_rng(1).uniform(0.0, 100.0, (478, 2))
     points = landmarks.points_of_mesh(mesh)
     assert points.shape == (68, 2)
@@ -82,7 +82,7 @@ def test_a_tracker_s_mesh_gives_all_68_points():
 
 
 def test_without_the_detector_one_line_says_so(tmp_path, monkeypatch):
-    """It is an extra; nothing fails where it is missing."""
+    """It is an extra; without it no test fails."""
     monkeypatch.setattr(landmarks, "is_installed", lambda name: False)
     output = succeeded("bench", "landmarks", tmp_path, "--detector", "dlib")
     assert output == "skipped: dlib is not installed; pip install '.[dlib]' brings it\n"

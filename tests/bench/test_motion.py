@@ -1,4 +1,4 @@
-"""Scores of motion: made-up references of known motion, under every spelling of their names."""
+"""Scores of motion: made-up references of known motion, with every spelling of their names."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ from risorius.bench.motion import Row, blobs_of, measure, report, targets
 from tests.heads import METRES, SHIFT, TURN, shape, stranger
 from tests.sim.poses import settled_displacement
 
-# Fields that are scored: what each is called -> the controls that make it on the built-in head.
+# Scored fields: the name of each -> the controls that make it on the built-in head.
 SCORED = {
     "jawOpen": {"jawOpen": 1.0},
     "JawForward": {"jawForward": 1.0},
@@ -30,7 +30,7 @@ SCORED = {
 
 @pytest.fixture(scope="module")
 def scored(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Row], list[str]]:
-    """Scores of a head of another shape, unit and orientation that moves as the built-in one."""
+    """Scores of a head with another shape, unit and orientation, and the built-in motion."""
     head = assets.load("head")
     simulation = sim.create(head)
 
@@ -59,12 +59,12 @@ def scored(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Row], li
 
 @pytest.mark.slow
 def test_own_motion_is_known_again(scored):
-    """Carried over by landmarks to another head, each shape is nearly its original."""
+    """Carried over by landmarks to another head, each shape nearly equals its original."""
     rows, left_out = scored
     assert set(rows) == {*SCORED, "mouthClose", "eyeBlinkLeft"} - {"eyeBlink_L"}
     assert left_out == ["earWiggle", "eyeBlinkRight"]  # unknown, and nothing moves
     cosines = {name: row.cosine for name, row in rows.items()}
-    # The built-in head brings its mandible, on another head it is guessed from landmarks.
+    # The built-in head has its own mandible; on another head it is guessed from landmarks.
     assert all(c > (0.82 if name == "jawOpen" else 0.9) for name, c in cosines.items()), cosines
     assert np.mean(list(cosines.values())) > 0.96
     for name, row in rows.items():
@@ -74,13 +74,13 @@ def test_own_motion_is_known_again(scored):
 
 
 def held_to(*rows):
-    """Missing rows beside a shape that is sound."""
+    """Missing rows beside a correct shape."""
     sound = Row("jawOpen", 0.99, 1.0, 0.02, 0.5)
     return [target.text for target in targets([sound, *rows], []) if not target.is_met]
 
 
 def test_a_shape_below_its_blob_is_missed():
-    """Where a smooth bump comes nearer to the scan: by its directions, or by its size."""
+    """This is where a smooth bump is nearer to the scan: by its directions, or by its size."""
     assert held_to() == []
     assert held_to(Row("mouthLeft", 0.95, 1.0, 0.1, 0.9)) == []
     (astray,) = held_to(Row("eyeWide", 0.95, 1.0, 0.1, 0.96))
@@ -91,7 +91,7 @@ def test_a_shape_below_its_blob_is_missed():
 
 
 def test_the_blob_stands_beside_each_shape():
-    """As the last column, of the mean as well."""
+    """It is the last column, also for the mean."""
     text = report([Row("jawOpen", 0.95, 1.0, 0.1, 0.901), Row("eyeWide", 0.96, 1.1, 0.1, 0.8)], [])
     lines = [line.split() for line in text.splitlines()]
     assert ["shape", "cosine", "magnitude", "residual", "blob"] in lines
@@ -99,7 +99,7 @@ def test_the_blob_stands_beside_each_shape():
 
 
 def test_a_bump_is_known_as_a_blob(head):
-    """One of the widths is nearly the field of a bump on one side, and one on both of them."""
+    """One of the widths nearly equals a bump on one side, and one equals bumps on both sides."""
     for corners in (["cheek_left"], ["cheek_left", "cheek_right"]):
         places = head.vertices[[head.anatomy[name] for name in corners]]
         away = norm(head.vertices[:, None] - places, axis=2)
@@ -146,7 +146,7 @@ def test_broken_references_are_named(arrays, tmp_path, name, value, message):
 
 @pytest.mark.parametrize("content", [b"hello", b"PK\x03\x04 cut short", b""])
 def test_files_that_hold_no_arrays_are_named(tmp_path, content):
-    """Neither text nor half an archive is a traceback."""
+    """Neither text nor half an archive gives a traceback."""
     (tmp_path / "face.npz").write_bytes(content)
     with pytest.raises(UserError, match=r"face.npz: is broken, or no file of arrays"):
         measure(tmp_path)

@@ -32,7 +32,7 @@ def rolled_plane():
 
 @pytest.mark.slow
 def test_scores_of_a_cylinder():
-    """Cubic edges follow a cylinder, Loop shrinks it; budgets are kept."""
+    """Cubic edges follow a cylinder, Loop shrinks it; budgets are met."""
     average = quality.means(scores := quality.measure(rolled_plane()))
     static = average[STATIC]
     loop = average["uniform Loop 16x"]
@@ -48,7 +48,7 @@ def test_scores_of_a_cylinder():
 
 
 def test_error_of_the_truth_is_zero():
-    """A coarse mesh that is the dense one has no error; one turned aside has one of its own."""
+    """A coarse mesh equal to the dense one has no error; one turned aside has an error."""
     subject = rolled_plane()
     rest = subject.rest.coarse
     pose = subject.poses["roll 1"].coarse
@@ -103,7 +103,7 @@ def test_built_in_head(head):
 
 @pytest.mark.slow
 def test_gains_on_the_built_in_head():
-    """Schemes that interpolate come nearer in every expression, by as much as was aimed at."""
+    """Interpolating schemes come nearer in every expression, by the intended amount."""
     calm = "detail displacement, blended 2x"
     methods = (STATIC, BEST, calm, "cubic twice", "detail twice")
     scores = quality.measure(subjects.built_in(1), ("joy", "blink"), methods=methods)

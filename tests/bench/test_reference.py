@@ -1,4 +1,4 @@
-"""Reference data comes out of a checkout of ICT-FaceKit; a small one is written here."""
+"""Reference data from a checkout of ICT-FaceKit; a small one is written here."""
 
 import gzip
 from pathlib import Path
@@ -16,7 +16,7 @@ LIFT = np.array([0.0, 0.5, 0.25])
 
 
 def face():
-    """A dome of quads, and behind it one more vertex, which a last quad reaches for."""
+    """A dome of quads, and one more vertex behind it, which a last quad uses."""
     x, y = np.meshgrid(*[np.linspace(-8.0, 8.0, SIZE + 1)] * 2)
     z = 8.0 - 0.05 * (x**2 + y**2) + 0.1 * np.sin(3.0 * x)
     vertices = np.stack([x, y, z], axis=-1).reshape(-1, 3)
@@ -27,7 +27,7 @@ def face():
 
 
 def obj(vertices, quads):
-    """The text of a file as the checkout has it, with texture coordinates."""
+    """The text of a file in the checkout's form, with texture coordinates."""
     lines = ["# a head", *("v {:.6f} {:.6f} {:.6f}".format(*each) for each in vertices), "vt 0 0"]
     lines += ["f " + " ".join(f"{corner + 1}/1" for corner in quad) for quad in quads]
     return "\n".join(lines).encode()
@@ -51,7 +51,7 @@ def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def made(checkout):
-    """The arrays that the command writes, by file."""
+    """The arrays written by the command, by file."""
     folder = checkout.parent / "made"
     said = succeeded("bench", "reference", checkout, "-o", folder)
     assert "not in the checkout: mouthSmile_R" in said
@@ -73,7 +73,7 @@ def test_the_face_and_its_motion(checkout):
 
 
 def test_identity_modes(checkout):
-    """Each is how its component moves the face."""
+    """Each is the motion of the face by its component."""
     files = made(checkout)
     assert files["identity_modes"]["modes"].shape == (1, COUNT, 3)
     expected = 0.01 * files["face"]["vertices"]
@@ -82,10 +82,10 @@ def test_identity_modes(checkout):
 
 @pytest.mark.slow
 def test_bench_quality_runs_on_it(checkout):
-    """The folder is what `--reference` takes."""
+    """The folder is accepted by `--reference`."""
     made(checkout)
     result = risorius("bench", "quality", "--reference", checkout.parent / "made")
-    assert result.exit_code in (0, 1), result.output  # targets are of faces, and this is a dome
+    assert result.exit_code in (0, 1), result.output  # targets are for faces, and this is a dome
     rows = [line for line in result.output.splitlines() if line.startswith("cubic twice ")]
     triangles, _, better = rows[0].removeprefix("cubic twice").split()[:3]
     assert float(triangles) > 10 and float(better.rstrip("%")) > 50, "nearer to the dense face"

@@ -10,7 +10,7 @@ from tests.refine_gl.agreement import why_no_card
 
 @pytest.mark.slow
 def test_rows():
-    """The share of edges that was asked for; times that fit."""
+    """It has the requested share of edges; times fit."""
     rows = {row.method: row for row in refine.measure(["2k"], 0.05)}
     count = rows["kahler 10 %"].triangles_in
     assert abs(count - 2_000) < 100

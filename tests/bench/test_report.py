@@ -1,4 +1,4 @@
-"""What benchmarks print, and are held to: a target that is missed ends with exit code 1."""
+"""Output and targets of benchmarks: a missed target ends with exit code 1."""
 
 import pytest
 from click.testing import CliRunner
@@ -13,7 +13,7 @@ NEARER = [Score(STATIC, "joy", 1.0, 1.0, 10.0, 9.0), Score(BEST, "joy", 2.0, 0.6
 
 
 def run(command, measured, *words):
-    """Exit code and output of a benchmark that measured this."""
+    """Exit code and output of a benchmark with these measurements."""
     with pytest.MonkeyPatch.context() as patch:
         for (module, name), value in measured.items():
             patch.setattr(module, name, lambda *_, value=value, **__: value)
@@ -51,7 +51,7 @@ def of_quality(**change):
     ],
 )  # fmt: skip
 def test_a_missed_target_is_reported_and_ends_with_one(bench, broken):
-    """All that is as it should be ends with 0, and says "met" for each target."""
+    """Without misses the command ends with 0, and prints "met" for each target."""
     code, output = bench()
     assert code == 0
     assert "  met     " in output
@@ -63,7 +63,7 @@ def test_a_missed_target_is_reported_and_ends_with_one(bench, broken):
 
 @pytest.mark.slow
 def test_table_of_gaps():
-    """Every row and mixtures are looked at, and the worst is named."""
+    """It has every row and mixtures, and names the worst."""
     text = gaps.report(poses := gaps.measure(3))
     assert f"{len(poses)} poses" in text
     assert len(poses) > 203

@@ -1,4 +1,4 @@
-"""The benchmark of refinement beside other libraries."""
+"""The benchmark of refinement compared with other libraries."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def rows_of(case, methods):
 
 
 def test_ours_keeps_to_the_triangles_and_comes_nearer(surfaces):
-    """Four times the triangles at most; cubic edges come nearer than the mesh, Loop does not."""
+    """At most four times the triangles; cubic edges come nearer than the mesh, Loop does not."""
     for case in surfaces.values():
         rows = rows_of(case, rivals.OURS)
         most = rivals.TIMES * len(case.faces)
@@ -36,7 +36,7 @@ def test_ours_keeps_to_the_triangles_and_comes_nearer(surfaces):
 
 
 def test_a_library_that_is_missing_is_one_line(monkeypatch):
-    """It names the package and the cure, once for all methods of the library."""
+    """It names the package and the remedy, once for all methods of the library."""
     missing = Method("nobody, smooth", "nobody", "nobody_has_this", None, has_limit=False)
     monkeypatch.setattr(rivals, "METHODS", [missing, missing])
     methods, skipped = rivals.available()
@@ -46,7 +46,7 @@ def test_a_library_that_is_missing_is_one_line(monkeypatch):
 
 
 def test_a_mesh_that_is_refused_is_one_line(surfaces):
-    """A library that raises on a mesh is left out of the rows of that surface."""
+    """A library that raises on a mesh is left out of the rows for this surface."""
 
     def refuse(faces, rest):
         raise ValueError("not manifold")
@@ -60,7 +60,7 @@ def test_a_mesh_that_is_refused_is_one_line(surfaces):
 @pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.title)
 def test_each_library_that_is_there_refines(method, surfaces):
-    """It gives a mesh of nearly four times the triangles, near the surface."""
+    """It gives a mesh with nearly four times the triangles, near the surface."""
     pytest.importorskip(method.module, reason="needs the extra 'rivals'")
     for case in surfaces.values():
         (row,) = rows_of(case, [method]).values()
@@ -81,7 +81,7 @@ def test_loop_is_the_same_surface_in_libigl(surfaces):
 
 
 def test_the_command(monkeypatch):
-    """It prints a table for each surface, of a head too, with versions."""
+    """It prints a table for each surface, also for a head, with versions."""
     monkeypatch.setattr(rivals, "METHODS", METHODS[-1:])
     monkeypatch.setattr(subjects, "built_in", rolled_plane)
     output = succeeded("bench", "rivals", "--seconds", "0.05")

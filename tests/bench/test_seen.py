@@ -1,7 +1,7 @@
 """A face tracker on our faces: how its scores are counted, and a run with the tracker itself.
 
-The run needs MediaPipe (the extra 'mediapipe') and its model, the file that the environment
-variable FACE_LANDMARKER names.
+The run needs MediaPipe (the extra 'mediapipe') and its model, the file named by the environment
+variable FACE_LANDMARKER.
 """
 
 import os
@@ -27,12 +27,12 @@ CALM = dict.fromkeys(ARKIT, 0.05)
 
 
 def over(**scores):
-    """Scores that are so far above those of the neutral face."""
+    """Scores with these differences from the neutral face."""
     return {**CALM, **{name: 0.05 + score for name, score in scores.items()}}
 
 
 def test_every_shape_is_asked_for_once():
-    """Pairs by their name without side, jaw and mouth among them; all 52 shapes are there."""
+    """Pairs have their name without a side, also for jaw and mouth; all 52 shapes are there."""
     found = dict(seen.bases())
     assert sorted(name for names in found.values() for name in names) == sorted(ARKIT)
     assert found["eyeBlink"] == ("eyeBlinkLeft", "eyeBlinkRight")
@@ -41,7 +41,7 @@ def test_every_shape_is_asked_for_once():
 
 
 def test_a_pair_counts_by_its_mean():
-    """A smile of both sides is seen beside one side of a squint; the neutral face is taken off."""
+    """A smile of both sides counts with one side of a squint; the neutral face is subtracted."""
     scores = over(mouthSmileLeft=0.5, mouthSmileRight=0.3, eyeSquintLeft=0.7)
     shape = seen.compared(scores, CALM, ("mouthSmileLeft", "mouthSmileRight"))
     assert shape == (approx(0.4), "eyeSquint", approx(0.35))
@@ -63,7 +63,7 @@ def test_without_mediapipe_one_line_says_so(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("content", [b"", b"no model", b"PK\x03\x04 cut short"])
 def test_a_file_without_model_is_named(tmp_path, content):
-    """One line with the file, and the file that is needed."""
+    """One line with the file, and the required file."""
     pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
     (tmp_path / "other.task").write_bytes(content)
     result = risorius("bench", "seen", "--model", tmp_path / "other.task")
@@ -74,7 +74,7 @@ def test_a_file_without_model_is_named(tmp_path, content):
 
 @needs_model
 def test_the_tracker_sees_an_open_jaw():
-    """Our face looks to it like one; an empty picture does not."""
+    """Our face looks like one; an empty picture does not."""
     pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
     with face_tracker(MODEL) as tracker:
         assert tracker(np.zeros((64, 64, 3), dtype=np.uint8)) == {}

@@ -1,4 +1,4 @@
-"""`risorius bench refine --threads` times both sides of each pair, by the threads that it says."""
+"""`risorius bench refine --threads` times both sides of each pair, with the stated threads."""
 
 import pytest
 
@@ -8,7 +8,7 @@ from tests.app.command_line import refusal, risorius
 
 
 def test_pairs(monkeypatch):
-    """A row for each rule, with times that fit its gain; the number of threads comes back."""
+    """A row for each rule, with times that fit its gain; the number of threads is restored."""
     monkeypatch.setattr(threads.threads, "THREAD_COUNT", 2)
     rows = threads.measure(["2k"], 0.1)
     assert [row.rule for row in rows] == ["paper's rule", "window's look"]

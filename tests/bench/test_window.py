@@ -1,4 +1,4 @@
-"""What `risorius bench window` prints."""
+"""Output of `risorius bench window`."""
 
 import os
 
@@ -24,7 +24,7 @@ def test_the_window_is_timed(monkeypatch):
     rates = [float(line[30:39]) for line in table.splitlines() if line.startswith("smile")]
     assert len(rates) == 5
     assert min(rates) > 0.0
-    assert len(targets) in (0, 4)  # where software draws
+    assert len(targets) in (0, 4)  # for software drawing
     assert "Nothing moves:" in table
     assert "% of a core" in table
 

@@ -1,4 +1,4 @@
-"""Run by Blender's Python: the add-on on a sheet under a wave; prints its findings as JSON."""
+"""Run by Blender's Python: the add-on on a sheet under a wave; prints its results as JSON."""
 
 import json
 import sys
@@ -49,7 +49,7 @@ def sheet():
 
 
 def add_heating(thing):
-    """A modifier that adds the number of the frame to the heat of each point."""
+    """A modifier that adds the frame's number to the heat of each point."""
     nodes = bpy.data.node_groups.new("heating", "GeometryNodeTree")
     nodes.is_modifier = True
     nodes.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
@@ -106,7 +106,7 @@ def watch(copy, source):
 
 
 def render(frames):
-    """Render frames in one go, as for a film; the copy's triangles in each."""
+    """Render frames at once, as for a film; return the copy's triangles in each."""
     scene = bpy.context.scene
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     camera.location = (1.0, 2.0, 8.0)
@@ -127,7 +127,7 @@ def render(frames):
 
 
 def main():
-    """All that the tests look at."""
+    """Collect all results for the tests."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     addon.register()
     source = sheet()

@@ -16,7 +16,7 @@ from tests.app.glb_player import Player
 
 @pytest.mark.slow
 def test_babylon_has_the_shapes_by_name(tmp_path):
-    """ARKit's 52 in Apple's order, eyes as nodes, and each shape at 1 moves the skin as it says.
+    """ARKit's 52 in Apple's order, eyes as nodes, and each shape at 1 moves the skin correctly.
 
     RISORIUS_NODE_MODULES names the node_modules with @babylonjs/core and @babylonjs/loaders.
     """

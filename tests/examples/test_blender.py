@@ -1,4 +1,4 @@
-"""The add-on in Blender itself: where bpy is, or RISORIUS_BLENDER_PYTHON names a Python with it."""
+"""The add-on in Blender: if bpy is here, or RISORIUS_BLENDER_PYTHON names a Python with it."""
 
 import ast
 import json
@@ -23,7 +23,7 @@ BLENDER = os.environ.get("RISORIUS_BLENDER_PYTHON", HERE)
 
 @pytest.fixture(scope="module")
 def seen(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """The findings of in_blender.py."""
+    """The results of in_blender.py."""
     if not BLENDER:
         pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")
     folder = tmp_path_factory.mktemp("blender")
@@ -46,7 +46,7 @@ def seen(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 @pytest.mark.blender
 def test_it_follows_the_source(seen):
-    """50 frames: triangles come and go, as the refiner says to the last bit."""
+    """50 frames: triangles come and go, equal to the refiner's to the last bit."""
     assert len(set(seen["triangles"])) > 5
     assert min(seen["triangles"]) > 338
     assert seen["others"] == seen["invalid"] == 0
@@ -57,13 +57,13 @@ def test_it_follows_the_source(seen):
 
 @pytest.mark.blender
 def test_numbers_of_points_go_along(seen):
-    """A modifier changes them in every frame; new points have those of their place."""
+    """A modifier changes them in every frame; new points have the values of their places."""
     assert seen["heat_off"] < 1e-5
 
 
 @pytest.mark.blender
 def test_the_copy_looks_like_its_source(seen):
-    """Same place, materials by face, the UV map that is shown; the source hides, once."""
+    """Same place, materials by face, and active UV map; the source is hidden, once."""
     assert seen["finished"] == ["FINISHED"]
     assert seen["hidden"]
     assert not seen["again"]
@@ -75,7 +75,7 @@ def test_the_copy_looks_like_its_source(seen):
 
 @pytest.mark.blender
 def test_settings(seen):
-    """They count at once: other looks split otherwise."""
+    """They take effect at once: other looks split differently."""
     assert seen["paper"] > 338
     assert seen["unblended"] > 338
     assert seen["paper"] != seen["unblended"]
@@ -111,7 +111,7 @@ def test_renders_files_and_undo(seen):
     ("version", "python", "beyond"), [("5.2", "cp313", "5.3.0"), ("5.0", "cp311", "5.1.0")]
 )
 def test_the_zip_has_all_that_it_needs(tmp_path, version, python, beyond):
-    """Built for Linux: the manifest names each wheel that is in it, and Blender accepts it."""
+    """Built for Linux: the manifest names each bundled wheel, and Blender accepts it."""
     target = tmp_path / "a new folder"
     build = [sys.executable, EXAMPLES / "build.py", "--blender", version, "linux-x64", target]
     subprocess.run(build, check=True, capture_output=True)
@@ -139,7 +139,7 @@ def test_the_zip_has_all_that_it_needs(tmp_path, version, python, beyond):
 
 
 def test_the_manifest_keeps_the_rules():
-    """Those of extensions: version as the package's, a short tagline, no network."""
+    """These are the rules of extensions: the package's version, a short tagline, no network."""
     import risorius
 
     manifest = tomllib.loads(

@@ -16,7 +16,7 @@ PAGE = Path(__file__).parents[2] / "examples" / "browser" / "avatar.html"
 
 
 def test_the_page_fetches_nothing_from_other_servers():
-    """three.js is beside it, installed by its reader: no address is on the page but one's own."""
+    """three.js is beside it, installed by the user: the page has no other address."""
     text = PAGE.read_text(encoding="utf-8")
     assert "npm install three" in text
     assert re.findall(r"(?:https?:)?//[\w.-]+\.\w+", text) == []

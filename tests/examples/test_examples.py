@@ -1,4 +1,4 @@
-"""Every program in examples/ runs, and does what its first lines say."""
+"""Every program in examples/ runs, and does what its first lines promise."""
 
 import importlib.util
 import shutil
@@ -46,7 +46,7 @@ def test_every_example_is_tested():
 def test_a_fine_mesh_on_a_coarse_cloth(library):
     """The embedding is nearer to the finer simulation than the library's own flat binding.
 
-    No carried mesh can be nearer than the coarse vertices themselves are, but for a little.
+    A carried mesh can hardly be nearer than the coarse vertices themselves are.
     """
     pytest.importorskip(library, reason=f"needs the extra '{library}'")
     flat, ours, least = example(f"in_{library}").main().values()
@@ -55,7 +55,7 @@ def test_a_fine_mesh_on_a_coarse_cloth(library):
 
 
 def test_plain_script(tmp_path):
-    """As a user starts it: triangles grow with the bend, and the file has them."""
+    """Started by a user, it makes more triangles with more bend, and the file has them."""
     target = tmp_path / "tube.obj"
     result = subprocess.run(
         [sys.executable, str(FOLDER / "plain_script.py"), str(target)],
@@ -87,7 +87,7 @@ def test_own_refiner():
 
 @pytest.mark.slow
 def test_read_dataset(tmp_path):
-    """As a user starts it: nobody is both in training and in testing."""
+    """Started by a user, it has no person both in training and in testing."""
     request = request_of(tmp_path, seed=1, size=(48, 40), passes=("segmentation",))
     make_set(request, 4, progress=False)
     result = subprocess.run(
@@ -101,7 +101,7 @@ def test_read_dataset(tmp_path):
 
 
 def test_faces_are_cut_out_with_their_points(tmp_path):
-    """A photograph and its `.pts` become one face, and its points stay on what they mark."""
+    """A photograph and its `.pts` become one face, and its points stay on their features."""
     random = np.random.default_rng(4)
     points = random.uniform([150.0, 120.0], [350.0, 330.0], (68, 2))
     picture = PIL.Image.new("RGB", (500, 400))
@@ -121,7 +121,7 @@ def test_faces_are_cut_out_with_their_points(tmp_path):
 
 @pytest.mark.slow
 def test_train_landmarks(tmp_path):
-    """As a user starts it, on few faces: it learns, and prints errors on photographs, too."""
+    """Started by a user on few faces, it learns, and prints errors on photographs, too."""
     pytest.importorskip("torch", reason="pip install '.[torch]' brings it")
     faces = tmp_path / "faces"
     make_set(request_of(faces, seed=1, size=(96, 96), passes=()), 8, progress=False)

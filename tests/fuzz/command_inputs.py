@@ -34,7 +34,7 @@ ACCEPTED = (
 )
 
 REFUSED = {
-    # Commands and options that are not there.
+    # Unknown commands and options.
     "captur good.toml": "No such command 'captur'",
     "replay": "Missing argument 'SCRIPT'",
     "bench motion": "Missing option '--reference'",
@@ -78,7 +78,7 @@ REFUSED = {
     f"{IMAGE} --option coherent=on --option blend=on": "coherent",
     f"{IMAGE} --refiner loop --option levels=0": "levels",
     f"{IMAGE} --compare --refiner none": "other than none",
-    # Options that do not go together.
+    # Options that exclude each other.
     "capture": "nothing to write",
     "capture good.toml -o x.mp4 --time 1": "for a film write --time FROM:TO",
     "capture good.toml --set joy -o x.png": "a script and --set exclude each other",
@@ -102,7 +102,7 @@ REFUSED = {
     "capture good.toml -o loop.png": "loop.png",
     f"capture good.toml -o {'x' * 300}.png": "File name too long",
     "bench quality --expression nobody": "--expression nobody: there are joy, ",
-    # What other rooms refuse.
+    # Values that other rooms refuse.
     "capture --compare good.toml -o x.mp4": "a SCRIPT goes before --compare",
     "capture good.toml -o x.mp4 --size ²x²": "'²x²' is no size",
     "capture good.toml -o x.png --time 86400": "good.toml ends at",
@@ -149,13 +149,13 @@ HOSTILE = {
     "long": "x" * 5000,
 }
 
-GIVEN = {  # what else a command needs to come as far as the option
+GIVEN = {  # other options that a command needs to reach the tested one
     "capture": "good.toml -o x.png --size 16x16 --fps 5 --time 0 --quiet",
     "replay": "good.toml",
     "bench motion": "--reference folder",
     "bench reference": "folder -o made",
 }
-INSTEAD = {  # where one option excludes a given one
+INSTEAD = {  # replacements for a given option that the tested one excludes
     ("capture", "--set"): "-o x.png --size 16x16 --fps 5 --time 0 --quiet",
     ("capture", "--sound"): "good.toml -o x.mp4 --size 16x16 --fps 5 --quiet",
     ("capture", "--head"): f"{GIVEN['capture']} --landmarks marks.json",
@@ -164,7 +164,7 @@ INSTEAD = {  # where one option excludes a given one
 
 
 def hostile_values() -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Each hostile value for every option that takes one: a name, and words of the command."""
+    """Each hostile value for every option with a value: a name, and words of the command."""
     for path, command in commands(risorius(), ()):
         words = " ".join(path)
         for option in command.params:
@@ -175,7 +175,7 @@ def hostile_values() -> Iterator[tuple[str, tuple[str, ...]]]:
                 if is_option:
                     given = INSTEAD.get((words, option.opts[-1]), GIVEN.get(words, ""))
                     arguments = (*path, *shlex.split(given), f"{option.opts[-1]}={value}")
-                else:  # the first word that is given
+                else:  # the first given word
                     arguments = (*path, *shlex.split(GIVEN.get(words, ""))[1:], "--", value)
                 yield f"{'-'.join(path)}-{option.name}-{name}", arguments
 
@@ -183,7 +183,7 @@ def hostile_values() -> Iterator[tuple[str, tuple[str, ...]]]:
 def commands(
     command: click.Command, path: tuple[str, ...]
 ) -> Iterator[tuple[tuple[str, ...], click.Command]]:
-    """Every command that is no group, with the words that call it."""
+    """Every command that is not a group, with the words that call it."""
     if isinstance(command, click.Group):
         for name, below in command.commands.items():
             yield from commands(below, (*path, name))

@@ -1,11 +1,11 @@
-"""Files that chance has damaged."""
+"""Files with random damage."""
 
 import os
 import random
 from collections.abc import Sequence
 
-SEED = int(os.environ.get("FUZZ_SEED", "20030214"))  # another one, other damages
-MOST = 6  # places that are damaged
+SEED = int(os.environ.get("FUZZ_SEED", "20030214"))  # another seed gives other damage
+MOST = 6  # damaged places
 
 
 def changed(
@@ -16,7 +16,8 @@ def changed(
 ) -> bytes:
     """The content with a few places overwritten, cut out or doubled.
 
-    tokens: what may stand there. reaches: within how many bytes from the beginning, by chance.
+    tokens: possible replacements. reaches: possible limits in bytes from the beginning, chosen at
+    random.
     """
     for _ in range(chance.randint(1, MOST)):
         place = chance.randrange(min(len(content), chance.choice(reaches)) + 1)

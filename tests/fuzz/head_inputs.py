@@ -1,6 +1,6 @@
-"""Odd and broken heads: mesh files and landmark files, each with what must become of it.
+"""Odd and broken heads: mesh files and landmark files, each with its wanted result.
 
-Of headers that lie about their sizes a few stand for all.
+Only a few examples have headers with wrong sizes.
 """
 
 import json
@@ -27,14 +27,14 @@ WRONG_KIND = "every landmark must be a vertex number, or every one a point"
 
 
 class Kind(Enum):
-    """The wanted result of an input; a text in its place is that of the one line."""
+    """The wanted result of an input; a text in its place is part of the one line."""
 
     MESH = "a mesh"
     HEAD = "a fitted head"
 
 
 class Brought(NamedTuple):
-    """The files of one input; without landmarks the mesh alone is read."""
+    """The files of one input; without landmarks only the mesh is read."""
 
     mesh: Path
     landmarks: Path | None = None
@@ -94,7 +94,7 @@ def _mesh(name: str, content: bytes | str, folder: Path) -> Brought:
 
 
 def _obj(where: Any = 0, to: Any = None, scale: float = 1.0, shift: float = 0.0) -> bytes:
-    """The built-in head as an OBJ file, with some vertices elsewhere."""
+    """The built-in head as an OBJ file, with some moved vertices."""
     vertices = HEAD.vertices * scale + shift
     if to is not None:
         vertices[where] = to
@@ -153,7 +153,7 @@ WAYS: dict[str, tuple[Callable[[Path], object], str]] = {
 
 
 def _at(make: Callable[[Path], object], name: str, folder: Path) -> Brought:
-    """A way to no file, as the mesh or, of another name, as the landmarks of a good one."""
+    """A path without a file, as the mesh or, under another name, as landmarks of a good one."""
     if name == "head.json":
         brought = _head(_obj, "", folder)
         (folder / name).unlink()

@@ -1,4 +1,4 @@
-"""A folder full of traps, and the rules by which every input must end."""
+"""A folder full of traps, and the rules for the end of every input."""
 
 import os
 import re
@@ -15,9 +15,9 @@ from click.testing import CliRunner
 
 from risorius.__main__ import command
 
-LONGEST = 60.0  # [s] on a busy machine, compiling; the slowest takes 2 s otherwise
+LONGEST = 60.0  # [s] on a busy machine with compilation; the slowest takes 2 s otherwise
 MOST_MEMORY = 600 << 20  # [bytes] more than before
-ROOM = 8 << 30  # [bytes] of addresses: what asks for more is refused by the system
+ROOM = 8 << 30  # [bytes] of addresses: the system refuses larger requests
 LONGEST_LINE = 2200  # [characters]; names are cut, explanations need no more
 STATUS = Path("/proc/self/status")
 
@@ -34,13 +34,13 @@ joy = 1.0
 class TookTooLong(BaseException):
     """An input kept the program busy, or waiting, for too long.
 
-    No Exception: nobody on the way may catch it.
+    It is not an Exception, so that no code on the way catches it.
     """
 
 
 @dataclass(frozen=True)
 class Ended:
-    """How a command ended."""
+    """The end of a command."""
 
     code: int
     out: str
@@ -90,13 +90,13 @@ def contents(folder: Path) -> dict[str, str]:
 
 @contextmanager
 def bounded(seconds: float = LONGEST, memory: int = MOST_MEMORY) -> Iterator[None]:
-    """A failure where work takes too long, waits for ever, or takes too much memory."""
+    """Fail if work takes too long, waits for ever, or takes too much memory."""
 
     def stop(*_: object) -> None:
         raise TookTooLong(f"more than {seconds:g} s")
 
     if STATUS.exists():
-        Path("/proc/self/clear_refs").write_text("5")  # the peak starts anew
+        Path("/proc/self/clear_refs").write_text("5")  # the peak is measured from here
     before = _kilobytes("VmHWM")
     limits = resource.getrlimit(resource.RLIMIT_AS)
     handler = signal.signal(signal.SIGALRM, stop)
@@ -117,7 +117,7 @@ def bounded(seconds: float = LONGEST, memory: int = MOST_MEMORY) -> Iterator[Non
 
 
 def _kilobytes(name: str) -> int:
-    """A figure of this process, 0 where the system has no such figure."""
+    """A figure of this process, 0 if the system has no such figure."""
     if not STATUS.exists():
         return 0
     found = re.search(rf"{name}:\s+(\d+) kB", STATUS.read_text())
@@ -125,20 +125,20 @@ def _kilobytes(name: str) -> int:
 
 
 def run_command(arguments: tuple[str, ...]) -> Ended:
-    """Run the command in this process, within bounds; other errors come through."""
+    """Run the command in this process, within bounds; other errors pass through."""
     with bounded():
         result = CliRunner(catch_exceptions=False).invoke(command(), arguments)
     return Ended(result.exit_code, result.stdout, result.stderr)
 
 
 def check_line(text: str) -> None:
-    """A message is one line without tricks, and not endless."""
+    """Check that a message is one line without control codes, and not endless."""
     assert text.isprintable(), text
     assert 10 < len(text) < LONGEST_LINE, len(text)
 
 
 def check_end(ended: Ended, folder: Path, before: dict[str, str]) -> None:
-    """Success, or one clear line and code 2, with everything as it was before."""
+    """Check for success, or one clear line with code 2 and unchanged files."""
     assert "Traceback" not in ended.err
     after = contents(folder)
     assert not [name for name in after if ".risorius-" in name]

@@ -1,4 +1,4 @@
-"""The command line: every command and option, given what nobody should give it."""
+"""The command line: every command and option with impossible values."""
 
 import shlex
 
@@ -17,7 +17,7 @@ def _short(words):
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ACCEPTED, ids=_short)
 def test_good_commands(line, sandbox):
-    """They end well, and leave nothing but their outputs."""
+    """They succeed, and leave only their outputs."""
     before = contents(sandbox)
     ended = run_command(tuple(shlex.split(line)))
     assert ended.code == 0, ended.err
@@ -37,6 +37,6 @@ def test_mistakes(line, sandbox):
 @pytest.mark.slow
 @pytest.mark.parametrize("words", [pytest.param(w, id=name) for name, w in hostile_values()])
 def test_hostile_values(words, sandbox):
-    """Any value of an option: success, or one line."""
+    """Any value of an option gives success, or one line."""
     before = contents(sandbox)
     check_end(run_command(words), sandbox, before)

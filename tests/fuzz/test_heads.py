@@ -1,4 +1,4 @@
-"""Every odd head ends in a mesh, in a head, or in one line; soon, and in little memory."""
+"""Every odd head gives a mesh, a head, or one line; soon, and with little memory."""
 
 import re
 import warnings
@@ -22,9 +22,9 @@ MOST_MEMORY = 400_000_000  # [bytes] more than before
 
 @contextmanager
 def quiet_and_bounded():
-    """A failure where work takes too long or too much memory, or warns on the screen.
+    """Fail if work takes too long or too much memory, or prints a warning.
 
-    An underflow shows nothing (numpy's default), and where it happens depends on the processor.
+    An underflow is silent (numpy's default), and its place depends on the processor.
     """
     with warnings.catch_warnings(record=True) as caught, np.errstate(all="warn", under="ignore"):
         warnings.simplefilter("always")

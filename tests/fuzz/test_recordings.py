@@ -1,4 +1,4 @@
-"""Recordings: good ones of every format, and hundreds of them that chance has damaged."""
+"""Recordings: good ones of every format, and hundreds with random damage."""
 
 import json
 import random
@@ -40,7 +40,7 @@ TOKENS = (
 
 
 def check(take):
-    """With any content of the file, a Take keeps its promises."""
+    """For any content of the file, a Take keeps its promises."""
     assert len(take.times) > 0
     assert take.times[0] == 0.0
     assert np.isfinite(take.times).all()
@@ -57,7 +57,7 @@ def check(take):
 
 @pytest.mark.parametrize("name", GOOD)
 def test_good_recordings(name, tmp_path):
-    """They are read, so that what follows damages something."""
+    """They are read, so that damage in the next tests has an effect."""
     path = tmp_path / "take"
     path.write_bytes(GOOD[name])
     assert is_recording(path)
@@ -73,7 +73,7 @@ def damaged(chance):
 
 
 def test_damaged_recordings(tmp_path):
-    """Read or refused in one line; of all damages a good part is read."""
+    """Each is read or refused in one line; a good part is read."""
     path = tmp_path / "take"
     read = 0
     for seed in range(SEED, SEED + ROUNDS):

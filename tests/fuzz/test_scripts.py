@@ -1,4 +1,4 @@
-"""Scripts: a table of odd ones, and hundreds that chance has damaged."""
+"""Scripts: a table of odd ones, and hundreds with random damage."""
 
 import random
 from pathlib import Path
@@ -42,12 +42,12 @@ TOKENS = (
 
 @pytest.fixture(scope="module")
 def scenes(face: FaceScene) -> dict[str, Scene]:
-    """One of each kind."""
+    """One scene of each kind."""
     return {"face": face, "plane": SCENES["plane"]()}
 
 
 def opened(path, scenes):
-    """Read a script and look at all that is asked of it before anything is drawn."""
+    """Read a script and check all its requests before drawing."""
     with bounded():
         script = script_for(path, None)
         script.check(scenes[script.scene].limits)
@@ -73,7 +73,7 @@ def damaged(chance):
 
 @pytest.mark.parametrize("number", range(ROUNDS))
 def test_damaged_scripts(number, tmp_path, scenes):
-    """Read or refused in one line; a script has values, and is written back as it was."""
+    """Read or refused in one line; a read script has values, and is written back unchanged."""
     seed = SEED + number
     path = tmp_path / "damaged.toml"
     path.write_bytes(damaged(random.Random(seed)))

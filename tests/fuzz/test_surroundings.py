@@ -1,4 +1,4 @@
-"""Settings, the environment, and refusals of the system: space, memory, files, streams."""
+"""Settings, the environment, and limits of the system: space, memory, files, streams."""
 
 import os
 import resource
@@ -18,8 +18,8 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 COMMAND = "import sys; sys.argv[0] = 'risorius'; from risorius.__main__ import run; run()"
-STARTING = 60.0  # [s] a process of its own may have to compile first
-# A variable (None: taken away), the words of the command, and its exit code.
+STARTING = 60.0  # [s] a separate process may have to compile first
+# A variable (None: removed), the words of the command, and its exit code.
 Row = tuple[dict[str, str | None], str, int]
 IMAGE = "capture --scene plane --set amplitude -o x.png --size 16x16 --quiet"
 FILM = "capture --scene plane --set amplitude -o x.mp4 --size 16x16 --quiet"
@@ -37,7 +37,7 @@ ENVIRONMENTS = {
 
 @pytest.mark.parametrize("folder", ["", "/", "~", "a\nb", "loop", "notes.txt", "x" * 5000])
 def test_places_of_settings(folder, sandbox, monkeypatch):
-    """Wherever they are said to be: the window opens as it was first."""
+    """For any given place, the window opens with its defaults."""
     monkeypatch.setenv("XDG_CONFIG_HOME", folder)
     monkeypatch.setenv("HOME", str(sandbox))
     settings, message = load_settings(settings_path())
@@ -47,7 +47,7 @@ def test_places_of_settings(folder, sandbox, monkeypatch):
 
 
 def start(words, folder, environment, limit=None):
-    """Run the command in a process of its own."""
+    """Run the command in a separate process."""
     process = subprocess.run(
         [sys.executable, "-c", COMMAND, *shlex.split(words)],
         cwd=folder,
@@ -64,14 +64,14 @@ def start(words, folder, environment, limit=None):
 
 
 def surroundings(**changed):
-    """The environment of this process, changed, without a screen unless one is named."""
+    """The environment of this process with changes, and without a screen unless one is named."""
     now = {**os.environ, "DISPLAY": None, **changed}
     return {name: value for name, value in now.items() if value is not None}
 
 
 @pytest.mark.parametrize("name", ENVIRONMENTS)
 def test_environments(name, sandbox):
-    """It works on, or names the fault in one line."""
+    """It goes on, or names the fault in one line."""
     changed, words, code = ENVIRONMENTS[name]
     before = contents(sandbox)
     ended = start(words, sandbox, surroundings(**changed))
@@ -99,7 +99,7 @@ def _limit(kind, most):
     ids=["png", "mp4", "frames", "figure", "files", "memory"],
 )
 def test_no_room(words, kind, most, code, sandbox):
-    """A full disk, few open files, too little memory: one line, and nothing half written."""
+    """A full disk, few open files, too little memory: one line, and no partial files."""
     before = contents(sandbox)
     ended = start(words, sandbox, surroundings(), _limit(kind, most))
     assert ended.code == code, ended
@@ -117,7 +117,7 @@ STREAMS = {
 
 @pytest.mark.parametrize("name", STREAMS)
 def test_streams_of_the_shell(name, sandbox):
-    """Closed and full streams, and a folder that is gone: no traceback, nothing left."""
+    """Closed and full streams, and a removed folder: no traceback, no files left."""
     before = contents(sandbox)
     command = STREAMS[name].format(risorius=f"{shlex.quote(sys.executable)} -m risorius")
     process = subprocess.run(

@@ -1,4 +1,4 @@
-"""The search for closest points against brute force."""
+"""The search for closest points compared with brute force."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from tests import meshes
 
 @pytest.mark.parametrize("name", ["triangle", "octahedron", "open_grid", "with_debris"])
 def test_equals_brute_force(name):
-    """No point of a dense sampling of the mesh is closer, and the point found is on the mesh."""
+    """No point of a dense sampling of the mesh is closer, and the found point is on the mesh."""
     mesh = meshes.NAMED[name]()
     generator = np.random.default_rng(3)
     points = generator.uniform(-2.0, 4.0, (100, 3))
@@ -39,7 +39,7 @@ def test_points_on_the_mesh():
 
 
 def test_finds_what_looks_the_same_way():
-    """Of two grids that almost touch, each point finds the one that looks its way."""
+    """Of two grids that almost touch, each point finds the one with the same direction."""
     grid = meshes.open_grid(6, 6)
     count = len(grid.vertices)
     vertices = np.concatenate([grid.vertices, grid.vertices - [0.0, 0.0, 0.01]])

@@ -1,4 +1,4 @@
-"""Colours there and back, and the texels of triangles against areas."""
+"""Colours converted there and back, and the texels of triangles compared with areas."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def test_colours_come_back():
 
 
 def test_texels_of_a_square():
-    """Two triangles have each texel of their square once, at its own place; margins add a ring."""
+    """Two triangles have each texel of their square once, in its own place; margins add a ring."""
     square = np.array([[0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]])
     corners = square[[[0, 1, 2], [0, 2, 3]]]
     found = Texels.within(corners, (64, 64))

@@ -8,7 +8,7 @@ from risorius.geometry.distances import distances_between
 
 @pytest.mark.parametrize("counts", [(7, 5), (1, 1), (0, 3), (4, 0)])
 def test_distances_are_those_of_numpy(generator, counts):
-    """Of arrays in any order in memory, and of none."""
+    """For arrays in any memory order, and for empty ones."""
     points, others = (np.asfortranarray(generator.normal(size=(n, 3))) for n in counts)
     wanted = np.linalg.norm(points[:, None] - others, axis=2)
     assert distances_between(points, others) == pytest.approx(wanted, rel=1e-14)

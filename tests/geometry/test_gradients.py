@@ -1,4 +1,4 @@
-"""Gradients of texture coordinates on surfaces whose answer is known."""
+"""Gradients of texture coordinates on surfaces with a known answer."""
 
 import numpy as np
 from numpy.testing import assert_allclose
@@ -8,7 +8,7 @@ from tests.meshes import open_grid
 
 
 def test_stretched_and_turned_sheet():
-    """Half as fast along a sheet that is twice as long, wherever it is turned to."""
+    """They are half as large on a sheet that is twice as long, at any turn."""
     sheet = open_grid(4, 3)
     vertices = sheet.vertices
     faces = sheet.faces.astype(np.int32)
@@ -21,7 +21,7 @@ def test_stretched_and_turned_sheet():
 
 
 def test_flat_triangles_have_none():
-    """A sheet that is folded to a line has gradients that are numbers."""
+    """A sheet that is folded to a line has gradients that are finite numbers."""
     sheet = open_grid(2, 2)
     vertices = sheet.vertices
     faces = sheet.faces.astype(np.int32)

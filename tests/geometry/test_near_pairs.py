@@ -6,7 +6,7 @@ from risorius.geometry.near_pairs import near_pairs
 
 
 def test_pairs_are_those_of_a_plain_comparison():
-    """Of a seeded heap of small and large triangles every pair is found once, and no other."""
+    """In a seeded heap of small and large triangles every pair is found once, and no other."""
     random = np.random.default_rng(2)
     sizes = np.exp(random.uniform(-3.0, 1.0, (120, 1, 1)))
     corners = random.uniform(-2.0, 2.0, (120, 1, 3)) + sizes * random.normal(size=(120, 3, 3))
@@ -19,5 +19,5 @@ def test_pairs_are_those_of_a_plain_comparison():
 
 
 def test_no_triangles_have_no_pairs():
-    """An empty mesh is no error."""
+    """An empty mesh is not an error."""
     assert near_pairs(np.zeros((0, 3, 3))).shape == (0, 2)

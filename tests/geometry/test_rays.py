@@ -1,4 +1,4 @@
-"""Where lines meet triangles."""
+"""Intersections of lines and triangles."""
 
 import numpy as np
 from numpy.testing import assert_allclose
@@ -8,7 +8,7 @@ from risorius.geometry.rays import crossings, exits
 
 
 def test_weights_and_distance_name_one_point():
-    """On the triangle as on the line; the sign of the volume gives the side, 0 from the edge."""
+    """The point is the same on triangle and line; the volume's sign gives the side, 0 edge-on."""
     random = np.random.default_rng(0)
     origins, directions = random.normal(size=(2, 200, 3))
     corners = random.normal(size=(200, 3, 3))
@@ -23,7 +23,7 @@ def test_weights_and_distance_name_one_point():
 
 
 def test_rays_leave_a_cube_where_its_walls_are():
-    """From anywhere within: one exit each, as far away as the wall, with the wall's cosine."""
+    """From any point within there is one exit each, at the wall's distance, with its cosine."""
     random = np.random.default_rng(1)
     vertices, faces = cube()
     origin = np.array([0.3, -0.2, 0.5])
@@ -39,7 +39,7 @@ def test_rays_leave_a_cube_where_its_walls_are():
 
 
 def test_what_a_ray_enters_is_no_exit():
-    """A box within the box, whose outside the ray meets, has one exit: its far side."""
+    """A box within the box, entered from outside by the ray, has one exit: its far side."""
     vertices, faces = cube()
     small = 0.2 * vertices + [0.6, 0.1, 0.2]
     both = np.vstack([vertices, small])

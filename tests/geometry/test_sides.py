@@ -6,7 +6,7 @@ from risorius.geometry.sides import different_pairs
 
 
 def test_different_pairs_are_those_of_unique_rows():
-    """In the same order, with the same numbers; also of no pairs at all."""
+    """The order and numbers are the same; it also works for no pairs."""
     for count in (0, 1, 500):
         pairs = np.random.default_rng(count).integers(0, 20, (count, 2)).astype(np.int32)
         rows, numbers = np.unique(pairs, axis=0, return_inverse=True)

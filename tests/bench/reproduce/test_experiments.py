@@ -21,7 +21,7 @@ from tests.app.command_line import risorius
 
 
 def test_pairs_are_compared_round_by_round():
-    """A machine that becomes ten times slower on the way does not change c_rt."""
+    """A machine that becomes ten times slower meanwhile does not change c_rt."""
     times = np.array([[1.0, 3.0]] * 5 + [[10.0, 30.0]] * 6)
     row = Row.of("", 100, 200, times)
     assert (row.ratio, row.quartiles) == (1.5, (1.5, 1.5))
@@ -38,13 +38,13 @@ def test_pairs_are_compared_round_by_round():
     ],
 )
 def test_verdicts(value, differs, verdict):
-    """Both bounds count, and NaN is missed."""
+    """Both bounds count, and NaN misses them."""
     claim = Claim("x", "", "", low=1.0, high=3.0, differs=differs)
     assert claim.verdict(value) == verdict
 
 
 def test_every_claim_can_fail():
-    """Each has a bound and a name of its own within its experiment."""
+    """Each has a bound and a unique name within its experiment."""
     for experiment in EXPERIMENTS:
         names = [each.value for each in experiment.claims]
         assert len(set(names)) == len(names)
@@ -71,13 +71,13 @@ PLANTED = (
 
 @pytest.fixture
 def planted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two experiments that take no time: one is met, one is missed."""
+    """Two experiments that take no time: one meets its claim, one misses it."""
     monkeypatch.setitem(sys.modules, f"{commands.__package__}.planted", SimpleNamespace(**MADE))
     monkeypatch.setattr(commands, "EXPERIMENTS", PLANTED)
 
 
 def test_a_missed_tolerance_is_reported_after_all_is_written(planted, tmp_path):
-    """Exit code 1, a line for each that is missed, and every file is there."""
+    """Exit code 1, a line for each missed one, and every file is there."""
     result = risorius("reproduce", "all", "-o", tmp_path / "new")
     assert result.exit_code == 1
     missed = [line for line in result.stderr.splitlines() if line.startswith("risorius: ")]
@@ -87,7 +87,7 @@ def test_a_missed_tolerance_is_reported_after_all_is_written(planted, tmp_path):
 
 
 def test_the_page_stands_alone(planted, tmp_path):
-    """It loads nothing but pictures beside it, escapes its text, and shows every verdict."""
+    """It only loads pictures beside it, escapes its text, and shows every verdict."""
     risorius("reproduce", "all", "-o", tmp_path)
     text = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert re.findall(r"(?:src|href)=\"([^\"]*)\"", text) == ["good.png"]
@@ -103,7 +103,7 @@ def test_the_page_stands_alone(planted, tmp_path):
 
 
 def test_every_experiment_can_be_named():
-    """The command knows it, and its entry names a function that is there."""
+    """The command knows it, and its entry names an existing function."""
     help_text = risorius("reproduce", "--help").output
     for experiment in EXPERIMENTS:
         module, name = experiment.function.split(".")
