@@ -1,4 +1,4 @@
-"""Another head to fit: the built-in one, finer, of another shape, unit and orientation."""
+"""Another head for fitting: the built-in one, finer, with another shape, unit and orientation."""
 
 import json
 from dataclasses import dataclass
@@ -20,13 +20,13 @@ SHIFT = (3.0, -2.0, 1.6)
 
 @dataclass(frozen=True)
 class Stranger:
-    """A head that somebody brings: metres, z up."""
+    """A head of a user: metres, z up."""
 
     mesh: Mesh
     landmarks: npt.NDArray[np.int32]
 
     def write(self, folder: Path, *, points: bool = False, **changes: Any) -> tuple[Path, Path]:
-        """Write both files as somebody would bring them; `changes`: other vertices or landmarks."""
+        """Write both files in the form of users; `changes`: other vertices or landmarks."""
         vertices = changes.get("vertices", self.mesh.vertices)
         landmarks = changes.get("landmarks", self.landmarks)
         lines = [f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in vertices]
@@ -40,7 +40,7 @@ class Stranger:
 
 
 def write_topology(folder: Path, other: Stranger, **changes: Any) -> Path:
-    """A topology of the user's, by counts alone unless `changes` say more, in its folder."""
+    """Write a topology of the user's into its folder, by counts alone unless `changes` say more."""
     file = folder / "risorius" / "topologies" / "mine.json"
     file.parent.mkdir(parents=True, exist_ok=True)
     mine = {
@@ -121,7 +121,7 @@ def with_card(mesh: Mesh) -> Mesh:
 
 
 def sealed() -> Stranger:
-    """The built-in head whose lips are one along the line where they meet; nothing behind them."""
+    """The built-in head with lips joined along the line where they meet, and nothing behind."""
     head = assets.load("head")
     vertices = head.vertices.copy()
     same = np.arange(len(vertices))

@@ -2,7 +2,7 @@
 
     python tests/lowest.py > constraints-lowest.txt
 
-`make test-lowest` runs the tests with exactly these: a bound that nobody ever installed is a guess.
+`make test-lowest` runs the tests with exactly these: a bound without a test is a guess.
 """
 
 import re

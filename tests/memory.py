@@ -1,4 +1,4 @@
-"""How much memory this process holds, for tests of repeated use."""
+"""Memory of this process, for tests of repeated use."""
 
 import ctypes
 import gc
@@ -14,7 +14,7 @@ MEGABYTE = 2**20
 def held_memory() -> float:
     """The memory of this process, without pages that the allocator keeps for later [MB].
 
-    Skips the test where the system says nothing of it.
+    It skips the test if the system does not report it.
     """
     status = Path("/proc/self/statm")
     if not status.exists():

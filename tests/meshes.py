@@ -1,4 +1,4 @@
-"""Meshes for tests: small ones to hold in the head, each with one property, and random ones.
+"""Meshes for tests: small simple ones, each with one property, and random ones.
 
 All triangles are counter-clockwise seen from +z (or from outside) unless the name says otherwise.
 """
@@ -71,7 +71,7 @@ def octahedron() -> Mesh:
 
 
 def ball(levels: int = 2) -> Mesh:
-    """A sphere of radius 1: an octahedron, split `levels` times and blown up."""
+    """A sphere of radius 1: an octahedron, split `levels` times and rounded."""
     vertices = octahedron().vertices
     faces = octahedron().faces
     for _ in range(levels):
@@ -101,29 +101,29 @@ def pillow() -> Mesh:
 
 
 def bow_tie() -> Mesh:
-    """Two triangles that meet in vertex 0 only: a vertex that is no manifold."""
+    """Two triangles that only meet in vertex 0: a non-manifold vertex."""
     vertices = [(0, 0, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (-1, -1, 0)]
     return _mesh(vertices, [(0, 1, 2), (0, 3, 4)])
 
 
 def three_on_an_edge() -> Mesh:
-    """Three triangles on the edge 0-1: an edge that is no manifold."""
+    """Three triangles on the edge 0-1: a non-manifold edge."""
     vertices = [(0, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 1, 0), (-1, -1, 0)]
     return _mesh(vertices, [(0, 1, 2), (0, 1, 3), (1, 0, 4)])
 
 
 def inconsistent_pair() -> Mesh:
-    """Two triangles that run through their common edge in the same direction."""
+    """Two triangles with the same direction along their common edge."""
     return _mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, -1, 0)], [(0, 1, 2), (0, 1, 3)])
 
 
 def with_debris() -> Mesh:
-    """A grid, a second component, vertices nobody uses, a sliver, and triangles without area."""
+    """A grid, a second component, unused vertices, a sliver, and triangles without area."""
     grid = open_grid(3, 2)
     count = len(grid.vertices)
     extra = [(9, 0, 0), (10, 0, 0), (9, 1, 0), (50, 50, 50), (11, 0, 0)]
     faces = [
-        (count, count + 1, count + 2),  # a component of its own
+        (count, count + 1, count + 2),  # a separate component
         (count, count + 1, count + 4),  # collinear corners
         (0, 1, 1),  # names a vertex twice
         (2, 2, 2),  # names one vertex three times
@@ -205,7 +205,7 @@ def wrinkled(mesh: Mesh, seed: int, amplitude: float = 0.25) -> npt.NDArray[np.f
 def tube(segments: int = 8, rings: int = 4) -> Mesh:
     """A tube, closed in geometry, whose texture is cut open along a straight seam.
 
-    The seam is where the texture coordinate u jumps from 1 to 0: `segments + 1` columns of texture
+    At the seam the texture coordinate u jumps from 1 to 0: `segments + 1` columns of texture
     coordinates for `segments` columns of vertices.
     """
     angles = 2.0 * np.pi * np.arange(segments) / segments
@@ -265,7 +265,7 @@ def slit() -> Mesh:
 
 
 def opened(mesh: Mesh, height: float) -> npt.NDArray[np.float64]:
-    """The mesh of `slit` with its sides drawn apart in its plane, as arcs; shape (V, 3)."""
+    """The mesh of `slit` with its sides moved apart in its plane, as arcs; shape (V, 3)."""
     columns, rows = np.ptp(mesh.vertices, axis=0)[:2]
     positions = mesh.vertices.copy()
     x = mesh.vertices[:, 0]

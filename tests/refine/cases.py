@@ -29,14 +29,14 @@ def kahler(mesh: meshes.Mesh, **options: Any) -> refine.Kahler:
 
 
 def edge_count_of(mesh: meshes.Mesh) -> int:
-    """How many edges a mesh has."""
+    """Number of edges of a mesh."""
     return len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
 
 
 def scheme_of(
     name: str, finer_positions: npt.ArrayLike, finer_faces: npt.ArrayLike
 ) -> str | refine.Scheme:
-    """The scheme of a name; `detail` with this finer mesh, which others do not need."""
+    """The scheme of a name; `detail` gets this finer mesh, which others do not need."""
     return refine.DetailScheme((finer_positions, finer_faces)) if name == "detail" else name
 
 
@@ -51,7 +51,7 @@ class GivenMetric(refine.Criterion):
         metric[:] = self.metric
 
     def geomorph(self, edges: npt.NDArray[np.int32]) -> plain_twin.GeomorphWeights:
-        """What blending makes of the metrics, for the plain twin."""
+        """Growth that blending makes from the metrics, for the simple twin."""
         once = np.clip(self.metric / RAMP_WIDTH, 0, 1)
         twice = np.clip((self.metric - 1) / RAMP_WIDTH, 0, 1)
         names = [plain_twin.edge_name(int(a), int(b)) for a, b in edges]
@@ -74,7 +74,7 @@ class Forced(refine.Criterion):
 
 
 def point_names(origins: refine.Origins) -> list[plain_twin.Name]:
-    """Names, as the plain twin uses them, of the vertices of the last frame."""
+    """Names, in the form of the simple twin, of the vertices of the last frame."""
     names: list[plain_twin.Name] = []
     for vertices, weights in zip(origins.vertices, origins.weights, strict=True):
         parts = sorted((int(v), 4 * float(w)) for v, w in zip(vertices, weights, strict=True) if w)
@@ -96,10 +96,10 @@ def assert_equals_twin(
     normals_cancel: bool = False,
     tolerance: tuple[float, float] = (5e-7, 8e-6),
 ) -> None:
-    """Every point, normal and triangle of the mesh is that of the plain twin, to float32.
+    """Check that every point, normal and triangle is that of the simple twin, to float32.
 
-    `normals_cancel`: leave out the normals, because opposite triangles may meet at a vertex and
-    nothing but rounding remains of its normal; `tolerance`: of positions and of normals.
+    `normals_cancel`: leave out the normals, because opposite triangles may meet at a vertex, and
+    only rounding remains of its normal; `tolerance`: of positions and of normals.
     """
     names = point_names(refiner.origins())
     assert set(names) == set(twin.positions)
@@ -119,7 +119,7 @@ def assert_equals_twin(
 def as_lists(
     positions: npt.NDArray[np.float64], faces: npt.NDArray[np.integer]
 ) -> tuple[list[plain_twin.Vector], list[tuple[int, int, int]]]:
-    """Arrays in the form the plain twin takes."""
+    """Arrays in the form of the simple twin."""
     points = [(float(x), float(y), float(z)) for x, y, z in positions]
     return points, [(int(a), int(b), int(c)) for a, b, c in faces]
 
@@ -127,7 +127,7 @@ def as_lists(
 def places_in_source(
     origins: refine.Origins, triangles: npt.NDArray[Any], faces: npt.NDArray[Any]
 ) -> npt.NDArray[np.float32]:
-    """Barycentric places of corners in the input triangles (M, 3) they come from, (M, 3, 3)."""
+    """Barycentric places of corners in their input triangles (M, 3), (M, 3, 3)."""
     is_corner = origins.vertices[triangles][..., None] == faces[:, None, None, :]
     return np.asarray((origins.weights[triangles][..., None] * is_corner).sum(axis=2))
 
@@ -158,7 +158,7 @@ def surface_at(
 
 @st.composite
 def soups(draw: st.DrawFn) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
-    """Any triangles over a few vertices: borders, fins, flips, doubles and debris all occur."""
+    """Any triangles over a few vertices, including borders, fins, flips, doubles and debris."""
     vertex_count = draw(st.integers(3, 8))
     index = st.integers(0, vertex_count - 1)
     faces = draw(st.lists(st.tuples(index, index, index), min_size=1, max_size=12))

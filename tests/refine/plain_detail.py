@@ -1,8 +1,8 @@
-"""The scheme `detail` once more, in plain Python: what is seen at rest moves with the surface.
+"""The scheme `detail` again, in plain Python: detail at rest moves with the surface.
 
 What the finer mesh adds is taken from the refiner itself, at rest and with everything split twice,
-by the names of its points; how it moves is worked out here. That it is like the finer mesh is
-another test's business (test_detail.py).
+by the names of its points; its motion is computed here. Another test compares it with the finer
+mesh (test_detail.py).
 """
 
 from tests.refine.plain_schemes import CurveRules, Face, cross, cubic, dot
@@ -31,7 +31,7 @@ def axes_of(form: CurveRules, edge: EdgeName, quarters: int) -> Axes:
 def detail_rules(
     rest: list[Vector], positions: list[Vector], faces: list[Face], seen: Seen
 ) -> CurveRules:
-    """Cubic edges, and what was missing in them at rest, along the axes now as it lay then."""
+    """Cubic edges, and the missing offsets at rest, along present axes as they were at rest."""
     before = cubic(rest, rest, faces)
     now = cubic(rest, positions, faces)
 

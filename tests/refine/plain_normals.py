@@ -1,4 +1,4 @@
-"""Normals of the refined surface once more, in plain Python: sums over small triangles.
+"""Normals of the refined surface again, in plain Python: sums over small triangles.
 
 Where every edge is split once, each triangle is a fan of six around its middle. A normal is the sum
 of the cross products of the small triangles around its point, of length one.
@@ -42,7 +42,7 @@ class RefinedNormals(Rules):
         """Corners and middles of each triangle in turn, by its number."""
 
     def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
-        """Points as the scheme has them, and normals that go from the mean to the surface's."""
+        """Points of the scheme, and normals between the mean and the surface's."""
         edges = sorted(self.around.opposite)
         whole = self.rules.placed(
             Counter(dict.fromkeys(edges, 1)), dict.fromkeys(edges, (1.0, 1.0))
@@ -94,7 +94,7 @@ class RefinedNormals(Rules):
     def centre(
         self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
     ) -> tuple[Vector, Vector]:
-        """Where the scheme has it; turned to the area of the hexagon around."""
+        """The scheme's middle, turned to the area of the hexagon around it."""
         point, normal = self.rules.centre(source, point, normal, grown)
         outline = self.fans[source]
         pieces = [area(outline[0], outline[i], outline[i + 1]) for i in range(1, 5)]

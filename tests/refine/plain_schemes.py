@@ -1,4 +1,4 @@
-"""The interpolating schemes once more, in plain Python, from the text of their papers.
+"""The interpolating schemes again, in plain Python, from the text of their papers.
 
 Each is a function from an edge (low, high) and a number of quarters to a point, in `CurveRules`.
 """
@@ -38,7 +38,7 @@ def length(v: Vector) -> float:
 
 @dataclass
 class CurveRules(Rules):
-    """A scheme whose vertices stay and whose split edges go to curves as far as they have grown."""
+    """A scheme with fixed vertices; split edges go to curves as far as they have grown."""
 
     positions: list[Vector]
     faces: list[Face]
@@ -80,7 +80,7 @@ def cubic_normals(rest: list[Vector], positions: list[Vector], faces: list[Face]
 
 
 def steepened(normals: list[Vector], edges: set[EdgeName]) -> list[Vector]:
-    """Normals less 0.15 of the mean of those beside them."""
+    """Normals minus 0.15 of the mean of neighbouring ones."""
     beside: list[list[Vector]] = [[] for _ in normals]
     for a, b in edges:
         beside[a].append(normals[b])

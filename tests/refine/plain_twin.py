@@ -1,4 +1,4 @@
-"""The whole algorithm once more, in plain Python over dictionaries, from the text of the paper.
+"""The whole algorithm again, in plain Python over dictionaries, from the text of the paper.
 
 A second implementation that shares no line, no array and no table with the first: section 4.1 for
 the criterion, 4.2 with Figs. 3 and 4 for the positions, 4.3 for the triangles. Points have names
@@ -62,7 +62,7 @@ def cross(u: Vector, v: Vector) -> Vector:
 
 
 def normals_along(first: Vector, middle: Vector, last: Vector) -> dict[int, Vector]:
-    """Unit normals of the points of an edge, by quarters: halfway to that of its middle."""
+    """Unit normals of the points of an edge, by quarters: halfway to the normal of its middle."""
     ends = {1: first, 2: middle, 3: last}
     return {quarters: unit(mix((1, n), (1, middle))) for quarters, n in ends.items()}
 
@@ -73,7 +73,7 @@ def edge_name(a: int, b: int) -> EdgeName:
 
 
 def edge_names(face: tuple[int, int, int]) -> list[EdgeName]:
-    """Those of a triangle, from its first corner on."""
+    """Names of a triangle's edges, from its first corner on."""
     return [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
 
 
@@ -104,7 +104,7 @@ def edge_dots(positions: list[Vector], faces: list[tuple[int, int, int]]) -> dic
 
 
 class Surroundings:
-    """What lies around each edge and vertex."""
+    """Neighbours of each edge and vertex."""
 
     def __init__(self, faces: list[tuple[int, int, int]]) -> None:
         runs: dict[EdgeName, list[bool]] = defaultdict(list)
@@ -162,7 +162,7 @@ class Placed:
 
 
 class Rules:
-    """A smoothing scheme, in plain words."""
+    """A smoothing scheme, in simple code."""
 
     def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
         """All points and normals, for these splits."""
@@ -171,9 +171,9 @@ class Rules:
     def centre(
         self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
     ) -> tuple[Vector, Vector]:
-        """The middle of a triangle whose edges have grown at least so far, on both levels.
+        """The middle of a triangle; all its edges have grown at least this far, on both levels.
 
-        By default where it is.
+        By default it stays in place.
         """
         return point, normal
 
@@ -204,10 +204,10 @@ def refine(
     geomorph: GeomorphWeights | None = None,
     rules: Rules | None = None,
 ) -> Twin:
-    """Split each edge as often as `splits` says, 0 where it says nothing.
+    """Split each edge by `splits`, which gives 0 for missing edges.
 
-    `geomorph`: how far the points of an edge have grown on both levels, for blending, which also
-    makes fans of the triangles; `rules`: the scheme, by default the paper's.
+    `geomorph`: growth of an edge's points on both levels, for blending, which also makes fans of
+    the triangles; `rules`: the scheme, by default the paper's.
     """
     twin = Twin()
     count = Counter(splits)
@@ -292,7 +292,7 @@ def _smoothed(
 def _fan(
     twin: Twin, face: tuple[int, int, int], count: Counter[EdgeName], grown: GeomorphWeights
 ) -> tuple[list[tuple[Name, Name, Name]], Name]:
-    """Subtriangles around the middle of a triangle, and that point, which is added to the twin."""
+    """Subtriangles around the middle of a triangle, and this point, which is added to the twin."""
     outline: list[Name] = []
     centre: Name = ("centre", *sorted(face))
     edges = edge_names(face)
@@ -324,7 +324,7 @@ def _fan(
 
 
 def centre_weights(grown: list[float]) -> tuple[list[float], list[float]]:
-    """Weights of corners, and of how far edges displacement, in the middle of a triangle.
+    """Weights of corners, and of the displacement of edges, in the middle of a triangle.
 
     `grown`: of the edges from corner 0 to 1, 1 to 2, 2 to 0. A mean of four rules.
     """
@@ -348,7 +348,7 @@ def centre_weights(grown: list[float]) -> tuple[list[float], list[float]]:
 
 
 def starting_at_least(corners: list[Name]) -> tuple[Name, Name, Name]:
-    """Turn a triangle so that equal triangles compare equal."""
+    """Rotate a triangle's corners so that equal triangles compare equal."""
     k = min(range(3), key=lambda i: [str(part) for part in corners[i]])
     return corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]
 

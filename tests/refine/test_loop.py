@@ -1,4 +1,4 @@
-"""Uniform Loop subdivision against a plain implementation."""
+"""Uniform Loop subdivision compared with a simple implementation."""
 
 import numpy as np
 import pytest
@@ -48,7 +48,7 @@ def loop_plainly(points, faces, normals):
 
 
 def assert_is_plain(mesh, deformed, levels):
-    """Compare `loop` with the plain implementation, number by number."""
+    """Compare `loop` with the simple implementation, number by number."""
     refiner = refine.create("loop", mesh.faces, mesh.vertices, levels=levels)
     refined = refiner.refine(deformed)
     refine.check(refiner, refined, deformed)
@@ -72,13 +72,13 @@ def test_named_meshes(name, levels):
 @settings(max_examples=60, deadline=None)
 @given(soup=soups(), levels=st.integers(1, 3))
 def test_soups(soup, levels):
-    """Any triangles at all."""
+    """Any triangles."""
     positions, faces = soup
     assert_is_plain(meshes.Mesh(positions, faces), positions, levels)
 
 
 def test_interpolated_normals():
-    """Normals are interpolated along the edges of each level, as in the plain implementation."""
+    """Normals are interpolated along the edges of each level, as in the simple implementation."""
     mesh = meshes.irregular(7)
     refined, normals = assert_is_plain(mesh, meshes.wrinkled(mesh, 8), 2)
     assert_allclose(refined.normals, normals, rtol=0, atol=4e-6)

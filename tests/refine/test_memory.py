@@ -1,4 +1,4 @@
-"""The memory of a refiner goes with it."""
+"""The memory of a refiner is freed with it."""
 
 import gc
 import subprocess
@@ -43,7 +43,7 @@ print(peaks[1] - peaks[0])
 
 @pytest.mark.parametrize("look", LOOKS)
 def test_arrays_go_with_their_refiner(look):
-    """Compiled code keeps none of the arrays that it was handed, lent ones neither."""
+    """Compiled code keeps none of its argument arrays, nor lent ones."""
     mesh = meshes.irregular(5)
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, **LOOKS[look])
     assert isinstance(refiner, refine.Kahler)
@@ -66,7 +66,7 @@ def test_arrays_go_with_their_refiner(look):
 @pytest.mark.slow
 @pytest.mark.parametrize("look", LOOKS)
 def test_a_hundred_refiners_take_the_memory_of_one(look):
-    """Each is made for 20 000 triangles, refines a frame and is dropped: less than 5 MB is left."""
+    """Each is made for 20 000 triangles, refines a frame and is deleted: less than 5 MB remain."""
     pytest.importorskip("resource", reason="measures the memory of a process; not on Windows")
     call = [sys.executable, "-c", MANY, look]
     found = subprocess.run(call, capture_output=True, text=True, check=True)

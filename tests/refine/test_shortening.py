@@ -19,7 +19,7 @@ def grid(count=9):
 
 
 def both_ways(count):
-    """Along x and along y, at every vertex."""
+    """Directions along x and along y, at every vertex."""
     return np.tile([ALONG, ACROSS], (count, 1, 1))
 
 
@@ -32,7 +32,7 @@ def test_at_rest_there_is_none():
 
 
 def test_a_squeeze_is_found_along_its_direction_alone():
-    """A fifth shorter along x, a tenth longer along y: a fifth, and a tenth below nothing."""
+    """A fifth shorter along x, a tenth longer along y give a fifth, and minus a tenth."""
     faces, rest = grid()
     shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
     measured = shortening.measure(rest * [0.8, 1.1, 1.0])
@@ -41,7 +41,7 @@ def test_a_squeeze_is_found_along_its_direction_alone():
 
 
 def test_rigid_motions_and_bends_shorten_nothing():
-    """A turned grid, and one rolled up by its finest triangles: less than their chords lose."""
+    """A turned grid, and one rolled up: less than the chords of its finest triangles lose."""
     faces, rest = grid(41)
     shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
     turned = Rotation.from_euler("xyz", [0.3, -1.2, 2.0]).apply(rest + 300.0)
@@ -53,7 +53,7 @@ def test_rigid_motions_and_bends_shorten_nothing():
 
 
 def test_finds_the_largest_compression():
-    """Along its direction a flat deformation is as much shorter as its smallest stretch says."""
+    """Along its direction a flat deformation shortens by its smallest stretch."""
     faces, rest = grid()
     gradient = np.array([[0.9, 0.15, 0.0], [-0.05, 0.75, 0.0], [0.0, 0.0, 1.0]])
     stretches, ways = np.linalg.svd(gradient[:2, :2])[1:]
@@ -64,7 +64,7 @@ def test_finds_the_largest_compression():
 
 
 def test_what_does_not_fit_is_refused():
-    """Directions and positions of another shape, and directions that are no numbers."""
+    """Directions and positions of another shape, and directions that are NaN, are refused."""
     faces, rest = grid(3)
     for directions in (np.zeros((len(rest), 3)), np.full((len(rest), 1, 3), np.nan)):
         with pytest.raises(ValueError, match="directions must be finite"):

@@ -16,7 +16,7 @@ Points = npt.NDArray[np.float64]
 
 
 def doubled(mesh, seed):
-    """The same mesh, some corners of which have a vertex of their own at the same place."""
+    """The same mesh; some corners have their own vertex at the same place."""
     generator = np.random.default_rng(seed)
     faces = np.array(mesh.faces, dtype=np.int64)
     own = generator.random(faces.shape) < 0.3
@@ -57,7 +57,7 @@ def test_carried_as_if_bound(name, seed, options):
 
 
 def one_triangle(**options):
-    """The refiner of a triangle after a frame in which each edge was split once, or otherwise."""
+    """The refiner of a triangle after a frame with one split, or other splits, on each edge."""
     options = {"criterion": Forced([1, 1, 1]), "blend": False, **options}
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     refiner = refine.WeldedRefiner(points, [[0, 1, 2]], **options)
@@ -79,7 +79,7 @@ def box():
 
 
 def heights_of_borders(mesh):
-    """Heights of the sides of triangles that no other triangle has, by places in space."""
+    """Heights of the sides that only one triangle has, by places in space."""
     places, number = np.unique(mesh.positions, axis=0, return_inverse=True)
     sides = number.reshape(-1)[mesh.triangles[:, [0, 1, 1, 2, 2, 0]]].reshape(-1, 2)
     sides, counts = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
@@ -111,7 +111,7 @@ def test_no_crack_opens_between_doubled_vertices(seams):
     ids=["bytes", "integers", "not a number", "flags", "complex", "tables"],
 )
 def test_types_stay(values, expected):
-    """New points have the mean of both ends, rounded where the type has no fractions."""
+    """New points have the mean of both ends, rounded for integer types."""
     refiner = one_triangle()
     carried = refiner.carry(values)
     assert carried.dtype == values.dtype
@@ -122,7 +122,7 @@ def test_types_stay(values, expected):
 
 @pytest.mark.parametrize("seams", [False, True])
 def test_values_of_a_frame_are_its_attributes(seams):
-    """Of any type, as `carry` hands them on; a frame without has none."""
+    """They may have any type, as returned by `carry`; a frame without values has none."""
     points, faces = box()
     refiner = refine.WeldedRefiner(points, faces, seams=seams)
     heat = np.arange(16, dtype=np.int64) + 2**60
@@ -144,7 +144,7 @@ def test_words_come_from_an_end():
 def test_splits_that_stay():
     """With splits of a clip all frames have the same triangles, and carry the same values."""
     ball = meshes.ball()
-    points = ball.vertices[ball.faces].reshape(-1, 3)  # each triangle by itself
+    points = ball.vertices[ball.faces].reshape(-1, 3)  # each triangle is separate
     triangles = np.arange(len(points)).reshape(-1, 3)
     moved = [points * scale for scale in ((1.0, 1.0, 1.0), (1.0, 0.5, 1.0), (1.0, 1.0, 2.0))]
     splits = refine.splits_of_clip(refine.WeldedRefiner(points, triangles), moved)
@@ -159,7 +159,7 @@ def test_splits_that_stay():
 
 
 def test_mistakes_are_reported():
-    """Wrong numbers of points and values, and too early a call."""
+    """Wrong numbers of points and values, and a call before any frame."""
     points, faces = box()
     refiner = refine.WeldedRefiner(points, faces)
     with pytest.raises(ValueError, match="nothing is refined yet; call refine"):
@@ -173,7 +173,7 @@ def test_mistakes_are_reported():
 
 
 def vase():
-    """A turned surface, whose seam is computed twice, at 0 and at 2 pi."""
+    """A turned surface; its seam is computed twice, at 0 and at 2 pi."""
     turn = np.linspace(0.0, 2.0 * np.pi, 13)
     height = np.linspace(0.0, 2.0, 7)
     turns, heights = np.meshgrid(turn, height, indexing="ij")
@@ -191,7 +191,7 @@ def vase():
 @pytest.mark.parametrize("kind", [np.float64, np.float32])
 @pytest.mark.parametrize("moved", [0.0, 3000.0])
 def test_seams_equal_but_for_the_last_bits(kind, moved):
-    """However they were stored, both sides of a seam have one normal."""
+    """In any storage, both sides of a seam have the same normal."""
     turned = np.linalg.qr(np.random.default_rng(3).random((3, 3)))[0]
     points, faces = vase()
     points = (points @ turned + moved).astype(kind)
@@ -209,7 +209,7 @@ def test_seams_equal_but_for_the_last_bits(kind, moved):
 
 
 def test_how_far_apart_welded_vertices_may_lie():
-    """In sizes of the mesh; 1e-9 by default, 0 joins only equal points."""
+    """In sizes of the mesh: 1e-9 by default; 0 only joins equal points."""
     points, faces = box()
     size = 2.0
     for apart, tolerance, count in (
@@ -233,7 +233,7 @@ def test_how_far_apart_welded_vertices_may_lie():
 @settings(max_examples=40)
 @given(seed=st.integers(0, 2**16), distance=st.sampled_from([1e-9, 1e-4, 0.03, 0.2]))
 def test_places_are_those_of_all_pairs(seed, distance):
-    """Points are one place where a chain of near ones joins them, as all distances say."""
+    """Points in a chain of near ones are one place, as a test of all distances confirms."""
     generator = np.random.default_rng(seed)
     points = generator.random((40, 3)).round(int(generator.integers(1, 4)))
     points += distance * generator.uniform(-1.0, 1.0, points.shape)
@@ -270,7 +270,7 @@ WIDE = (2**53, 2**53 + 1, 2**62 + 3)
     ids=str,
 )
 def test_points_of_the_input_keep_their_values(values, blend):
-    """Exactly, in any type; new points lie between their corners, equal corners stay equal."""
+    """They are exact, in any type; new points are between their corners, and equal values stay."""
     asks = GivenMetric([1.1, 0.9, 0.3]) if blend else Forced([2, 1, 1])
     carried = one_triangle(criterion=asks, blend=blend).carry(values)
     assert carried.dtype == values.dtype
@@ -284,7 +284,7 @@ def test_points_of_the_input_keep_their_values(values, blend):
 
 
 def test_wide_integers_are_rounded_as_all_numbers_are():
-    """The mean of both ends to the nearest, halves to the even one; infinite ends are not lost."""
+    """The mean of both ends is rounded to the nearest, halves to even; infinite ends stay."""
     refiner = one_triangle()
     a = 2**62
     b = 2**62 + 1

@@ -1,7 +1,7 @@
-"""The refiner on the graphics card beside that of the processor, with which it must agree.
+"""The refiner on the graphics card must agree with that of the processor.
 
-To the bit, where the driver rounds as a processor does: quotients and roots, which OpenGL lets be
-off by some bits. Whether it does is asked of it. Mesa's software does, and so does NVIDIA's.
+They agree to the bit if the driver rounds quotients and roots like a processor; OpenGL permits
+errors of some bits. A test of the driver decides. Mesa's software does, and so does NVIDIA's.
 """
 
 import functools
@@ -39,9 +39,9 @@ void main() {
 
 
 def why_no_card() -> str:
-    """Why nothing can be refined on the card; empty if it can.
+    """Reason why the card cannot refine; empty if it can.
 
-    That no OpenGL is there at all is no reason to leave a test out.
+    A missing OpenGL is not a reason to skip a test.
     """
     try:
         own_context()
@@ -52,7 +52,7 @@ def why_no_card() -> str:
 
 @functools.cache
 def why_not_exact() -> str:
-    """Why the card cannot be held to the processor's bits; empty if it can."""
+    """Reason why the card cannot be compared with the processor's bits; empty if it can."""
     if reason := why_no_card():
         return reason
     own = own_context()
@@ -63,7 +63,7 @@ def why_not_exact() -> str:
 
 
 def rounds_as_processors(gl: moderngl.Context) -> bool:
-    """Whether compute shaders divide and take roots to the last bit."""
+    """Whether compute shaders divide and take roots correctly to the last bit."""
     numbers = np.random.default_rng(1).uniform(0.5, 2.0, (64 * 64, 4)).astype(np.float32)
     buffer = gl.buffer(numbers.tobytes())
     buffer.bind_to_storage_buffer(0)
@@ -77,13 +77,13 @@ def rounds_as_processors(gl: moderngl.Context) -> bool:
 
 @pytest.fixture
 def exact_driver() -> None:
-    """Skip where the card cannot be held to the processor's bits, and say why."""
+    """Skip, with the reason, if the card cannot be compared with the processor's bits."""
     if reason := why_not_exact():
         pytest.skip(reason)
 
 
 needs_exact_driver = pytest.mark.usefixtures("exact_driver")
-"""Of tests that compare bits, or pictures pixel by pixel."""
+"""Mark of tests that compare bits, or pictures pixel by pixel."""
 
 
 def bound_twice(

@@ -1,4 +1,4 @@
-"""Shared by the tests of the card."""
+"""Fixtures of the card's tests."""
 
 from .agreement import exact_driver
 

@@ -1,6 +1,6 @@
 """The graphics card makes the same frames as the processor: splits, triangles and rows.
 
-To the bit, where the driver rounds as the processor does (agreement.py).
+They are equal to the bit if the driver rounds like the processor (agreement.py).
 """
 
 import copy
@@ -25,7 +25,7 @@ both_rules = pytest.mark.parametrize("rules", ["two levels", "window's look"])
 
 @pytest.fixture(scope="module")
 def poses(head: Head) -> dict[str, Points]:
-    """Vertices of the head, by the name of the pose; one turned and far from the origin."""
+    """Vertices of the head by name of the pose; one is turned and far from the origin."""
     found = {}
     face = sim.create(head)
     for name in POSES:
@@ -40,7 +40,7 @@ def poses(head: Head) -> dict[str, Points]:
 
 
 def with_seam(head):
-    """Texture coordinates that part along a made-up seam, x = 0."""
+    """Texture coordinates with an artificial seam at x = 0."""
     is_left = head.vertices[head.faces].mean(axis=1)[:, 0] > 0
     uv = np.random.default_rng(1).random((len(head.vertices), 2))
     return {
@@ -59,7 +59,7 @@ def with_seam(head):
     ],
 )
 def test_head(pose, is_seamed, rules, head, poses):
-    """Every pose of the head, with a texture seam and without, split once or up to twice."""
+    """Every pose of the head, with and without a texture seam, split once or up to twice."""
     values = with_seam(head) if is_seamed else {}
     processor, card = bound_twice(head.faces, head.vertices, **RULES[rules], **values)
     mesh = assert_same(processor, card, poses[pose])
@@ -96,7 +96,7 @@ def test_small_meshes(name, rules):
 
 @both_rules
 def test_attributes(rules):
-    """Texture coordinates and other values of corners are mixed alike, of wide rows, too."""
+    """Texture coordinates and other values of corners are mixed equally, also in wide rows."""
     mesh = meshes.tube()
     assert mesh.uv is not None
     assert mesh.face_uv is not None
@@ -118,7 +118,7 @@ def test_attributes(rules):
 @both_rules
 @pytest.mark.parametrize("side", [30, 100, pytest.param(330, marks=pytest.mark.slow)])
 def test_sums_over_many_groups(side, rules):
-    """Grids of up to 217 800 triangles: numbers run on from group to group of threads."""
+    """Grids of up to 217 800 triangles: numbers continue from group to group of threads."""
     mesh = meshes.open_grid(side, side)
     x, y, _ = mesh.vertices.T
     height = 2.0 * np.sin(0.9 * x) * np.sin(0.7 * y) * x / side
@@ -139,7 +139,7 @@ def test_sums_over_many_groups(side, rules):
     ],
 )
 def test_criteria(options):
-    """Those that the card decides by, their mixes, and others, which the processor measures."""
+    """Criteria that the card computes, their mixes, and others, which the processor measures."""
     options = {"scheme": "cubic" if "blend" in options else "loop", **options}
     mesh = meshes.irregular(7, 8, 6, 1)
     card, processor = (
@@ -174,7 +174,7 @@ def random_mesh(seed):
 
 
 def assert_random_meshes_same(seeds):
-    """Two frames of a mesh for each seed; returns the configurations that were met."""
+    """Check two frames of a mesh for each seed; return the configurations that occurred."""
     met = set()
     for seed in seeds:
         mesh, options = random_mesh(seed)
@@ -187,14 +187,14 @@ def assert_random_meshes_same(seeds):
 
 
 def test_random_meshes():
-    """Meshes that are no manifolds, with seams, with memory: all 27 configurations occur."""
+    """Non-manifold meshes, with seams, with memory: all 27 configurations occur."""
     assert assert_random_meshes_same(range(40)) == set(range(27))
 
 
 @both_rules
 @pytest.mark.parametrize("frames", [60, pytest.param(500, marks=pytest.mark.slow)])
 def test_coherent_frames(frames, rules, head):
-    """A face that moves: what triangles remember stays on the card, and is the same."""
+    """In a moving face, the memory of triangles stays on the card, and is the same."""
     face = sim.create(head)
     processor, card = bound_twice(head.faces, head.vertices, coherent=True, **RULES[rules])
     for frame in range(frames):
@@ -208,7 +208,7 @@ def test_coherent_frames(frames, rules, head):
 
 @pytest.mark.parametrize("rules", ["two levels", "window's look"])
 def test_points_that_nothing_uses(rules):
-    """Far away, or no numbers: the first point does not matter."""
+    """They are far away, or NaN: the first point does not matter."""
     mesh = meshes.irregular(4)
     strays = np.array([[np.nan, 0.0, 0.0], [1e14, 0.0, 0.0]])
     rest = np.concatenate([strays, mesh.vertices])

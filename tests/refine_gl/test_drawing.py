@@ -1,4 +1,4 @@
-"""Drawn from where it was made: the same pictures as of arrays that were uploaded."""
+"""Frames drawn directly from the card: the same pictures as from uploaded arrays."""
 
 import os
 import sys
@@ -46,13 +46,13 @@ def scene() -> FaceScene:
 
 @pytest.fixture(scope="module", params=[0, 4])
 def pipeline(request: pytest.FixtureRequest, scene: FaceScene) -> Iterator[Pipeline]:
-    """It on a surface, of one sample per pixel, and of four."""
+    """The scene on a surface, with one sample per pixel, and with four."""
     with render.open_offscreen(SIZE, samples=request.param) as surface:
         yield Pipeline(scene, render.Renderer(surface))
 
 
 def image(pipeline, drawn, style):
-    """The picture of it."""
+    """The picture of the pipeline."""
     surface = pipeline.renderer.surface
     camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="three-quarter")
     size = surface.frame_size if isinstance(surface, render.WindowSurface) else surface.size
@@ -61,7 +61,7 @@ def image(pipeline, drawn, style):
 
 
 def both(pipeline, look="paper"):
-    """Made by the processor, and on the card."""
+    """Pictures of frames made by the processor, and on the card."""
     drawn = [pipeline.bind(Refinement(look, name)) for name in ("kahler", "kahler-gl")]
     assert isinstance(drawn[1].refiner, KahlerGl)
     assert isinstance(drawn[1].stream, render.GpuStream)
@@ -69,7 +69,7 @@ def both(pipeline, look="paper"):
 
 
 def drawn_by(monkeypatch, kind):
-    """Let any driver count as software or as hardware."""
+    """Make any driver count as software or as hardware."""
     is_software = kind == "software"
     monkeypatch.setattr(render.Surface, "is_software", property(lambda _: is_software))
 
@@ -97,7 +97,7 @@ def test_a_card_takes_large_meshes_by_itself(pipeline, monkeypatch):
 @pytest.mark.parametrize("kind", ["software", "hardware"])
 @pytest.mark.parametrize("style", STYLES)
 def test_pictures_are_the_same(pipeline, style, kind, monkeypatch):
-    """No pixel differs, in any style, as software draws and as graphics cards do."""
+    """No pixel differs, in any style, as drawn by software and by graphics cards."""
     drawn_by(monkeypatch, kind)
     processor, card = both(pipeline)
     wanted, got = (image(pipeline, each, STYLES[style]) for each in (processor, card))
@@ -107,7 +107,7 @@ def test_pictures_are_the_same(pipeline, style, kind, monkeypatch):
 
 
 def test_nothing_comes_back(scene, monkeypatch):
-    """Where nobody asks for numbers, a graphics card draws a frame that only it knows."""
+    """If no numbers are requested, a graphics card draws a frame that stays on the card."""
     drawn_by(monkeypatch, "hardware")
     with render.open_offscreen(SIZE, samples=4) as surface:
         pipeline = Pipeline(scene, render.Renderer(surface))
@@ -151,7 +151,7 @@ def test_samples_of_data_sets_are_the_same(tmp_path):
 )
 @pytest.mark.parametrize("look", ["paper", "smooth"])
 def test_a_window_that_is_resized(scene, look):
-    """A window draws it in every size that it is given."""
+    """A window draws it in every size."""
     with render.open_window((200, 150), "kahler-gl", samples=0) as window:
         if window.gl.version_code < LEAST_VERSION:
             driver = window.gl.info["GL_RENDERER"]
@@ -166,7 +166,7 @@ def test_a_window_that_is_resized(scene, look):
 
 
 def resize(window, size):
-    """Ask for a size, and wait until the screen has given it."""
+    """Request a size, and wait until the screen has set it."""
     import glfw
 
     glfw.set_window_size(window.handle, *size)

@@ -1,4 +1,4 @@
-"""How the refiner on the graphics card is bound, lent to and asked; and its fallback without."""
+"""The refiner on the graphics card: binding, lent arrays, calls; and its fallback without."""
 
 import ast
 import logging
@@ -43,7 +43,7 @@ def test_it_joins_as_anybodys_would():
 
 
 def test_wrong_frames_are_refused():
-    """As `kahler` refuses them; the next good one is as ever."""
+    """They are refused as by `kahler`; the next good one is correct."""
     processor, card = bound()
     for wrong, words in ((BENT[1:], "must be floats of shape"), (BENT * np.nan, "must be finite")):
         with pytest.raises(ValueError, match=words):
@@ -78,13 +78,13 @@ def test_lent_arrays_are_filled():
 
 @pytest.fixture
 def surface() -> Iterator[render.Surface]:
-    """An OpenGL context of somebody else, current in this thread."""
+    """Another OpenGL context, current in this thread."""
     with render.open_offscreen((32, 32)) as opened:
         yield opened
 
 
 def test_buffers_of_another_context(surface):
-    """A stream's context is used, and nothing is fetched until it is read."""
+    """The stream's context is used, and no data are fetched before they are read."""
     processor, card = bound()
     room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
     stream = GpuBuffers(surface.gl, *room)
@@ -104,7 +104,7 @@ def test_buffers_of_another_context(surface):
 
 @pytest.mark.parametrize("rules", ["two levels", "window's look"])
 def test_a_lost_context_is_made_anew(rules):
-    """A window that is closed takes all buffers along; the next one gets the mesh again."""
+    """A closed window loses all buffers; the next one gets the mesh again."""
     processor, card = bound(**RULES[rules])
     wanted = processor.refine(BENT)
     room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
@@ -116,7 +116,7 @@ def test_a_lost_context_is_made_anew(rules):
 
 
 def test_the_callers_context_stays_current(surface):
-    """Frames that bring no context do not touch the one that draws."""
+    """Frames without a context do not change the current one."""
     _, card = bound()
     surface.begin()
     surface.gl.clear(1.0, 0.0, 0.0)
@@ -127,10 +127,10 @@ def test_the_callers_context_stays_current(surface):
 
 @pytest.fixture
 def without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
-    """OpenGL that is too old."""
+    """An OpenGL version that is too old."""
 
     def fails():
-        """Fail as `own_context` does then."""
+        """Fail as `own_context` does in this case."""
         raise GpuError("no OpenGL 4.3 without a window (it has 4.1)")
 
     refiner.warn_once.cache_clear()
@@ -139,7 +139,7 @@ def without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("without_opengl")
 def test_without_opengl_the_processor_refines(caplog):
-    """One line says so, once, and what comes is what `kahler` makes."""
+    """One line says so, once, and the result is that of `kahler`."""
     with caplog.at_level(logging.WARNING):
         for _ in range(2):
             other = refine.create("kahler-gl", MESH.faces, MESH.vertices, threshold_once=0.01)
@@ -153,7 +153,7 @@ def test_without_opengl_the_processor_refines(caplog):
 
 
 def test_a_driver_that_refuses_a_shader(monkeypatch, caplog):
-    """Then the processor refines as well, and the line has the driver's complaint."""
+    """The processor refines in this case, too, and the line has the driver's message."""
     whole = frames.shader_text
     refiner.warn_once.cache_clear()
     monkeypatch.setattr(frames, "shader_text", lambda name: whole(name) + "?" * (name == "mark"))
@@ -165,7 +165,7 @@ def test_a_driver_that_refuses_a_shader(monkeypatch, caplog):
 
 
 def test_shaders_take_eight_buffers():
-    """OpenGL 4.3 promises no more storage buffers in all, nor a larger group of threads."""
+    """OpenGL 4.3 guarantees no more storage buffers, nor a larger group of threads."""
     bindings = re.findall(r"std430, binding = (\d+)", frames.shader_text("common"))
     assert sorted(map(int, bindings)) == list(range(8))
     assert tables.GROUP <= 1024
@@ -181,13 +181,13 @@ def test_shaders_take_eight_buffers():
     ],
 )
 def test_what_the_card_has_not(options, words):
-    """Options that only `kahler` has are refused in words."""
+    """Options that only `kahler` has are refused by name."""
     with pytest.raises(ValueError, match=re.escape(words)):
         refine.create("kahler-gl", MESH.faces, MESH.vertices, **options)
 
 
 def test_it_imports_what_an_outsider_may():
-    """Of refinement only `risorius.refine` and `refine.port`, by names that these export."""
+    """From refinement it only imports `risorius.refine` and `refine.port`, by exported names."""
     folder = Path(refine_gl.__file__).parent
     for file in folder.glob("*.py"):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):

@@ -53,7 +53,7 @@ def jumps(scheme, blend, criterion, mesh=None):
         now = surface_at(refiner, refiner.refine(positions), mesh.faces, SOME_PLACES)
         seen.add(refiner.splits.tobytes())
         moved = norm(positions - positions_before, axis=1).max()
-        if before is not None and moved > 1e-6:  # the motion turns back once
+        if before is not None and moved > 1e-6:  # the motion reverses once
             most = max(most, float(norm((now - before)[..., :3], axis=2).max() / moved))
             turn = max(turn, float(norm((now - before)[..., 3:], axis=2).max()))
         before = now
@@ -85,14 +85,14 @@ def test_nothing_pops_at_seams_and_tips(name, scheme):
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[::2])
 @pytest.mark.parametrize("criterion", ["displacement", "normal+rest"])
 def test_nothing_pops_by_other_criteria(criterion, scheme):
-    """The same for the other criteria and their maximum."""
+    """This holds for the other criteria and their maximum."""
     assert jumps(scheme, True, criterion)[0] < BOUND
 
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
 @pytest.mark.parametrize("name", ["icosahedron", "box", "cone"])
 def test_outlines_do_not_pop(name, scheme):
-    """A body whose edges all turn by 40 degrees and more rolls before the eye, and nothing jumps.
+    """A body whose edges all turn by 40 degrees and more rolls in the view, and nothing jumps.
 
     Without blending points go 53 to 104 times as far in these steps, with it 1.7 to 3.5 times.
     """
@@ -131,7 +131,7 @@ def test_outlines_do_not_pop(name, scheme):
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
 def test_any_change_of_needs_is_followed(scheme):
-    """With any metrics of three edges, whichever appears: no jump in the triangle between them.
+    """For any metrics of three edges, the triangle between them does not jump.
 
     Largest seen: 0.8 of the change of the metrics. A diagonal that turns would be 0.1 at once.
     """
@@ -183,14 +183,14 @@ def test_folds_have_no_scales():
 
 
 def _across(grid):
-    """Needs of edges: those along y none, all others one whole split."""
+    """Needs of edges: those along y have none, all others one whole split."""
     edges = refine.connect(grid.faces, len(grid.vertices)).edges
     is_along = np.ptp(grid.vertices[edges][..., 0], axis=1) < 1e-9
     return np.where(is_along, -1.0, 0.9)
 
 
 def test_without_blending_it_pops():
-    """The measure is able to see a pop: the paper's rules have some."""
+    """The measure can detect a pop: the paper's rules have some."""
     assert jumps("loop", False, "normal")[0] > 2 * BOUND
 
 
@@ -217,7 +217,7 @@ def test_begins_at_the_unrefined_surface(scheme):
 
 
 def test_splits_as_a_measure():
-    """A criterion that wants whole splits measures them, and its blended points have grown."""
+    """A criterion of whole splits measures them, and its blended points have grown."""
     mesh = meshes.octahedron()
     wanted = np.arange(12) % 3
     refiner = kahler(mesh, blend=True, criterion=Forced(wanted))

@@ -1,4 +1,4 @@
-"""Creases: edges that are sharp at rest stay where they are, and nothing cracks along them."""
+"""Creases: sharp edges at rest stay in place, and nothing cracks along them."""
 
 import numpy as np
 import pytest
@@ -40,21 +40,21 @@ def prism(sides):
 
 
 def cube():
-    """Of twelve triangles."""
+    """A cube of twelve triangles."""
     points = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
     quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     return points, np.array([half for a, b, c, d in quads for half in ([a, b, c], [a, c, d])])
 
 
 def volume(points, faces):
-    """Inside of a closed mesh."""
+    """Volume of a closed mesh."""
     a, b, c = points[faces].astype(float).swapaxes(0, 1)
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
 
 @pytest.mark.parametrize("options", [LOOK, {**LOOK, "blend": False}])
 def test_a_cylinder_keeps_its_rims(options):
-    """Its sides become round, and its volume that of a cylinder; without creases it swells."""
+    """Its sides become round, with a cylinder's volume; without creases it swells."""
     points, faces = prism(16)
     own = volume(points, faces)
     swollen = refine.create("kahler", faces, points, **options).refine(points)
@@ -72,7 +72,7 @@ def test_a_cylinder_keeps_its_rims(options):
 
 
 def test_a_cube_stays_one():
-    """Flat sides need no splits, and where they are split nothing moves by more than rounding."""
+    """Flat sides need no splits, and if they are split nothing moves by more than rounding."""
     points, faces = cube()
     refined = refine.create("kahler", faces, points, crease_angle=80.0, **LOOK).refine(points)
     assert refined.triangle_count == 12
@@ -87,7 +87,7 @@ def test_a_cube_stays_one():
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
 def test_new_points_of_creases_lie_on_them(scheme):
-    """As on a border: of the two straight ridges of a roof none leaves its line."""
+    """As on a border, neither of the two straight ridges of a roof leaves its line."""
     x, y = np.meshgrid(np.arange(5.0), np.arange(7.0))
     flat = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
     points = flat + [0.0, 0.0, 1.0] * np.abs(x.ravel() - 2.0)[:, None]
@@ -130,7 +130,7 @@ def test_uniform_subdivision_keeps_them(levels):
     seed=st.integers(0, 999),
 )
 def test_no_crack_whatever_is_sharp(soup, angle, options, seed):
-    """Soups, whose edges are of one triangle or three, turned, doubled: `check` holds."""
+    """For soups with edges of one triangle or three, turned, doubled: `check` holds."""
     points, faces = soup
     refiner = refine.create("kahler", faces, points, crease_angle=angle, **options)
     moved = points + np.random.default_rng(seed).normal(0.0, 0.2, points.shape)
@@ -140,7 +140,7 @@ def test_no_crack_whatever_is_sharp(soup, angle, options, seed):
 @settings(max_examples=60)
 @given(soup=soups(), angle=st.sampled_from([0.0, 20.0, 90.0]))
 def test_sectors_are_what_creases_leave_together(soup, angle):
-    """Corners at a vertex that other edges join have one sector; those of both sides have two."""
+    """Corners at a vertex that other edges join have one sector; corners on both sides have two."""
     points, faces = soup
     refiner = refine.create("kahler", faces, points, crease_angle=angle)
     assert isinstance(refiner, refine.Kahler)
@@ -175,7 +175,7 @@ def test_angles_by_hand():
 
 
 def test_off_by_default_and_refused_in_words():
-    """None and 180 degrees change no bit; a value that is no angle is named."""
+    """None and 180 degrees change no bit; a value that is not an angle is named."""
     mesh = meshes.irregular(3)
     bent = meshes.wrinkled(mesh, 4)
     frames = [
@@ -192,7 +192,7 @@ def test_off_by_default_and_refused_in_words():
 
 @pytest.mark.parametrize("rules", [{}, LOOK])
 def test_on_the_card(rules):
-    """The paper's rule has creases there; cubic edges are left to the processor."""
+    """The paper's rule has creases there; cubic edges are refined by the processor."""
     points, faces = prism(12)
     moved = points * [1.0, 0.6, 1.3]
     options = {"crease_angle": 40.0, **rules}

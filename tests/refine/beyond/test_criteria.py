@@ -1,4 +1,4 @@
-"""Criteria beside the paper's, and several at once."""
+"""Criteria besides the paper's, and several at once."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def splits_of(mesh, deformed, criterion, **view):
 
 
 def test_rest_by_hand():
-    """Where a tube is curved, by height and length; the same edges however it is bent and seen."""
+    """At curved places of a tube, by height and length; the same edges for every bend and view."""
     tube = meshes.tube(24, 4)
     around = 2 * np.sin(np.pi / 24)
     edges = refine.connect(tube.faces, len(tube.vertices)).edges
@@ -39,7 +39,7 @@ def test_rest_by_hand():
 
 
 def test_rest_is_grown_at_once():
-    """Blended points that are there at rest stand where they stand without blending."""
+    """Blended points that exist at rest have the same place without blending."""
     sphere = meshes.ball(1)
     points = []
     for blend in (False, True):
@@ -62,7 +62,7 @@ def test_view_is_needed():
 
 
 def test_maximum():
-    """A list splits each edge as often as the criterion that asks for most."""
+    """A list splits each edge by the criterion with the most splits."""
     mesh = meshes.irregular(1)
     deformed = meshes.wrinkled(mesh, 2)
     view = refine.View([0.0, 0.0, 50.0])
@@ -102,7 +102,7 @@ EYE = np.array([3.0, 2.0, 4.0])
 
 
 def plain_measure(kind, positions, normals, edges, most):
-    """The measure of a criterion at every edge, written once more, plainly."""
+    """The measure of a criterion at every edge, implemented again simply."""
     values = []
     for a, b in edges:
         cosine = float(normals[a] @ normals[b])
@@ -125,7 +125,7 @@ def plain_measure(kind, positions, normals, edges, most):
     ],
 )
 def test_needs_by_hand(kind, once, twice, level):
-    """Needs are measures over the distance of the thresholds; without a second one, over itself."""
+    """Needs are measures over the distance of the thresholds; without a second, over the first."""
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3)
     none = refine.create("none", mesh.faces, mesh.vertices)
@@ -157,7 +157,7 @@ def test_needs_by_hand(kind, once, twice, level):
 
 @pytest.mark.parametrize("scheme", ["cubic", "detail"])
 def test_displacement(scheme):
-    """An edge is split where its full middle lies farther than the threshold from the straight.
+    """An edge is split if its full middle is farther than the threshold from the straight.
 
     An edge on a border is split at an eighth of it.
     """
@@ -188,7 +188,7 @@ def test_displacement(scheme):
 
 
 def test_displacement_needs_measures():
-    """The paper's scheme does not measure how far it moves edges; its refined normals do."""
+    """The paper's scheme does not measure the motion of edges; its refined normals do."""
     mesh = meshes.octahedron()
     with pytest.raises(ValueError, match='LoopScheme does so with normals="refined" only'):
         kahler(mesh, criterion="displacement")
@@ -198,7 +198,7 @@ def test_displacement_needs_measures():
 
 
 def test_a_rule_of_ones_own_is_asked():
-    """A subclass that marks otherwise is not passed over."""
+    """A subclass with another mark is used."""
     mesh = meshes.irregular(4)
 
     class Everything(refine.NormalDrop):
@@ -220,7 +220,7 @@ def test_a_rule_of_ones_own_is_asked():
 )
 @pytest.mark.parametrize("name", ["kahler", "kahler-gl"])
 def test_a_rule_that_says_nothing(name, options, text):
-    """A criterion or scheme without its one method says which that is, when a frame asks it."""
+    """A criterion or scheme without its one method is named with it, when a frame needs it."""
     mesh = meshes.octahedron()
     if name == "kahler-gl" and "scheme" in options:
         pytest.skip("the card has schemes of its own")
@@ -230,7 +230,7 @@ def test_a_rule_that_says_nothing(name, options, text):
 
 
 class Heat(refine.Criterion):
-    """A criterion of somebody, which divides nothing by nothing at one edge."""
+    """A user's criterion, which divides zero by zero at one edge."""
 
     def __init__(self, at, frame=0):
         self.at = at
@@ -245,7 +245,7 @@ class Heat(refine.Criterion):
 
 
 class Warmth(Heat):
-    """One that decides by itself, and would have spoilt a blended frame alone."""
+    """A criterion that decides by itself, and would spoil only a blended frame."""
 
     def mark(self, positions, normals, splits):
         """Split nothing."""
@@ -256,7 +256,7 @@ class Warmth(Heat):
 @pytest.mark.parametrize("name", ["kahler", "kahler-gl"])
 @pytest.mark.parametrize("is_part", [False, True])
 def test_no_number_is_reported(blend, name, is_part):
-    """By the frame in which it is measured, with the criterion's name, alone or beside others."""
+    """The frame that measures it reports the criterion's name, alone or in a list."""
     mesh = meshes.irregular(3)
     for first in (0, 2):
         heat = Heat(7, first)
@@ -273,7 +273,7 @@ def test_no_number_is_reported(blend, name, is_part):
 
 
 def test_check_reports_what_would_be_no_number():
-    """Of a criterion that decides by itself, `check` asks the measure."""
+    """For a criterion that decides by itself, `check` calls the measure."""
     mesh = meshes.irregular(3)
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Warmth(7))
     refined = refiner.refine(mesh.vertices)

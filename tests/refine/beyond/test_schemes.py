@@ -1,4 +1,4 @@
-"""Every scheme, blended and not, against its plain twin and the checker."""
+"""Every scheme, blended and not, compared with its simple twin and the checker."""
 
 import numpy as np
 import pytest
@@ -31,13 +31,13 @@ MESHES = {**meshes.NAMED, **VALENCES, "irregular": lambda: meshes.irregular(3, 6
 
 
 def bound(mesh, scheme, blend, metric, **options):
-    """A refiner whose edges have given metrics; the finer mesh of `detail` is the mesh itself."""
+    """A refiner whose edges have given metrics; for `detail` the finer mesh is the mesh itself."""
     scheme = scheme_of(scheme, mesh.vertices + np.array([0.0, 0.0, 0.01]), mesh.faces)
     return kahler(mesh, scheme=scheme, blend=blend, criterion=GivenMetric(metric), **options)
 
 
 def twin_of(mesh, deformed, scheme, normals, blend, needed, edges):
-    """The same frame by the plain implementations."""
+    """The same frame by the simple implementations."""
     points, faces = as_lists(deformed, mesh.faces)
     rest, _ = as_lists(mesh.vertices, mesh.faces)
     rules = PaperRules(points, faces)
@@ -54,7 +54,7 @@ def twin_of(mesh, deformed, scheme, normals, blend, needed, edges):
 
 
 def random_metrics(mesh, seed):
-    """Needs of no, one and two splits, and all shades between, for every edge."""
+    """Needs of no, one and two splits, and all values between, for every edge."""
     count = edge_count_of(mesh)
     return np.random.default_rng(seed).uniform(-0.7, 2.0, count)
 
@@ -64,7 +64,7 @@ def random_metrics(mesh, seed):
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("normals", NORMALS)
 def test_equals_plain_twin(normals, scheme, blend, name):
-    """Points, normals and triangles are those of the plain twin, on meshes of every kind."""
+    """Points, normals and triangles are those of the simple twin, on meshes of every kind."""
     mesh = MESHES[name]()
     for seed in range(2):
         needed = GivenMetric(random_metrics(mesh, seed))
@@ -89,7 +89,7 @@ def test_equals_plain_twin(normals, scheme, blend, name):
     blend=st.booleans(),
 )
 def test_soups_equal_twin(soup, data, scheme, normals, blend):
-    """Any triangles with any metrics: the fast kernels agree with the plain twin."""
+    """For any triangles with any metrics, the fast kernels agree with the simple twin."""
     positions, faces = soup
     edge_count = len(refine.connect(faces, len(positions)).edges)
     strategy = st.floats(-1, 3, width=32)
@@ -104,7 +104,7 @@ def test_soups_equal_twin(soup, data, scheme, normals, blend):
 
 
 def _has_normals(refined):
-    """Whether no normal is a rest of rounding, which cubic edges would follow."""
+    """Whether no normal is only a rounding error, which cubic edges would follow."""
     lengths = norm(refined.normals, axis=1)
     return bool((lengths > 0.5).all())
 
@@ -112,7 +112,7 @@ def _has_normals(refined):
 @pytest.mark.parametrize("blend", [False, True])
 @pytest.mark.parametrize("scheme", ["cubic", "detail"])
 def test_vertices_stay(scheme, blend):
-    """Schemes that interpolate leave every original vertex where it is, to the last bit."""
+    """Schemes that interpolate keep every original vertex in place, to the last bit."""
     mesh = meshes.irregular(5)
     deformed = meshes.wrinkled(mesh, 6)
     refiner = bound(mesh, scheme, blend, random_metrics(mesh, 7))
@@ -134,7 +134,7 @@ def test_flat_stays_flat(scheme):
 
 
 def test_borders_beside_corners_are_parabolas():
-    """Beside the corner of a half disc its rim curves on, and is not flatter toward the corner."""
+    """Beside the corner of a half disc its rim keeps its curve, and is not flatter there."""
     angles = np.radians([0.0, 45.0, 90.0, 135.0, 180.0])
     rim = np.stack([np.cos(angles), np.sin(angles), np.zeros(5)], axis=1)
     half_disc = meshes.Mesh(

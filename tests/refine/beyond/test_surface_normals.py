@@ -1,4 +1,4 @@
-"""Normals of the refined surface: true, steady, and the same with any splits."""
+"""Normals of the refined surface: correct, continuous, and the same for any splits."""
 
 import numpy as np
 import numpy.typing as npt
@@ -50,7 +50,7 @@ def turns(some, others):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_edges_have_normals_where_they_are_needed(scheme, monkeypatch):
-    """Those that are split, or all where a criterion measures them: to the same bits."""
+    """Those of split edges, or all if a criterion measures them, have the same bits."""
     found = []
 
     def counted(kernel, count, *arguments):
@@ -78,7 +78,7 @@ def test_edges_have_normals_where_they_are_needed(scheme, monkeypatch):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_does_not_depend_on_what_is_split(scheme):
-    """A vertex has the same normal to the last bit, and so has a middle as soon as it has grown."""
+    """A vertex has the same normal to the last bit, and so has a middle once it has grown."""
     mesh = meshes.irregular(3)
     deformed = meshes.wrinkled(mesh, 4, 0.2)
     count = len(mesh.vertices)
@@ -116,7 +116,7 @@ def smooth_wave(mesh, height):
 @pytest.mark.slow
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_normals_do_not_pop(scheme):
-    """In a smooth motion the shading turns in proportion to the motion, all thresholds crossed.
+    """In a smooth motion through all thresholds, shading turns in proportion to the motion.
 
     Largest seen: 1.7 times the turn of the surface's own normals; without blending 54 to 62, and
     twice that with steps of half the size.
@@ -153,10 +153,9 @@ def test_normals_do_not_pop(scheme):
     at=st.sampled_from([0.0, 0.25, 1.0, 1.25]),
 )
 def test_geomorph_has_no_steps(seed, scheme, edge, at):
-    """With any splits around it, an edge that passes a threshold turns no shading at once.
+    """For any splits around it, an edge at a threshold does not turn shading at once.
 
-    What is left is that normals between more points are interpolated otherwise: 3 degrees where
-    they turn by 80.
+    The rest comes from interpolation between more points: 3 degrees for turns of 80.
     """
     mesh = meshes.open_grid(5, 4)
     positions = smooth_wave(mesh, 0.4)
@@ -197,7 +196,7 @@ def exact(name, points):
 @pytest.mark.parametrize("metric", [0.9, 2.0])
 @pytest.mark.parametrize("name", ["ellipsoid", "torus"])
 def test_nearer_to_the_exact_normals(name, metric):
-    """On bodies whose normals are known, refined ones are nearer to them than linear ones."""
+    """On bodies with known normals, refined ones are nearer to these than linear ones."""
     ball = meshes.ball(2)
     ellipsoid = meshes.Mesh(ball.vertices * [1.0, 0.6, 1.5], ball.faces)
     mesh = torus() if name == "torus" else ellipsoid
@@ -212,7 +211,7 @@ def test_nearer_to_the_exact_normals(name, metric):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_points_stay(scheme):
-    """Normals are all that `normals` changes: positions and triangles are the same bits."""
+    """`normals` only changes normals: positions and triangles have the same bits."""
     mesh = meshes.irregular(5)
     deformed = meshes.wrinkled(mesh, 6)
     frames = []
@@ -243,7 +242,7 @@ def test_symmetric_stays_symmetric(scheme):
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
 @pytest.mark.parametrize("blend", [False, True])
 def test_planar_is_exact(scheme, blend):
-    """No normal of a plane leans to the least, with borders and holes."""
+    """No normal of a plane leans by any bit, with borders and holes."""
     mesh = meshes.irregular(2)
     flat = mesh.vertices * [1.0, 1.0, 0.0]
     criterion = GivenMetric(metrics(mesh, 3))
@@ -257,7 +256,7 @@ def test_planar_is_exact(scheme, blend):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_moves_with_the_mesh(scheme):
-    """A rigid motion turns all normals along; a hundred thousand edges away they are the same."""
+    """A rigid motion turns all normals with it; a hundred thousand edges away they are the same."""
     mesh = meshes.irregular(8)
     deformed = meshes.wrinkled(mesh, 9, 0.2)
     turn = meshes.rotation(1)

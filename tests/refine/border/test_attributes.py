@@ -1,4 +1,4 @@
-"""Attributes of any width ride along; inputs of any type and order are taken."""
+"""Attributes of any width are interpolated; inputs of any type and order are accepted."""
 
 import itertools
 
@@ -53,7 +53,7 @@ def test_attributes_are_linear(name, options):
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic", "detail"])
 def test_any_type_and_order(scheme):
-    """float32 or float64, C or Fortran order, strides, int32 or int64: one and the same frame."""
+    """float32 or float64, C or Fortran order, strides, int32 or int64 give the same frame."""
     mesh = meshes.irregular(6)
     rest = mesh.vertices.astype(np.float32)
     deformed = meshes.wrinkled(mesh, 7).astype(np.float32)
@@ -73,7 +73,7 @@ def test_any_type_and_order(scheme):
 
 
 def room(mesh):
-    """Bytes of the arrays that a frame was written into."""
+    """Bytes of the arrays that hold a frame."""
     arrays = [part.base for part in (mesh.positions, mesh.triangles, mesh.source)]
     return sum(array.nbytes for array in arrays if array is not None)
 
@@ -94,7 +94,7 @@ def test_own_stream_grows(blend):
     most = room(all_split)
     assert most > 5 * unsplit
     rows = all_split.positions.base
-    assert rows is not None and len(rows) == refiner.vertex_capacity  # no room that is of no use
+    assert rows is not None and len(rows) == refiner.vertex_capacity  # no useless room
     needed.metric[:] = -1.0
     none_split = refiner.refine(mesh.vertices)
     refine.check(refiner, none_split, mesh.vertices)
@@ -103,7 +103,7 @@ def test_own_stream_grows(blend):
 
 @pytest.mark.parametrize("name", ["none", "loop", "kahler"])
 def test_values_of_corners_where_there_is_no_triangle(name):
-    """A mesh of vertices alone has no corners that could give them values: they get zeros."""
+    """In a mesh of vertices alone no corners give them values: they get zeros."""
     nothing = np.zeros((0, 3), int)
     refiner = refine.create(name, nothing, np.eye(3), uv=np.ones((4, 2)), face_uv=nothing)
     mesh = refiner.refine(np.eye(3))

@@ -1,4 +1,4 @@
-"""The base class of refiners, as somebody else derives from it."""
+"""The base class of refiners, in an external subclass."""
 
 from typing import Any, Unpack
 
@@ -12,7 +12,7 @@ from tests.refine.border.test_stream import stream_for
 
 
 class Middles(refine.BaseRefiner):
-    """Cuts every triangle in three, around a point in its middle."""
+    """Cuts every triangle into three, around a point in its middle."""
 
     def __init__(
         self,
@@ -28,7 +28,7 @@ class Middles(refine.BaseRefiner):
 
     @property
     def vertex_capacity(self) -> int:
-        """Wedges, and one for each triangle."""
+        """Wedges, and one point for each triangle."""
         return len(self.connectivity.wedge_vertices) + len(self.cut)
 
     @property
@@ -63,14 +63,14 @@ class Middles(refine.BaseRefiner):
         return self.vertex_capacity, count
 
     def origins(self) -> refine.Origins:
-        """The middles follow the wedges."""
+        """The middles come after the wedges."""
         corners = self.connectivity.faces[self.cut]
         return super().origins().followed_by(corners, np.full(corners.shape, 1 / 3))
 
 
 @pytest.mark.parametrize("name", meshes.NAMED)
 def test_named_meshes(name):
-    """On any mesh, the few lines of a subclass make a proper refinement of it."""
+    """On any mesh, the few lines of a subclass make a proper refinement."""
     mesh = meshes.NAMED[name]()
     deformed = meshes.wrinkled(mesh, 3)
     refiner = Middles(mesh.faces, mesh.vertices, raised=0.1)
@@ -80,7 +80,7 @@ def test_named_meshes(name):
 
 
 def test_seams_and_attributes():
-    """Both sides of a seam and all attributes ride along, in a stream that somebody lends."""
+    """Both sides of a seam and all attributes are there, in a stream lent by the caller."""
     tube = meshes.tube(8, 5)
     colours = np.random.default_rng(1).random((len(tube.vertices), 3))
     refiner = Middles(

@@ -13,7 +13,7 @@ from tests.refine.cases import kahler
 
 
 class Wrapped:
-    """A refiner whose account of its last frame can be falsified."""
+    """A refiner whose report on its last frame can be falsified."""
 
     def __init__(self, refiner):
         self.refiner = refiner
@@ -30,7 +30,7 @@ class Wrapped:
 
 @pytest.fixture
 def frame() -> tuple[Wrapped, refine.RefinedMesh, np.ndarray]:
-    """A refined frame in arrays of its own, its refiner, and the deformed positions."""
+    """A refined frame in its own arrays, its refiner, and the deformed positions."""
     mesh = meshes.irregular(11)
     deformed = meshes.wrinkled(mesh, 12, amplitude=0.3)
     refiner = kahler(mesh)
@@ -46,7 +46,7 @@ def without_triangles(mesh, lost):
 
 
 def of_a_split(mesh):
-    """A subtriangle of a triangle that is split."""
+    """A subtriangle of a split triangle."""
     return int(np.flatnonzero(np.bincount(mesh.source)[mesh.source] > 1)[0])
 
 
@@ -56,7 +56,7 @@ def write(array, place, value):
 
 
 def check_breaks(relation, refiner, refined, deformed):
-    """The checker names this relation as the one that a frame breaks."""
+    """Check that the checker names this relation as the broken one of a frame."""
     with pytest.raises(refine.BrokenMeshError, match=relation):
         refine.check(refiner, refined, deformed)
 
@@ -98,7 +98,7 @@ def test_broken_output(frame, broken, relation):
 
 
 def test_t_junction(frame):
-    """A triangle left whole beside a split edge covers its area, and is still found."""
+    """A triangle left whole beside a split edge covers its area, but is still found."""
     refiner, refined, deformed = frame
     counts = np.bincount(refined.source)
     source = int(np.flatnonzero(counts > 1)[0])
@@ -113,7 +113,7 @@ def test_t_junction(frame):
 
 
 def test_crack_inside(frame):
-    """Two subtriangles cut along the other diagonal of only one of them do not fit."""
+    """Two subtriangles do not fit if only one is cut along the other diagonal."""
     refiner, refined, deformed = frame
     origins = refiner.origins()
     doubled = refine.Origins(
@@ -154,7 +154,7 @@ def test_edge_flip_inside(frame):
 
 @pytest.mark.parametrize(("has", "says"), [(2, 1), (1, 2), (0, 1), (1, 0)])
 def test_wrong_split_count(frame, has, says):
-    """Splits that do not fit the sub-edges are noticed, be they too many or too few."""
+    """Splits that do not fit the sub-edges are found, whether too many or too few."""
     refiner, refined, deformed = frame
     e = int(np.flatnonzero(refiner.splits == has)[0])
     refiner.splits[e] = says
@@ -162,7 +162,7 @@ def test_wrong_split_count(frame, has, says):
 
 
 def test_moved_vertex(frame):
-    """The smallest change of a vertex away from splits is noticed."""
+    """The smallest change of a vertex away from splits is found."""
     refiner, refined, deformed = frame
     touched = np.unique(refiner.edges[refiner.splits > 0])
     v = int(np.setdiff1d(np.arange(len(deformed)), touched)[0])
@@ -190,14 +190,14 @@ def double_degenerate(mesh):
 
 
 def cut_at(places, inside):
-    """Two triangles, of which the common edge is cut, and the first has a point inside.
+    """Two triangles with a cut in their common edge, and a point inside the first.
 
-    `places`: along the edge from vertex 0 to 2, as the one and the other triangle has it;
-    `inside`: barycentric weights of the point.
+    `places`: along the edge from vertex 0 to 2, for the first and the second triangle; `inside`:
+    barycentric weights of the point.
 
         3---------2
         |       / |     The first is 0 1 2, with the point 6 inside; the second is 0 2 3.
-        |    4,5  |     4 and 5 are the cut, as the first and the second see it.
+        | 4,5 | 4 and 5 are the cut, for the first and the second.
         |  /    6 |
         0---------1
     """
@@ -211,7 +211,7 @@ def cut_at(places, inside):
     vertices += [[0, 2, 1], [2, 0, 3], [0, 1, 2]]
     weights += [[1 - one, one, 0.0], [other, 1 - other, 0.0], [*inside]]
     origins = refine.Origins(np.array(vertices, np.int32), np.array(weights, np.float32))
-    # Places within a tenth of a part of each other are one, so they have one position.
+    # Places within a tenth of a part count as one, so they have one position.
     cut = rest[2] * one
     points = np.vstack([rest, cut, cut, [0.7, 0.2, 0.0]])
     triangles = [[0, 1, 6], [1, 2, 6], [2, 4, 6], [4, 0, 6], [0, 5, 3], [5, 2, 3]]
@@ -236,32 +236,32 @@ INSIDE = [(1 / 3, 1 / 3, 1 / 3), (0.25, 0.5, 0.25), (1 / 13, 5 / 13, 7 / 13), (0
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("inside", INSIDE)
 def test_points_anywhere(place, inside):
-    """Edges may be cut where a refiner likes, and triangles have points inside."""
+    """A refiner may cut edges anywhere, and triangles may have points inside."""
     refine.check(*cut_at((place, place), inside))
 
 
 @pytest.mark.parametrize("place", [1 / 2, 1 / 3, 3 / 8, 5 / 512, 3 / 7, 2 / 9])
 def test_single_precision_is_forgiven(place):
-    """Rounding of the weights of whole parts makes no other place of them."""
+    """Rounding of the weights of whole parts does not make another place."""
     assert (place * PARTS) % 1.0 == pytest.approx(0.0, abs=1e-9)
     refine.check(*cut_at((place, place + 2e-7), INSIDE[0]))
 
 
 @pytest.mark.parametrize("place", PLACES)
 def test_places_apart_are_cracks(place):
-    """An edge that is cut in two places, though but a little apart, is a crack."""
+    """An edge cut in two places, however near, is a crack."""
     refiner, refined, rest = cut_at((place, place + 2.0 / PARTS), INSIDE[0])
     check_breaks("no crack, no T-junction", refiner, refined, rest)
 
 
 @pytest.mark.parametrize("weights", [(1.2, -0.1, -0.1), (0.5, 0.5, 0.001)])
 def test_weights_of_no_place(weights):
-    """Points outside a triangle, and weights that add up to something else, are refused."""
+    """Points outside a triangle, and weights with another sum, are refused."""
     check_breaks(r"weights (below zero|that add up to one)", *cut_at((0.5, 0.5), weights))
 
 
 def test_thin_subtriangle_on_an_edge():
-    """Three points on one edge are a sliver, wherever on it they are."""
+    """Three points on one edge are a sliver, at any place on it."""
     refiner, refined, rest = cut_at((1 / 11, 1 / 11), INSIDE[0])
     refined.triangles[2] = [2, 4, 0]
     check_breaks("no sliver", refiner, refined, rest)

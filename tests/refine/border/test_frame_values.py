@@ -1,4 +1,4 @@
-"""Values that change each frame go through splits as attributes do."""
+"""Values that change with each frame go through splits like attributes."""
 
 import tracemalloc
 
@@ -63,7 +63,7 @@ def test_as_if_bound_anew(look):
         anew = bound(
             name, options, mesh, values.get("heat", heats[0]), values.get("colour", colours)
         ).refine(frame)
-        if not options.get("coherent"):  # whose triangles depend on earlier frames
+        if not options.get("coherent"):  # its triangles depend on earlier frames
             assert refined.triangles.tobytes() == anew.triangles.tobytes()
         assert refined.positions.tobytes() == anew.positions.tobytes()
         assert refined.uv is not None and refined.uv.tobytes() == anew.uv.tobytes()
@@ -74,7 +74,7 @@ def test_as_if_bound_anew(look):
 @settings(max_examples=40, deadline=None)
 @given(case=soups(), seed=st.integers(0, 99), look=st.sampled_from(["paper", "cubic", "coherent"]))
 def test_linear_within_triangles(case, seed, look):
-    """On any triangles: exact at vertices, between them the mean by place in the triangle."""
+    """On any triangles values are exact at vertices, and linear between them."""
     positions, faces = case
     name, options = REFINERS[look]
     generator = np.random.default_rng(seed)
@@ -97,7 +97,7 @@ def test_linear_within_triangles(case, seed, look):
 
 
 def test_one_topology():
-    """With splits that stay, values change where vertices and triangles do not."""
+    """With fixed splits, values change while vertices and triangles do not."""
     mesh = Seamed()
     heat = np.zeros((len(mesh.vertices), 1))
     colours = np.zeros((5, 4))
@@ -114,9 +114,9 @@ def test_one_topology():
 
 @pytest.mark.parametrize("look", ["paper", "cubic", "none"])
 def test_nothing_is_kept_of_frames(look):
-    """A hundred frames with values leave no memory behind, and write into the same arrays.
+    """A hundred frames with values keep no memory, and write into the same arrays.
 
-    Other threads of the process, as a worker of tests has, take memory now and then, not each time.
+    Other threads of a test worker take memory at times, but not each time.
     """
     mesh = Seamed()
     name, options = REFINERS[look]
@@ -144,7 +144,7 @@ def test_nothing_is_kept_of_frames(look):
 
 
 def test_mistakes_are_reported():
-    """A name that was not bound, another shape, and numbers that are none; the next frame holds."""
+    """They are an unbound name, another shape, and NaN; the next frame is correct."""
     mesh = meshes.tube(6, 4)
     heat = np.zeros((len(mesh.vertices), 1), np.float32)
     plain = refine.create("kahler", mesh.faces, mesh.vertices)

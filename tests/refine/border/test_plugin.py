@@ -1,4 +1,4 @@
-"""The registry, binding errors, and a refiner of somebody else."""
+"""The registry, binding errors, and an external refiner."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FINE = meshes.octahedron()
 
 
 class Outside:
-    """The smallest refiner of somebody else: written from the protocol, not from our base class."""
+    """The smallest external refiner: written from the protocol, without our base class."""
 
     vertex_columns = 6
 
@@ -42,13 +42,13 @@ class Outside:
         self.offset = offset
 
     def refine(self, positions: np.ndarray, out: refine.Stream | None = None) -> refine.RefinedMesh:
-        """Hand the mesh through without normals."""
+        """Pass the mesh on without normals."""
         points = (positions + self.offset).astype(np.float32)
         source = np.arange(len(self.faces), dtype=np.int32)
         return refine.RefinedMesh(points, np.zeros_like(points), self.faces, source, None)
 
     def origins(self) -> refine.Origins:
-        """Every output vertex is the input vertex of the same number."""
+        """Every output vertex is the input vertex with the same number."""
         numbers = np.arange(self.vertex_capacity, dtype=np.int32)
         weights = np.tile(np.array([[1, 0, 0]], dtype=np.float32), (len(numbers), 1))
         return refine.Origins(np.stack([numbers] * 3, axis=1), weights)
@@ -79,13 +79,13 @@ def test_registered_refiner():
     ],
 )
 def test_bad_registration(name, factory, text):
-    """Names cannot be taken twice, and factories have to be callable."""
+    """Names cannot be used twice, and factories must be callable."""
     with pytest.raises(ValueError, match=text):
         refine.refiners.register(name, factory)
 
 
 def test_unknown_name():
-    """The error lists the names there are."""
+    """The error lists the known names."""
     with pytest.raises(ValueError, match=r"refiner 'khaler' is unknown; there are .*'kahler'"):
         refine.create("khaler", FINE.faces, FINE.vertices)
 
@@ -103,7 +103,7 @@ def test_unknown_name():
     ],
 )
 def test_unknown_option(name, text):
-    """The error lists the options there are."""
+    """The error lists the known options."""
     with pytest.raises(ValueError, match=f"unknown option 'treshold' for refiner '{name}'; {text}"):
         refine.create(name, FINE.faces, FINE.vertices, treshold=0.1)
 
@@ -156,7 +156,7 @@ def test_bad_binding(name, changes, text):
 
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 def test_binding_copies(name):
-    """Changing the bound arrays afterwards changes nothing, and they are not changed."""
+    """Later changes of the bound arrays have no effect, and binding does not change them."""
     faces = FINE.faces.copy()
     rest = FINE.vertices.copy()
     refiner = refine.create(name, faces, rest)
@@ -170,7 +170,7 @@ def test_binding_copies(name):
 
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 def test_splits_cannot_be_written(name):
-    """The splits of the last frame are for reading."""
+    """The splits of the last frame are read-only."""
     refiner = refine.create(name, FINE.faces, FINE.vertices)
     assert refiner.splits.dtype == np.uint8
     assert refiner.splits.shape == (12,)
@@ -181,7 +181,7 @@ def test_splits_cannot_be_written(name):
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 @pytest.mark.parametrize("faces", [[], (), np.zeros((0, 3), dtype=int)])
 def test_no_triangles_in_none_out(name, faces):
-    """Also of an empty list, which has no second dimension."""
+    """This includes an empty list, which has no second dimension."""
     refiner = refine.create(name, faces, FINE.vertices)
     assert len(refiner.refine(FINE.vertices).triangles) == 0
 
@@ -189,7 +189,7 @@ def test_no_triangles_in_none_out(name, faces):
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
 @pytest.mark.parametrize("unit", [1e-6, 5e7])
 def test_units_of_length(unit, scheme):
-    """In any unit between the limits of binding, the same triangles come out."""
+    """Any unit between the limits of binding gives the same triangles."""
     grid = meshes.irregular(3)
     deformed = meshes.wrinkled(grid, 4)
 
@@ -205,7 +205,7 @@ def test_units_of_length(unit, scheme):
 
 
 def test_frames_can_be_kept():
-    """Deep copies and pickles of a frame have arrays of their own, which no later frame touches."""
+    """Deep copies and pickles of a frame have their own arrays, which no later frame changes."""
     refiner = kahler(FINE, attributes={"rest": FINE.vertices}, threshold_once=0.0)
     refined = refiner.refine(FINE.vertices * [1.0, 1.0, 4.0])
     kept = [copy.deepcopy(refined), pickle.loads(pickle.dumps(refined))]
@@ -247,13 +247,13 @@ def test_bad_options(options, text):
 
 @pytest.mark.parametrize("name", ["criterion", "scheme"])
 def test_an_object_knows_one_mesh(name):
-    """A criterion or scheme that serves a refiner is refused to another, alone or in a list."""
+    """A criterion or scheme in use by a refiner is refused for another, alone or in a list."""
     thing = refine.Displacement() if name == "criterion" else LoopScheme()
     create = partial(refine.create, "kahler", FINE.faces, FINE.vertices, normals="refined")
     first = create(**{name: thing})
     for shared in (thing, [thing, "normal"])[: 2 if name == "criterion" else 1]:
         with pytest.raises(ValueError, match=r"serves another refiner already; make one for each"):
             create(**{name: shared})
-    first.refine(FINE.vertices)  # and has not learnt the other's scheme
+    first.refine(FINE.vertices)  # it has not learnt the other's scheme
     del first
     create(**{name: thing})

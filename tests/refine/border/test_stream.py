@@ -31,7 +31,7 @@ def stream_for(refiner, spare=0):
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 @pytest.mark.parametrize("textured", [False, True])
 def test_lent_stream(name, options, textured, spare):
-    """A lent stream gets the same as the own stream, and the mesh views it."""
+    """A lent stream gets the same values as the own stream, and the mesh views it."""
     tube = meshes.tube(10, 6)
     texture = {"uv": tube.uv, "face_uv": tube.face_uv} if textured else {}
     deformed = meshes.wrinkled(tube, 3)
@@ -69,7 +69,7 @@ def test_lent_stream(name, options, textured, spare):
     ],
 )
 def test_bad_stream(change, text):
-    """A stream that cannot take the worst case is refused before anything is written."""
+    """A stream too small for the worst case is refused before any write."""
     grid = meshes.open_grid(10, 6)
     refiner = kahler(grid)
     assert refiner.triangle_capacity == 1200
@@ -82,7 +82,7 @@ def test_bad_stream(change, text):
 
 @pytest.mark.parametrize("name", ["vertices", "triangles", "source"])
 def test_stream_that_becomes_read_only(name):
-    """Arrays that are closed between two frames are not written any more."""
+    """Arrays made read-only between two frames are not written any more."""
     mesh = meshes.irregular(2)
     refiner = kahler(mesh)
     stream = stream_for(refiner)
@@ -96,7 +96,7 @@ def test_stream_that_becomes_read_only(name):
 
 
 def test_any_row_of_streams():
-    """After any other stream, a frame goes where it should, and nowhere else."""
+    """After any other stream, a frame goes into the right one, and nowhere else."""
     mesh = meshes.irregular(3)
     refiner = kahler(mesh)
     frames = [mesh.vertices + amount * (meshes.wrinkled(mesh, 4) - mesh.vertices)
@@ -122,7 +122,7 @@ def test_any_row_of_streams():
 
 
 def test_stream_may_be_the_input():
-    """Positions that live in the lent stream are read before they are overwritten."""
+    """Positions in the lent stream are read before they are overwritten."""
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3).astype(np.float32)
     refiner = kahler(mesh)
@@ -136,9 +136,9 @@ def test_stream_may_be_the_input():
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 @pytest.mark.parametrize("textured", [False, True])
 def test_nothing_is_allocated(name, options, textured):
-    """After the first frames, frames take no memory but that of views, and of passes begun anew.
+    """After the first frames, only views and restarted passes take memory.
 
-    Other threads of the process, as a worker of tests has, take memory now and then, not each time.
+    Other threads of a test worker take memory at times, but not each time.
     """
     tube = meshes.tube(40, 30)
     texture = {"uv": tube.uv, "face_uv": tube.face_uv} if textured else {}
@@ -174,7 +174,7 @@ def test_bad_positions(positions):
 
 
 def test_masked_positions():
-    """Masked values are not known, and are not taken from under the mask."""
+    """Masked values are unknown, and are not read from under the mask."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh)
     expected = refiner.refine(mesh.vertices).positions.copy()
@@ -189,7 +189,7 @@ def test_masked_positions():
 
 @pytest.mark.parametrize("copied", [pickle.dumps, copy.deepcopy])
 def test_refiners_stay_where_they_are(copied):
-    """A copy would share buffers with the original, or point to nowhere in another process."""
+    """A copy would share buffers with the original, or have invalid pointers in another process."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh)
     with pytest.raises(TypeError, match=r"make one there with refine\.create"):
@@ -199,7 +199,7 @@ def test_refiners_stay_where_they_are(copied):
 @pytest.mark.parametrize("number", [np.nan, np.inf, -1e15, 1e39])
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 def test_positions_that_are_no_numbers(name, number):
-    """What would overflow in single precision is refused; the refiner goes on as if never asked."""
+    """Values that overflow in single precision are refused; the refiner's state is unchanged."""
     mesh = meshes.octahedron()
     refiner = refine.create(name, mesh.faces, mesh.vertices)
     deformed = mesh.vertices * [1.0, 1.0, 4.0]
@@ -213,7 +213,7 @@ def test_positions_that_are_no_numbers(name, number):
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic", "detail"])
 def test_anything_below_the_limit_is_finite(scheme):
-    """A mesh that has blown up comes out as finite numbers, so nothing downstream sees a NaN."""
+    """A mesh that has blown up gives finite numbers, so no later stage gets a NaN."""
     mesh = meshes.double_cone(60)
     refiner = kahler(mesh, scheme=scheme_of(scheme, mesh.vertices, mesh.faces))
     blown = np.random.default_rng(5).uniform(-0.99e15, 0.99e15, mesh.vertices.shape)

@@ -1,4 +1,4 @@
-"""Points that no triangle uses change no triangle, wherever they lie."""
+"""Points that no triangle uses change no triangle, wherever they are."""
 
 import numpy as np
 import numpy.typing as npt
@@ -39,7 +39,7 @@ def with_strays(points, faces, place):
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 @pytest.mark.parametrize("stray", STRAYS)
 def test_triangles_are_the_same(name, options, stray):
-    """To the last bit, at rest and in frames; what comes out is finite everywhere."""
+    """They are equal to the last bit, at rest and in frames; all output is finite."""
     mesh = meshes.irregular(4)
     bent = meshes.wrinkled(mesh, 5)
     faces = mesh.faces.astype(np.int64)
@@ -58,7 +58,7 @@ def test_triangles_are_the_same(name, options, stray):
 
 @pytest.mark.parametrize("stray", STRAYS)
 def test_welded_and_measured(stray):
-    """Neither welding, nor detail, nor strain looks at them."""
+    """Neither welding, nor detail, nor strain reads them."""
     mesh = meshes.irregular(4)
     faces = mesh.faces.astype(np.int64)
     rest, renamed = with_strays(mesh.vertices, faces, STRAYS[stray])
@@ -71,7 +71,7 @@ def test_welded_and_measured(stray):
 
 
 def test_points_of_triangles_are_still_looked_at():
-    """One that a triangle uses must be a number; the error names it alone."""
+    """A point of a triangle must be a finite number; the error names it alone."""
     mesh = meshes.irregular(4)
     rest, renamed = with_strays(mesh.vertices, mesh.faces.astype(np.int64), STRAYS["not a number"])
     refiner = refine.create("kahler", renamed, rest)
@@ -84,7 +84,7 @@ def test_points_of_triangles_are_still_looked_at():
 
 
 def test_a_stray_twin_moves_nothing():
-    """A point that lies where a vertex does, but is in no triangle, is not welded with it."""
+    """A point at the place of a vertex, but in no triangle, is not welded with it."""
     mesh = meshes.irregular(4)
     faces = mesh.faces.astype(np.int64)
     twin = np.concatenate([mesh.vertices[faces[:1, 0]], mesh.vertices])

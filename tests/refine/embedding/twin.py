@@ -1,4 +1,4 @@
-"""A twin of `Embedding.evaluate` in plain numpy, for closed meshes: slow, and as the pages say it.
+"""A twin of `Embedding.evaluate` in plain numpy, for closed meshes: slow, and by the documentation.
 
 Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN triangles", with tangents and offsets that are
 carried along (refine/embedding/patches.py and frames.py).
@@ -12,7 +12,7 @@ from numpy.linalg import norm
 from scipy.spatial.transform import Rotation
 
 Points = npt.NDArray[np.float64]
-MOST_CARRIED = 0.5  # lengths of a tangent that a carried one may be off
+MOST_CARRIED = 0.5  # largest error of a carried tangent, in lengths of the tangent
 
 
 def unit(vector: Points) -> Points:
@@ -22,11 +22,11 @@ def unit(vector: Points) -> Points:
 
 @dataclass
 class Fan:
-    """What the triangles around a vertex know of it at rest.
+    """Data of the triangles around a vertex at rest.
 
     numbers: corners of each triangle, the vertex first, (k, 3). weights: of their cross products.
-    areas: shares of the triangles, (k,). edges: at rest, (k, 3, 2). directions: two that lie across
-    the normal, (3, 2).
+    areas: shares of the triangles, (k,). edges: at rest, (k, 3, 2). directions: two perpendicular
+    to the normal, (3, 2).
     """
 
     numbers: npt.NDArray[np.int64]
@@ -50,7 +50,7 @@ class Twin:
         turns = np.concatenate([np.roll(faces, -corner, axis=1) for corner in range(3)])
         self.fans = [self._fan(turns[turns[:, 0] == v], rest) for v in range(len(rest))]
         self.rest_axes = [self._axes(fan, rest) for fan in self.fans]
-        self.slopes = {}  # how much of both directions an edge's tangent at rest is
+        self.slopes = {}  # shares of both directions in an edge's tangent at rest
         for a, b in np.concatenate([turns[:, [0, 1]], turns[:, [0, 2]]]):
             self.slopes[a, b] = self._slope(a, b, rest)
 
@@ -68,7 +68,7 @@ class Twin:
 
     @staticmethod
     def _axes(fan: Fan, points: Points) -> tuple[Points, Points]:
-        """The normal, and both directions where the triangles have carried them to, (3, 2)."""
+        """The normal, and both directions as carried by the triangles, (3, 2)."""
         edges = edges_of(points, fan.numbers)
         normal = unit(fan.weights @ np.cross(edges[:, :, 0], edges[:, :, 1]))
         moves = edges @ np.linalg.pinv(fan.edges)  # linear maps of the triangles' planes
@@ -95,7 +95,7 @@ class Twin:
         weights: Points,
         offsets: Points,
     ) -> Points:
-        """Where places of weights (N, 3) on `triangles`, (N,), are with their offsets, (N, 3)."""
+        """Positions at weights (N, 3) on `triangles`, (N,), with their offsets, (N, 3)."""
         axes = [self._axes(fan, points) for fan in self.fans]
         quaternions = [
             Rotation.from_matrix(self._frame(now) @ self._frame(rest).T).as_quat()

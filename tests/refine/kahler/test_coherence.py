@@ -1,4 +1,4 @@
-"""Time-coherent splitting: the 271 sequences, their triangulations, and the way between them."""
+"""Time-coherent splitting: the 271 sequences, their triangulations, and transitions."""
 
 import itertools
 
@@ -17,7 +17,7 @@ ALL_SPLITS = list(itertools.product(range(3), repeat=3))
 
 
 def states_of(length):
-    """Numbers of the sequences with so many splits."""
+    """Numbers of the sequences with this number of splits."""
     return [k for k, sequence in enumerate(TABLES.sequences) if len(sequence) == length]
 
 
@@ -55,7 +55,7 @@ def test_entries(length):
 
 @pytest.mark.parametrize("length", range(7))
 def test_splitting_turns_no_line(length):
-    """With any further split, every line inside the triangle stays; nothing is out of order."""
+    """After any further split, every inner line stays; no removal is out of order."""
     for state in states_of(length):
         has = coherence.splits_in(TABLES.sequences[state])
         for splits in ALL_SPLITS:
@@ -70,7 +70,7 @@ def test_splitting_turns_no_line(length):
 
 @pytest.mark.parametrize("length", range(7))
 def test_taking_back_in_reverse(length):
-    """Splits taken back from the end lead to the sequence before them, with nothing counted."""
+    """Splits removed from the end lead to the previous sequence, with no removal counted."""
     for state in states_of(length):
         sequence = TABLES.sequences[state]
         for left in range(length):
@@ -113,7 +113,7 @@ def length_of_lines(state):
 
 @pytest.mark.parametrize("length", range(4))
 def test_new_splits_make_the_shortest_lines(length):
-    """Of all orders in which splits of one frame can be put, none has shorter lines."""
+    """Of all orders for the splits of one frame, none has shorter lines."""
     lengths = [length_of_lines(state) for state in range(len(TABLES.sequences))]
     for state in states_of(length):
         begun = TABLES.sequences[state]
@@ -128,7 +128,7 @@ def test_new_splits_make_the_shortest_lines(length):
 
 
 def test_states_follow_the_tables():
-    """The kernel moves all triangles as the tables say, counts, keeps its array, and forgets."""
+    """The kernel moves all triangles by the tables, counts, keeps its array, and forgets."""
     generator = np.random.default_rng(1)
     face_count = 500
     points = np.zeros((3, 3))

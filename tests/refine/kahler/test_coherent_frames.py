@@ -48,7 +48,7 @@ def inner_lines(refiner, mesh):
 
 
 def turned(before, now, rows):
-    """Lines of the frame before that are gone although `rows` still has both their ends."""
+    """Lines of the previous frame that are gone although `rows` still has both their ends."""
     return sorted(line for line in before - now if line[1] in rows and line[2] in rows)
 
 
@@ -60,7 +60,7 @@ def history_of(refiner):
 
 
 def turned_per_frame(refiner, frames):
-    """How many lines turn in each of `frames`, the first one left out."""
+    """Number of lines that turn in each of `frames`, without the first."""
     counts = []
     before = None
     for positions in frames:
@@ -78,7 +78,7 @@ def growing(mesh, seed):
 
 
 def splitting(mesh, seed):
-    """A criterion that splits ever more edges at random, and frames that call it."""
+    """A criterion that splits more and more edges at random, and frames that call it."""
     generator = np.random.default_rng(seed)
     edge_count = edge_count_of(mesh)
     criterion = Forced(np.zeros(edge_count))
@@ -86,7 +86,7 @@ def splitting(mesh, seed):
 
 
 def played(mesh, criterion, chances):
-    """The mesh as it is, again and again, while a fifth of the edges is split further."""
+    """The unmoved mesh, again and again, while a fifth of the edges is split further."""
     for chance in chances:
         criterion.wanted = np.minimum(2, criterion.wanted + (chance < 0.2)).astype(np.uint8)
         yield mesh.vertices
@@ -94,7 +94,7 @@ def played(mesh, criterion, chances):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_geomorph_turns_no_line(seed):
-    """While splits are only added no line turns; looked up by splits alone, many do."""
+    """While splits are only added no line turns; in tables without history, many do."""
     mesh = meshes.irregular(seed)
     counts = {}
     for is_coherent in (False, True):
@@ -110,7 +110,7 @@ def test_geomorph_turns_no_line(seed):
 @settings(max_examples=25)
 @given(seed=st.integers(0, 1000), history=st.lists(st.integers(0, 2**16), min_size=1, max_size=6))
 def test_any_history_is_crack_free(seed, history):
-    """After any splits, taken back in any order, the mesh passes the checker."""
+    """After any splits, removed in any order, the mesh passes the checker."""
     mesh = meshes.irregular(seed % 20, 4, 4, 1)
     edge_count = edge_count_of(mesh)
     criterion = Forced(np.zeros(edge_count))
@@ -126,7 +126,7 @@ def test_any_history_is_crack_free(seed, history):
 
 
 def test_states_are_all_the_memory():
-    """One number per triangle, carried over to a new refiner, is all that the past was."""
+    """One number per triangle, given to a new refiner, contains all the history."""
     mesh = meshes.irregular(3)
     frames = [*growing(mesh, 8), *growing(mesh, 9)[::-1]]
     old = kahler(mesh, coherent=True)
@@ -140,7 +140,7 @@ def test_states_are_all_the_memory():
 
 
 def test_states_of_another_mesh_are_refused():
-    """Compiled code reads tables by them: they must be numbers of sequences, one a triangle."""
+    """Compiled code uses them to read tables: they must be numbers of sequences, one a triangle."""
     history = history_of(kahler(meshes.irregular(3), coherent=True))
     count = len(history.states)
     for wrong in (np.zeros(count - 1, int), np.full(count, 271), np.full(count, -1), [0.5] * count):

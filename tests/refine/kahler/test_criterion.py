@@ -1,4 +1,4 @@
-"""When edges split, and when they must not."""
+"""Edges that must split, and edges that must not."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from tests.refine.plain_twin import edge_dots, edge_name
 
 @pytest.mark.parametrize("seed", range(5))
 def test_undeformed_equals_pass_through(seed):
-    """At threshold 0 the undeformed mesh comes out as from `none`, to the last bit."""
+    """At threshold 0 the undeformed mesh equals that of `none`, to the last bit."""
     mesh = meshes.irregular(seed)
     refiner = kahler(mesh, threshold_once=0.0, threshold_twice=0.0)
     plain = refine.create("none", mesh.faces, mesh.vertices)
@@ -47,7 +47,7 @@ def test_rigid_motion_of_slivers():
 
 @pytest.mark.parametrize("seed", range(8))
 def test_splits_follow_drops(seed):
-    """Each edge splits by the drop that plain arithmetic finds."""
+    """Each edge splits by the drop computed in plain arithmetic."""
     mesh = meshes.irregular(seed)
     deformed = meshes.wrinkled(mesh, seed + 100, amplitude=0.5)
     faces = [tuple(int(v) for v in face) for face in mesh.faces]
@@ -73,7 +73,7 @@ def test_only_bending_counts():
 
 
 def test_rounding_guard():
-    """A drop of the size of rounding does not count at threshold 0, a larger one does."""
+    """A drop of the size of rounding does not count at threshold 0; a larger one does."""
     mesh = meshes.half_shut_book()
     flat = np.array([[0, 0, 0], [0, 1, 0], [1, 0.5, 0], [-1, 0.5, 0.0]])
     refiner = refine.create("kahler", mesh.faces, flat, threshold_once=0.0, threshold_twice=1.0)
@@ -86,7 +86,7 @@ def test_rounding_guard():
 
 
 def test_thresholds_between_frames():
-    """Thresholds that are set, or replaced as a whole, count from the next frame on."""
+    """Thresholds that are set, or replaced as a whole, count from the next frame."""
     mesh = meshes.irregular(3)
     deformed = meshes.wrinkled(mesh, 4)
     criterion = refine.NormalDrop(0.02, 0.08)
@@ -102,7 +102,7 @@ def test_thresholds_between_frames():
 
 
 def test_criterion_from_outside():
-    """Another criterion decides in place of the thresholds, but not on more than two splits."""
+    """Another criterion replaces the thresholds, but cannot ask for more than two splits."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh, criterion=Forced([1] * 12))
     assert len(refiner.refine(mesh.vertices).triangles) == 4 * 8

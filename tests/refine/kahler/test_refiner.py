@@ -1,4 +1,4 @@
-"""The paper's refiner against its plain twin and against the checker."""
+"""The paper's refiner compared with its simple twin and with the checker."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from tests.refine.plain_twin import refine as refine_plainly
 
 
 def refine_and_check(mesh, deformed, **options):
-    """Refine one frame, run the checker, and see that nothing that was passed has changed."""
+    """Refine one frame, run the checker, and check that inputs have not changed."""
     inputs = [mesh.faces, mesh.vertices, deformed]
     before = [array.tobytes() for array in inputs]
     refiner = kahler(mesh, **options)
@@ -24,7 +24,7 @@ def refine_and_check(mesh, deformed, **options):
 
 
 def assert_is_twin(mesh, deformed, refiner, refined, *, normals_cancel=False):
-    """Compare with the plain twin for the splits that were found."""
+    """Compare with the simple twin for these splits."""
     ends = [edge_name(int(a), int(b)) for a, b in refiner.edges]
     splits = dict(zip(ends, refiner.splits.tolist(), strict=True))
     twin = refine_plainly(*as_lists(deformed, mesh.faces), splits)
@@ -34,7 +34,7 @@ def assert_is_twin(mesh, deformed, refiner, refined, *, normals_cancel=False):
 @pytest.mark.parametrize("name", meshes.NAMED)
 @pytest.mark.parametrize("amplitude", [0.2, 0.8])
 def test_named_meshes(name, amplitude):
-    """Every named mesh, deformed: proper, and the twin's."""
+    """Every named mesh, deformed, is proper and equals the twin's."""
     mesh = meshes.NAMED[name]()
     for seed in range(6):
         deformed = meshes.wrinkled(mesh, seed, amplitude)
@@ -45,7 +45,7 @@ def test_named_meshes(name, amplitude):
 @settings(max_examples=200, deadline=None)
 @given(soup=soups(), data=st.data())
 def test_soups(soup, data):
-    """Any triangles with any splits: proper, and the twin's; neighbours agree at every edge."""
+    """Any triangles with any splits are proper and equal the twin's; neighbours agree at edges."""
     positions, faces = soup
     mesh = meshes.Mesh(positions, faces)
     edge_count = len(refine.connect(faces, len(positions)).edges)
@@ -63,7 +63,7 @@ def test_capacity_is_reached():
 
 
 def test_frames_are_independent():
-    """A frame does not depend on the frames before it (section 3: no history)."""
+    """A frame does not depend on earlier frames (section 3: no history)."""
     mesh = meshes.irregular(5)
     frames = [meshes.wrinkled(mesh, seed) for seed in range(4)]
     reused = kahler(mesh)

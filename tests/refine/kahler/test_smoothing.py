@@ -1,4 +1,4 @@
-"""The weights of Figs. 3 and 4, worked out by hand."""
+"""The weights of Figs. 3 and 4, computed by hand."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ def test_warren_weights():
 
 
 def refined_points(splits, heights):
-    """Points of two triangles whose inner edge is split, their vertices at these heights."""
+    """Points of two triangles with a split inner edge and vertices at these heights."""
     mesh = meshes.two_triangles()
     is_interior = refine.connect(mesh.faces, 4).around.is_interior
     lifted = np.column_stack([mesh.vertices[:, :2], heights])
@@ -31,7 +31,7 @@ def test_first_level_by_hand():
 
 
 def test_second_level_by_hand():
-    """The same edge split twice: quarter points lean on midpoints of edges that are not split."""
+    """The same edge split twice: quarter points use midpoints of edges that are not split."""
     height = refined_points(2, [0, 64, 128, 256])[:, 2]
     a = 64.0
     b = 128.0

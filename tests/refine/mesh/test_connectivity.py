@@ -13,7 +13,7 @@ from tests.refine.plain_twin import Surroundings, edge_name
 @settings(max_examples=150, deadline=None)
 @given(soups())
 def test_soups(soup):
-    """For any triangles, edges and neighbourhoods are those found with plain dictionaries."""
+    """For any triangles, edges and neighbourhoods equal those from plain dictionaries."""
     positions, faces = soup
     connectivity = refine.connect(faces, len(positions))
     around = Surroundings([tuple(int(v) for v in face) for face in faces])
@@ -38,7 +38,7 @@ def test_soups(soup):
 
 
 def test_wedges_of_tube():
-    """A seam of five vertices and four edges has a copy of each, and no other has."""
+    """A seam of five vertices and four edges has copies of these, and of no others."""
     tube = meshes.tube(segments=8, rings=4)
     connectivity = refine.connect(tube.faces, len(tube.vertices), tube.face_uv)
     assert len(connectivity.wedge_vertices) == len(tube.vertices) + 5
@@ -56,7 +56,7 @@ def test_weld():
     vertex_of_uv = np.zeros(len(tube.uv), dtype=int)
     vertex_of_uv[tube.face_uv] = tube.faces
     doubled = tube.vertices[vertex_of_uv]
-    doubled[1::2][doubled[1::2] == 0.0] = -0.0  # equal to 0.0, if not in its bits
+    doubled[1::2][doubled[1::2] == 0.0] = -0.0  # equal to 0.0, but with other bits
     kept, faces = refine.weld(doubled, tube.face_uv)
     assert len(kept) == len(tube.vertices)
     assert (doubled[kept][faces] == tube.vertices[tube.faces]).all()
@@ -78,7 +78,7 @@ def test_weld():
     ],
 )
 def test_bad_triangles(arguments, text):
-    """Indices that point outside are refused before compiled code follows them."""
+    """Indices out of range are refused before compiled code uses them."""
     with pytest.raises(ValueError, match=text):
         refine.connect(*arguments)
 
@@ -93,6 +93,6 @@ def test_bad_triangles(arguments, text):
     ],
 )
 def test_bad_welds(positions, faces, text):
-    """What cannot be welded is refused: an index of -1 is not the last vertex."""
+    """Invalid welds are refused: an index of -1 is not the last vertex."""
     with pytest.raises(ValueError, match=text):
         refine.weld(positions, faces)

@@ -25,7 +25,7 @@ OPTIONS = {
 
 
 def force_threads(monkeypatch, count):
-    """Let loops over small meshes be shared by so many threads, in many small parts."""
+    """Let threads share loops over small meshes, in many small parts."""
     monkeypatch.setattr(threads, "ITEMS_OF_PART", 16)
     monkeypatch.setattr(threads, "THREAD_COUNT", count)
 
@@ -33,7 +33,7 @@ def force_threads(monkeypatch, count):
 @pytest.mark.parametrize("name", OPTIONS)
 @pytest.mark.parametrize("mesh", [meshes.irregular(4), meshes.tube(24, 12), meshes.with_debris()])
 def test_bits_do_not_depend_on_threads(mesh, name, monkeypatch):
-    """One, two and three threads make the same frames, which are sound; seams and debris too."""
+    """One, two and three threads make the same sound frames, also with seams and debris."""
     refiner = "none" if name == "none" else "kahler"
     bound = [
         refine.create(refiner, mesh.faces, mesh.vertices, mesh.uv, mesh.face_uv, **OPTIONS[name])
@@ -54,7 +54,7 @@ def test_bits_do_not_depend_on_threads(mesh, name, monkeypatch):
 
 
 def test_every_item_once(monkeypatch):
-    """Parts make up the whole in any thread; an error in one is raised for the caller."""
+    """Parts cover the whole in any thread; an error in one is raised for the caller."""
     force_threads(monkeypatch, 3)
     for count in (0, 1, 31, 32, 1000):
         done = np.zeros(count, np.int64)
@@ -74,7 +74,7 @@ def test_every_item_once(monkeypatch):
 
 
 def test_small_meshes_start_no_thread(head, monkeypatch):
-    """A face is refined where it is, and so is every mesh where numba has one thread."""
+    """A face is refined in the calling thread; so is every mesh if numba has one thread."""
 
     def refuse():
         raise AssertionError("a thread was started")
@@ -109,7 +109,7 @@ assert same and os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 def test_forked_processes_have_threads_of_their_own():
-    """A child that was forked refines as its parent does, and waits for no thread that is not."""
+    """A forked child refines like its parent, and does not wait for missing threads."""
     code = FORKED.replace("{LOOK}", repr(LOOK))
     done = subprocess.run(
         [sys.executable, "-W", "ignore::DeprecationWarning", "-c", code],
