@@ -1,4 +1,4 @@
-"""The three sentences of docs/architecture.md, as far as imports show, and limits of size."""
+"""The three rules of docs/architecture.md, as far as imports show, and limits of size."""
 
 import ast
 import subprocess
@@ -27,7 +27,7 @@ LONGEST_FILE, LONGEST_FUNCTION = 400, 60  # lines
     ],
 )
 def test_fresh_import(package, banned):
-    """In a fresh interpreter a package brings none of its neighbours with it."""
+    """In a fresh interpreter a package imports none of its neighbours."""
     code = f"import sys; from risorius import {package}; print(*sys.modules)"
     result = subprocess.run(
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
@@ -39,7 +39,7 @@ def test_fresh_import(package, banned):
 
 
 def test_scenes_answer_for_themselves():
-    """Outside of its room nothing asks for the kind of a scene, or makes up a scene of its own."""
+    """Outside of its room no code checks the kind of a scene, or makes its own scene."""
     asked = []
     made = []
     for folder in ("app", "bench", "docs", "examples"):
@@ -72,7 +72,7 @@ def test_scenes_answer_for_themselves():
     ],
 )
 def test_packages_import_only_what_they_may(folder, allowed):
-    """Not even within a function; a package can be lifted out, and needs no more than this."""
+    """This includes imports in functions; a package can be taken out, with only these."""
     found = {
         name.partition(".")[0]
         for path in tracked(folder, "*.py")
@@ -83,7 +83,7 @@ def test_packages_import_only_what_they_may(folder, allowed):
 
 
 def _imported(node):
-    """Names of the modules that a statement imports, but for relative ones."""
+    """Names of the modules that a statement imports, without relative ones."""
     if isinstance(node, ast.Import):
         return [alias.name for alias in node.names]
     if isinstance(node, ast.ImportFrom) and node.level == 0:
@@ -92,7 +92,7 @@ def _imported(node):
 
 
 def test_files_and_functions_are_short():
-    """One screen for a function, a few for a file; an excused one is too long indeed."""
+    """One screen for a function, a few for a file; each exception is really too long."""
     sources = [path for folder in FOLDERS for path in tracked(folder, "*.py")]
     assert len(sources) > 100
     long = {
@@ -102,7 +102,7 @@ def test_files_and_functions_are_short():
 
 
 def _is_too_long(source):
-    """Whether a file or one of its functions has more lines than it may."""
+    """Whether a file or one of its functions has too many lines."""
     functions = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)]
     lengths = [(node.end_lineno or 0) - node.lineno + 1 for node in functions]
     return source.count("\n") > LONGEST_FILE or max(lengths, default=0) > LONGEST_FUNCTION

@@ -1,6 +1,6 @@
-"""Files as people have them, which were refused or misread once; they lie in `tests/cases`.
+"""Typical files that were once refused or misread; they are in `tests/cases`.
 
-Recordings are named by what they have (`a` and `e`: units, flags and times; `d`: ways in which
+Recordings are named by their content (`a` and `e`: units, flags and times; `d`: ways in which
 tables are written), heads by `b`. All forms are the built-in head or made up.
 """
 
@@ -23,7 +23,7 @@ SIZE = "160x120"
 
 
 class Take:
-    """A recording after `risorius convert`: the report, and the script that it became."""
+    """A recording after `risorius convert`: the report, and the resulting script."""
 
     def __init__(self, name, folder, *options):
         output = folder / f"{Path(name).stem}.toml"
@@ -33,11 +33,11 @@ class Take:
         self.tracks = {name: np.array(keys_of(track)) for name, track in script["tracks"].items()}
 
     def peak(self, name):
-        """The largest value of a track, which is 0 where there is none."""
+        """The largest value of a track, which is 0 for a missing one."""
         return float(self.tracks[name][:, 1].max()) if name in self.tracks else 0.0
 
     def reach(self, name):
-        """How far a track moves."""
+        """Range of a track's values."""
         return float(np.ptp(self.tracks[name][:, 1])) if name in self.tracks else 0.0
 
 
@@ -69,24 +69,24 @@ def keys_of(track):
     ],
 )
 def test_a_take_lasts_as_long_as_its_file_says(name, options, seconds, tmp_path):
-    """Clocks, timecode of any base and tables of any dialect keep their time, whatever --rate."""
+    """Clocks, timecode of any base and tables of any dialect keep their time, for any --rate."""
     assert Take(name, tmp_path, *options).duration == approx(seconds, abs=0.06)
 
 
 def test_units_of_0_to_1_stay(tmp_path):
-    """Action units of a file that goes to 1 are not divided by 5."""
+    """Action units in a file with values up to 1 are not divided by 5."""
     assert Take("a_openface_units_0_to_1.csv", tmp_path).peak("AU12") > 0.9
 
 
 def test_shapes_in_percent_are_divided(tmp_path):
-    """Shapes of 0 to 100 become shapes of 0 to 1, and no frame is dropped."""
+    """Shapes of 0 to 100 become shapes of 0 to 1, and no frame is lost."""
     take = Take("a_shapes_in_percent.json", tmp_path)
     assert 0.3 < take.reach("jawOpen") < 0.7
     assert "No face in" not in take.report
 
 
 def test_intensities_count_before_detections(tmp_path):
-    """AU12 rises and falls as its intensity does; the detection of 0 or 1 is passed over."""
+    """AU12 follows its intensity; the detection of 0 or 1 is ignored."""
     values = Take("a_libreface_like.csv", tmp_path).tracks["AU12"][:, 1]
     assert np.abs(np.diff(values)).max() < 0.4
 
@@ -100,7 +100,7 @@ def test_the_head_turns_by_angles_beside_shapes(tmp_path):
 
 @pytest.mark.parametrize("name", ["e_lost_frames_zero.json", "e_lost_frames_zero_livelink.csv"])
 def test_frames_without_a_face_are_left_out(name, tmp_path):
-    """Rows of zeros while nobody is seen neither move the face nor count as calibrated."""
+    """Rows of zeros without a face neither move our face nor count as calibrated."""
     take = Take(name, tmp_path)
     control = Take("e_lost_frames_control.json", tmp_path)
     assert "40 of 150" in take.report
@@ -113,7 +113,7 @@ POINTS = CASES / "own_landmark_points.json"  # points [m]
 
 
 def picture_of(head, landmarks, output):
-    """A head of a file at rest, as `capture` draws it, (H, W, 3)."""
+    """A head from a file at rest, as `capture` draws it, (H, W, 3)."""
     succeeded(
         *("capture", "--head", CASES / head, "--landmarks", landmarks, "--set", "joy=0"),
         *("-o", output, "--size", SIZE, "--background", "white", "--quiet"),
@@ -132,7 +132,7 @@ def picture_of(head, landmarks, output):
     ids=lambda value: value if isinstance(value, str) else value.stem,
 )
 def test_a_head_of_a_file_is_drawn(head, landmarks, tmp_path):
-    """Heads with hair cards, a mouth that stands open, strips and masks are drawn."""
+    """Heads with hair cards, an open mouth, strips and masks are drawn."""
     picture = picture_of(head, landmarks, tmp_path / "head.png")
     middle = picture[40:80, 60:100]
     assert middle.mean() < 230.0
@@ -156,7 +156,7 @@ def test_colours_of_vertices_are_linear():
 
 
 def test_a_material_with_tabs_has_its_picture(tmp_path):
-    """Words of an MTL are parted by tabs, too: squares of green and yellow are drawn."""
+    """Tabs also separate words of an MTL: squares of green and yellow are drawn."""
     picture = picture_of("mtl_tab/head.obj", LANDMARKS, tmp_path / "head.png")
     middle = picture[40:80, 60:100]
     assert (middle[..., 1] > middle[..., 2] + 40.0).mean() > 0.5

@@ -21,12 +21,12 @@ ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
 TUTORIALS = ROOT / "docs" / "tutorials"
 PAGES = [README, ROOT / "CONTRIBUTING.md", *tracked("docs", "*.md")]
-LONG_PAGES = ("passes.md", "pyvista.md", "in_other_programs.md")  # whose code runs for seconds
+LONG_PAGES = ("passes.md", "pyvista.md", "in_other_programs.md")  # their code runs for seconds
 COMMAND = re.compile(r"(?:`|^(?:    )?(?:xvfb-run -a )?)(risorius [a-z][^`#\n]*)", re.MULTILINE)
 
 
 def anchor(title):
-    """The name of a heading in a link: ASCII letters, digits and hyphens, as MkDocs has it."""
+    """The name of a heading in a link: ASCII letters, digits and hyphens, as in MkDocs."""
     plain = unicodedata.normalize("NFKD", title).encode("ascii", "ignore").decode()
     return re.sub(r"[-\s]+", "-", re.sub(r"[^\w\s-]", "", plain).strip().lower())
 
@@ -53,7 +53,7 @@ def test_links_lead_somewhere(page):
 
 
 def test_the_paper_is_where_the_page_says():
-    """Every file and name beside a statement of the paper is there."""
+    """Every file and name beside a statement of the paper exists."""
     page = (ROOT / "docs" / "the_paper_in_code.md").read_text("utf-8")
     places = re.findall(r"\| `([\w/.]+)(?:: (\w+))?`", page)
     assert len(places) > 20
@@ -65,7 +65,7 @@ def test_the_paper_is_where_the_page_says():
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_commands_are_known(page):
-    """Every command that a page shows has the options that it is shown with."""
+    """Every command on a page has the options shown with it."""
     for words in COMMAND.findall(page.read_text(encoding="utf-8")):
         command = risorius()
         rest = shlex.split(words)[1:]
@@ -86,21 +86,21 @@ def test_pages_of_the_documentation_are_read():
 
 
 def test_pictures_are_few_and_small():
-    """They travel with every clone: at most 40 files, and 8 MB in all."""
+    """Every clone contains them: at most 40 files, and 8 MB in all."""
     pictures = tracked("docs/pictures")
     assert len(pictures) <= 40
     assert sum(path.stat().st_size for path in pictures) < 8_000_000
 
 
 def test_every_picture_is_shown():
-    """No picture of the documentation is forgotten; forgotten pages stop the site's build."""
+    """Every picture of the documentation is on a page; unused pages stop the site's build."""
     texts = "".join(page.read_text(encoding="utf-8") for page in PAGES)
     shown = {Path(target).name for target in re.findall(r"\]\(([^)\s#]+)", texts)}
     assert {path.name for path in tracked("docs/pictures")} <= shown
 
 
 def test_pages_have_short_lines():
-    """The README has at most 130 lines; prose has at most 120 columns, tables and code aside."""
+    """The README has at most 130 lines; prose has at most 120 columns, without tables and code."""
     assert len(README.read_text(encoding="utf-8").splitlines()) <= 130
     for page in [README, ROOT / "CHANGELOG.md", *tracked("docs", "*.md")]:
         prose = re.sub(r"^```.*?^```$", "", page.read_text("utf-8"), flags=re.M | re.S)
@@ -123,7 +123,7 @@ def test_code_runs(page, tmp_path, monkeypatch):
     """The Python on a page is one program, and it runs in an empty folder."""
     monkeypatch.chdir(tmp_path)
     program = blocks(page, "python")
-    if "pv.Plotter" in program:  # beside other OpenGL VTK may end the process of all tests
+    if "pv.Plotter" in program:  # with other OpenGL, VTK may end the process of all tests
         subprocess.run([sys.executable, "-c", program], check=True)
     else:
         exec(compile(program, page, "exec"), {"__name__": page.stem})
@@ -137,7 +137,7 @@ def test_a_page_with_code_is_found():
 
 @pytest.mark.slow
 def test_first_film(tmp_path, monkeypatch):
-    """The script of the tutorial becomes what its commands name."""
+    """The tutorial's script gives the outputs that its commands name."""
     page = TUTORIALS / "first_film.md"
     capture_as_shown(page, {"smile.toml": blocks(page, "toml")}, tmp_path, monkeypatch)
     assert {path.name for path in tmp_path.iterdir()} == {
@@ -147,7 +147,7 @@ def test_first_film(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_own_head(tmp_path, monkeypatch):
-    """The head that the tutorial writes is fitted and filmed by its commands."""
+    """The tutorial's head is fitted and filmed by its commands."""
     page = TUTORIALS / "own_head.md"
     monkeypatch.chdir(tmp_path)
     exec(compile(blocks(page, "python"), page, "exec"), {})
@@ -173,7 +173,7 @@ def capture_as_shown(page, files, folder, monkeypatch):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The site, built as `make docs` does."""
+    """The site, built as by `make docs`."""
     folder = tmp_path_factory.mktemp("site")
     lay(folder / "as_installed")
     environment = {

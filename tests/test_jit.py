@@ -1,4 +1,4 @@
-"""Compiled code: kept where that can be trusted, made again where it cannot, never old."""
+"""Compiled code: kept in trusted folders, otherwise made again, and never old."""
 
 import os
 import shutil
@@ -36,7 +36,7 @@ RESULT = "4.0 6.0"
 
 
 class Package:
-    """A package of one kernel that calls one of another file, and the user's folder of code."""
+    """A package with a kernel that calls one of another file, and the user's folder of code."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -50,7 +50,7 @@ class Package:
         (self.refine / "kernels.py").write_text(KERNELS)
 
     def run(self, program=PROGRAM, **environment):
-        """Lines of a process that calls the kernel; it must end well."""
+        """Output lines of a process that calls the kernel, and must succeed."""
         clean = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
         result = subprocess.run(
             [sys.executable, "-B", "-c", program],
@@ -70,7 +70,7 @@ class Package:
 
 @pytest.fixture
 def package(tmp_path: Path) -> Package:
-    """The package, with nothing compiled."""
+    """The package, without compiled code."""
     return Package(tmp_path)
 
 
@@ -118,20 +118,20 @@ def test_without_a_folder_code_is_compiled_anew(package, fault):
 
 
 def test_runs_as_python(package):
-    """With NUMBA_DISABLE_JIT=1 kernels are the functions that are written; nothing is stored."""
+    """With NUMBA_DISABLE_JIT=1 kernels are the written functions; no code is stored."""
     assert package.run(NUMBA_DISABLE_JIT="1") == [RESULT]
     assert not package.kept()
 
 
 def test_processes_that_start_together(package):
-    """Several that start at once on nothing all end well, and the next compiles nothing."""
+    """Several that start at once without stored code all succeed, and the next compiles nothing."""
     with ThreadPoolExecutor(2) as threads:
         assert {lines[-1] for lines in threads.map(lambda _: package.run(), range(2))} == {RESULT}
     assert package.run() == [RESULT]
 
 
 def test_functions_without_a_module_compile():
-    """Kernels of other programs that come from `exec` are no concern of the log."""
+    """Kernels of other programs from `exec` do not appear in the log."""
     program = (
         "import numba, risorius.jit; names = {}; exec('def twice(x): return 2 * x', names); "
         "names['twice'].__module__ = None; print(numba.njit(names['twice'])(3))"
@@ -143,7 +143,7 @@ def test_functions_without_a_module_compile():
 
 
 def test_lanes_are_a_setting_of_one_kernel(package):
-    """A kernel in lanes has the result of any other, and leaves numba's settings as they were."""
+    """A kernel with lanes has the usual result, and restores numba's settings."""
     (package.refine / "kernels.py").write_text(KERNELS.replace("@njit", "@njit(lanes=True)"))
     program = f"{PROGRAM}\nimport numba; print(numba.config.SLP_VECTORIZE)"
     assert package.run(program) == [*COMPILED, RESULT, "0"]

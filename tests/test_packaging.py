@@ -1,4 +1,4 @@
-"""Installed: complete, one package, the same from checkout and sdist, usable anywhere."""
+"""The installed package: complete, the same from checkout and sdist, usable anywhere."""
 
 import ast
 import json
@@ -27,20 +27,20 @@ SETUPTOOLS = PROJECT["tool"]["setuptools"]
 FOLDERS = {"risorius": "risorius", **SETUPTOOLS["package-dir"]}
 TOP_NAMES = {package.partition(".")[2] for package in SETUPTOOLS["package-dir"]}
 LEFT = (".#lock", "leftover.orig", "notes.rej", ".DS_Store", "Thumbs.db")
-"""Files that editors and systems leave in any folder."""
+"""Files that editors and systems make in any folder."""
 PAGES = {
     path.relative_to(ROOT / "docs").as_posix()
     for path in tracked("docs", "*.md")
     if "reference" not in path.parts
 }
-"""Of the manual that is installed."""
+"""Pages of the installed manual."""
 PASSED_OVER = shutil.ignore_patterns(
     ".git", ".venv*", ".*cache", ".hypothesis", "__pycache__", "build", "dist", "out", "*.egg-info"
 )
 
 
 def files_of_packages():
-    """Every file of the packages, with the package that its folder is."""
+    """Every file of the packages, with its package by folder."""
     for top, folder in FOLDERS.items():
         for file in tracked(folder):
             inside = file.parent.relative_to(ROOT / folder).parts
@@ -48,14 +48,14 @@ def files_of_packages():
 
 
 def test_every_package_is_listed():
-    """A folder that pyproject.toml does not name would be missing where it is installed."""
+    """A folder that is not in pyproject.toml would be missing after installation."""
     found = {package for package, file in files_of_packages() if file.suffix == ".py"}
     assert sorted(SETUPTOOLS["packages"]) == sorted(found)
     assert all((ROOT / folder / "__init__.py").exists() for folder in FOLDERS.values())
 
 
 def test_every_data_file_is_listed():
-    """Shaders, rigs, scripts, tables and the head's data go along."""
+    """Shaders, rigs, scripts, tables and the head's data are included."""
     listed = {
         file
         for package, patterns in SETUPTOOLS["package-data"].items()
@@ -68,7 +68,7 @@ def test_every_data_file_is_listed():
 
 
 def test_what_an_editor_leaves_is_not_listed(tmp_path):
-    """Locks, copies and halves of files beside ours, also where they end as ours do."""
+    """Locks, copies and partial files beside ours are left out, also those with our endings."""
     for package, patterns in SETUPTOOLS["package-data"].items():
         for pattern in patterns:
             folder = (tmp_path / package / pattern).parent
@@ -80,7 +80,7 @@ def test_what_an_editor_leaves_is_not_listed(tmp_path):
 
 
 def test_python_versions_agree():
-    """Every claimed version is run by continuous integration."""
+    """Every claimed version is tested by continuous integration."""
     workflow = (ROOT / ".github" / "workflows" / "tests.yml").read_text(encoding="utf-8")
     (matrix,) = re.findall(r"python: (\[.*\])", workflow)
     start = "Programming Language :: Python :: 3."
@@ -109,7 +109,7 @@ def test_nothing_is_imported_by_its_folder():
     looks_so = re.compile(rf"^\s*(from\s+({names})\b|import\s.*\b({names})\b)", re.MULTILINE)
     for file in tracked(pattern="*.py"):
         source = file.read_text(encoding="utf-8")
-        # Reading all files as Python takes seconds.
+        # It takes seconds to read all files as Python.
         for node in ast.walk(ast.parse(source)) if looks_so.search(source) else ():
             if isinstance(node, ast.Import):
                 found = [alias.name for alias in node.names]
@@ -131,7 +131,7 @@ class Built:
 
 
 def run(*words, **options):
-    """Run a program that must end well; its output."""
+    """Run a program that must succeed; return its output."""
     result = subprocess.run(
         [str(word) for word in words], capture_output=True, text=True, timeout=600, **options
     )
@@ -151,7 +151,7 @@ def wheel_of(folder, target):
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
-    """Built in copies, so that nothing is left in the checkout."""
+    """They are built in copies, so that no file stays in the checkout."""
     folder = tmp_path_factory.mktemp("built")
     checkout = folder / "checkout"
     shutil.copytree(ROOT, checkout, ignore=PASSED_OVER, symlinks=True)
@@ -159,7 +159,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
         for name in LEFT:
             (checkout / inside / name).unlink(missing_ok=True)
             (checkout / inside / name).write_text("left by an editor")
-        for name in (".#head.npz", ".#files.py"):  # a lock is a link that leads nowhere
+        for name in (".#head.npz", ".#files.py"):  # a lock is a link without a target
             (checkout / inside / name).unlink(missing_ok=True)
             (checkout / inside / name).symlink_to("somebody@a.host.1234:5678")
     code = f"from setuptools import build_meta; build_meta.build_sdist({str(folder)!r})"
@@ -172,7 +172,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
     run(sys.executable, "-m", "venv", "--without-pip", folder / "environment")
     python = folder / "environment" / "bin" / "python"
     site = run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))").strip()
-    # What Risorius needs is found here; editable installs are not, their .pth is not read twice.
+    # Dependencies are found here; editable installs are not, because their .pth is not read twice.
     Path(site, "needed.pth").write_text(sysconfig.get_path("purelib") + "\n", encoding="utf-8")
     run(sys.executable, "-m", "pip", "--python", python, "install", "--no-deps", "--no-index",
         wheels[1])  # fmt: skip
@@ -182,7 +182,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
 
 @pytest.mark.slow
 def test_wheel_of_the_sdist_is_that_of_the_checkout(built):
-    """The same files in both, each module and data file among them, under one name."""
+    """Both have the same files, including each module and data file, under one name."""
     contents = []
     for wheel in built.wheels:
         with zipfile.ZipFile(wheel) as archive:
@@ -220,7 +220,7 @@ def test_sdist_holds_what_its_tests_need(built):
 
 @pytest.mark.slow
 def test_installed_wheel_works_beside_files_of_the_same_names(built, tmp_path):
-    """A user's own sim.py, refine.py and app/ disturb nothing; only `risorius` is installed."""
+    """A user's own sim.py, refine.py and app/ have no effect; only `risorius` is installed."""
     for name in TOP_NAMES - {"app"}:
         (tmp_path / f"{name}.py").write_text("raise ImportError('of the user')\n")
     (tmp_path / "app").mkdir()

@@ -1,4 +1,4 @@
-"""Numbers that pages print are those that today's commands give, within the tolerance of a page."""
+"""Numbers on pages equal those of today's commands, within the page's tolerance."""
 
 import re
 from pathlib import Path
@@ -20,9 +20,7 @@ DOCS = ROOT / "docs"
 
 
 def numbers_of(page, pattern):
-    """The numbers that a pattern finds on a page, where it stands once; a blank in it stands for
-    the end of a line, too.
-    """
+    """The numbers that a pattern finds once on a page; a blank in it also means a line end."""
     text = " ".join(page.read_text("utf-8").split())
     found = re.findall(pattern, text)
     assert len(found) == 1, f"{page.name} has {len(found)} places like {pattern!r}"
@@ -42,7 +40,7 @@ def test_triangles_of_table_1():
 
 @pytest.mark.parametrize("script", ["face", "speech"])
 def test_table_of_exported_files(script, tmp_path):
-    """The page on export has frames, targets and size of the built-in scripts as they are."""
+    """The page on export has the right frames, targets and size of the built-in scripts."""
     row = rf"\| `{script}\.toml`, built in \| (\d+) \| (\d+) \| ([\d.]+) MB \| ([\d.]+) mm"
     frames, residual, size, _ = numbers_of(DOCS / "export.md", row)
     path = tmp_path / "exported.glb"
@@ -70,7 +68,7 @@ def test_size_of_a_sample(tmp_path):
 
 
 def test_code_that_reads_a_set(tmp_path, monkeypatch):
-    """The page's lines that read a set run in a checkout as they stand."""
+    """The page's lines that read a set run unchanged in a checkout."""
     page = (DOCS / "dataset.md").read_text("utf-8")
     code = re.search(r"(?:^    .*\n|^\n)*^    sample = faces.*$", page, re.MULTILINE)
     monkeypatch.chdir(tmp_path)

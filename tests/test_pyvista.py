@@ -1,4 +1,4 @@
-"""`mesh.risorius`, as PyVista's users find it: data go along, mistakes have its words."""
+"""`mesh.risorius`, as used in PyVista: data are kept, mistakes have PyVista's words."""
 
 import doctest
 import subprocess
@@ -16,7 +16,7 @@ pyvista = pytest.importorskip("pyvista", reason="needs the extra 'pyvista'")
 
 @pytest.fixture(autouse=True)
 def warnings_are_errors() -> Iterator[None]:
-    """What PyVista deprecates is not used."""
+    """Deprecated parts of PyVista are not used."""
     with warnings.catch_warnings():
         warnings.simplefilter("error", pyvista.PyVistaDeprecationWarning)
         yield
@@ -47,7 +47,7 @@ def plane():
 
 @pytest.mark.slow
 def test_it_is_found_by_itself():
-    """A program imports pyvista alone; importing the refiner brings no PyVista."""
+    """A program only imports pyvista; the refiner's import does not load PyVista."""
     code = (
         "import sys, pyvista; assert 'risorius' not in sys.modules; mesh = pyvista.Sphere(); "
         "assert 'risorius' in dir(mesh); print(mesh.risorius.refine().n_cells > mesh.n_cells)"
@@ -94,7 +94,7 @@ def test_the_paper_asks_what_has_bent():
 
 
 def test_doubled_points_do_not_crack():
-    """A cylinder's caps have points of their own; its sharp edge stays closed, textures apart."""
+    """A cylinder's caps have separate points; its sharp edge stays closed, textures separate."""
     mesh = pyvista.Cylinder(resolution=16)
     assert mesh.n_open_edges > 0
     refined = mesh.risorius.refine()
@@ -105,7 +105,7 @@ def test_doubled_points_do_not_crack():
 
 
 def test_polygons_strips_and_lines():
-    """Everything with a surface is cut into triangles of known cells; the rest drops out."""
+    """Everything with a surface is cut into triangles of known cells; the rest is left out."""
     mesh = pyvista.Disc(inner=0.0, c_res=5).merge(pyvista.Line())
     mesh.cell_data["number"] = np.arange(mesh.n_cells)
     refined = mesh.risorius.refine()
@@ -126,7 +126,7 @@ def test_polygons_strips_and_lines():
     ],
 )
 def test_creases_stay_sharp(shape, crease_angle, growth, count):
-    """What docs/refinement.md says of volumes: sharp edges are rounded unless they are creases."""
+    """As in docs/refinement.md on volumes: sharp edges are rounded unless they are creases."""
     sizes = {"Cylinder": {"resolution": 16, "height": 2.0}, "Cube": {}}
     mesh = getattr(pyvista, shape)(**sizes[shape])
     refined = mesh.risorius.refine(crease_angle=crease_angle)
@@ -138,7 +138,7 @@ def test_creases_stay_sharp(shape, crease_angle, growth, count):
 
 
 def padded(cells):
-    """Cells as VTK has them: each after the number of its points."""
+    """Cells in VTK's form: each after its number of points."""
     return [number for cell in cells for number in (len(cell), *cell)]
 
 
@@ -154,7 +154,7 @@ def test_cells_that_are_no_triangles():
 
 @pytest.mark.parametrize("seed", range(6))
 def test_cells_of_all_kinds(seed):
-    """Cells lie at heights of their own, so that each triangle shows which cell it is of."""
+    """Cells have different heights, so that each triangle shows its cell."""
     generator = np.random.default_rng(seed)
     points = []
     kinds = [[], [], [], []]
@@ -184,7 +184,7 @@ def test_cells_of_all_kinds(seed):
 
 
 def test_polygons_that_vtk_leaves_holes_in():
-    """Points on one line or named twice: the polygon is covered; two points are no polygon."""
+    """Points on one line or named twice: the polygon is covered; two points are not a polygon."""
     points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [0, 1, 0], [3, 1, 0]], float)
     polygons = [[0, 1, 2, 3], [0, 1], [0, 1, 2, 3, 5, 4], [4, 5, 5, 0]]
     mesh = pyvista.PolyData(points, padded(polygons))
@@ -196,7 +196,7 @@ def test_polygons_that_vtk_leaves_holes_in():
 
 
 def test_many_frames(capsys):
-    """Frames come one by one, as meshes of their own, with a bar if it is asked for."""
+    """Frames come one by one, as separate meshes, with a bar on request."""
     mesh = plane()
     heights = (0.0, 0.1, 0.2)
     refiner = mesh.risorius.refiner()
@@ -242,7 +242,7 @@ def test_mistakes_are_reported():
 
 
 def test_the_examples_of_the_docstrings():
-    """They run as they are printed; nothing is plotted."""
+    """They run unchanged; nothing is plotted."""
     import risorius.pyvista
 
     finder = doctest.DocTestFinder(exclude_empty=True)
@@ -257,7 +257,7 @@ def test_the_examples_of_the_docstrings():
 
 
 def test_point_data_of_every_frame():
-    """Heat that changes with the frames is that of the frame, in its own type, linear on edges."""
+    """Heat that changes with frames has each frame's values, its own type, linear on edges."""
     plate = pyvista.Plane(i_resolution=6, j_resolution=6)
     refiner = plate.risorius.refiner(scheme="loop", criterion="normal")
     for time in (0.0, 0.7, 1.3):

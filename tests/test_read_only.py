@@ -1,4 +1,4 @@
-"""Arrays that never change cannot be written: neither by mistake nor by one `+=`."""
+"""Arrays that never change cannot be written, neither by mistake nor by one `+=`."""
 
 import enum
 import types
@@ -15,15 +15,15 @@ from risorius.refine.kahler.table import CONFIGURATIONS
 from tests.heads import stranger
 
 OF_A_FRAME = {"positions", "points", "normals", "edge_splits"}
-"""Of a refiner, for who derives from it to write: each frame writes all of them anew."""
+"""Arrays of a refiner that subclasses may write: each frame writes all of them again."""
 PLAIN = (str, bytes, int, float, bool, np.generic, type, types.ModuleType, enum.Enum)
 
 
 def arrays_of(thing, name, seen):
-    """All arrays that public attributes, items and rows lead to, with the way there."""
+    """All arrays reached by public attributes, items and rows, with the way there."""
     if thing is None or id(thing) in seen or isinstance(thing, PLAIN) or callable(thing):
         return
-    seen[id(thing)] = thing  # which also keeps it alive: nothing else gets its number
+    seen[id(thing)] = thing  # this keeps it alive, so that no other gets its number
     if isinstance(thing, np.ndarray):
         yield name, thing
     elif isinstance(thing, Mapping):
@@ -41,11 +41,11 @@ def arrays_of(thing, name, seen):
 
 
 def is_kept(thing, name):
-    """Whether an attribute can be read, and is the same when it is read once more."""
+    """Whether an attribute can be read, and is the same in a second reading."""
     try:
         first = getattr(thing, name)
         second = getattr(thing, name)
-    except Exception:  # of what this head has not, or has not yet
+    except Exception:  # attributes that this head has not, or not yet
         return False
     if isinstance(first, np.ndarray):
         return np.shares_memory(first, second)
@@ -53,13 +53,13 @@ def is_kept(thing, name):
 
 
 def own_head():
-    """One that somebody brings."""
+    """A head of a user."""
     brought = stranger()
     return fit(brought.mesh, brought.landmarks)
 
 
 def person():
-    """One who is nobody."""
+    """A made person."""
     return make_person(sample_identity(63))
 
 
@@ -90,7 +90,7 @@ REFINERS = {
 
 
 def moved(head):
-    """A face whose jaw, lips and head have gone somewhere."""
+    """A face with moved jaw, lips and head."""
     simulation = sim.create(head)
     simulation.jump({"jaw_open": 0.5, "lips_closed": 0.5, "head_yaw": 0.3})
     simulation.step(1 / 60)
@@ -99,7 +99,7 @@ def moved(head):
 
 @pytest.mark.parametrize("name", THINGS)
 def test_nothing_of_it_can_be_written(name, head):
-    """Everything that its public attributes lead to."""
+    """This holds for all arrays reached by public attributes."""
     found = dict(arrays_of(THINGS[name](head), name, {}))
     assert found
     assert [way for way, array in found.items() if array.flags.writeable] == []
@@ -107,7 +107,7 @@ def test_nothing_of_it_can_be_written(name, head):
 
 @pytest.mark.parametrize("name", REFINERS)
 def test_nothing_of_a_refiner_can_be_written(name, head):
-    """But for what each frame writes anew."""
+    """Except those that each frame writes again."""
     kind, options = REFINERS[name]
     refiner = refine.create(kind, head.faces, head.vertices, head.uv, head.face_uv, **options)
     refiner.refine(head.vertices)
@@ -118,7 +118,7 @@ def test_nothing_of_a_refiner_can_be_written(name, head):
 
 
 def test_one_in_place_addition_harms_nobody(head):
-    """Numbers of vertices that compiled code reads are refused, with numpy's own error."""
+    """Vertex numbers for compiled code are protected, with numpy's own error."""
     simulation = sim.create(head)
     refiner = refine.create("kahler", simulation.faces, simulation.rest_positions, coherent=True)
     for array in (

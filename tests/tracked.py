@@ -1,4 +1,4 @@
-"""The files of this checkout that git tracks: what an editor leaves beside them is none of ours."""
+"""The files of this checkout that git tracks, without those that an editor leaves."""
 
 import functools
 import subprocess
@@ -8,14 +8,14 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def tracked(folder: str | Path = ROOT, pattern: str = "*") -> list[Path]:
-    """The files in a folder of the checkout, and below it, whose names match a pattern."""
+    """The tracked files in a folder of the checkout, and below it, with matching names."""
     top = ROOT / folder
     return [path for path in _files() if path.is_relative_to(top) and path.match(pattern)]
 
 
 @functools.cache
 def _files() -> tuple[Path, ...]:
-    """All of them; of an unpacked source distribution, which has no git, its files."""
+    """All tracked files; for an unpacked source distribution, which has no git, its files."""
     git = ["git", "-C", str(ROOT), "ls-files", "-z", "--cached"]
     try:
         if not (ROOT / ".git").exists():

@@ -66,7 +66,7 @@ def falling_hair(
     risen = 0.1 + 0.9 * np.sin(0.5 * np.pi * rise)
     thick = VOLUME * risen * np.sin(0.5 * np.pi * beside)[:, None]
     solid = np.vstack([scalp.points, vertices[vertices[:, 1] > ear[1] - 53.0]]) - middle
-    # [mm] off the skin: little at roots, which hide it, more over foreheads, which bulge.
+    # [mm] off the skin: little at roots, to stop light; more over the forehead, which may bulge.
     clearance = np.where(over > 0.0, 5.0 + 3.0 * (1.0 - beside[:, None]) ** 2, 2.5)
     places = middle + (_reach(ways, solid) + clearance + thick)[..., None] * ways
     start = places[:, -1:]

@@ -18,7 +18,7 @@ def surface() -> Iterator[render.Surface]:
 
 @pytest.fixture
 def window() -> Iterator[render.WindowSurface]:
-    """A small window, where there is a screen."""
+    """A small window, if there is a screen."""
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         pytest.skip("DISPLAY is not set: run the tests under `xvfb-run -a` to test windows, too")
     with render.open_window((96, 96), "test") as opened:

@@ -1,4 +1,4 @@
-"""Small things to draw, and how the tests here look at images."""
+"""Small things to draw, and helpers that read images."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ from tests.meshes import ball
 SignedImage = npt.NDArray[np.int32]  # an image that can be subtracted from another, (H, W, 3)
 
 PLAIN = render.Style(background=render.WHITE, shadows=False)
-"""Skin before pure white, so that pixels that are not white are drawn ones."""
+"""Skin before pure white, so all other pixels are drawn ones."""
 
 LIGHT_SKIN = (0.88, 0.75, 0.685)
 DARK_SKIN = (0.47, 0.325, 0.255)
@@ -60,7 +60,7 @@ def joined(first: Shape, second: Shape) -> Shape:
 
 
 def lent(renderer: render.Renderer, shape: Shape, *, columns: int = 6) -> render.Stream:
-    """A stream that just holds the shape, uploaded."""
+    """A stream of exactly the shape's size, uploaded."""
     stream = renderer.lend_stream(len(shape.positions), len(shape.triangles), columns)
     stream.vertices[:, :3] = shape.positions
     stream.vertices[:, 3:6] = shape.normals
@@ -70,7 +70,7 @@ def lent(renderer: render.Renderer, shape: Shape, *, columns: int = 6) -> render
 
 
 def facing(half: float = 50.0) -> render.OrbitCamera:
-    """A camera in front of the origin that sees about 1.14 times `half` up and down."""
+    """A camera in front of the origin that shows about 1.14 times `half` up and down."""
     corners = [(x, y, z) for x in (-half, half) for y in (-half, half) for z in (-half, half)]
     camera = render.OrbitCamera.framing(np.array(corners))
     camera.narrowest_aspect = 0.0
@@ -114,7 +114,7 @@ def draw_image(
 
 
 def needs_samples(surface: render.Surface) -> None:
-    """Skip a test of smooth edges where the driver has one sample a pixel."""
+    """Skip a test of smooth edges if the driver has one sample a pixel."""
     if surface.samples < 4:
         driver = surface.gl.info["GL_RENDERER"]
         pytest.skip(f"{driver} has up to {surface.samples} samples a pixel, and 4 are asked for")
@@ -128,7 +128,7 @@ def at(image: SignedImage, x: float, y: float) -> npt.NDArray[np.int32]:
 
 
 def drawn(image: SignedImage) -> npt.NDArray[np.bool_]:
-    """Which pixels are not the white background, shape (H, W)."""
+    """Flags of pixels that are not the white background, shape (H, W)."""
     return np.asarray((image < 250).any(axis=2))
 
 

@@ -1,4 +1,4 @@
-"""Wrinkles of the skin: they show as far as they are asked for, and nowhere else."""
+"""Wrinkles of the skin: visible by their amounts, and nowhere else."""
 
 from dataclasses import replace
 
@@ -44,7 +44,7 @@ def test_slopes_are_lit_like_the_slopes_they_are(surface):
 
 
 def test_furrows_are_darker(surface):
-    """By their depth, red least."""
+    """They darken with depth, red least."""
     plain = at(furrowed(surface, LEVEL, (1.0, 1.0)), 25, 0)
     deep = at(furrowed(surface, (128, 128, 200, 0), (1.0, 0.0)), 25, 0)
     assert (deep < plain).all()
@@ -52,7 +52,7 @@ def test_furrows_are_darker(surface):
 
 
 def test_a_texel_follows_its_own_amount(surface):
-    """Alpha 0 the first, 255 the second."""
+    """Alpha 0 uses the first, 255 the second."""
     plain = at(furrowed(surface, LEVEL, (1.0, 1.0)), 25, 0)
     first = (190, 190, 90, 0)
     second = (190, 190, 90, 255)
@@ -64,7 +64,7 @@ def test_a_texel_follows_its_own_amount(surface):
 
 @pytest.mark.parametrize("amounts", [None, (0.0, 0.0), (1.0, 1.0)])
 def test_none_without_amounts_or_strength(surface, amounts):
-    """A style without bumps, and skin that does not bump, are drawn to the same bytes."""
+    """A style without bumps, and skin without amounts, give the same bytes."""
     smooth = replace(PLAIN, bumps=0.0)
     style = smooth if amounts == (1.0, 1.0) else PLAIN
     texel = (190, 90, 200, 128)
@@ -73,7 +73,7 @@ def test_none_without_amounts_or_strength(surface, amounts):
 
 @pytest.mark.parametrize("shading", [render.Shading.FLAT, render.Shading.GOURAUD])
 def test_per_pixel_shading_alone_has_them(surface, shading):
-    """Nothing else has a normal for each pixel."""
+    """Other shadings have no normal for each pixel."""
     style = replace(PLAIN, shading=shading)
     texel = (190, 90, 200, 128)
     furrows = furrowed(surface, texel, (1.0, 1.0), style)
@@ -81,7 +81,7 @@ def test_per_pixel_shading_alone_has_them(surface, shading):
 
 
 def test_part_of_a_mesh_has_bumps_without_a_crack(renderer):
-    """With a level map, a sphere half of whose vertices bump looks as it does without."""
+    """With a level map, a sphere with bumps on one half looks the same as without."""
     shape = sphere()
     stream = lent(renderer, shape, columns=16)
     level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
@@ -94,7 +94,7 @@ def test_part_of_a_mesh_has_bumps_without_a_crack(renderer):
 
 
 def test_what_does_not_fit_is_refused(renderer):
-    """A map that is none, a stream without amounts, one without texture coordinates."""
+    """Such are an invalid map, a stream without amounts, and one without texture coordinates."""
     with pytest.raises(ValueError, match="the bump map has shape"):
         render.BumpMap(renderer.surface, np.zeros((4, 4, 3), np.uint8), STEEP)
     shape = square()

@@ -1,4 +1,4 @@
-"""Camera maths: a framed scene is seen whole, and moves of the camera have their effect."""
+"""Camera maths: a framed scene is fully visible, and moves of the camera have their effect."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ HEAD = np.random.default_rng(7).normal(size=(400, 3)) * (60.0, 90.0, 50.0) + (3.
 
 
 def seen(camera, points, aspect=1.5):
-    """Where points are in the frame: -1..1 from left to right, bottom to top, near to far."""
+    """Places of points in the frame: -1..1 from left to right, bottom to top, near to far."""
     rows = np.column_stack([np.atleast_2d(points), np.ones(len(np.atleast_2d(points)))])
     clip = rows @ np.asarray(camera.view_matrix()) @ np.asarray(camera.projection_matrix(aspect))
     return np.asarray(clip[:, :3] / clip[:, 3:])
@@ -38,7 +38,7 @@ def test_views_look_from_where_they_say():
 
 
 def test_orbit_stops_at_the_poles():
-    """However far one rises, up stays up."""
+    """However high the camera goes, up stays up."""
     camera = render.OrbitCamera.framing(HEAD)
     camera.orbit(0.0, 500.0)
     assert camera.pitch < 90.0
@@ -47,7 +47,7 @@ def test_orbit_stops_at_the_poles():
 
 
 def test_zoom_has_an_end_on_both_sides():
-    """A wheel that is turned for ever never takes the eye into the target, nor out of view."""
+    """However far the wheel turns, the eye is never inside the target, nor the target invisible."""
     camera = render.OrbitCamera.framing(HEAD)
     camera.zoom(1e30)
     assert camera.distance == approx(0.02 * camera.scene_radius)
@@ -76,14 +76,14 @@ def test_clipping_planes_hold_the_scene_from_anywhere():
     ],
 )
 def test_framing_errors(vertices, view, message):
-    """What cannot be framed is refused with a reason."""
+    """Impossible frames are refused with a reason."""
     with pytest.raises(ValueError, match=message):
         render.OrbitCamera.framing(vertices, view=view)
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_what_is_seen_can_be_found_again(seed):
-    """A point, projected and taken back, is itself; its ray leaves the eye."""
+    """A point, projected and back, is the same; its ray leaves the eye."""
     random = np.random.default_rng(seed)
     camera = render.OrbitCamera.framing(HEAD, view=random.choice(list(render.VIEWS)))
     camera.orbit(*random.uniform(-60.0, 60.0, 2))
@@ -100,7 +100,7 @@ def test_what_is_seen_can_be_found_again(seed):
 
 
 def test_another_lens_keeps_the_target_as_large():
-    """A wide one stands nearer; one that no camera has is refused."""
+    """A wide one is nearer; an impossible one is refused."""
     camera = render.OrbitCamera.framing(HEAD)
     above = camera.target + np.array([0.0, 0.1, 0.0])
     before = seen(camera, above[None], 1.0)[0, 1]

@@ -1,4 +1,4 @@
-"""OpenGL that fails to start: one line with the cure, and findings instead of crashes."""
+"""OpenGL that fails to start: one line with the remedy, and findings instead of crashes."""
 
 import os
 import subprocess
@@ -19,7 +19,7 @@ on_linux = pytest.mark.skipif(
 
 
 def run_python(code, **environment):
-    """Run code in a Python of its own without a screen; returns its output."""
+    """Run code in a separate Python without a screen; return its output."""
     clean = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
     clean.pop("WAYLAND_DISPLAY", None)
     result = subprocess.run(
@@ -44,7 +44,7 @@ def run_python(code, **environment):
     ],
 )
 def test_broken_egl_is_one_line(monkeypatch, name, value, message):
-    """Each way to break EGL by the environment names itself and its cure."""
+    """Each environment variable that breaks EGL is named with its remedy."""
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.setenv(name, value)
     with pytest.raises(render.GLError, match=f"{message}.*Cure: unset {name}") as caught:
@@ -54,7 +54,7 @@ def test_broken_egl_is_one_line(monkeypatch, name, value, message):
 
 @on_linux
 def test_a_frame_that_does_not_fit_is_one_line(monkeypatch):
-    """Where memory for a frame is refused, the text says what to ask for instead."""
+    """If memory for a frame is refused, the text gives a possible size."""
 
     def refused(*_):
         raise moderngl.Error("the framebuffer is not complete (INCOMPLETE_ATTACHMENT)")
@@ -92,7 +92,7 @@ def test_no_screen_is_one_line_without_warnings():
     ],
 )
 def test_known_texts_have_a_cure(monkeypatch, raw, cure):
-    """The text of the library is kept, and followed by one cure."""
+    """The text of the library is kept, and followed by one remedy."""
     for name in [name for name in os.environ if name.startswith("GLCONTEXT_")]:
         monkeypatch.delenv(name)
     text = str(diagnose("opening", raw))
@@ -101,7 +101,7 @@ def test_known_texts_have_a_cure(monkeypatch, raw, cure):
 
 
 def test_shader_error_names_file_and_stage(surface, monkeypatch, tmp_path):
-    """A program that does not compile says where."""
+    """A program that does not compile names its place."""
     (tmp_path / "broken.glsl").write_text(
         "#if defined(VERTEX_STAGE)\n"
         "void main() { gl_Position = vec4(0.0); }\n"
@@ -116,7 +116,7 @@ def test_shader_error_names_file_and_stage(surface, monkeypatch, tmp_path):
 
 
 def test_probe_finds_what_is_there():
-    """The machine that runs these tests can draw offscreen, and the finding says with what."""
+    """The test machine can draw offscreen, and the finding names the driver."""
     (finding,) = render.probe(offscreen_only=True)
     assert finding.is_ok
     assert finding.message == ""

@@ -19,13 +19,13 @@ FURROWED = (190, 90, 200, 128)
 
 @pytest.fixture(params=[0, 4])
 def renderer(request: pytest.FixtureRequest) -> Iterator[render.Renderer]:
-    """One for all frames of a test, with one sample a pixel and with four."""
+    """One renderer for all frames of a test, with one sample a pixel and with four."""
     with render.open_offscreen((96, 96), samples=request.param) as surface:
         yield render.Renderer(surface)
 
 
 def frames_of(renderer):
-    """Frames that need everything: shadows, hidden triangles, opened skin, hair, maps, clips."""
+    """Frames with all features: shadows, hidden triangles, opened skin, hair, maps, clips."""
     shape = joined(square(70.0, z=-45.0), sphere(2, 30.0))
     stream = lent(renderer, shape, columns=18)
     stream.vertices[:, 8:] = 1.0
@@ -62,7 +62,7 @@ def picture(renderer, *frames):
 
 
 def test_no_order_of_pictures_matters(renderer):
-    """Each frame gives one picture after any other, after itself, and in a new renderer."""
+    """Each frame gives the same picture after any other, after itself, and in a new renderer."""
     frames = frames_of(renderer)
     wanted = [picture(renderer, frame) for frame in frames]
     assert len({image.tobytes() for image in wanted}) == len(frames)
@@ -74,7 +74,7 @@ def test_no_order_of_pictures_matters(renderer):
 
 
 def test_frames_of_one_picture_are_apart(renderer):
-    """Two halves drawn by one call have the pixels of either alone, in any order of both."""
+    """Two halves drawn by one call have the pixels of each alone, in either order."""
     style = replace(PLAIN, shadows=True)
     skin = render.Skin(lent(renderer, sphere(2, 30.0)))
     halves = [(0, 0, 48, 96), (48, 0, 48, 96)]
@@ -102,7 +102,7 @@ def test_reading_numbers_is_no_part_of_an_order(renderer):
 
 
 def test_a_frame_keeps_camera_and_shapes(renderer):
-    """A camera that turns and a part that bends afterwards do not change it."""
+    """A later turn of the camera or bend of a part does not change it."""
     ball = Ball()
     camera = facing()
     moving = Moving(ball)
@@ -133,7 +133,7 @@ class Moving(Ball):
 
 
 def test_a_frame_of_a_stream_that_was_filled_anew_is_refused(renderer):
-    """It would show another mesh."""
+    """The stream now has another mesh."""
     stream = lent(renderer, sphere())
     frame = render.Frame(render.CameraView(facing()), PLAIN, render.Skin(stream))
     renderer.draw(frame)
@@ -144,7 +144,7 @@ def test_a_frame_of_a_stream_that_was_filled_anew_is_refused(renderer):
 
 
 def test_parts_under_opened_skin_are_seen_through_it(renderer):
-    """A ball behind a translucent wall shows, though it was named after the skin."""
+    """A ball behind a translucent wall is visible, although it comes after the skin."""
     wall = render.Skin(lent(renderer, square(z=40.0)))
     style = replace(PLAIN, opacity=0.3)
     view = render.CameraView(facing())

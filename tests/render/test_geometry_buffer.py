@@ -1,4 +1,4 @@
-"""Numbers of what each pixel shows: against spheres and planes that are known exactly."""
+"""Numbers of each pixel's surface: compared with spheres and planes that are known exactly."""
 
 import numpy as np
 from hypothesis import given, settings
@@ -8,7 +8,7 @@ from risorius import render
 
 from .scenes import PLAIN, Ball, Shape, facing, joined, lent, sphere, square, still
 
-CHORD = 0.2  # [unit of the scene] a sphere of 8192 triangles lies this far within its ball, at most
+CHORD = 0.2  # [unit of the scene] largest depth of a sphere of 8192 triangles within its ball
 
 
 def rays(camera, size):
@@ -35,7 +35,7 @@ def drawn(surface, shape, camera, *, parts=()):
     size=st.tuples(st.integers(33, 120), st.integers(33, 120)),
 )
 def test_a_sphere_is_as_far_away_as_it_should_be(yaw, pitch, size):
-    """From everywhere, in any format: depth along the axis, and normals in the camera's axes."""
+    """From all sides, in any format: depth along the axis, and normals in the camera's axes."""
     camera = facing(60.0)
     camera.orbit(yaw, pitch)
     shape = sphere(5)
@@ -78,7 +78,7 @@ def test_the_top_row_comes_first_and_axes_are_those_of_pictures(surface):
 
 
 def test_nearer_surfaces_hide_those_behind(surface):
-    """Of two squares and a ball the nearest counts, in any order of drawing."""
+    """Of two squares and a ball the nearest is visible, in any order of drawing."""
     far = square(50.0, z=-30.0)
     near = square(10.0, z=40.0)
     for shape in (joined(far, near), joined(near, far)):
@@ -94,7 +94,7 @@ def test_nearer_surfaces_hide_those_behind(surface):
 
 
 def test_triangles_are_numbered_through_all_parts(surface):
-    """Those of the mesh first, then of each part in turn; nothing is -1."""
+    """Those of the mesh come first, then those of each part; empty pixels have -1."""
     shape = square(10.0, z=45.0)
     ball = Ball()
     found = drawn(surface, shape, facing(70.0), parts=(ball,))
@@ -120,7 +120,7 @@ def test_the_back_of_the_mesh_differs_from_its_front(surface):
 
 
 def test_a_picture_is_the_same_before_and_after(surface, renderer):
-    """Reading numbers leaves the colours of a frame alone, and those of the next."""
+    """Reading numbers changes no colours of this frame or of the next."""
     stream = lent(renderer, sphere())
     parts = still(Ball(shape=sphere(3, 60.0)))
     frame = render.Frame(render.CameraView(facing()), render.Style(), render.Skin(stream), parts)

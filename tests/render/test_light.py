@@ -1,4 +1,4 @@
-"""Light from elsewhere: the pixels that it changes, and those that it leaves alone."""
+"""Other light: the pixels that it changes, and those that it does not."""
 
 from dataclasses import replace
 
@@ -35,13 +35,13 @@ def swapped(light):
 
 
 def scene(surface, light):
-    """A ball before a wall, in a mesh of its own mirror image."""
+    """A ball before a wall, in a mesh that equals its mirror image."""
     shape = joined(square(70.0, z=-45.0), sphere(3, 30.0))
     return draw_image(surface, shape, replace(SHADED, light=light))
 
 
 def test_light_of_the_other_side_makes_the_mirror_image(surface):
-    """Shading and the cast shadow follow the key, and nothing else in the picture has a side."""
+    """Shading and the cast shadow follow the key; everything else in the picture is symmetric."""
     for light in (NO_RIM, replace(render.LIGHTS["window"], rim=(0.0, 0.0, 0.0))):
         here = scene(surface, light)
         there = scene(surface, swapped(light))
@@ -52,7 +52,7 @@ def test_light_of_the_other_side_makes_the_mirror_image(surface):
 
 
 def test_other_light_leaves_nothing_behind(surface, renderer):
-    """One renderer: the studio, each other light, the studio again, bit for bit; parts, too."""
+    """In one renderer, the studio, each other light, and the studio again are the same bits."""
     stream = lent(renderer, joined(square(70.0, z=-45.0), sphere(2, 30.0)))
     camera = render.OrbitCamera.framing(stream.vertices[:, :3])
 
@@ -70,7 +70,7 @@ def test_other_light_leaves_nothing_behind(surface, renderer):
 
 @pytest.mark.parametrize("name", render.LIGHTS)
 def test_no_light_burns_or_blackens(surface, name):
-    """A ball of light skin and one of dark skin: all of what faces the viewer has a colour."""
+    """Balls of light and of dark skin have colour in all places that face the viewer."""
     for albedo, low, high in ((LIGHT_SKIN, 60, 254), (DARK_SKIN, 16, 235)):
         style = replace(PLAIN, albedo=albedo, light=render.LIGHTS[name])
         image = draw_image(surface, sphere(4, 50.0), style)
@@ -81,5 +81,5 @@ def test_no_light_burns_or_blackens(surface, name):
 
 
 def test_the_command_knows_all_lights():
-    """The lights of `--style`, written out so that help needs no OpenGL, are those there are."""
+    """The lights of `--style`, listed so that help needs no OpenGL, are complete."""
     assert tuple(LIGHT_NAMES) == tuple(render.LIGHTS)

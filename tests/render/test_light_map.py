@@ -1,4 +1,4 @@
-"""Light from all around: how near the key and nine numbers come to a map."""
+"""Light from all around: the error of a key and nine numbers for a map."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from .scenes import PLAIN, draw_image, sphere
 
 
 def matte(light, normals):
-    """Light on matte surfaces of these normals (n, 3), as the shader adds it up."""
+    """Light on matte surfaces with these normals (n, 3), summed as in the shader."""
     x, y, z = normals.T
     second = [x * y, y * z, x * z, 3.0 * z * z - 1.0, x * x - y * y]
     polynomials = np.stack([np.ones_like(x), y, z, x, *second], axis=-1)
@@ -21,7 +21,7 @@ def matte(light, normals):
 
 
 def summed(radiance, normals):
-    """The same by adding up every texel of a map."""
+    """The same light as a sum over every texel of a map."""
     rows, columns = radiance.shape[:2]
     away = directions(rows, columns)
     solid = np.repeat(-np.diff(np.sin(np.linspace(0.5, -0.5, rows + 1) * np.pi)), columns)
@@ -31,7 +31,7 @@ def summed(radiance, normals):
 
 
 def test_even_light_is_even():
-    """A white sphere all around lights each surface alike, and there is no key."""
+    """A white sphere all around lights each surface equally, and there is no key."""
     light = render.LightMap(np.full((32, 64, 3), 3.0)).light()
     lit = matte(light, directions(8, 16).reshape(-1, 3))
     assert np.ptp(lit) < 1e-3
@@ -40,7 +40,7 @@ def test_even_light_is_even():
 
 @pytest.mark.parametrize("name", render.LIGHT_MAPS)
 def test_key_and_harmonics_hold_the_light_of_the_map(name):
-    """To some per cent of the brightest surface."""
+    """The error is some per cent of the brightest surface."""
     light_map = render.LIGHT_MAPS[name]
     normals = directions(8, 16).reshape(-1, 3)
     expected = summed(light_map.radiance, normals)
@@ -51,7 +51,7 @@ def test_key_and_harmonics_hold_the_light_of_the_map(name):
 
 
 def test_the_sun_is_the_key_wherever_it_is_turned():
-    """A spot at the upper right lights from there; turned to the right it goes on to the right."""
+    """A spot at the upper right lights from there; turned right it moves on to the right."""
     radiance = np.full((64, 128, 3), 0.05)
     away = directions(64, 128)
     sun = np.array([0.6, 0.64, 0.48])
@@ -65,7 +65,7 @@ def test_the_sun_is_the_key_wherever_it_is_turned():
 
 
 def test_any_unit_gives_the_same_picture():
-    """A map is exposed: nits or shares of white are the same light."""
+    """A map is exposed: nits or shares of white give the same light."""
     radiance = render.LIGHT_MAPS["room"].radiance
     light = render.LightMap(radiance).light()
     other = render.LightMap(1000.0 * radiance).light()

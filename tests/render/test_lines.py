@@ -11,7 +11,7 @@ RED = (1.0, 0.0, 0.0)
 
 
 def test_lines_before_and_behind(renderer):
-    """A line in front has its full colour, one behind shines through, and 0 hides it."""
+    """A line in front has its full colour, one behind shows through, and 0 hides it."""
     wall = lent(renderer, square())
     over = np.array([(-40, 20, 5), (0, 20, 5), (40, 20, 5)], np.float64)
     under = over - (0, 40, 10)
@@ -28,7 +28,7 @@ def test_lines_before_and_behind(renderer):
 
 
 def test_lines_are_not_joined(renderer):
-    """Nothing is drawn from the end of one line to the start of the next; empty lines are fine."""
+    """No line is drawn from the end of one to the start of the next; empty lines are allowed."""
     left = np.array([(-40.0, -10, 0), (-40, 10, 0)])
     right = np.array([(40.0, -10, 0), (40, 10, 0)])
     lines = Lines([np.zeros((0, 3)), left, np.zeros((1, 3)), right], RED)

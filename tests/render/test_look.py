@@ -45,7 +45,7 @@ def scene(surface, style):
 
 @pytest.mark.parametrize("name", STYLES)
 def test_picture_is_as_stored(name, tmp_path):
-    """The scene looks as it did when its picture was approved."""
+    """The scene looks as when its picture was approved."""
     with render.open_offscreen(SIZE) as surface:
         driver = str(surface.gl.info["GL_RENDERER"])
         if "llvmpipe" not in driver:
@@ -66,7 +66,7 @@ def test_picture_is_as_stored(name, tmp_path):
 
 
 def test_stored_pictures_would_notice():
-    """The tolerance is tight: a slightly different skin is a failure."""
+    """The tolerance is small: a slightly different skin fails."""
     with render.open_offscreen(SIZE) as surface:
         frame = scene(surface, STYLES["pixel"]).astype(int)
         paler = scene(surface, replace(STYLES["pixel"], albedo=LIGHT_SKIN)).astype(int)

@@ -21,7 +21,7 @@ def rim(width, height, z):
 
 
 def light(renderer, opening, style=PLAIN):
-    """The picture of a ball of radius 20, as numbers; opening: None, or before it."""
+    """The picture of a ball of radius 20, as numbers; opening: None, or one before it."""
     placed = render.PlacedPart.of(Ball(colour=WHITISH), STILL, opening=opening)
     return draw(renderer, style=style, parts=[placed]).sum(axis=2)[..., None]
 
@@ -40,7 +40,7 @@ def test_an_eye_is_darkest_below_its_upper_lid(renderer):
 
 
 def test_a_mouth_lets_in_as_much_light_as_it_is_open(renderer):
-    """A slit leaves what is behind it dark, a wide opening does not; its edge is darker."""
+    """Behind a slit it is dark, behind a wide opening it is not; the edge is darker."""
     plain = at(light(renderer, None), 0.0, 0.0).item()
     heights = (1.0, 8.0, 40.0)
     pictures = [
@@ -62,7 +62,7 @@ def test_what_is_out_of_the_mouth_has_all_light(renderer):
 
 @pytest.mark.parametrize("is_filled", [True, False])
 def test_without_skin_maps_openings_do_not_count(renderer, is_filled):
-    """The switch leaves out all light that is taken away."""
+    """The switch turns off all darkening by openings."""
     style = replace(PLAIN, skin_maps=False)
     opening = render.Opening(rim(30.0, 10.0, 22.0), is_filled=is_filled)
     assert (light(renderer, opening, style) == light(renderer, None, style)).all()

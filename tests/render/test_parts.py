@@ -1,4 +1,4 @@
-"""Rigid parts: where bones put them, how they shine, what hides them."""
+"""Rigid parts: their places by bones, their shine, and what hides them."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -13,7 +13,7 @@ from .scenes import PLAIN, STILL, Ball, Shape, at, draw, drawn, facing, lent, sq
 
 
 def reshaped(ball, **changes):
-    """A ball of which arrays are others."""
+    """A ball with some other arrays."""
     names = ("vertices", "normals", "faces", "colours", "striation")
     part = SimpleNamespace(**vars(ball), **{name: getattr(ball, name) for name in names})
     vars(part).update({name: array.astype(np.float32) for name, array in changes.items()})
@@ -21,7 +21,7 @@ def reshaped(ball, **changes):
 
 
 def test_parts_move_with_their_bones(renderer):
-    """A part is drawn where the column-vector matrix of its bone puts it."""
+    """A part is drawn at the place given by the column-vector matrix of its bone."""
     ball = Ball(bone="eye_left")
     places = []
     for x in (-25.0, 25.0):
@@ -46,7 +46,7 @@ def test_a_part_that_changes_its_shape_is_drawn_anew(renderer):
 
 
 def test_wet_parts_have_a_crisp_highlight(renderer):
-    """Shine makes a few pixels nearly white, and leaves the others as they are, but the outline."""
+    """Shine makes a few pixels nearly white, and only changes these and the outline."""
     frames = []
     for shine in (0.0, 1.0):
         style = replace(PLAIN, background=render.DARK)
@@ -69,7 +69,7 @@ def test_parts_and_mesh_hide_each_other(renderer):
 
 
 def test_parts_have_one_side(renderer):
-    """Of a part, only the side from which its triangles run counter-clockwise is drawn."""
+    """Only the side from which a part's triangles run counter-clockwise is drawn."""
     ball = Ball()
     behind = ball.vertices[ball.faces].mean(axis=1)[:, 2] < 0.0
     bowl = ball.shape.triangles[behind]
@@ -117,7 +117,7 @@ def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples):
 
 
 def test_hair_is_dense_up_to_its_outline(renderer):
-    """It covers the skin under it, no veil stands off its outline; it is away where none grows."""
+    """It covers the skin beneath, no veil is around its outline, and bare places stay bare."""
     ball = Ball(colour=(0.1, 0.1, 0.1))
     covers = []
     for dense in (1.0, 0.0):
@@ -135,7 +135,7 @@ def test_hair_is_dense_up_to_its_outline(renderer):
 
 
 def test_hair_hides_the_skin_behind_it(renderer):
-    """An outline of skin under hair is not seen through it."""
+    """An outline of skin under hair does not show through it."""
     wall = lent(renderer, square(z=-5.0))
     ball = Ball(colour=(0.1, 0.1, 0.1))
     striation = np.column_stack([ball.vertices[:, :2], 6.0 * ball.normals, ball.normals[:, 0]])
@@ -146,7 +146,7 @@ def test_hair_hides_the_skin_behind_it(renderer):
 
 
 def test_hair_shines_where_it_lies_and_not_by_how_far_it_stands_off(renderer):
-    """Else a dark patch with a ring around it lies where strands begin."""
+    """Otherwise a dark patch with a ring around it would be where strands begin."""
     ball = Ball(colour=(0.02, 0.02, 0.02), shine=0.4)
     out = ball.normals
     down = np.array([0.0, -1.0, 0.0]) + out[:, 1:2] * out
@@ -160,7 +160,7 @@ def test_hair_shines_where_it_lies_and_not_by_how_far_it_stands_off(renderer):
 
 
 def test_a_hem_of_hair_throws_no_shadow(renderer):
-    """Where no strand is to be seen, light gets through; dense hair shades what is below."""
+    """Light passes where no strand is visible; dense hair shades what is below."""
     lit = []
     for dense in (0.0, 2.0):
         wall = lent(renderer, square(z=-25.0))
@@ -174,7 +174,7 @@ def test_a_hem_of_hair_throws_no_shadow(renderer):
         placed = [render.PlacedPart.of(hair, STILL, throws_shadow=True)]
         style = replace(PLAIN, shadows=True)
         lit.append(draw(renderer, wall, style=style, parts=placed).sum(axis=2))
-    shaded = (lit[0] - lit[1])[60:, 56:]  # below and right: the key stands above at the left
+    shaded = (lit[0] - lit[1])[60:, 56:]  # below and right: the key is above at the left
     assert shaded.max() > 100
     wall_alone = draw(renderer, lent(renderer, square(z=-25.0)), style=replace(PLAIN, shadows=True))
     assert np.abs(lit[0] - wall_alone.sum(axis=2)).max() < 12

@@ -18,7 +18,7 @@ KINDS += ("vertex_array", "simple_framebuffer", "depth_renderbuffer", "sampler")
 
 
 def counting(monkeypatch):
-    """What says how many objects of each kind were made from now on and not given back."""
+    """A counter of new objects of each kind that were not released."""
     made = []
 
     def noting(make):
@@ -44,7 +44,7 @@ def counting(monkeypatch):
 
 
 def draw_all(surface):
-    """A picture that needs every program and buffer; nobody holds anything after it."""
+    """A picture that needs every program and buffer, without references afterwards."""
     renderer = render.Renderer(surface)
     shape = sphere()
     stream = renderer.lend_stream(len(shape.positions), len(shape.triangles), 16)
@@ -69,11 +69,11 @@ def draw_all(surface):
 
 @pytest.mark.parametrize("samples", [0, 4])
 def test_a_lost_renderer_leaves_nothing(samples, monkeypatch):
-    """Ten renderers one after the other: the same image, and not one object is left."""
+    """Ten renderers one after the other give the same image, and no object remains."""
     with render.open_offscreen((96, 96), samples=samples) as surface:
         count = counting(monkeypatch)
         images = [draw_all(surface) for _ in range(10)]
-        assert surface.gl.objects  # let go, and waiting to be given back
+        assert surface.gl.objects  # without references, to be released
         surface.begin()
         assert count() == {}
         assert not surface.gl.objects
@@ -82,7 +82,7 @@ def test_a_lost_renderer_leaves_nothing(samples, monkeypatch):
 
 
 def test_a_lost_part_leaves_nothing(monkeypatch):
-    """A renderer that draws one person after the other holds the parts of the last one alone."""
+    """A renderer that draws one person after the other only holds the parts of the last."""
     left = list[Counter[str]]()
     style = replace(PLAIN, shadows=True)
     with render.open_offscreen((96, 96), samples=4) as surface:
@@ -116,7 +116,7 @@ def test_a_part_without_weak_references_is_drawn():
 
 
 def test_a_closed_frame_hands_its_context_on(monkeypatch):
-    """The next frame takes it over, unless the wanted OpenGL has changed, or an error ended it."""
+    """The next frame reuses it, unless the wanted OpenGL has changed, or an error ended it."""
     with render.open_offscreen((96, 96)) as first, render.open_offscreen((64, 48)) as beside:
         assert first.gl is not beside.gl
     with render.open_offscreen((64, 48), samples=0) as second:

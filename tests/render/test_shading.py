@@ -1,4 +1,4 @@
-"""Shading: flat, Gouraud, per pixel; what light does to skin, front and back."""
+"""Shading: flat, Gouraud, per pixel; the effect of light on skin, front and back."""
 
 from dataclasses import replace
 
@@ -27,7 +27,7 @@ def test_flat_facets_have_one_colour(surface):
 
 
 def test_only_pixel_shading_lights_the_middle_of_a_facet(surface):
-    """Between four corners that turn away, Gouraud stays as dark as they are."""
+    """Between four corners that face away, Gouraud stays as dark as they are."""
     shape = square(bulge=3.0)
     middle = {
         name: int(at(draw_image(surface, shape, style), 3.0, -1.0).sum())
@@ -37,7 +37,7 @@ def test_only_pixel_shading_lights_the_middle_of_a_facet(surface):
 
 
 def test_light_comes_from_the_upper_left(surface):
-    """The sphere is brightest up left of its middle, and its dark side is not black."""
+    """The sphere is brightest at the upper left of its middle, and its dark side is not black."""
     frame = draw_image(surface, sphere(4), replace(PLAIN, albedo=render.CLAY)).sum(axis=2)
     upper_left = frame[32, 32]
     lower_right = frame[64, 64]
@@ -46,7 +46,7 @@ def test_light_comes_from_the_upper_left(surface):
 
 
 def test_terminator_of_skin_is_warm(surface):
-    """Where light fades out, skin is redder than its albedo; clay is not."""
+    """Where light fades out, skin is redder than its albedo, and clay is not."""
     shares = {}
     for name, albedo in (("skin", render.SKIN), ("clay", render.CLAY)):
         style = replace(PLAIN, albedo=albedo, background=render.DARK)
@@ -57,7 +57,7 @@ def test_terminator_of_skin_is_warm(surface):
 
 
 def test_inner_side_is_dark_flesh(surface):
-    """Seen from behind, a surface is much darker, and red."""
+    """From behind, a surface is much darker, and red."""
     shape = square()
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
     for style in (FLAT, GOURAUD, PLAIN):
@@ -69,7 +69,7 @@ def test_inner_side_is_dark_flesh(surface):
 
 
 def fading(renderer, shape, shares, inner):
-    """A shape that fades by shares of its vertices, and a number below 0 hides its inner side."""
+    """A shape that fades by shares of its vertices; a number below 0 hides its inner side."""
     stream = lent(renderer, shape, columns=18)
     stream.vertices[:, 16] = shares
     stream.vertices[:, 17] = inner
@@ -79,7 +79,7 @@ def fading(renderer, shape, shares, inner):
 
 @pytest.mark.parametrize("wireframe", [False, True])
 def test_skin_fades_as_its_vertices_have_it(renderer, wireframe):
-    """All of it at 1, half where the way is half done, nothing at 0; with wires, too."""
+    """It is full at 1, half at half, and missing at 0; also with wires."""
     skin = fading(renderer, square(30.0), (0.0, 0.0, 1.0, 1.0), 1.0)  # from below to above
     pictures = []
     style = replace(PLAIN, wireframe=wireframe, wire_width=0.01)
@@ -95,7 +95,7 @@ def test_skin_fades_as_its_vertices_have_it(renderer, wireframe):
 
 
 def test_the_inside_of_a_faded_neck_does_not_show(renderer):
-    """Back faces with a number below 0 are not seen; the others, of lips and lids, are."""
+    """Back faces with a number below 0 are hidden; the others, of lips and lids, are visible."""
     shape = square(30.0)
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
     for inner, is_seen in ((0.5, True), (-0.5, False)):
@@ -104,7 +104,7 @@ def test_the_inside_of_a_faded_neck_does_not_show(renderer):
 
 
 def test_a_fade_needs_its_columns(renderer):
-    """Rows without it are refused."""
+    """Rows without these columns are refused."""
     stream = lent(renderer, square(), columns=16)
     with pytest.raises(ValueError, match="a fade on a stream of 16 columns"):
         render.Skin(stream, fading=np.zeros((1, 3)))

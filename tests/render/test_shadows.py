@@ -23,13 +23,13 @@ from .scenes import (
 
 
 def test_shadow_of_the_key_light(surface):
-    """A small square before a wall darkens the wall to its lower right, and nowhere else."""
+    """A small square before a wall only darkens the wall at its lower right."""
     blocker = square(12.0, z=30.0)
     thick = Shape(blocker.positions - (0, 0, 4), -blocker.normals, blocker.triangles[:, ::-1])
     shape = joined(square(), joined(blocker, thick))
     without = draw_image(surface, shape, replace(PLAIN, albedo=render.CLAY))
     within = draw_image(surface, shape, replace(PLAIN, albedo=render.CLAY, shadows=True))
-    # The key stands at (-0.53, 0.63, 0.57): 28 mm before the wall are 26 mm right and 31 mm down.
+    # The key is at (-0.53, 0.63, 0.57): 28 mm before the wall are 26 mm right and 31 mm down.
     assert at(within, 26.0, -31.0).sum() < 0.8 * at(without, 26.0, -31.0).sum()
     assert at(within, 26.0, -31.0).min() > 40
     assert (at(within, -30.0, 30.0) == at(without, -30.0, 30.0)).all()
@@ -37,7 +37,7 @@ def test_shadow_of_the_key_light(surface):
 
 
 def wall_in_shadow(style):
-    """A wall with the shadow of a square, and without: the row 25 mm below the middle, x >= 0."""
+    """A wall with and without the shadow of a square: the row 25 mm below the middle, x >= 0."""
     blocker = square(20.0, z=30.0)
     rows = []
     with render.open_offscreen((480, 480)) as surface:
@@ -52,7 +52,7 @@ def wall_in_shadow(style):
 
 
 def test_shadows_have_soft_edges():
-    """From shadow to light the wall brightens steadily; on a head that takes 2 to 6 mm."""
+    """From shadow to light the wall brightens steadily; on a head within 2 to 6 mm."""
     within, without = wall_in_shadow(replace(PLAIN, albedo=render.CLAY))
     lightness = within.sum(axis=1) / without.sum(axis=1)
     darkest = int(lightness.argmin())
@@ -69,7 +69,7 @@ def test_shadows_have_soft_edges():
 
 @pytest.mark.parametrize("shading", render.Shading)
 def test_convex_things_do_not_shadow_themselves(surface, shading):
-    """On a coarse sphere shadows change next to nothing: no stripes along the terminator."""
+    """On a coarse sphere shadows change almost nothing: no stripes along the terminator."""
     style = replace(PLAIN, shading=shading)
     without = draw_image(surface, sphere(2), style)
     within = draw_image(surface, sphere(2), replace(style, shadows=True))
@@ -79,9 +79,9 @@ def test_convex_things_do_not_shadow_themselves(surface, shading):
 
 @pytest.mark.parametrize("shading", [render.Shading.GOURAUD, render.Shading.PIXEL])
 def test_few_triangles_with_round_normals_have_no_stripes(surface, shading):
-    """A square that the key light grazes, shaded as if it looked 35 degrees more toward the light.
+    """The key light grazes a square whose shading normals face 35 degrees more toward the light.
 
-    So is the side of a nose of few triangles: it stood too little above itself, and had stripes.
+    The side of a nose of few triangles is similar, and had stripes from too small a bias.
     """
     toward_key = np.array([-0.53, 0.63, 0.57])
     toward_key /= np.linalg.norm(toward_key)
@@ -126,11 +126,11 @@ def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(renderer, shadows):
 
 @dataclass(frozen=True, eq=False)
 class HairyBall(Ball):
-    """A ball whose strands stand up, and lie down a little."""
+    """A ball whose strands stand up, and lean a little."""
 
     @property
     def striation(self):
-        """Across and along [mm], the way from the root to the tip, and 1, shape (n, 6)."""
+        """Across and along [mm], the share of the way from root to tip, and 1, shape (n, 6)."""
         normals = self.normals.astype(np.float64)
         way = 0.5 * normals - [0.0, 1.0, 0.0] + normals[:, 1:2] * normals
         return np.hstack([self.vertices[:, :2], way, np.ones((len(way), 1))]).astype(np.float32)

@@ -1,4 +1,4 @@
-"""Edges that samples smooth, while each pixel is shaded once."""
+"""Edges that samples smooth, with one shading per pixel."""
 
 from dataclasses import replace
 
@@ -46,7 +46,7 @@ def turned(shape, degrees):
 
 
 def test_an_outline_covers_as_much_as_its_shape():
-    """Edges of a turned black square have all five levels of four samples; its area is whole."""
+    """Edges of a turned black square have all five levels of four samples; its area is exact."""
     black = replace(CLAY, albedo=(0.0, 0.0, 0.0))
     hard, smooth = pictures(turned(square(30.0), 20.0), black)
     darkest = smooth.min()
@@ -73,7 +73,7 @@ def test_colours_inside_stay_as_they_are(shading):
 
 
 def test_surfaces_that_touch_have_a_smooth_line_between_them():
-    """Two halves at one depth, one facing up and one down, as lips are: the line has levels."""
+    """Two halves at one depth, one facing up and one down, like lips: the line has levels."""
     halves = []
     for sign in (1.0, -1.0):
         half = square(30.0)
@@ -90,7 +90,7 @@ def test_surfaces_that_touch_have_a_smooth_line_between_them():
 
 
 def test_the_line_where_a_part_comes_through_is_smooth(renderer):
-    """A ball that stands out of a wall ends in mixed pixels, though no triangle ends there."""
+    """A ball in a wall ends in mixed pixels, although no triangle ends there."""
     needs_samples(renderer.surface)
     wall = lent(renderer, square(z=10.0))
     smooth = draw(renderer, wall, parts=still(Ball()))
@@ -104,7 +104,7 @@ def test_the_line_where_a_part_comes_through_is_smooth(renderer):
 
 @pytest.mark.parametrize("yaw", [20.0, 200.0])
 def test_either_side_of_a_sheet_has_a_smooth_outline(yaw):
-    """The back of a mesh, too."""
+    """This includes the back of the mesh."""
     camera = facing()
     camera.orbit(yaw, 10.0)
     hard, smooth = pictures(turned(square(30.0), 15.0), camera=camera)
@@ -113,7 +113,7 @@ def test_either_side_of_a_sheet_has_a_smooth_outline(yaw):
 
 
 def test_facets_have_smooth_edges():
-    """Where each triangle has one colour, the lines between them are mixed, too."""
+    """If each triangle has one colour, the lines between them are mixed, too."""
     values = (np.arange(2) % 2).astype(np.uint8) * 3
     shape = turned(square(30.0), 10.0)
     style = replace(CLAY, colour_by=render.ColourBy.SPLITS)

@@ -9,7 +9,7 @@ from .scenes import draw, draw_image, lent, sphere, square
 
 
 def test_lent_arrays_fit_the_contract(surface):
-    """A borrower gets C-contiguous float32, uint32 and int32 arrays of the asked size."""
+    """The caller gets C-contiguous float32, uint32 and int32 arrays of the requested size."""
     stream = render.Renderer(surface).lend_stream(100, 50, 8)
     assert stream.vertices.shape == (100, 8)
     assert stream.vertices.dtype == np.float32
@@ -31,7 +31,7 @@ def test_eight_columns_draw_the_same(surface, renderer):
 
 
 def test_only_the_used_part_is_drawn(surface, renderer):
-    """Rows beyond the counts are rubbish, and do not show."""
+    """Rows beyond the counts are random, and invisible."""
     expected = draw_image(surface, square())
     stream = renderer.lend_stream(1000, 1000, 6)
     stream.vertices[:] = np.nan
@@ -67,7 +67,7 @@ def test_hundred_frames_use_the_same_buffers(renderer):
 
 
 def test_a_frame_takes_no_more_memory_than_it_fills(renderer):
-    """Blocks are as large as the mesh, not as the worst case, and grow with the mesh again."""
+    """Blocks have the size of the mesh, not of the worst case, and grow again with the mesh."""
     stream = renderer.lend_stream(100_000, 100_000, 8)
     for count in (10, 5_000, 10):
         stream.upload(count, count)
@@ -76,7 +76,7 @@ def test_a_frame_takes_no_more_memory_than_it_fills(renderer):
 
 
 def test_mesh_without_triangles_draws_nothing(renderer):
-    """An empty frame of a stream is no error."""
+    """An empty frame of a stream is not an error."""
     stream = lent(renderer, square())
     stream.upload(0, 0)
     assert (draw(renderer, stream, render.Style(background=render.WHITE)) >= 254).all()
@@ -100,7 +100,7 @@ def test_positions_that_are_not_finite_are_survived(renderer):
     ],
 )
 def test_upload_beyond_capacity(surface, counts, message):
-    """More than was lent cannot be handed over."""
+    """Counts beyond the capacity are refused."""
     stream = lent(render.Renderer(surface), square())
     with pytest.raises(ValueError, match=message):
         stream.upload(*counts)

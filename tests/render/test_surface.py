@@ -25,7 +25,7 @@ def test_read_gives_the_top_row_first(samples):
 
 
 def test_read_is_a_new_array_each_time(surface):
-    """A frame that was read does not change with the next one."""
+    """A frame that was read is not changed by the next one."""
     draw_image(surface, sphere())
     first = surface.read()
     kept = first.copy()
@@ -37,7 +37,7 @@ def test_read_is_a_new_array_each_time(surface):
 
 
 def test_samples_smooth_edges():
-    """With samples, border pixels are between skin and background; without, none is."""
+    """With samples, border pixels are between skin and background; without samples, none is."""
     shape = sphere(3)
     levels = {}
     for samples in (0, 4):
@@ -51,7 +51,7 @@ def test_samples_smooth_edges():
 
 
 def test_bad_arguments():
-    """Sizes and samples that cannot be are refused."""
+    """Impossible sizes and samples are refused."""
     with pytest.raises(ValueError, match=r"size is \(0, 10\); it must be \(width, height\)"):
         render.open_offscreen((0, 10))
     with pytest.raises(ValueError, match=r"samples is -1; it must be 0 \(none\)"):
@@ -61,7 +61,7 @@ def test_bad_arguments():
 
 
 def test_closed_surface_says_so():
-    """Drawing after close is an error; closing twice is not."""
+    """Drawing after close is an error; a second close is not."""
     surface = render.open_offscreen((8, 8))
     surface.close()
     surface.close()
@@ -70,7 +70,7 @@ def test_closed_surface_says_so():
 
 
 def test_two_surfaces_do_not_mix(surface):
-    """Frames that are drawn in turns on two surfaces stay apart."""
+    """Frames drawn in turns on two surfaces stay separate."""
     with render.open_offscreen((40, 30)) as other:
         for _ in range(2):
             large = draw_image(surface, sphere())
@@ -82,7 +82,7 @@ def test_two_surfaces_do_not_mix(surface):
 
 
 def test_begin_repairs_what_a_panel_changed(surface):
-    """Depth test, culling, blending, scissor and masks are as they should be in every frame."""
+    """Depth test, culling, blending, scissor and masks are correct in every frame."""
     expected = draw_image(surface, sphere())
     gl = surface.gl
     gl.disable(gl.DEPTH_TEST)

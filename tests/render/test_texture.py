@@ -1,4 +1,4 @@
-"""Skin from a picture: where it lies, how bright it is, what goes over it."""
+"""Skin from a picture: its place, its brightness, and the layers over it."""
 
 import gc
 import weakref
@@ -66,7 +66,7 @@ def test_top_row_lies_at_v_1(surface, shading, wireframe):
 
 @pytest.mark.parametrize("level", [20, 128, 230])
 def test_grey_texture_is_the_grey_albedo(surface, level):
-    """A texture of one colour gives the picture that the same albedo gives: sRGB is decoded."""
+    """A texture of one colour gives the same picture as an equal albedo: sRGB is decoded."""
     albedo = (level / 255.0,) * 3
     style = replace(PLAIN, gloss=0.0, albedo=albedo)  # highlights follow the picture
     expected = draw_image(surface, sphere(3), style)
@@ -79,7 +79,7 @@ def test_grey_texture_is_the_grey_albedo(surface, level):
 
 
 def test_texture_is_filtered_in_linear_light(surface):
-    """Seen from afar, a fine black and white checker is as bright as its mean light: sRGB 188."""
+    """From afar, a fine black and white checker is as bright as its mean light: sRGB 188."""
     rows, columns = np.indices((512, 512))
     checker = np.repeat(((rows + columns) % 2 * 255).astype(np.uint8)[:, :, None], 3, axis=2)
     frame = textured(surface, checker)[30:66, 30:66]
@@ -89,7 +89,7 @@ def test_texture_is_filtered_in_linear_light(surface):
 
 @pytest.mark.parametrize("size", [(6, 4), (7, 5), (1, 6), (5, 1)])
 def test_smaller_versions_are_means_of_blocks(size):
-    """A last row or column without another is left out, unless it is alone."""
+    """A last row or column without a partner is left out, unless it is the only one."""
     values = np.random.default_rng(0).random((*size, 4), np.float32)
     height, width = (max(count // 2, 1) for count in size)
     tall, wide = (min(count, 2) for count in size)
@@ -147,7 +147,7 @@ def test_back_faces_keep_the_inner_albedo(surface):
 
 
 def test_texture_needs_eight_columns(renderer):
-    """Without texture coordinates there is nothing to look up."""
+    """Without texture coordinates nothing can be looked up."""
     stream = lent(renderer, square())
     texture = render.Texture(renderer.surface, quarters())
     with pytest.raises(ValueError, match="a texture meets a stream of 6 columns; it needs texture"):
@@ -165,14 +165,14 @@ def test_texture_needs_eight_columns(renderer):
     ],
 )
 def test_bad_images(surface, image, message):
-    """Images that are no sRGB images, or too large, are refused."""
+    """Images that are not sRGB images, or are too large, are refused."""
     with pytest.raises(ValueError, match=message):
         render.Texture(surface, image)
 
 
 @pytest.mark.parametrize("shading", render.Shading)
 def test_less_light_where_it_is_less_open(surface, shading):
-    """It is darker by how open the texture says it is, where all light comes in not at all."""
+    """The texture's openness darkens light from all sides, and not the key light."""
     image = plain_image((180, 140, 120))
     occlusion = np.full((8, 8), 255, np.uint8)
     occlusion[:, :4] = 128
@@ -195,7 +195,7 @@ def test_less_light_where_it_is_less_open(surface, shading):
 @pytest.mark.parametrize("shading", render.Shading)
 @pytest.mark.parametrize("is_textured", [True, False])
 def test_fine_shape_tilts_what_each_pixel_shows(surface, shading, is_textured):
-    """What rises to the right faces the key; level skin, other shadings and without: as it was."""
+    """Slopes that rise to the right face the key; level skin and other shadings are unchanged."""
     slopes = np.full((32, 32, 2), 128, np.uint8)
     slopes[:, 16:] = 190, 128
     image = plain_image((180, 140, 120))
@@ -214,13 +214,13 @@ def test_fine_shape_tilts_what_each_pixel_shows(surface, shading, is_textured):
 
 
 def test_fine_shape_that_is_none_is_refused(surface):
-    """A map of wrinkles is none."""
+    """A map of wrinkles is not one."""
     with pytest.raises(ValueError, match=r"the fine shape has shape \(4, 4, 4\)"):
         render.BumpMap(surface, np.zeros((4, 4, 4), np.uint8), 1.0, 2)
 
 
 def test_maps_are_uploaded_once(surface):
-    """Persons share their maps of wrinkles and pores; one that nobody has goes."""
+    """Persons share their maps of wrinkles and pores; unused ones are freed."""
     renderer = render.Renderer(surface)
     texels = np.full((8, 8, 4), 128, np.uint8)
     first = renderer.bump_map(texels, 1.0)

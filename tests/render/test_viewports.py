@@ -1,4 +1,4 @@
-"""Viewports and backgrounds: each touches its own pixels only."""
+"""Viewports and backgrounds: each only changes its own pixels."""
 
 import pytest
 

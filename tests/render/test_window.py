@@ -1,4 +1,4 @@
-"""The window: the same interface and the same pictures as offscreen. Needs a screen, or Xvfb."""
+"""The window: the same interface and the same pictures as offscreen. It needs a screen, or Xvfb."""
 
 import time
 
@@ -13,14 +13,14 @@ pytestmark = pytest.mark.window
 
 
 def needs_one_driver(window, offscreen):
-    """Skip a comparison where a card draws offscreen, and software in a window of Xvfb."""
+    """Skip a comparison if a card draws offscreen, and software in a window of Xvfb."""
     drivers = [surface.gl.info["GL_RENDERER"] for surface in (window, offscreen)]
     if drivers[0] != drivers[1]:
         pytest.skip(f"windows are drawn by {drivers[0]}, offscreen frames by {drivers[1]}")
 
 
 def test_same_picture(window):
-    """A window shows what an offscreen frame holds, and reads it back after it was shown."""
+    """A window shows an offscreen frame's picture, and can be read after it was shown."""
     style = render.Style(wireframe=True)
     shown = draw_image(window, sphere(), style)
     with render.open_offscreen(window.size) as offscreen:
@@ -30,7 +30,7 @@ def test_same_picture(window):
 
 
 def test_window_that_is_resized(window):
-    """The frame follows the window; nothing of the old size is left behind."""
+    """The frame follows the window; no pixels of the old size remain."""
     import glfw
 
     draw_image(window, sphere())
@@ -47,7 +47,7 @@ def test_window_that_is_resized(window):
 
 
 def test_a_window_fits_the_screen(window):
-    """A window that is shown is no larger than there is room."""
+    """A visible window is no larger than the room on the screen."""
     import glfw
 
     room = glfw.get_monitor_workarea(glfw.get_primary_monitor())[2:]
@@ -56,7 +56,7 @@ def test_a_window_fits_the_screen(window):
 
 
 def test_closing(window):
-    """The wish to close can be read and set; a closed window says so."""
+    """A close request can be read and set; a closed window reports it."""
     assert not window.should_close
     window.should_close = True
     assert window.should_close
@@ -66,7 +66,7 @@ def test_closing(window):
 
 
 def test_hidden_window_can_be_read(window):
-    """A window that nobody sees gives the same frame as one that is shown."""
+    """A hidden window gives the same frame as a visible one."""
     expected = draw_image(window, sphere())
     with render.open_window((96, 96), "hidden", visible=False) as hidden:
         assert (draw_image(hidden, sphere()) == expected).all()
@@ -84,7 +84,7 @@ def test_window_and_offscreen_take_turns(window):
 
 
 def test_probe_finds_the_window(window):
-    """Where a window opens, the probe says so."""
+    """If a window opens, the probe says so."""
     finding = render.probe()[1]
     assert finding.name == "window"
     assert finding.is_ok
@@ -92,7 +92,7 @@ def test_probe_finds_the_window(window):
 
 
 def test_a_coarser_scene_fills_the_window(window):
-    """With fewer pixels and samples the same image is seen, enlarged; panels keep their own.
+    """With fewer pixels and samples the image is the same, enlarged; panels keep full resolution.
 
     Smooth edges reach two pixels of the scene aside.
     """
@@ -111,7 +111,7 @@ def test_a_coarser_scene_fills_the_window(window):
 
 
 def test_the_scene_outlives_its_panels(window):
-    """Resolving again shows the scene as before the panel was drawn."""
+    """A second resolve shows the scene without the panel."""
     renderer = render.Renderer(window)
     renderer.draw(render.Frame(render.CameraView(facing()), render.Style()))
     window.end()
@@ -124,7 +124,7 @@ def test_the_scene_outlives_its_panels(window):
 
 
 def test_single_samples_have_smooth_edges(window):
-    """Of the steps along an outline, a part is gone that four samples would take away."""
+    """Smoothing removes part of the steps along an outline that four samples would remove."""
     needs_samples(window)
     fine = draw_image(window, sphere())
     window.detail = render.Detail(samples=0)
@@ -137,7 +137,7 @@ def test_single_samples_have_smooth_edges(window):
 
 
 def test_smoothed_edges_leave_small_discs_round(window):
-    """A disc as wide as pupils in a window has no pixel far from what four samples show."""
+    """A disc as wide as pupils has no pixel in a window far from that of four samples."""
     needs_samples(window)
     pupil = sphere(4, radius=7.0)
     fine = draw_image(window, pupil)

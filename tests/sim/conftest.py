@@ -1,4 +1,4 @@
-"""The built-in head and one simulation of it, shared: building takes longer than most tests."""
+"""The built-in head and one simulation of it, shared: construction takes longer than most tests."""
 
 import pytest
 
@@ -36,5 +36,5 @@ def simulation(shared_simulation: sim.Simulation) -> sim.Simulation:
 
 @pytest.fixture
 def controls(simulation: sim.Simulation) -> Controls:
-    """Those of the simulation, all at zero."""
+    """Controls of the simulation, all at zero."""
     return simulation.controls

@@ -14,7 +14,7 @@ Array = npt.NDArray[np.float64]
 
 
 def both_sides(simulation: sim.Simulation, values: Mapping[str, float]) -> dict[str, float]:
-    """Values for muscle names without a side, applied to both sides where there are two."""
+    """Values for muscle names without a side, applied to both sides if there are two."""
     known = set(simulation.controls.lowest)
     return {
         control: value
@@ -27,7 +27,7 @@ def both_sides(simulation: sim.Simulation, values: Mapping[str, float]) -> dict[
 def settled_displacement(
     simulation: sim.Simulation, values: Mapping[str, float], *, frames: int = 60
 ) -> Array:
-    """Pose the face from rest and return how far it moved [mm], shape (V, 3)."""
+    """Pose the face from rest and return its displacements [mm], shape (V, 3)."""
     simulation.reset()
     simulation.controls.set_all(values)
     for _ in range(frames):
@@ -43,7 +43,7 @@ def moved_landmarks(head: Any, moved: Array, *numbers: int) -> Array:
 
 
 def inverted_triangles(faces: npt.NDArray[np.int32], rest: Array, now: Array) -> int:
-    """How many triangles turned their normal by more than a right angle."""
+    """Number of triangles that turned their normal by more than a right angle."""
 
     def normals(x: Array) -> Array:
         return np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
@@ -52,7 +52,7 @@ def inverted_triangles(faces: npt.NDArray[np.int32], rest: Array, now: Array) ->
 
 
 def without(head: Any, *names: str) -> SimpleNamespace:
-    """A copy of a head that lacks some attributes."""
+    """A copy of a head without some attributes."""
     every = ("vertices", "faces", "landmarks", "mandible_weight", "jaw_axis", "eyes", "rig")
     kept = {name: getattr(head, name) for name in every if name not in names}
     return SimpleNamespace(**kept)

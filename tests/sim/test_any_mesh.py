@@ -45,7 +45,7 @@ def _with_flaws():
     ids=["grid", "flaws", "small trimesh", "big trimesh", "one triangle"],
 )
 def test_any_mesh_is_stable_and_comes_back(mesh, generator):
-    """Kicked hard, a mesh of any size swings and returns to rest; it has no controls."""
+    """After a hard kick, a mesh of any size swings and returns to rest; it has no controls."""
     simulation = sim.create(mesh)
     assert simulation.controls.lowest == ()
     size = float(np.ptp(simulation.rest_positions, axis=0).max())
@@ -84,7 +84,7 @@ def test_mesh_with_rig_but_no_landmarks_has_no_muscles(head):
 
 
 def test_everything_can_be_guessed_from_landmarks(head):
-    """Without eyes, jaw axis and mandible weight of its own a head still smiles and blinks."""
+    """A head without its own eyes, jaw axis and mandible weight still smiles and blinks."""
     simulation = sim.create(without(head, "eyes", "jaw_axis", "mandible_weight"))
     moved = settled_displacement(simulation, {"jaw_open": 1.0})
     assert moved_landmarks(head, moved, 66)[1] - moved_landmarks(head, moved, 62)[1] < -20.0
@@ -95,7 +95,7 @@ def test_everything_can_be_guessed_from_landmarks(head):
 
 
 def test_a_guessed_jaw_opens_back_rather_than_down(head):
-    """By condyles near the ears the chin goes as far back as down, as in a scan and an artist's."""
+    """With condyles near the ears the chin goes as far back as down, as in scans and sculptures."""
     simulation = sim.create(without(head, "jaw_axis", "mandible_weight"))
     moved = settled_displacement(simulation, {"jaw_open": 1.0})
     _, up, forward = moved_landmarks(head, moved, 8)

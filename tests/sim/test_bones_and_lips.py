@@ -1,4 +1,4 @@
-"""Beside the muscles: head pose, lips over an open jaw, halves of a muscle, teeth, weight."""
+"""Controls besides muscles: head pose, lips over an open jaw, halves of a muscle, teeth, weight."""
 
 from types import SimpleNamespace
 
@@ -29,7 +29,7 @@ def test_head_turns_as_one(simulation, head, control, axis, sign):
 
 
 def test_lips_stay_closed_over_an_open_jaw(simulation, head):
-    """With lips_closed the jaw drops, the lips do not part; without they do."""
+    """With lips_closed the jaw drops and the lips do not part; without it they do."""
     for opening in (0.3, 1.0):
         moved = settled_displacement(simulation, {"jaw_open": opening, "lips_closed": 1.0})
         assert moved_landmarks(head, moved, CHIN)[1] < -20.0 * opening
@@ -40,7 +40,7 @@ def test_lips_stay_closed_over_an_open_jaw(simulation, head):
 
 @pytest.mark.parametrize("opening", [0.3, pytest.param(1.0, marks=pytest.mark.slow)])
 def test_mouths_that_are_open_at_rest_play(simulation, head, opening):
-    """A mesh may come with its lips apart: all controls are there, and lips stay so far apart."""
+    """In a mesh with parted lips all controls are there, and lips keep their distance."""
     opened = head.vertices + settled_displacement(simulation, {"jaw_open": opening})
     parts = without(head)
     parts.vertices = opened
@@ -58,7 +58,7 @@ def test_mouths_that_are_open_at_rest_play(simulation, head, opening):
 
 @pytest.mark.parametrize("muscle", ["procerus", "orbicularis_oris_peripheral_upper"])
 def test_both_halves_are_the_whole(simulation, muscle):
-    """The control for both halves does what both do together; they add up and are clipped."""
+    """The control for both halves does the same as both together; they add up and are clipped."""
     whole = settled_displacement(simulation, {muscle: 1.0})
     both = settled_displacement(simulation, {f"{muscle}_left": 1.0, f"{muscle}_right": 1.0})
     mixed = settled_displacement(
@@ -70,7 +70,7 @@ def test_both_halves_are_the_whole(simulation, muscle):
 
 
 def test_half_an_activation_is_half_the_motion(simulation):
-    """Motion is about linear in the activation, so that values can be mixed."""
+    """Motion is about linear in the activation, so values can be mixed."""
     for muscle in ("zygomaticus_major", "corrugator_supercilii", "risorius", "frontalis_medial"):
         full = settled_displacement(simulation, {f"{muscle}_left": 1.0})
         half = settled_displacement(simulation, {f"{muscle}_left": 0.5})
@@ -79,7 +79,7 @@ def test_half_an_activation_is_half_the_motion(simulation):
 
 
 def test_teeth_hold_the_lips_off(simulation, head):
-    """Rolled lips and sucked cheeks come to rest on the teeth; without teeth they go deeper."""
+    """Rolled lips and sucked cheeks rest on the teeth; without teeth they go deeper."""
     values = {"orbicularis_oris_roll_upper": 1.0, "orbicularis_oris_roll_lower": 1.0}
     settled_displacement(simulation, values)
     assert simulation.anatomy.penetrations()["teeth"] < 1e-6

@@ -13,7 +13,7 @@ from tests.meshes import open_grid
 HUGE = 10**400
 NAN = float("nan")
 INF = float("inf")
-# Values that are no number, no array of numbers and no name in any call.
+# Values that are not a number, an array of numbers or a name in any call.
 NONSENSE = (None, "0.5", b"1", [], [[1], [1, 2]], object(), 1j, [None], "x" * 10**6, len, {1: 2})
 NO_NUMBER = (*NONSENSE, NAN, INF, -INF, HUGE, -HUGE, 10**5000, [0.5], np.array([0.5]))
 COUNT = 9
@@ -21,12 +21,12 @@ MAY_BE = r"must|allowed|did you mean|see \.limits|Allowed|is lower case|leave|gi
 POINTS = np.zeros((2, 3))
 IS_WIDER = np.finfo(np.longdouble).max > np.finfo(np.float64).max
 WIDE = [np.full((2, 3), np.finfo(np.longdouble).max)] if IS_WIDER else []
-ARRAYS = (  # that are not (2, 3) finite numbers
+ARRAYS = (  # values that are not (2, 3) finite numbers
     *NONSENSE, *WIDE, 3, HUGE, np.zeros(3), np.zeros((3, 2)), np.zeros((2, 3, 1)), POINTS + NAN,
     POINTS - INF, [[HUGE] * 3] * 2, POINTS.astype(str), POINTS.astype(object),
     POINTS.astype(complex), POINTS.astype("M8[s]"),
 )  # fmt: skip
-NUMBERS = (  # that are not two different vertices of nine
+NUMBERS = (  # values that are not two different vertices of nine
     *NONSENSE, [0.7], [0.7, 1.0], [1, 1], [0, -1], [0, COUNT], [0, HUGE], [2**63, 1], 1, [[0, 1]],
     [True, False], [NAN, 1.0], np.array(["0", "1"]), np.array([0, 2**64 - 1], np.uint64),
 )  # fmt: skip
@@ -48,7 +48,7 @@ WRONG = [
     ("controls.take", "values", "values", ARRAYS),
     ("copy_from", "other", "other", (*NONSENSE, 3, sim.create(SimpleNamespace(**TRIANGLE)))),
     ("touch.kick", "velocities", "velocities", ARRAYS),
-    ("touch.drag", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # none is as many as any
+    ("touch.drag", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # none is a valid number
     ("touch.drag", "targets", "targets", ARRAYS),
     ("touch.drag", "firmness", "firmness", SHARES),
     ("step", "dt", "dt", (*NO_NUMBER, 0, -1, 1, True)),
@@ -79,7 +79,7 @@ def small() -> sim.Simulation:
 
 
 def refused(call, begins):
-    """The call is a ValueError with our text: the wrong value, in short, and the allowed ones."""
+    """The call is a ValueError with our text: the wrong value, shortened, and the allowed ones."""
     with pytest.raises(ValueError, match=MAY_BE) as error:
         call()
     text = str(error.value)
@@ -88,7 +88,7 @@ def refused(call, begins):
 
 @pytest.mark.parametrize(("method", "argument", "begins", "values"), WRONG)
 def test_wrong_arguments_are_reported(small, method, argument, begins, values):
-    """Each is a ValueError with the argument's name, and nothing has changed by it."""
+    """Each is a ValueError with the argument's name, and changes nothing."""
     small.reset()
     for value in values:
         wrong = {**RIGHT.get(method, {}), argument: value}
@@ -100,16 +100,16 @@ def test_wrong_arguments_are_reported(small, method, argument, begins, values):
 
 EYE = SimpleNamespace(name="left", centre=[0.0, 0.0, 0.0], radius=1.0)
 PART = SimpleNamespace(name="teeth_upper", bone="cranium", vertices=np.zeros((2, 3)))
-LISTS = (*NONSENSE[1:3], object(), 3, NAN, [3], [None], [[]])  # that hold no such things
+LISTS = (*NONSENSE[1:3], object(), 3, NAN, [3], [None], [[]])  # they contain no such things
 
 
 def with_(thing, name, *values):
-    """Lists of a thing that is wrong in one attribute."""
+    """Lists of a thing with one wrong attribute."""
     return tuple([SimpleNamespace(**{**vars(thing), name: value})] for value in values)
 
 
 def under(*keys):
-    """Makes rigs that are wrong at one place."""
+    """Makes rigs with a wrong value at one place."""
 
     def rigs(*values):
         return tuple({keys[0]: {keys[1]: value}} for value in values)
@@ -170,7 +170,7 @@ def test_what_is_no_head_is_reported(head):
     ],
 )
 def test_arrays_of_any_layout_are_taken(layout):
-    """Columns first, every second row, another byte order, small whole numbers, lists: the same."""
+    """Columns first, every second row, another byte order, small integers, and lists are equal."""
     plain = sim.create(grid())
     mesh = grid()
     mesh.vertices = layout(mesh.vertices)

@@ -1,4 +1,4 @@
-"""What skin rests on: how near it may come to an eyeball, and which parts of the lips touch."""
+"""Contacts of skin: its distance from an eyeball, and the parts of the lips that touch."""
 
 from types import SimpleNamespace
 
@@ -10,7 +10,7 @@ from risorius.sim.contact import pair_lips, watch_eyeballs
 
 
 def test_skin_may_come_as_near_as_a_lid_is_thick():
-    """0.3 mm to the ball; skin that starts nearer may stay there, distant skin is not watched."""
+    """0.3 mm from the ball; skin that starts nearer may stay there, distant skin is not watched."""
     ball = SimpleNamespace(centre=np.array([30.0, 0.0, 0.0]), radius=12.0)
     away = np.array([10.0, 12.1, 13.0, 20.0, 30.0])
     skin = SimpleNamespace(positions=ball.centre + away[:, None] * [0.0, 0.6, 0.8])
@@ -23,12 +23,12 @@ def test_skin_may_come_as_near_as_a_lid_is_thick():
 
 @pytest.mark.parametrize(("above", "below"), [(17, 9), (9, 17), (9, 9)])
 def test_every_vertex_of_either_lip_is_in_a_pair(above, below):
-    """One lip may have twice as many vertices as the other, and each is held by as much."""
+    """One lip may have twice as many vertices as the other, and both get equal hold."""
     counts = (above, below)
     across = np.concatenate([np.linspace(-20.0, 20.0, count) for count in counts])
     is_upper = np.repeat([True, False], counts)
     height = np.where(is_upper, 0.5, -0.5)
-    forward = np.where(is_upper, 1.5, 0.0)  # the upper lip hangs over
+    forward = np.where(is_upper, 1.5, 0.0)  # the upper lip is in front
     landmarks = np.zeros((68, 3))
     landmarks[60:68, 0] = [-24.0, -12.0, 0.0, 12.0, 24.0, 12.0, 0.0, -12.0]
     surface = SimpleNamespace(

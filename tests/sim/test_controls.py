@@ -8,7 +8,7 @@ from risorius.sim.controls import Control, Controls
 
 
 def test_every_control_has_limits_a_value_and_one_group(controls):
-    """Limits, values and groups speak of the same controls, the lowest and those of layers."""
+    """Limits, values and groups have the same controls, the lowest and those of layers."""
     names = [*controls.lowest, *(n for layer in controls.layers.values() for n in layer)]
     assert len(controls.lowest) > 40
     assert len(set(names)) == len(names)
@@ -26,14 +26,14 @@ def test_both_sides_have_the_limits_of_their_sides(controls):
 
 
 def test_unknown_control_suggests_near_names(controls):
-    """A typing error is answered with the names that were meant, and nothing is set."""
+    """A typing error is answered with similar names, and nothing is set."""
     with pytest.raises(ValueError, match=r"'zygomaticus_mayor_left'.*zygomaticus_major_left"):
         controls.set_all({"jaw_open": 1.0, "zygomaticus_mayor_left": 0.5})
     assert not any(controls.values.values())
 
 
 def test_value_must_be_within_limits(controls):
-    """Values out of limits are refused, by name or in one array, and the limits named."""
+    """Values beyond limits are refused, by name or in one array, and the limits are named."""
     with pytest.raises(ValueError, match=r"'jaw_open': was -0.5, allowed is 0 to 1"):
         controls.set("jaw_open", -0.5)
     with pytest.raises(ValueError, match=r"was 1.5, allowed is 0 to 1; clamp it first"):
@@ -43,7 +43,7 @@ def test_value_must_be_within_limits(controls):
 
 
 def test_activation_follows_without_overshoot():
-    """A step input is followed within 0.1 s, monotonously, the same for any step length."""
+    """It follows a step within 0.1 s, monotonously, and equally for any step length."""
     coarse, fine = (Controls((Control("one", "Group"),)) for _ in range(2))
     coarse.set_all({"one": 1.0})
     fine.set_all({"one": 1.0})
@@ -59,7 +59,7 @@ def test_activation_follows_without_overshoot():
 
 
 def test_sums_of_values_are_those_of_a_face_that_takes_them(controls):
-    """They are computed without setting anything, shares of layers and floors included."""
+    """They are computed without setting anything, including shares of layers and floors."""
     controls.pose({"AU12": 0.4, "jawOpen": 0.3, "mouthClose": 0.2, "AU46_left": 1.0})
     before = controls.values
     wanted = controls.wanted.copy()

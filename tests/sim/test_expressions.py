@@ -1,4 +1,4 @@
-"""Muscles and expressions move the face where they should: landmarks, lids, lips, jaw."""
+"""Muscles and expressions move the right parts: landmarks, lids, lips, jaw."""
 
 import numpy as np
 import pytest
@@ -48,7 +48,7 @@ def test_muscle_pulls_its_landmark(simulation, head, muscle, landmark, direction
 
 UP = np.array([0.0, 1.0, 0.0])
 LEFT = np.array([1.0, 0.0, 0.0])
-EXPRESSED = {  # landmarks, their way, and how far they go at least [mm]
+EXPRESSED = {  # landmarks, their direction, and their least motion [mm]
     "joy": [((54,), UP, 5.0), ((48,), UP, 5.0), ((54,), LEFT, 3.0), ((48,), -LEFT, 3.0)],
     "sadness": [((48, 54), -UP, 2.0)],
     "surprise": [
@@ -64,14 +64,14 @@ EXPRESSED = {  # landmarks, their way, and how far they go at least [mm]
 
 @pytest.mark.parametrize("name", EXPRESSED)
 def test_expressions_move_their_landmarks(simulation, head, name):
-    """Brows, lids, corners of the mouth, lips and jaw go the way of each expression."""
+    """Brows, lids, corners of the mouth, lips and jaw move in the direction of each expression."""
     moved = settled_displacement(simulation, head.expressions[name])
     for landmarks, way, least in EXPRESSED[name]:
         assert moved_landmarks(head, moved, *landmarks) @ way > least, landmarks
 
 
 def test_the_base_of_the_nose_hardly_lifts(simulation, head):
-    """Cartilage holds it in a sneer and where the lip is raised; wings and lip go up beside it."""
+    """Cartilage holds it in a sneer and under a raised lip; wings and lip rise beside it."""
     for shape, most, wings in (("noseSneer", 2.5, 7.0), ("mouthUpperUp", 1.6, 4.5)):
         values = {f"{shape}Left": 1.0, f"{shape}Right": 1.0}
         moved = settled_displacement(simulation, values)
@@ -82,7 +82,7 @@ def test_the_base_of_the_nose_hardly_lifts(simulation, head):
 
 
 def test_an_upper_lip_is_shrugged_up_and_rolled_back(simulation, head):
-    """A shrug goes up more than forward; a roll goes back and leaves the chin where it is."""
+    """A shrug goes up more than forward; a roll goes back and does not move the chin."""
     moved = settled_displacement(simulation, {"mouthShrugUpper": 1.0})
     _, up, forward = moved_landmarks(head, moved, 51)
     assert max(2.0, forward) < up < 7.0
@@ -92,7 +92,7 @@ def test_an_upper_lip_is_shrugged_up_and_rolled_back(simulation, head):
 
 
 def test_a_frown_and_a_funnel_go_as_far_as_scanned_ones(simulation, head):
-    """Corners go down, little aside; lips come 7 mm forward in a scan, and open."""
+    """Corners go down, and little to the side; lips come 7 mm forward as in a scan, and open."""
     moved = settled_displacement(simulation, {"mouthFrownLeft": 1.0, "mouthFrownRight": 1.0})
     aside, up, _ = moved_landmarks(head, moved, 54)
     assert up < -3.5
@@ -120,7 +120,7 @@ def test_lids_follow_the_gaze_up_a_little(simulation, head):
 
 
 def test_raised_inner_brows_leave_the_lids(simulation, head):
-    """An upper lid stays within a third of a millimetre: scanned ones rise by a sixth."""
+    """An upper lid moves less than a third of a millimetre: scanned ones rise by a sixth."""
     moved = settled_displacement(simulation, {"browInnerUp": 1.0})
     for brow in (21, 22):
         assert moved_landmarks(head, moved, brow)[1] > 4.0
@@ -129,7 +129,7 @@ def test_raised_inner_brows_leave_the_lids(simulation, head):
 
 
 def test_joy_bares_the_teeth(simulation, head):
-    """The upper lip bares the lower part of the teeth, along whose edge the lower one lies."""
+    """The upper lip bares the lower part of the teeth; the lower lip lies along their edge."""
     moved = settled_displacement(simulation, head.expressions["joy"])
     edge = min(part.vertices[:, 1].min() for part in head.parts if part.name == "teeth_upper")
     lips = (head.vertices + moved)[head.landmarks[[62, 66]], 1]
@@ -138,7 +138,7 @@ def test_joy_bares_the_teeth(simulation, head):
 
 
 def test_the_upper_lip_of_joy_is_thinner_than_at_rest(simulation, head):
-    """Its red is drawn over the teeth, most in the middle, and straightens."""
+    """Its red is stretched over the teeth, most in the middle, and straightens."""
     border = head.rings["mouth_6_left"][:3]
     inner = head.rings["mouth_2_left"][:3]
     smiling = head.vertices + settled_displacement(simulation, head.expressions["joy"])
@@ -163,7 +163,7 @@ def test_sadness_slants_the_brows(simulation, head):
 
 @pytest.mark.parametrize("name", SIX + OTHERS)
 def test_expression_keeps_the_mesh_sound(simulation, head, name):
-    """In each expression hardly a triangle is turned over, and none of the skin flies away."""
+    """In each expression hardly a triangle is turned over, and no skin goes far away."""
     moved = settled_displacement(simulation, head.expressions[name])
     turned = inverted_triangles(head.faces, head.vertices, simulation.positions)
     assert turned <= 6
@@ -180,7 +180,7 @@ def test_mirrored_input_gives_mirrored_motion(simulation, head):
 
 
 def test_left_smile_moves_the_left(simulation, head):
-    """Left is the subject's left (+x); the other corner is hardly dragged along."""
+    """Left is the subject's left (+x); the other corner hardly moves."""
     moved = settled_displacement(simulation, {"zygomaticus_major_left": 1.0})
     left = norm(moved_landmarks(head, moved, 54))
     right = norm(moved_landmarks(head, moved, 48))
@@ -199,7 +199,7 @@ def test_left_smile_moves_the_left(simulation, head):
     ids=["press", "frown", "kiss", "smile against frown"],
 )
 def test_lips_do_not_cross(simulation, model, state, values):
-    """Lips pressed by their own muscles touch; the lower one does not rise far into the upper."""
+    """Lips pressed by their own muscles touch; the lower one does not go far into the upper."""
     settled_displacement(simulation, both_sides(simulation, values))
     lips = model.skin.lips
     y = state.x[:, 1]
@@ -222,7 +222,7 @@ def test_lips_do_not_cross(simulation, model, state, values):
     ids=str,
 )
 def test_blink_closes_the_eyes(simulation, head, other):
-    """No straight look reaches an eye that is closed, wherever it looks, refined or not."""
+    """No straight line reaches a closed eye, in any direction of gaze, refined or not."""
     settled_displacement(simulation, {"AU45": 1.0, **other})
     refiner = refine.create("kahler", head.faces, head.vertices)
     landmarks = simulation.positions[head.landmarks]
@@ -233,7 +233,7 @@ def test_blink_closes_the_eyes(simulation, head, other):
 
 @pytest.mark.slow
 def test_a_cornea_that_pierces_a_lid_is_seen(simulation, head):
-    """The measure used for a blink looks at the surface in front, not at holes alone."""
+    """The measure of a blink checks the surface in front, not only holes."""
     settled_displacement(simulation, {"AU45": 1.0})
     landmarks = simulation.positions[head.landmarks]
     pushed = {
@@ -244,7 +244,7 @@ def test_a_cornea_that_pierces_a_lid_is_seen(simulation, head):
 
 
 def test_eyes_are_open_at_rest(simulation, head):
-    """The measure used for a blink sees an open eye."""
+    """The measure of a blink reports an open eye."""
     landmarks = simulation.positions[head.landmarks]
     eyeballs = eyeballs_of(head, simulation)
     gaps = lid_gaps(simulation.positions, head.faces, landmarks, eyeballs)
@@ -253,7 +253,7 @@ def test_eyes_are_open_at_rest(simulation, head):
 
 @pytest.mark.parametrize("gaze", [-1.0, 0.0, 1.0])
 def test_skin_never_enters_the_eyeball(simulation, head, gaze):
-    """Through a blink with everything around the eye active, no vertex sinks into the eyeball."""
+    """In a blink with all muscles around the eye active, no vertex sinks into the eyeball."""
     lowest = simulation.controls.lowest
     around = [n for n in lowest if "oculi" in n or "frontalis" in n or "super" in n]
     for level in (1.0, 0.0):
@@ -276,7 +276,7 @@ def test_jaw_opens_the_mouth(simulation, head):
 
 
 def test_jaw_slides(simulation, head):
-    """The chin follows the jaw forward, a little back, and to a side; both condyles do."""
+    """The chin follows the jaw forward, a little back, and to a side; so do both condyles."""
     for sign in (-1.0, 1.0):
         chin = moved_landmarks(head, settled_displacement(simulation, {"jaw_forward": sign}), 8)
         assert chin[2] > 4.0 if sign > 0.0 else -2.5 < chin[2] < -0.5
@@ -306,7 +306,7 @@ def test_gaze_turns_the_eyes(simulation, head):
 
 
 def test_each_eye_looks_for_itself(simulation, head):
-    """Eyes converge, and a lid follows its own eye: the other one stays where it is."""
+    """Eyes converge, and a lid follows its own eye, without motion of the other."""
     gaze = {"gaze_horizontal_left": -0.5, "gaze_horizontal_right": 0.5, "gaze_vertical_left": -1.0}
     moved = settled_displacement(simulation, gaze)
     bones = simulation.bones.transforms()
@@ -319,7 +319,7 @@ def test_each_eye_looks_for_itself(simulation, head):
 
 
 def test_fibres_shorten(simulation):
-    """The drawn fibres of a contracting muscle get shorter; there are some for every muscle."""
+    """The drawn fibres of a contracting muscle get shorter; every muscle has some."""
     relaxed = simulation.anatomy.fibres()
     assert all(relaxed[name] for name in relaxed)
     settled_displacement(simulation, {"zygomaticus_major_left": 1.0})
@@ -334,6 +334,6 @@ def _length(line):
 
 @pytest.mark.parametrize("name", ["cheekPuff", "mouthPucker", "kiss"])
 def test_blown_cheeks_and_kisses_keep_the_lips_shut(simulation, head, name):
-    """No muscle of theirs parts the lips, so the seal holds, on heads with parted lips, too."""
+    """None of their muscles parts the lips, so the seal holds, also on heads with parted lips."""
     settled_displacement(simulation, {name: 1.0})
     assert simulation.grip.stiffness > 50.0

@@ -23,7 +23,7 @@ EXPRESSIONS = (
     "mouth_open", "blink",
 )  # fmt: skip
 HEAD_UNITS = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
-ARKIT = {  # as many shapes as ARKit has of each part of the face
+ARKIT = {  # numbers of ARKit's shapes for each part of the face
     "eye": 14, "jaw": 4, "mouth": 23, "brow": 5, "cheek": 3, "nose": 2, "tongue": 1,
 }  # fmt: skip
 TITLES = ("Action units", "Expressions", "Visemes", "ARKit shapes")
@@ -31,7 +31,7 @@ VISEMES = "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
 
 
 def layer(title, **rows):
-    """A table as assets reads it."""
+    """A table in the form that assets reads."""
     return SimpleNamespace(title=title, source=f"{title}.toml", rows=rows)
 
 
@@ -56,7 +56,7 @@ def sums_of(*numbers):
 
 
 def wanted(subject, **values):
-    """The sums of the lowest controls when these values are set and no others."""
+    """The sums of the lowest controls with these values and no others."""
     subject.pose(values)
     return subject.sums
 
@@ -105,7 +105,7 @@ def test_a_share_counts_as_part_of_the_whole(part, whole):
 
 
 def test_a_share_follows_the_whole_that_is_set_later():
-    """The order in which both are set does not matter, and all that it moves follows."""
+    """The order of both does not matter, and everything that it moves follows."""
     subject = controls(SHARED)
     subject.set_all({"part": 0.3})
     assert not subject.wanted.any()
@@ -115,7 +115,7 @@ def test_a_share_follows_the_whole_that_is_set_later():
 
 
 def test_what_rows_make_sure_of_does_not_add():
-    """The greatest of them holds, through every layer, unless the sum is greater by itself."""
+    """The greatest of them holds, through every layer, unless the sum is greater anyway."""
     units = layer(
         "Units",
         A={"puller": 0.5, "at_least": {"slide": 0.4}},
@@ -135,7 +135,7 @@ def test_what_rows_make_sure_of_does_not_add():
 
 
 def test_sums_are_cut_off_once_and_in_any_order():
-    """Own value and contributions add up, opposite ones cancel, and limits hold at the end."""
+    """Own value and contributions add up, opposite ones cancel, and limits apply at the end."""
     subject = controls(UNITS, FACES)
     other = controls(UNITS, FACES)
     values = {"puller_left": 0.5, "A": 0.9, "both": 1.0, "B_left": 1.0, "B_right": 0.4}
@@ -175,19 +175,19 @@ def test_sums_are_cut_off_once_and_in_any_order():
     ],
 )
 def test_a_wrong_row_is_named(rows, message):
-    """File, row and key stand in the error, with the allowed values."""
+    """The error has file, row and key, and the allowed values."""
     with pytest.raises(ValueError, match=message):
         controls(layer("X", **rows))
 
 
 def test_a_row_cannot_hold_what_is_a_share():
-    """A share counts by the values that are set, which a row above does not know."""
+    """A share follows set values, which a row above does not know."""
     with pytest.raises(ValueError, match=r"'above', 'part': is a share of 'whole', which"):
         controls(SHARED, layer("Y", above={"part": 1.0}))
 
 
 def test_the_shipped_tables_are_complete(controls, head):
-    """Every action unit, expression and viseme is there, with words for its effect."""
+    """Every action unit, expression and viseme is there, with a description of its effect."""
     names = controls.limits
     sided = {unit: (f"{unit}_left", f"{unit}_right") for unit in ("AU30", "AU46")}
     for unit in ACTION_UNITS:
@@ -204,7 +204,7 @@ def test_the_shipped_tables_are_complete(controls, head):
 
 
 def test_each_row_of_the_shipped_tables_does_something(controls):
-    """At full value a muscle or a bone is asked for something; silence is silent."""
+    """At full value it needs some muscle or bone; silence needs none."""
     for title in TITLES:
         for name in controls.layers[title]:
             controls.pose({name: 1.0, **({"jawOpen": 0.5} if name == "mouthClose" else {})})
@@ -212,7 +212,7 @@ def test_each_row_of_the_shipped_tables_does_something(controls):
 
 
 def mirrored(sums):
-    """The same on the other side."""
+    """The mirror image of the sums."""
     other = {"left": "right", "right": "left"}
     found = {}
     for name, value in sums.items():
@@ -237,7 +237,7 @@ def test_sides_of_arkit_shapes_ask_for_the_same(controls):
 
 
 def test_expressions_have_sides(controls):
-    """Both sides together ask for the whole; a one-sided face has its image on the other side."""
+    """Both sides together are the whole; a one-sided face has its image on the other side."""
 
     def sums(*names):
         controls.pose(dict.fromkeys(names, 0.5))
@@ -252,7 +252,7 @@ def test_expressions_have_sides(controls):
 
 
 def test_the_jaw_of_a_funnel_counts_once(controls):
-    """Lips that funnel open the jaw where it is shut, and leave it where it is open."""
+    """Funnelled lips open a shut jaw, and do not move an open one."""
     controls.pose({"AU22": 1.0, "mouthPucker": 0.5})
     assert controls.sums["jaw_open"] == approx(0.22)
     controls.pose({"AU22": 1.0, "jawOpen": 0.5})
@@ -260,7 +260,7 @@ def test_the_jaw_of_a_funnel_counts_once(controls):
 
 
 def test_mouth_close_shuts_an_open_jaw(simulation, head):
-    """As much mouthClose as jawOpen brings the lips together at any opening; half of it, half."""
+    """Equal mouthClose and jawOpen close the lips at any opening; half of it half closes them."""
     for opening in (0.2, 0.6):
         gaps = []
         for share in (0.0, 0.5, 1.0):
@@ -279,7 +279,7 @@ def test_mouth_close_shuts_an_open_jaw(simulation, head):
     ],
 )
 def test_rows_keep_the_mesh_sound(simulation, head, title):
-    """No row turns more than a few triangles over, nor throws skin away."""
+    """No row turns more than a few triangles over, or moves skin far away."""
     for name in simulation.controls.layers[title]:
         if name.endswith(("_left", "_right")) or name in HEAD_UNITS:
             continue
@@ -308,7 +308,7 @@ def test_units_that_look_alike_differ(simulation, head):
 
 @pytest.mark.parametrize("sound", [sound for sound in VISEMES if sound != "sil"])
 def test_speech_is_crisp(simulation, head, sound):
-    """A viseme stands after 120 ms, seen at the lips, and goes no more than 2 % too far."""
+    """A viseme is complete after 120 ms, measured at the lips, and overshoots by 2 % at most."""
     lips = head.landmarks[48:68]
     target = settled_displacement(simulation, {f"viseme_{sound}": 1.0}, frames=90)[lips]
     simulation.reset()

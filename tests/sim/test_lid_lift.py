@@ -1,4 +1,4 @@
-"""A closed lid of few triangles stands out so far that the eyeball does not cut through it."""
+"""A closed lid of few triangles is far enough out that the eyeball does not pierce it."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ BALL = Eyeball(Side.LEFT, np.array([30.0, 2.0, 70.0]), 13.0)
 AHEAD = np.array([[-6.0, -5.0], [6.0, -5.0], [0.0, 7.0]])  # a triangle before the pupil
 FACE = np.array([[0, 1, 2]], np.int32)
 ALL = np.ones(3)
-ABOVE = np.array([0.0, 20.0, 0.0])  # a lid that closes lay there before
+ABOVE = np.array([0.0, 20.0, 0.0])  # an earlier place of a closing lid
 
 
 def at(beside, distance):
@@ -29,13 +29,13 @@ def lifted(x, lift):
 
 
 def nearest(x):
-    """How near a triangle (3, 3) comes to the ball's centre [mm]."""
+    """Smallest distance of a triangle (3, 3) from the ball's centre [mm]."""
     shares = np.random.default_rng(2).dirichlet([1.0, 1.0, 1.0], 20_000)
     return float(norm(shares @ (x - BALL.centre), axis=1).min())
 
 
 def test_a_flat_triangle_is_lifted_over_the_cornea():
-    """Its corners are well off the ball, its middle cuts it; then the middle is off it as well."""
+    """Its corners are well off the ball, its middle cuts it; lifted, the middle is off it, too."""
     closed = at(AHEAD, 14.0)
     rest = closed + ABOVE
     assert nearest(closed) < 13.0
@@ -45,7 +45,7 @@ def test_a_flat_triangle_is_lifted_over_the_cornea():
 
 
 def test_what_is_far_enough_stays():
-    """Small triangles as near to the ball as a lid is thick, beside the cornea, need no lift."""
+    """Small triangles at a lid's thickness from the ball, beside the cornea, need no lift."""
     closed = at(AHEAD / 20.0 + [11.0, 0.0], 13.0 + CLEARANCE + 0.05)
     assert not lift_off(closed, closed, FACE, ALL, BALL).any()
 
@@ -55,7 +55,7 @@ def test_what_is_far_enough_stays():
     [
         (FACE, np.zeros(3), 0.0),  # the lower lid
         (FACE[:, ::-1], ALL, 0.0),  # the inner side of a lid
-        (FACE, ALL, 3.0),  # what lay in the ball, under the lid's edge
+        (FACE, ALL, 3.0),  # a part that was inside the ball, under the lid's edge
     ],
     ids=["lower lid", "inner side", "sunk at rest"],
 )
@@ -67,7 +67,7 @@ def test_what_belongs_there_stays(faces, moves, sunk):
 
 
 def test_the_drawn_eyeball_is_what_lids_are_lifted_over(head):
-    """No point of it is farther out than the sphere with the cornea of lid_lift.py, or hardly."""
+    """Almost no point of it is farther out than the sphere with the cornea of lid_lift.py."""
     for eye in head.eyes:
         ball = Eyeball(Side(eye.name), eye.centre, eye.radius)
         part = next(part for part in head.parts if part.name == f"eyeball_{eye.name}")

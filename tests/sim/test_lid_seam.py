@@ -1,4 +1,4 @@
-"""Where closed lids meet, beside the corners of an eye."""
+"""The seam of closed lids, beside the corners of an eye."""
 
 import numpy as np
 from numpy.linalg import norm
@@ -11,7 +11,7 @@ WHERE = np.linspace(0.0, 1.0, COLUMNS)
 
 
 def test_no_step_below_a_corner_above_the_lower_lid():
-    """The seam rises to a corner of 6 degrees from a lid of -8, so that there is no notch."""
+    """The seam rises to a corner of 6 degrees from a lid of -8, so there is no notch."""
     seam = np.radians(np.where((WHERE == 0.0) | (WHERE == 1.0), 6.0, -8.0))
     upper = np.radians(6.0 + 68.0 * WHERE * (1.0 - WHERE))
     raised = raised_at_corners(seam, upper)
@@ -22,20 +22,20 @@ def test_no_step_below_a_corner_above_the_lower_lid():
 
 
 def test_a_level_lid_keeps_its_seam():
-    """Nothing is raised where the lower lid runs straight into the corners."""
+    """Nothing is raised if the lower lid runs straight into the corners."""
     seam = np.radians(-21.0 - 3.0 * np.sin(np.pi * WHERE))
     upper = seam + np.radians(45.0) * np.sin(np.pi * WHERE)
     assert_allclose(raised_at_corners(seam, upper), seam, atol=np.radians(0.3))
 
 
 def test_lids_follow_a_gaze_on_a_large_ball_no_farther():
-    """The way of a lid does not grow with a ball beyond a human's size."""
+    """The motion of a lid does not grow with a ball beyond a human's size."""
     assert gaze_share_of(12.8) == 1.0
     assert_allclose(gaze_share_of(16.2) * 16.2, gaze_share_of(12.8) * 12.8)
 
 
 def test_a_shut_lid_is_a_smooth_sheet_over_the_ball(simulation, head):
-    """Its corner does not sink, and no vertex of the fold drops 4 mm beside one that stays."""
+    """Its corner does not sink, and no vertex of the fold drops 4 mm beside a fixed one."""
     shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
     moved = settled_displacement(simulation, shut)
     inner = np.array([0, 1, 2, 17, 18, 19])  # places in a row, from the inner corner
@@ -47,7 +47,7 @@ def test_a_shut_lid_is_a_smooth_sheet_over_the_ball(simulation, head):
 
 
 def test_skin_beside_the_inner_corner_slides_along(simulation, head):
-    """Along no edge on the nose's side of it does skin fold by a fifth as the eye shuts."""
+    """No edge on the nose's side of it shortens by a fifth as the eye shuts."""
     shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
     aside = settled_displacement(simulation, shut)[:, 0]
     corner = head.vertices[head.landmarks[42]]

@@ -1,7 +1,7 @@
-"""The mouth as one sees it: shut where nothing opens it, with rounded corners where something does.
+"""The visible mouth: shut unless a control opens it, and with rounded corners if one does.
 
-Looked at from the front, both sides, above and below, on the mesh and on what refinement makes of
-it (smoothing thins a folded lip a little, so closed lips are pressed together).
+It is checked from the front, both sides, above and below, on the mesh and on the refined mesh
+(smoothing thins a folded lip a little, so closed lips are pressed together).
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from risorius.bench.gaps import meshes_of, widest_slit
 from tests.sim.poses import both_sides, settled_displacement
 
 SHUT = 0.3  # mm: about a pixel of a full-screen close-up
-UNMOVED = 0.01  # mm: lips that no muscle reaches need no look
+UNMOVED = 0.01  # mm: lips that no muscle moves need no check
 SHUT_EXPRESSIONS = ("kiss", "sadness", "anger", "contempt", "wink", "blink")
 OPENERS = (
     "levator_labii_superioris_alaeque_nasi", "levator_labii_superioris",
@@ -28,7 +28,7 @@ Slits = Callable[[], dict[str, float]]
 
 @pytest.fixture(scope="module")
 def refiner(head: Head) -> refine.Refiner:
-    """The refinement that people see."""
+    """The default refinement."""
     return refine.create("kahler", head.faces, head.vertices)
 
 
@@ -64,7 +64,7 @@ def test_closed_mouth_shows_no_teeth(simulation, head, slits, name):
     ],
 )
 def test_no_other_muscle_opens_the_mouth(simulation, model, slits, sides, strength):
-    """Every single muscle that is not there to open the mouth leaves it shut."""
+    """No muscle opens it, except those with this purpose."""
     muscles = {
         name.removesuffix("_left").removesuffix("_right")
         for name in simulation.controls.lowest
@@ -83,7 +83,7 @@ def test_no_other_muscle_opens_the_mouth(simulation, model, slits, sides, streng
 
 
 def test_slit_measure_sees_an_open_mouth(simulation, head, slits):
-    """The measure agrees with the lip landmarks where the mouth is open."""
+    """The measure agrees with the lip landmarks of an open mouth."""
     settled_displacement(simulation, {"jaw_open": 0.5})
     inner = simulation.positions[head.landmarks[[62, 66]], 1]
     assert slits()["static"] == pytest.approx(inner[0] - inner[1], abs=2.0)

@@ -1,4 +1,4 @@
-"""Muscles that lie on others follow them: carried along, lifted by their bulge, and only then."""
+"""Muscles that lie on others follow these: moved along, lifted by their bulge, and only then."""
 
 import copy
 
@@ -14,7 +14,7 @@ BENEATH = "buccinator"
 
 
 def stacked(head, stack, **changes):
-    """The head with no muscle on another but those of `stack`, `changes` made to BENEATH."""
+    """The head without muscles on others except those of `stack`, with `changes` to BENEATH."""
     face = without(head)
     face.rig = copy.deepcopy(dict(head.rig))
     for name, muscle in face.rig["muscle"].items():
@@ -24,7 +24,7 @@ def stacked(head, stack, **changes):
 
 
 def displaced(simulation, muscle):
-    """How far the points of a relaxed muscle are from where they rest, shape (B, n, 3)."""
+    """Distances of a relaxed muscle's points from their places at rest, shape (B, n, 3)."""
     now = np.array(simulation.anatomy.fibres()[muscle])
     simulation.reset()
     return now - np.array(simulation.anatomy.fibres()[muscle])
@@ -41,11 +41,11 @@ def test_a_muscle_rises_on_the_bulge_beneath(head):
     lifted = [float(((rise - rises[0]) @ outward).max()) for rise in rises]
     assert lifted[1] > 1.5
     assert lifted[2] == pytest.approx(2.0 * lifted[1])
-    assert np.abs(rises[0]).max() > 2.0  # and is carried along without any bulge
+    assert np.abs(rises[0]).max() > 2.0  # and it moves along without any bulge
 
 
 def test_nothing_is_carried_by_what_does_not_lie_beneath(head):
-    """Without its row the zygomaticus stays where it is, and so does the other side with it."""
+    """Without its row the zygomaticus does not move, and neither does that of the other side."""
     apart = sim.create(stacked(head, {}))
     settled_displacement(apart, {f"{BENEATH}_left": 1.0})
     assert not displaced(apart, f"{ABOVE}_left").any()
@@ -55,7 +55,7 @@ def test_nothing_is_carried_by_what_does_not_lie_beneath(head):
 
 
 def test_carrying_is_the_formula(simulation, model, state):
-    """Each point moves by shares of the lines beneath, in plain numpy; at most 1 in all."""
+    """Each point moves by shares of the lines beneath, in plain numpy; the sum is at most 1."""
     muscles = model.muscles
     pose = model.skull.mandible_motion(0.5, 0.3, 0.2)
     activation = np.linspace(-0.2, 1.0, len(muscles.names))

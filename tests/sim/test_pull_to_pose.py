@@ -1,4 +1,4 @@
-"""Pull to pose: the muscles that hold the skin where it was drawn to are found."""
+"""Pull to pose: muscles are found that hold skin at the place of a pull."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def candidates(face):
 
 
 def pull_at(face, vertex, offset, **options):
-    """Solve for skin around a vertex that is drawn by an offset [mm]; how far the middle was."""
+    """Solve for skin around a vertex pulled by an offset [mm]; return the motion of the middle."""
     distance = norm(face.positions - face.positions[vertex], axis=1)
     finger = np.flatnonzero(distance < FINGER)
     firmness = (1.0 - (distance[finger] / FINGER) ** 2) ** 2
@@ -43,12 +43,12 @@ def pull_at(face, vertex, offset, **options):
 
 
 def values_of(pull):
-    """The values that were solved, by single controls."""
+    """The solved values, by single controls."""
     return {name: value for names, value in pull.changes.items() for name in names}
 
 
 def settled(face, values):
-    """Where the skin lies at last under these controls."""
+    """Final places of the skin with these controls."""
     face.controls.set_all(values)
     for _ in range(60):
         face.step(FRAME)
@@ -56,7 +56,7 @@ def settled(face, values):
 
 
 def test_a_corner_pulled_up_and_back_smiles(simulation, head):
-    """What joy does to the corner of the mouth is done by zygomaticus major, and it stays there."""
+    """Joy's motion of the corner of the mouth is made by zygomaticus major, and stays."""
     corner = head.landmarks[LEFT_CORNER]
     drawn = settled(simulation, {"joy": 1.0})[corner] - simulation.rest_positions[corner]
     simulation.reset()
@@ -90,7 +90,7 @@ def test_skin_is_held_by_what_moves_it_in_life(simulation, head, landmark, offse
 
 
 def test_what_no_muscle_can_do_is_not_done(simulation, head):
-    """The nose above its tip, drawn forward, is left where it was, and so is the crown."""
+    """The nose above its tip, pulled forward, does not move, and neither does the crown."""
     pull, before = pull_at(
         simulation, head.landmarks[NOSE - 1], (0.0, 0.0, 10.0), sight=(1.0, 0.0, 0.0)
     )
@@ -114,7 +114,7 @@ def test_what_no_muscle_can_do_is_not_done(simulation, head):
     ],
 )
 def test_a_generous_pull_goes_as_far_as_a_short_one(simulation, head, landmark, way):
-    """Drawn far beyond what muscles can do, skin goes to the end of that, by three at most."""
+    """Pulled far beyond the reach of muscles, skin goes to their limit, by three at most."""
     went = []
     for length in (6.0, 20.0, 40.0):
         simulation.reset()
@@ -128,7 +128,7 @@ def test_a_generous_pull_goes_as_far_as_a_short_one(simulation, head, landmark, 
 
 
 def test_mirrored_pulls_are_mirrored(simulation, head):
-    """The other corner, drawn the other way, is held by the muscles of the other side."""
+    """The other corner, pulled the other way, is held by the muscles of the other side."""
     left, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (7.0, 8.0, 0.0))
     right, _ = pull_at(simulation, head.landmarks[RIGHT_CORNER], (-7.0, 8.0, 0.0))
     mirrored = {name.replace("left", "right"): value for name, value in values_of(left).items()}
@@ -137,7 +137,7 @@ def test_mirrored_pulls_are_mirrored(simulation, head):
 
 
 def test_the_answer_does_not_depend_on_the_way(simulation, head):
-    """A finger that came by a detour, in many frames, ends with the very same muscles."""
+    """A finger that made a detour, in many frames, ends with exactly the same muscles."""
     straight, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (7.0, 8.0, 0.0))
     winding, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (0.0, 0.0, 0.0))
     at_rest = winding.targets
@@ -148,7 +148,7 @@ def test_the_answer_does_not_depend_on_the_way(simulation, head):
 
 
 def test_a_pose_stays_and_is_only_added_to(simulation, head):
-    """A brow drawn up leaves a smile alone; a corner drawn back down takes it away."""
+    """A brow pulled up does not change a smile; a corner pulled back down removes it."""
     settled(simulation, {"zygomaticus_major_left": 0.8})
     brow, _ = pull_at(simulation, head.landmarks[LEFT_BROW], (0.0, 5.0, 0.0))
     assert "zygomaticus_major_left" not in values_of(brow)
@@ -161,7 +161,7 @@ def test_a_pose_stays_and_is_only_added_to(simulation, head):
 
 @pytest.mark.slow
 def test_few_muscles_are_found_again(simulation, head, generator):
-    """Skin moved by one to three muscles by chance is held nearly there, by as few."""
+    """Skin moved by one to three random muscles is nearly held there, by as few."""
     muscles = [c[0] for c in candidates(simulation) if c[0].endswith("_left")]
     muscles = [name for name in muscles if not name.startswith(("levator_palp", "lips"))]
     front = simulation.rest_positions[:, 2] > simulation.rest_positions[:, 2].max() - 75.0

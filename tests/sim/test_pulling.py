@@ -14,7 +14,7 @@ def cheek(simulation):
 
 
 def test_skin_follows_a_finger_and_swings_back(simulation):
-    """Pulled by 20 mm it comes most of the way and takes skin around along; let go, it rests."""
+    """Pulled by 20 mm it moves most of the way with skin around; released, it returns to rest."""
     grabbed = cheek(simulation)
     target = simulation.rest_positions[grabbed] + (20.0, 0.0, 0.0)
     simulation.touch.drag(grabbed, target, np.ones(len(grabbed)))
@@ -31,7 +31,7 @@ def test_skin_follows_a_finger_and_swings_back(simulation):
 
 
 def test_a_finger_knows_where_a_turned_head_is(simulation):
-    """With the head turned aside the skin still goes where the finger goes."""
+    """With a turned head the skin still follows the finger."""
     simulation.controls.set("head_yaw", 1.0)
     for _ in range(90):
         simulation.step(FRAME)

@@ -1,4 +1,4 @@
-"""The rig file: its keys, and that each mistake is answered with muscle, key and cure."""
+"""The rig file: its keys, and mistakes reported with muscle, key and remedy."""
 
 import copy
 
@@ -34,7 +34,7 @@ def _document():
 
 
 def test_small_rig_is_read():
-    """Values arrive where they belong, the rest takes its documented default."""
+    """Values get to their places, and the others have their documented default."""
     rig = read_rig(_document())
     assert rig.tissue == Tissue(tangential=0.5)
     puller, closer, lifter = rig.muscles
@@ -51,7 +51,7 @@ def test_empty_rig_is_plain_tissue():
 
 
 def _set(*path, value=None):
-    """Sets a value at a place of the document; None takes it out."""
+    """Set a value at a place of the document; None removes it."""
 
     def change(document):
         place = document
@@ -132,7 +132,7 @@ def test_each_mistake_is_named(change, message):
 
 
 def test_built_in_rig_is_complete(head):
-    """The face has the muscles of the textbooks; every real one says by which unit it is known."""
+    """The face has the muscles of the textbooks; every real one has its action unit."""
     rig = read_rig(head.rig)
     assert sum(muscle.tone for muscle in rig.muscles) >= 27
     for muscle in rig.muscles:

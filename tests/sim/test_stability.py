@@ -1,4 +1,4 @@
-"""Rest stays at rest, energy dies away, and no input breaks the face."""
+"""Rest stays at rest, energy decays, and no input breaks the face."""
 
 from concurrent.futures import ThreadPoolExecutor
 
@@ -11,7 +11,7 @@ from tests.sim.poses import FRAME, both_sides, settled_displacement
 
 
 def test_rest_stays_at_rest(simulation, model, state):
-    """Two seconds without input move nothing by a millionth of a millimetre."""
+    """In two seconds without input nothing moves by a millionth of a millimetre."""
     for _ in range(120):
         simulation.step(FRAME)
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-6
@@ -20,7 +20,7 @@ def test_rest_stays_at_rest(simulation, model, state):
 
 @pytest.mark.parametrize("speed", [50.0, 500.0])
 def test_energy_only_falls_without_input(simulation, model, state, generator, speed):
-    """After a blow the energy falls in every frame and is gone after a second and a half."""
+    """After a blow the energy falls in every frame and is 0 after a second and a half."""
     simulation.touch.kick(generator.normal(scale=speed, size=simulation.positions.shape))
     energies = [_energy(model.skin, state, simulation.grip)]
     for _ in range(90):
@@ -31,7 +31,7 @@ def test_energy_only_falls_without_input(simulation, model, state, generator, sp
 
 
 def test_clones_do_not_disturb_each_other(simulation):
-    """In two threads at once each moves, to the bit, as it does alone."""
+    """In two threads at once each moves exactly as it does alone, to the bit."""
 
     def film(name):
         clone = simulation.clone()
@@ -77,7 +77,7 @@ def test_everything_at_once_on_and_off(simulation):
 
 
 def test_two_runs_are_bit_identical(simulation, head):
-    """The same inputs give the same bits, also in a simulation built anew."""
+    """The same inputs give the same bits, also in a new simulation."""
     other = sim.create(head)
     values = dict.fromkeys(simulation.controls.lowest, 0.5)
     for run in (simulation, other):
@@ -106,7 +106,7 @@ def test_frame_length_hardly_matters(simulation):
             simulation.step(1.0 / rate)
         poses.append(simulation.positions.copy())
     apart = [np.abs(pose - poses[2]).max(axis=1) for pose in poses[:2]]
-    assert np.percentile(apart, 99) < 0.06 and np.max(apart) < 0.45  # where a lip slides over teeth
+    assert np.percentile(apart, 99) < 0.06 and np.max(apart) < 0.45  # a lip slides over teeth there
 
 
 def test_broken_state_is_reported(simulation, state):
@@ -120,13 +120,13 @@ def test_broken_state_is_reported(simulation, state):
 
 
 def _moved(simulation):
-    """How far the skin is from rest, seen from the cranium [mm]."""
+    """Distance of the skin from rest, relative to the cranium [mm]."""
     head = simulation.bones.transforms()["cranium"]
     return (simulation.positions - head[:3, 3]) @ head[:3, :3] - simulation.rest_positions
 
 
 def _energy(skin, state, grip):
-    """What moves and what springs hold, muscles at rest, in skin mass units times (mm/s)^2."""
+    """Kinetic and spring energy, with muscles at rest, in skin mass units times (mm/s)^2."""
     away = state.x - state.carried
     tissue = skin.tissue
     edges = skin.edges

@@ -1,4 +1,4 @@
-"""The skin as a graph: fields on it, and ways along its edges, against scipy's plain answers."""
+"""The skin as a graph: fields on it, and ways along its edges, compared with scipy's."""
 
 from itertools import pairwise
 
@@ -19,7 +19,7 @@ def surface(model):
 
 
 def laplacian_of(surface):
-    """Of the edges' stiffness, assembled entry by entry."""
+    """Laplacian of the edges' stiffness, assembled entry by entry."""
     i, j = surface.edges.T
     count = surface.vertex_count
     links = sparse.coo_array((surface.edge_stiffness, (i, j)), shape=(count, count)).tocsr()
@@ -28,12 +28,12 @@ def laplacian_of(surface):
 
 
 def undirected(surface, lengths):
-    """The mesh as scipy has an undirected graph: each edge once."""
+    """The mesh in scipy's form of an undirected graph: each edge once."""
     return sparse.csr_array((lengths, tuple(surface.edges.T)), shape=(surface.vertex_count,) * 2)
 
 
 def test_fields_solve_their_equations(surface, generator):
-    """Of one column and of several, with a diagonal as of a smoothed field and as of a seeded."""
+    """For one column and several, with the diagonals of smoothed and of seeded fields."""
     laplacian = laplacian_of(surface)
     seeds = np.zeros(surface.vertex_count)
     seeds[generator.integers(0, surface.vertex_count, 30)] = 1e4
@@ -46,7 +46,7 @@ def test_fields_solve_their_equations(surface, generator):
 
 
 def test_smoothing_keeps_the_sum_and_takes_details(surface, generator):
-    """What a vertex loses its neighbours gain, by their areas."""
+    """A vertex's loss is its neighbours' gain, by their areas."""
     noise = generator.normal(size=surface.vertex_count)
     smooth = surface.smoother(25.0)(noise)
     assert surface.areas @ smooth == pytest.approx(surface.areas @ noise)
@@ -54,7 +54,7 @@ def test_smoothing_keeps_the_sum_and_takes_details(surface, generator):
 
 
 def test_distances_are_those_of_the_undirected_graph(surface):
-    """To the nearest of some vertices; a piece of its own is infinitely far."""
+    """They are to the nearest of some vertices; a separate piece is infinitely far."""
     wanted = scipy.sparse.csgraph.dijkstra(
         undirected(surface, surface.lengths), directed=False, indices=[5, 400], min_only=True
     )
@@ -66,7 +66,7 @@ def test_distances_are_those_of_the_undirected_graph(surface):
 
 @pytest.mark.parametrize("hindrance", [0.0, 3.0, 1000.0])
 def test_ways_are_the_cheapest(surface, generator, hindrance):
-    """Also where the cheapest one costs more than the search looks for at first."""
+    """This also holds if the cheapest costs more than the search's first limit."""
     stops = [36, 300, 41, 700]
     cost = hindrance * generator.random(surface.vertex_count)
     way = surface.way_through(stops, cost)
@@ -80,7 +80,7 @@ def test_ways_are_the_cheapest(surface, generator, hindrance):
 
 
 def test_a_graph_is_known_by_its_triangles(surface):
-    """Persons share it; a mesh with another vertex does not."""
+    """Persons share it; a mesh with another vertex has its own."""
     count = surface.vertex_count
     assert graph_of(surface.faces.copy(), count) is surface.graph
     other = graph_of(surface.faces, count + 1)
@@ -89,7 +89,7 @@ def test_a_graph_is_known_by_its_triangles(surface):
 
 
 def test_distance_to_a_polyline(generator):
-    """By the plain formula; corners may coincide."""
+    """It follows the simple formula; corners may coincide."""
     points = generator.normal(size=(50, 3))
     corners = generator.normal(size=(6, 3))[[0, 1, 2, 2, 3, 4, 5]]
     shares = np.linspace(0.0, 1.0, 20001)[:, None]

@@ -1,4 +1,4 @@
-"""Targets of springs are placed anew when something has changed, and only then."""
+"""Targets of springs are computed again after changes, and only then."""
 
 from numpy.linalg import norm
 
@@ -8,7 +8,7 @@ FRAME = 1.0 / 60.0
 
 
 def test_a_face_that_rests_places_no_targets(simulation, monkeypatch):
-    """Once activations have arrived, a step moves skin alone; a control that is set counts."""
+    """Once activations are reached, a step only moves skin; a newly set control counts."""
     placed = []
     place = Simulation.place_targets
     monkeypatch.setattr(
@@ -27,7 +27,7 @@ def test_a_face_that_rests_places_no_targets(simulation, monkeypatch):
 
 
 def test_a_finger_is_felt_by_a_resting_face(simulation):
-    """Skin is drawn at from the next step on, and springs back when it is let go."""
+    """Skin is pulled from the next step on, and springs back when released."""
     simulation.step(FRAME)
     rest = simulation.positions.copy()
     vertex = int(rest[:, 2].argmax())

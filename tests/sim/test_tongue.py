@@ -22,7 +22,7 @@ QUICK = {"tongueOut": 1.0}, {"tongue_out": 0.5, "jaw_open": 0.35}, {"viseme_DD":
 
 
 def placed(simulation, points, bone):
-    """Points of a part where its bone has them."""
+    """Points of a part at their places by its bone."""
     matrix = simulation.bones.transforms()[bone]
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
@@ -35,7 +35,7 @@ def tongue_now(simulation):
 
 
 def is_within(points, vertices, faces):
-    """Which points lie in a closed surface."""
+    """Flags of points in a closed surface."""
     return np.abs(winding_numbers(vertices, faces, points)) > 0.5
 
 
@@ -45,7 +45,7 @@ def with_middles(vertices, faces):
 
 
 def test_a_resting_tongue_is_the_part(simulation, head):
-    """Without the controls nothing moves it, in any pose of the jaw."""
+    """Without its controls it does not move, in any pose of the jaw."""
     settled_displacement(simulation, {"jaw_open": 0.6, "AU12": 1.0})
     bent = simulation.anatomy.tongue()
     assert bent is not None
@@ -54,7 +54,7 @@ def test_a_resting_tongue_is_the_part(simulation, head):
 
 @pytest.mark.parametrize("jaw", [0.25, 0.35, 0.6])
 def test_the_tongue_comes_out_over_the_lip(simulation, head, jaw):
-    """Farther and farther; at the end it hangs in front of the lower lip."""
+    """It moves farther and farther; at the end it hangs in front of the lower lip."""
     tip = part(head, "tongue").vertices[:, 2].argmax()
     reach = []
     for out in (0.0, 0.25, 0.5, 0.75, 1.0):
@@ -83,7 +83,7 @@ def test_a_tongue_that_is_out_has_a_groove(simulation, head):
 
 
 def test_the_tongue_stays_in_a_shut_mouth(simulation, head):
-    """Lips that are kept together keep it in, even over an open jaw."""
+    """Closed lips keep it in, even over an open jaw."""
     for pose in ({"tongue_out": 1.0}, {"tongue_out": 1.0, "jawOpen": 0.5, "mouthClose": 0.5}):
         settled_displacement(simulation, pose)
         lips = simulation.positions[head.landmarks[[UPPER_LIP, LOWER_LIP]], 2]
@@ -91,7 +91,7 @@ def test_the_tongue_stays_in_a_shut_mouth(simulation, head):
 
 
 def test_the_tip_rises_behind_the_upper_teeth(simulation, head):
-    """As in t, d, n and l: near the incisors, above their edges, not in front of them."""
+    """In t, d, n and l it is near the incisors, above their edges, not in front of them."""
     teeth = part(head, "teeth_upper").vertices
     incisors = teeth[np.abs(teeth[:, 0]) < 5.0]
     tip = part(head, "tongue").vertices[:, 2].argmax()
@@ -133,7 +133,7 @@ def test_the_measure_sees_what_is_pierced(head):
 
 
 def test_the_tongue_follows_in_time(simulation):
-    """It needs some frames, even as the lips burst open, and is back half a second later."""
+    """It needs some frames, even if the lips burst open, and is back half a second later."""
     simulation.controls.pose({"jaw_open": 0.4, "tongue_out": 1.0})
     before = tongue_now(simulation)
     steps = []
@@ -149,7 +149,7 @@ def test_the_tongue_follows_in_time(simulation):
 
 
 def test_a_head_without_a_tongue_has_the_controls_all_the_same(head):
-    """Tables speak of it, and nothing is drawn."""
+    """Tables name them, and nothing is drawn."""
     bare = sim.create(without(head))
     bare.controls.pose({"tongue_out": 1.0})
     bare.step(FRAME)

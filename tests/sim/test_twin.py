@@ -1,4 +1,4 @@
-"""The compiled kernels against plain numpy written from the formulas."""
+"""The compiled kernels compared with plain numpy written from the formulas."""
 
 from dataclasses import replace
 
@@ -65,7 +65,7 @@ def test_tissue_forces(stirred, model, state):
 
 
 def test_seal_is_an_implicit_spring(stirred, model, state, generator):
-    """A pair on its own ends a substep at the speed that the spring's force at its end explains."""
+    """A single pair ends a substep at the speed that follows from the spring's force at its end."""
     skin = model.skin
     h = 0.002
     grip = Grip(3.0, 0.4)
@@ -97,7 +97,7 @@ def test_seal_is_an_implicit_spring(stirred, model, state, generator):
 
 
 def _sealed_speeds(skin, state, grip, h):
-    """Velocities after the seal has acted on all pairs at once, each on its share of masses."""
+    """Velocities after the seal acts on all pairs at once, each with its share of masses."""
     lips = skin.lips
     mass = skin.mass
     rest = skin.rest
@@ -125,12 +125,12 @@ def _sealed_speeds(skin, state, grip, h):
 
 @pytest.fixture(scope="module")
 def placed(model):
-    """The muscles of the built-in head as they are placed."""
+    """The placed muscles of the built-in head."""
     return place_muscles(model.rig, model.surface, model.landmarks, model.lip_side)
 
 
 def gate_of(muscle, side, model):
-    """Where a muscle may act, as the rig says it: on its side, and on its lip."""
+    """Region of a muscle by the rig: on its side, and on its lip."""
     gate = np.ones(model.surface.vertex_count)
     if muscle.pair and not muscle.crosses:
         gate = np.clip(0.5 + side.sign * model.surface.positions[:, 0] / 40.0, 0.0, 1.0)
@@ -141,7 +141,7 @@ def gate_of(muscle, side, model):
 
 
 def test_skin_hangs_on_fibres_by_the_formula(placed, model):
-    """A Gaussian across each fibre and past its end, and where contraction takes its skin."""
+    """A Gaussian across each fibre and past its end, and the motion of its skin by contraction."""
     x = model.surface.positions
     for at in placed:
         if not isinstance(at.muscle, LinearMuscle):
@@ -278,9 +278,9 @@ def test_bones_carry_anchors(stirred, model, state):
 
 
 def test_lids_turn_about_the_eyeball(simulation, model, state):
-    """Lids keep their distance to the eyeball's centre but for how far they sink; margins meet.
+    """Lids keep their distance from the eyeball's centre, except for their sinking; margins meet.
 
-    Beside the inner corner skin that slides there goes off the eyeball, and never into it.
+    Skin that slides beside the inner corner leaves the eyeball, and never enters it.
     """
     lids = model.lids.vertices
     rest = model.surface.positions
@@ -314,7 +314,7 @@ def test_lids_turn_about_the_eyeball(simulation, model, state):
 
 
 def test_an_open_lid_takes_its_fold_along(simulation, model, state):
-    """Raised and looking up, the fold is held and goes up; at rest nothing holds it."""
+    """When it is raised and looks up, the fold is held and rises; at rest no force holds it."""
     lids = model.lids.vertices
     rest = model.surface.positions
     still = np.zeros((len(lids.centres), 2))
@@ -331,7 +331,7 @@ def test_an_open_lid_takes_its_fold_along(simulation, model, state):
 
 
 def test_a_step_is_its_substeps(model):
-    """A frame without contact, done again with plain Euler, lands on the same positions."""
+    """A frame without contact, computed with plain Euler, gives the same positions."""
     lips = model.skin.lips
     without_contact = model.skin._replace(
         lips=lips._replace(least_gap=lips.least_gap - 100.0),
@@ -356,7 +356,7 @@ def test_a_step_is_its_substeps(model):
 
 
 def _plain_substep(skin, state, grip, h):
-    """Forces by their kernels, which are tried above; then velocity, then position."""
+    """Forces by their kernels, which are tested above; then velocity, then position."""
     springs = skin.tissue
     x = state.x
     v = state.v
