@@ -12,8 +12,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from risorius.geometry.carving import carve
 from risorius.geometry.texels import Texels
 
 from ...geometry.arrays import Floats32, Floats64, Integers64
@@ -34,7 +34,6 @@ from .furrows import (
 from .lines import Lines
 from .relief import add_to
 
-FINER = 10  # of so many parts of a step a texel takes the nearest
 FULL_DEPTH = 0.8  # [mm] of a furrow at which the map is darkest
 NOWHERE = 1e3  # [mm] of all coordinates, outside the face
 LEVEL = np.array([128.0, 128.0, 0.0], np.float32)  # bytes of slopes and depth of plain skin
@@ -42,43 +41,26 @@ FAN_HUB = np.array([37.0, 1.0, 77.0])  # [mm] in the left orbit, where crow's fe
 
 
 class _Region(NamedTuple):
-    """A part of the map, in which lines run one way; all arrays of shape (h, w).
+    """A part of the map, in which lines run one way.
 
-    across: which line a texel lies on, [mm] or [rad]. along: number of the sample there.
-    scale: [mm] for one unit of `across`. cover: how far furrows show there, 0 to 1.
-    bounds: least and greatest `across` and `along` of each row, and of each column, each of shape
-        (4, h) or (4, w).
+    texels: as of `carve`, across in [mm] or [rad], shape (h, w, 4).
     """
 
     rows: slice
     columns: slice
-    across: Floats32
-    along: npt.NDArray[np.int32]
-    scale: Floats32
-    cover: Floats32
-    bounds: tuple[Floats64, Floats64]
-
-    def about(self, line: Line) -> tuple[slice, slice]:
-        """Rows and columns that hold what is seen of a line."""
-        seen = np.flatnonzero(line.depth > 1e-4)
-        if not len(seen):
-            return slice(0), slice(0)
-        course = line.course[seen]
-        roll = line.roll / self.scale.min()
-        low, high = course.min() - roll, course.max() + roll
-        return _span_of(self.bounds[0], low, high, seen), _span_of(self.bounds[1], low, high, seen)
+    texels: Floats32
 
 
-def _span_of(bounds: Floats64, low: float, high: float, seen: Integers64) -> slice:
-    least, greatest, first, last = bounds
-    near = (
-        (greatest > low)
-        & (least < high)
-        & (last >= FINER * (seen[0] - 1))
-        & (first <= FINER * (seen[-1] + 1))
-    )
-    held = np.flatnonzero(near)
-    return slice(int(held[0]), int(held[-1]) + 1) if len(held) else slice(0)
+class _Fold(NamedTuple):
+    """Texels beside the mouth.
+
+    rows, columns: their places, shape (n,). relief: slopes and depth of the fold in bytes, which
+    fade toward the borders, shape (n, 3).
+    """
+
+    rows: Integers64
+    columns: Integers64
+    relief: Floats32
 
 
 class _Places(NamedTuple):
@@ -88,7 +70,7 @@ class _Places(NamedTuple):
     forehead: _Region
     glabella: _Region
     feet: tuple[_Region, ...]
-    folds: tuple[_Region, ...]
+    folds: tuple[_Fold, ...]
 
 
 def with_lines(known: Wrinkles, lines: Lines, shrink: int = 1) -> Wrinkles:
@@ -109,9 +91,10 @@ def with_lines(known: Wrinkles, lines: Lines, shrink: int = 1) -> Wrinkles:
         add_to(near, _bytes_of(region, drawn, len(found) / known.steepest))
     random = np.random.default_rng([lines.seed, 4])
     for fold in places.folds:
-        near = found[fold.rows, fold.columns, :3]
-        more = (lines.fold_depth - 1.0 + random.uniform(-0.1, 0.1)) * fold.cover
-        add_to(near, more[..., None] * (near - LEVEL))
+        more = lines.fold_depth - 1.0 + random.uniform(-0.1, 0.1)
+        near = found[fold.rows, fold.columns]
+        add_to(near[:, :3], np.float32(more) * fold.relief)
+        found[fold.rows, fold.columns] = near
     found.flags.writeable = False
     return replace(known, map=found)
 
@@ -121,37 +104,23 @@ def _bytes_of(region: _Region, drawn: Sequence[Line], per_slope: float) -> Float
 
     per_slope: 1 over the greatest slope [1/mm for one texel].
     """
-    height = np.zeros_like(region.across)
-    depth = np.zeros_like(region.across)
-    for line in drawn:
-        near = region.about(line)
-        along = region.along[near]
-        off = region.across[near] - _finer(line.course)[along]
-        off *= region.scale[near]
-        np.square(off, out=off)
-        here = _finer(line.depth)[along] * region.cover[near]
-        crease = np.maximum(1.0 - off / line.width**2, 0.0)
-        crease *= here * crease * crease
-        trough = np.maximum(1.0 - off / line.roll**2, 0.0)
-        trough *= here * trough
-        depth[near] += crease
-        height[near] -= crease + line.swelling * trough
+    courses, depths = (
+        np.array([getattr(line, name) for line in drawn], dtype=np.float32)
+        for name in ("course", "depth")
+    )
+    forms = np.array([(line.width, line.roll, line.swelling) for line in drawn], dtype=np.float32)
+    height, depth = (np.zeros(region.texels.shape[:2], np.float32) for _ in range(2))
+    carve(region.texels, courses, depths, forms, height, depth)
     down, right = np.gradient(height)
     found = np.stack([right, -down, depth], axis=2)
     found *= np.array([127.0 * per_slope, 127.0 * per_slope, 255.0 / FULL_DEPTH], np.float32)
     return found
 
 
-def _finer(values: Floats64) -> Floats32:
-    """Values between samples, too, shape (FINER s,)."""
-    steps = np.arange(FINER * len(values)) / FINER
-    return np.interp(steps, np.arange(len(values)), values).astype(np.float32)
-
-
-def _sample_of(reach: tuple[float, float], along: Floats64) -> npt.NDArray[np.int32]:
-    """The nearest of the parts of steps."""
+def _sample_of(reach: tuple[float, float], along: Floats64) -> Floats64:
+    """The sample of a place, and which part of the way to the next one it lies."""
     low, high = reach
-    return np.rint((np.clip(along, low, high - STEP) - low) * (FINER / STEP)).astype(np.int32)
+    return (np.clip(along, low, high - 2.0 * STEP) - low) / STEP
 
 
 @lru_cache(maxsize=2)
@@ -202,7 +171,7 @@ def _places(shrink: int) -> _Places:
         _region(corner, above, leaning, x_sample, one),
         _region(corner, between, x, _sample_of(GLABELLA_REACH, y), one),
         tuple(_region(corner, fan * (side * x > 0.0), angle, radii, radius) for side in (1, -1)),
-        tuple(_region(corner, fold * (side * x > 0.0), x, x_sample, one) for side in (1, -1)),
+        tuple(_fold(corner, fold * (side * x > 0.0), near) for side in (1, -1)),
     )
 
 
@@ -226,43 +195,26 @@ def _bump(values: Floats64, middle: float, wide: float) -> Floats64:
     return np.asarray(np.exp(-(((values - middle) / wide) ** 2)))
 
 
-def _region(
-    corner: tuple[int, int],
-    cover: Floats64,
-    across: Floats64,
-    along: npt.NDArray[np.int32],
-    scale: Floats64,
-) -> _Region:
+def _fold(corner: tuple[int, int], cover: Floats64, near: Floats32) -> _Fold:
+    """Texels that are covered; near: bytes about there, shape (h, w, 4)."""
+    rows, columns = np.nonzero(cover > 0.0)
+    relief = cover[rows, columns, None] * (near[rows, columns, :3] - LEVEL)
+    seen = np.abs(relief).max(axis=1) > 0.5
+    relief = relief[seen].astype(np.float32)
+    return _Fold(corner[0] + rows[seen], corner[1] + columns[seen], relief)
+
+
+def _region(corner: tuple[int, int], cover: Floats64, *places: Floats64) -> _Region:
     """The smallest part of the map that holds what is covered.
 
-    Arrays are of a part of it, (h, w), whose first row and column are the corner.
+    places: across, along and scale. Arrays are of a part of the map, shape (h, w), whose first row
+    and column are the corner.
     """
-    is_covered = cover > 0.0
-    spans = [np.flatnonzero(is_covered.any(axis=axis)) for axis in (1, 0)]
-    inside = tuple(slice(int(span[0]), int(span[-1]) + 1) for span in spans)
-    lies = is_covered[inside]
-    across, along, scale = across[inside], along[inside], scale[inside]
-    bounds = [
-        np.array(
-            [
-                across.min(axis=axis, where=lies, initial=np.inf),
-                across.max(axis=axis, where=lies, initial=-np.inf),
-                along.min(axis=axis, where=lies, initial=10**9),
-                along.max(axis=axis, where=lies, initial=-1),
-            ]
-        )
-        for axis in (1, 0)
-    ]
-    rows, columns = (
-        slice(start + each.start, start + each.stop)
-        for start, each in zip(corner, inside, strict=True)
-    )
+    spans = [np.flatnonzero((cover > 0.0).any(axis=axis)) for axis in (1, 0)]
+    rows, columns = (slice(int(span[0]), int(span[-1]) + 1) for span in spans)
+    texels = np.stack([each[rows, columns] for each in (*places, cover)], axis=2)
     return _Region(
-        rows,
-        columns,
-        across.astype(np.float32),
-        along,
-        np.maximum(scale, scale[lies].min()).astype(np.float32),
-        cover[inside].astype(np.float32),
-        (bounds[0], bounds[1]),
+        slice(corner[0] + rows.start, corner[0] + rows.stop),
+        slice(corner[1] + columns.start, corner[1] + columns.stop),
+        texels.astype(np.float32),
     )
