@@ -167,7 +167,9 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     # [mm] behind the hairline, where hair lies flat, and where it stands as its cut says.
     flat_depths = 0.0, 45.0
     lift = cut.lift * smooth_step(*flat_depths, behind)[:, None]
-    way = long[:, None] * (lift * normals + np.sqrt(1.0 - lift**2) * comb)
+    whorl_radius = 30.0  # [mm] within which strands stand up, and do not shine
+    aside = smooth_step(0.0, whorl_radius, radius * away)[:, None]
+    way = long[:, None] * (lift * normals + aside * np.sqrt(1.0 - lift**2) * comb)
     way += covers[:, None] * normals
     clearance = 0.5  # [mm] over the skin
     sinking = 0.3  # [mm] down per mm, from 4 mm in front of the hairline on

@@ -36,7 +36,9 @@ void main() {
     float rim = max(dot(normal, TO_RIM), 0.0);
     surface.diffuse = 0.85 * key_light * lit + fill_light * max(0.8 * dot(normal, to_fill) + 0.2, 0.0)
         + hemisphere(normal) + 0.5 * rim_light * rim * rim;
-    surface.shine = key_light * (lit * clamp(2.0 * facing, 0.0, 1.0) * gloss);
+    // Strands that stand up show their tips alone, which do not shine.
+    float lying = smoothstep(0.3, 0.8, length(along) / max(length(mat3(model_view) * in_way), 1e-6));
+    surface.shine = key_light * (lit * clamp(2.0 * facing, 0.0, 1.0) * gloss * lying);
     surface.colour = in_colour;
     surface.strand = in_strand;
     surface.layer = layer, surface.dense = in_dense;

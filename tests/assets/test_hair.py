@@ -216,3 +216,14 @@ def test_hair_reaches_over_the_farthest_skin_near_by(generator):
     weights = np.exp(120.0 * (ways @ (solid / far[:, None]).T - 1.0))
     wanted = ((weights * far**24).sum(axis=-1) / weights.sum(axis=-1)) ** (1.0 / 24.0)
     assert _reach(ways, solid) == pytest.approx(wanted, rel=1e-12)
+
+
+def test_strands_stand_up_at_a_whorl_and_lie_around_it():
+    """Else they turn there from one direction to all others at once, and their light is a ring."""
+    hair = hair_of(haired("short"))
+    way = hair.striation[:, 2:5]
+    long = np.maximum(np.linalg.norm(way, axis=1), 1e-6)
+    lying = 1.0 - ((way * hair.normals).sum(axis=1) / long) ** 2
+    along = hair.striation[:, 1]  # [mm] from the whorl
+    assert lying[along < 4.0].max() < 0.1
+    assert lying[(along > 30.0) & (along < 50.0)].min() > 0.4
