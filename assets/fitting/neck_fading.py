@@ -10,10 +10,10 @@ def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> F
     """How much of the skin shows at each vertex, wherever that goes, and from where, (V, 2).
 
     The first column is the share that shows: 0 along the neck's edge, and 1 up to 25 mm above. The
-    second is the way [mm] ahead of all skin that fades: where it is negative the inner side would
-    be seen through the neck, and does not show. They belong to the vertices, not to places: a chin
-    that goes down beside a short neck stays whole. vertices: at rest [mm], (V, 3). landmarks:
-    vertices, (68,). None: the mesh has no edge at the neck.
+    second is how far [mm] skin lies ahead of the neck and below the brows: where it is negative the
+    inner side is seen through the neck alone, not through the mouth, and does not show. Both
+    belong to the vertices, not to places: a chin that goes down beside a short neck stays whole.
+    vertices: at rest [mm], (V, 3). landmarks: vertices, (68,). None: no edge is at the neck.
     """
     chin_landmark = 8
     chin = vertices[landmarks[chin_landmark]]
@@ -36,7 +36,9 @@ def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> F
         return None
     share = (vertices @ up - bottom) / height
     ahead = vertices[:, 2] - vertices[share < 1.0, 2].max()
-    return np.stack([share, ahead], axis=1).astype(np.float32)
+    brow_landmarks = slice(17, 27)
+    below = vertices[landmarks[brow_landmarks], 1].max() - vertices[:, 1]
+    return np.stack([share, np.minimum(ahead, below)], axis=1).astype(np.float32)
 
 
 def fading_last(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers64:

@@ -98,10 +98,12 @@ def test_the_edge_of_the_neck_fades(fitted):
 
 
 def test_the_inner_side_of_the_neck_does_not_show(fitted):
-    """None of it behind the front of skin that fades; that of lids and lips, ahead of it, does."""
-    share, ahead = fitted.fade().T
-    assert ahead[share < 1.0].max() == 0.0
-    assert ahead[fitted.landmarks[36:]].min() > 5.0
+    """Nor that of a forehead, seen through it; that of lids and lips does."""
+    share, inner = fitted.fade().T
+    assert inner[share < 1.0].max() <= 0.0
+    highest = fitted.vertices[:, 1] > fitted.vertices[fitted.landmarks[19], 1] + 10.0
+    assert inner[highest].max() < 0.0
+    assert inner[fitted.landmarks[36:]].min() > 5.0
 
 
 def test_triangles_that_fade_are_drawn_last(fitted, other):
