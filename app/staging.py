@@ -23,7 +23,7 @@ _swept: set[Path] = set()  # folders that this process has swept
 
 
 class StagingFolder:
-    """A folder in `parent` to make files in; a context manager that gives and removes it.
+    """A folder in `parent` to make files in; a context manager that makes and removes it.
 
     Raises OSError if it cannot be made.
     """

@@ -32,7 +32,7 @@ def number(what: str, value: Any) -> float:
 
 
 def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Floats64:
-    """Finite numbers of a shape, a copy in rows; wanted: the shape in words."""
+    """A copy of finite numbers in C order; ValueError for another shape, named by `wanted`."""
     wanted = wanted or str(shape)
     array = _array(what, given, "fiub", f"numbers, shape {wanted}")
     if not _fits(array, shape):

@@ -108,7 +108,7 @@ FORMATS = (
 
 
 def format_for(output: Path, name: str | None) -> Format:
-    """The format that an output's name means, or that `--as` names; raises UserError for none."""
+    """The format of an output by its name or by `--as`; raises UserError if there is none."""
     suffix = output.suffix.lower()
     known = dict.fromkeys(suffix for each in FORMATS for suffix in each.suffixes)
     for each in FORMATS:

@@ -1,7 +1,7 @@
 """VMC, the Virtual Motion Capture protocol: OSC messages, several to a frame.
 
     /VMC/Ext/Blend/Val   name, value        a shape
-    /VMC/Ext/Blend/Apply                    now those before it count
+    /VMC/Ext/Blend/Apply                    applies all shapes before it
     /VMC/Ext/Bone/Pos    name, x, y, z, and a quaternion x, y, z, w
 
 52 shapes take more room than one packet has, so they may come in several before Apply. Senders
@@ -11,8 +11,8 @@ last value.
 Bones turn in Unity's axes: x to the avatar's right, y up, z ahead, left-handed. Of these we take
 the head (with the neck, if it is in the same packet) and the eyes.
 
-Bundles are taken apart here and not by the library, which never comes back from one that holds a
-negative length.
+Bundles are split here and not by the library, because a negative length in a bundle makes the
+library loop for ever.
 
 Source: protocol.vmc.info.
 """

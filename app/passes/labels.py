@@ -185,7 +185,7 @@ def labelled(
     style: render.Style,
     wanted: Sequence[str],
 ) -> Labelled:
-    """Labels and passes of the picture of a scene that the pipeline of `passes` drew last."""
+    """Labels and passes of the last picture that the pipeline of `passes` drew."""
     has_landmarks = "landmarks" in wanted
     images = passes.draw(camera, style, {*wanted, "depth"} if has_landmarks else wanted)
     depth = images["depth"] if has_landmarks else None

@@ -1,7 +1,7 @@
 """The landmarks of one picture, where annotators of photographs put them.
 
-The points of the jaw lie on the outline of the face as this camera sees it (`assets.annotation`
-has the ways on which it is sought). Their places on the bone, which the rig has, are kept beside.
+The points of the jaw lie on the outline of the face for this camera (`assets.annotation` has the
+lines for its search). Their places on the bone, known from the rig, are kept as well.
 """
 
 from __future__ import annotations

@@ -97,8 +97,8 @@ _ANGLES = _angle_spellings()
 class Unit:
     """An action unit that a column holds.
 
-    side: "_left", "_right", or "" for both or unknown. is_short_right: whether the name only has
-    the letter R, which means intensity in OpenFace's files without an L. kind: "intensity",
+    side: "_left", "_right", or "" for both or unknown. is_short_right: whether the side is
+    only the letter R; in OpenFace's files without an L, this R means intensity. kind: "intensity",
     "detection", or "" if the name does not show it.
     """
 

@@ -1,4 +1,4 @@
-"""Skin of any tone and eyes of any colour: as the painter would paint them, from one number."""
+"""Skin of any tone and eyes of any colour: as if painted so, from one number."""
 
 from itertools import pairwise
 
@@ -55,14 +55,14 @@ def skin_of(head, image):
 
 
 def test_own_tone_is_the_shipped_picture(head):
-    """Byte by byte."""
+    """They are equal byte by byte."""
     tints = _tints()
     angle = np.interp(-OWN.melanin, -tints.melanins, tints.angles)
     assert (recoloured(float(angle)) == head.albedo).all()
 
 
 def test_tones_are_in_order(head):
-    """The angle measured on bare skin is near the asked one, and darker tones are darker."""
+    """The angle measured on bare skin is near the requested one; darker tones are darker."""
     pictures = {angle: recoloured(angle) for angle in TONES}
     found = {angle: float(typology_angle(skin_of(head, x))) for angle, x in pictures.items()}
     for angle, measured in found.items():
@@ -99,13 +99,13 @@ def _texel(head, image, vertex):
 
 @pytest.mark.parametrize("angle", [DARKEST - 1.0, LIGHTEST + 1.0, float("nan")])
 def test_no_other_tones(angle):
-    """One line with the allowed values."""
+    """One line reports them, with the allowed values."""
     with pytest.raises(ValueError, match="it must be -55 "):
         recoloured(angle)
 
 
 def test_eyes_have_their_colours(head):
-    """Blue is bluest, brown reddest and darkest; white, pupil and all else stay as they were."""
+    """Blue is bluest, brown reddest and darkest; white, pupil and all else are unchanged."""
     person = make_person(sample_identity(1))
     iris = {}
     for name in IRIS_SHARES:
@@ -129,7 +129,7 @@ def test_eyes_have_their_colours(head):
 
 @pytest.mark.slow
 def test_colours_of_a_number(head):
-    """The same ones every time; dark skin goes with brown eyes."""
+    """They are the same every time; dark skin goes with brown eyes."""
     person = make_person(sample_identity(0))
     first, second = (in_own_colours(person, 5) for _ in range(2))
     assert (first.albedo == second.albedo).all()
@@ -139,7 +139,7 @@ def test_colours_of_a_number(head):
     is_iris = (np.abs(others[0] - others[1]) > 0.01).any(axis=1)
 
     def redness(colours):
-        """Of irises: red over blue."""
+        """Red over blue of irises."""
         red, _, blue = colours[is_iris].mean(axis=0)
         return red / blue
 
@@ -153,7 +153,7 @@ def test_colours_of_a_number(head):
 
 
 def test_bands_of_texels_have_the_colours_of_the_whole(monkeypatch):
-    """Byte by byte, whatever number of rows is coloured at once."""
+    """They are equal byte by byte, for any number of rows coloured at once."""
     colours = own_colours(sample_identity(3), 3)
     given = {"features": colours.features, "haired_as": colours.angle, "shrink": 2}
     usual = recoloured(colours.angle, **given)
@@ -188,7 +188,7 @@ def test_the_hem_of_painted_hair_is_single_hairs():
 
 
 def test_eyes_go_with_dark_skin():
-    """Flesh at the corners, wet edges and whites are darker, irises as they are."""
+    """Flesh at the corners, wet edges and whites are darker; irises are unchanged."""
     person = make_person(sample_identity(1))
     light, dark = (
         {part.name: part.colours for part in coloured(person, angle=angle).parts}
@@ -202,7 +202,7 @@ def test_eyes_go_with_dark_skin():
 
 
 def test_no_two_irises_are_alike():
-    """Of one colour they differ in lightness and in the ring around the pupil."""
+    """Those of one colour differ in lightness and in the ring around the pupil."""
     person = make_person(sample_identity(1))
     random = np.random.default_rng(2)
     drawn = [Features(iris=drawn_iris(30.0, chance, random)) for chance in random.random(8)]
@@ -213,7 +213,7 @@ def test_no_two_irises_are_alike():
 
 
 def test_irises_have_fibres_and_edges_of_their_own():
-    """Fibres of another seed lie elsewhere; a limbus darkens the edge alone."""
+    """Fibres of another seed are in other places; a limbus only darkens the edge."""
     person = make_person(sample_identity(1))
 
     def light_of(**own):
@@ -235,7 +235,7 @@ def test_irises_have_fibres_and_edges_of_their_own():
 
 
 def test_the_dark_edge_of_irises_fades_with_age():
-    """The young have a darker one than the old, drawn by the same numbers."""
+    """For the same random numbers, the young have a darker one than the old."""
     ages = 20.0, 75.0
     young, old = (drawn_iris(years, 0.5, np.random.default_rng(1)) for years in ages)
     assert young.limbus > old.limbus + 0.3

@@ -1,4 +1,4 @@
-"""Folds of lids, and the neck: in the maps where the identity says, and nowhere else."""
+"""Folds of lids, and the neck: in the maps at the identity's places, and nowhere else."""
 
 from dataclasses import replace
 
@@ -14,17 +14,17 @@ from risorius.assets.loading import load
 
 @pytest.fixture(scope="module")
 def person() -> Person:
-    """Somebody."""
+    """A person."""
     return make_person(sample_identity(6, is_even=True))
 
 
 def folded(person: Person, **own: float) -> Person:
-    """The same with other lids."""
+    """The same person with other lids."""
     return replace(person, identity=replace(person.identity, **own))
 
 
 def test_creases_lie_as_high_as_the_identity_says(person):
-    """One millimetre higher along the skin in the middle; a hidden one throws no shade."""
+    """One millimetre higher along the skin in the middle; a hidden crease makes no shade."""
     middle = load("head").anatomy["palpebrale_superius_left"]
     heights = []
     for seen in (1.2, 2.2):
@@ -43,7 +43,7 @@ def test_creases_lie_as_high_as_the_identity_says(person):
 
 
 def test_hooding_lowers_the_outer_half_alone(person):
-    """There the crease is hidden; towards the nose it is as before."""
+    """There the crease is hidden; towards the nose it is unchanged."""
     plain, hooded = (
         fold_of(folded(person, seen_lid=1.5, hooding=h), "left", 1280).light for h in (0.0, 3.0)
     )
@@ -80,14 +80,14 @@ def test_maps_differ_at_the_lids_alone_and_small_pictures_share_one(person):
 
 
 def test_people_show_as_much_of_their_lids_as_measured():
-    """Of 200 women and men at fifty: 1.4 ± 1.1 mm in the mean of both."""
+    """Of 200 women and men at fifty: 1.4 ± 1.1 mm as the mean of both."""
     seen = [sample_identity(seed, age=50.0).seen_lid for seed in range(200)]
     assert 1.2 < np.mean(seen) < 1.7
     assert 0.9 < np.std(seen) < 1.4
 
 
 def test_the_larynx_stands_out_as_far_as_the_identity_says(person):
-    """A ridge in the middle of the neck, higher in men, that fades within its map."""
+    """A ridge in the middle of the neck, higher in men, fades out within its map."""
     found = larynx_of(folded(person, larynx=4.0), 1024)
     column = found.heights.max(axis=0).argmax()
     assert column + found.columns.start == pytest.approx(511.5, abs=12.0)
