@@ -170,7 +170,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     whorl_radius = 30.0  # [mm] within which strands stand up, and do not shine
     aside = smooth_step(0.0, whorl_radius, radius * away)[:, None]
     way = long[:, None] * (lift * normals + aside * np.sqrt(1.0 - lift**2) * comb)
-    way += covers[:, None] * normals
+    way += (covers * smooth_step(0.0, 25.0, behind))[:, None] * normals
     clearance = 0.5  # [mm] over the skin
     sinking = 0.3  # [mm] down per mm, from 4 mm in front of the hairline on
     off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
