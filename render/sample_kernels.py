@@ -298,6 +298,7 @@ def _number(
 ) -> float:
     """The number of a surface, see surface_number.glsl; below 0 where it is not."""
     if kind == HAIR:
+        # As in shell_layers.glsl.
         has_edge = one >= 0.9 * min(max(2.5 * two, _LEAST_FACING), 1.0)
         return numbers[0] if has_edge else -1.0
     if not is_front:

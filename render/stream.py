@@ -27,29 +27,25 @@ class Share(Enum):
 
 NUMBER_BYTES = 4  # bytes
 COMMAND_WORDS = 7
-LAYOUTS = {
-    6: ("3f 3f", "in_position", "in_normal"),
-    8: ("3f 3f 2f", "in_position", "in_normal", "in_uv"),
-    16: (
-        "3f 3f 2f 2f 3f 3f",
-        "in_position",
-        "in_normal",
-        "in_uv",
-        "in_bumps",
-        "in_u_gradient",
-        "in_v_gradient",
-    ),
-    18: (
-        "3f 3f 2f 2f 3f 3f 2f",
-        "in_position",
-        "in_normal",
-        "in_uv",
-        "in_bumps",
-        "in_u_gradient",
-        "in_v_gradient",
-        "in_fade",
-    ),
-}  # of a vertex in OpenGL, by the columns of rows
+_ATTRIBUTES = (
+    ("3f", "in_position"),
+    ("3f", "in_normal"),
+    ("2f", "in_uv"),
+    ("2f", "in_bumps"),
+    ("3f", "in_u_gradient"),
+    ("3f", "in_v_gradient"),
+    ("2f", "in_fade"),
+)
+
+
+def _layout(count: int) -> tuple[str, ...]:
+    """The format of the first attributes of a vertex, and their names."""
+    formats, names = zip(*_ATTRIBUTES[:count], strict=True)
+    return " ".join(formats), *names
+
+
+# Of a vertex in OpenGL, by the columns of rows.
+LAYOUTS = {6: _layout(2), 8: _layout(3), 16: _layout(6), 18: _layout(7)}
 BUMPS = slice(8, 10)  # columns with the amounts of a bump map
 _Ranges = dict[Share, tuple[int, int]]  # first triangle and count in a buffer of indices
 
@@ -124,8 +120,7 @@ class MeshBuffers:
             reserve=NUMBER_BYTES * columns * vertex_capacity, dynamic=True
         )
         self.index_buffer = gl.buffer(reserve=3 * NUMBER_BYTES * triangle_capacity, dynamic=True)
-        # Made at the first need: triangles parted by bumps, and chosen triangles.
-        self._more: dict[str, moderngl.Buffer] = {}
+        self._parted: moderngl.Buffer | None = None  # triangles, parted by bumps; made when needed
         self._ranges: _Ranges = {}
         self._vertex_arrays: dict[
             tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray
@@ -140,13 +135,6 @@ class MeshBuffers:
     def triangle_count(self) -> int:
         """Number of triangles of the last mesh."""
         return self.mesh.triangle_count
-
-    def _rewrite(self, name: str, triangles: Unsigned32) -> None:
-        """Upload some of the triangles, shape (.., 3)."""
-        if name not in self._more:
-            room = 3 * NUMBER_BYTES * self._triangle_capacity
-            self._more[name] = self.context.buffer(reserve=room, dynamic=True)
-        _write_anew(self._more[name], np.ascontiguousarray(triangles))
 
     def _check_bumps(self, has_bumps: bool) -> None:
         """Raise ValueError if amounts shall count, but rows have none."""
@@ -165,7 +153,10 @@ class MeshBuffers:
         count = int(is_bumped.sum())
         self._ranges[Share.BUMPED] = 0, count
         self._ranges[Share.SMOOTH] = count, len(parts) - count
-        self._rewrite("parted", np.concatenate([parts[is_bumped], parts[~is_bumped]]))
+        if self._parted is None:
+            room = 3 * NUMBER_BYTES * self._triangle_capacity
+            self._parted = self.context.buffer(reserve=room, dynamic=True)
+        _write_anew(self._parted, np.concatenate([parts[is_bumped], parts[~is_bumped]]))
 
     def check_uv(self) -> None:
         """Raise ValueError if there is a texture, but rows have no texture coordinates."""
@@ -192,9 +183,9 @@ class MeshBuffers:
             self._draw_all(self._vertex_array(program, self.index_buffer))
             return
         first, count = self._ranges.get(share, (0, 0))
-        if count == 0:
+        if count == 0 or self._parted is None:
             return
-        array = self._vertex_array(program, self._more["parted"])
+        array = self._vertex_array(program, self._parted)
         array.render(moderngl.TRIANGLES, vertices=3 * count, first=3 * first)
 
     def _draw_all(self, array: moderngl.VertexArray) -> None:
