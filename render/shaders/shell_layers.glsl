@@ -24,7 +24,7 @@ bool is_hair(float dense, float facing) {
 }
 
 // Where hair has an edge that is smoothed. Its hem has none: it fades by itself, and layers end there
-// at other places each.
+// at other places each. sample_kernels.py has the same number.
 bool has_edge(float dense, float facing) {
     return dense >= 0.9 * seen_share(facing);
 }
