@@ -1,4 +1,4 @@
-"""How far a closed lid must be lifted so that the eyeball does not show through it.
+"""How near a closed lid lies to the eyeball, and how far it is lifted lest the ball show through.
 
 Lids turn over the eyeball vertex by vertex and are kept off the ball there (contact.py). But the
 triangle between three vertices is flat, and the cornea stands out of the ball: on a coarse mesh the
@@ -17,9 +17,27 @@ from ..geometry.arrays import Floats64, Integers32
 from ..geometry.directions import unit_vectors
 from ..geometry.normals import cross_products
 from .contact import EYE_CLEARANCE
+from .landmarks import smoothstep
 from .skull import Eyeball
 
 LIFT_TOLERANCE = 1e-3  # mm
+
+
+def laid_on_ball(x: Floats64, ball: Eyeball, column: Floats64, share: Floats64) -> Floats64:
+    """How much nearer to the eyeball skin of a shut upper lid lies [mm], shape (V,).
+
+    Skin of the fold turns at a distance of its own from the eyeball. Unless it also sinks, a shut
+    lid is a pouch before the ball, whose lower side hangs over the lashes.
+
+    x: vertices at rest (V, 3). column: places from the outer corner of the eye, 0, to the inner
+    one, 1, shape (V,). share: of the margin's turn, shape (V,).
+    """
+    thickness = 2.2  # [mm] of skin, muscle and plate, from the eyeball to the front of a lid
+    most_sunk = 5.0  # [mm]
+    beyond = np.linalg.norm(x - ball.centre, axis=1) - ball.radius - thickness
+    lies = smoothstep(2.0 * share) * np.sqrt(np.sin(np.pi * np.clip(column, 0.0, 1.0)))
+    sunk: Floats64 = lies * np.clip(beyond, 0.0, most_sunk)
+    return sunk
 
 
 def lift_off(

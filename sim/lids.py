@@ -31,7 +31,7 @@ import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers64
 from .landmarks import EYE_LANDMARKS, polyline_distance, smoothstep
-from .lid_lift import lift_off
+from .lid_lift import laid_on_ball, lift_off
 from .lid_motion import LidVertices, turn_lids
 from .lip_lid_sides import lid_side
 from .rig import LIDS, Eyes, LidMuscle, Rig
@@ -230,16 +230,24 @@ def _one_eye(
     fold = before * (upper.fold + lower.fold) * at_middle
     weight = before * weight
     closing = before * closing
-    proud_height = 0.7  # mm that the closed upper lid lies in front of the lower; 0 at corners
-    proud = proud_height * np.minimum(np.interp(column, where, full), 1.0)
-    sink = np.interp(column, where, upper.depth - lower.depth) - proud
-    sink *= is_upper * weight
+    sink = _proud_sink(upper, lower, column, full) * is_upper * weight
+    margin_turn = np.maximum(np.interp(column, where, upper.front - seam), 0.1)
+    sink += is_upper * laid_on_ball(x, ball, column, -closing / margin_turn)
     least_turn = 1e-3  # vertices that move less are not lid
     most_moved = np.maximum.reduce([weight, fold, slide])
     vertex = np.flatnonzero(most_moved > least_turn)
     overlap = weight * _pressed_turn(opening, least_opening)
     values = (weight, closing, overlap, sink, fold, opening, slide)
     return _OneEye(vertex, is_upper[vertex], *(each[vertex] for each in values))
+
+
+def _proud_sink(upper: _OneLid, lower: _OneLid, column: Floats64, full: Floats64) -> Floats64:
+    """How far the margin of a closed upper lid sinks to lie on the lower one [mm], shape (V,)."""
+    proud_height = 0.7  # mm that the closed upper lid lies in front of the lower; 0 at corners
+    where = np.linspace(0.0, 1.0, COLUMNS)
+    proud = proud_height * np.minimum(np.interp(column, where, full), 1.0)
+    sunk: Floats64 = np.interp(column, where, upper.depth - lower.depth) - proud
+    return sunk
 
 
 def _slide(near: Floats64, column: Floats64, full: Floats64) -> Floats64:

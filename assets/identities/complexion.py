@@ -34,10 +34,10 @@ from ..smooth import shrunk
 from .brows import painted, stubble
 from .eyes import beside_skin, with_irises
 from .features import PLAIN, Features
-from .furrow_map import with_lines
+from .furrow_map import shared_map, with_lines
 from .hair import CUTS, HAIR, OWN_CUT, Fall, hair_of, scalp_of
 from .larynx import larynx_of
-from .lids import EYES, fold_of, shaded
+from .lids import with_folds
 from .long_hair import falling_hair, tied_hair
 from .painted_hair import MOST_COVER, fringe_of, grown_over, shrunk_strands
 from .person import Person
@@ -211,8 +211,8 @@ def coloured(
     return replace(
         person,
         albedo=in_tone(angle),
-        ambient_occlusion=shaded(_occlusion(shrink), person),
-        # Small pictures do not show slopes of folds, so all persons share one map.
+        ambient_occlusion=_occlusion(shrink),
+        # Small pictures do not show slopes of necks, so all persons share one map.
         fine_shape=_own_shape(person) if shrink == 1 else known,
         wrinkles=_own_wrinkles(person, shrink),
         parts=_with_hair(person, parts, angle, features, behind),
@@ -222,21 +222,21 @@ def coloured(
 
 
 def _own_shape(person: Person) -> FineShape:
-    """The fine shape of the built-in head, with lids, larynx and sternomastoids of a person."""
+    """The fine shape of the built-in head, with larynx and sternomastoids of a person."""
     known = load("head").fine_shape
     size = len(known.slopes)
-    lids = [fold_of(person, side, size) for side in EYES]
-    neck = larynx_of(person, size), *sternomastoids_of(person, size)
-    return with_reliefs(known, [*lids, *neck])
+    return with_reliefs(known, [larynx_of(person, size), *sternomastoids_of(person, size)])
 
 
 def _own_wrinkles(person: Person, shrink: int) -> Wrinkles:
-    """Wrinkles with the lines of a person; the smallest pictures cannot show them."""
+    """Wrinkles with folds of lids and lines of a person; the smallest pictures show no lines."""
     lines = person.identity.lines
     finest = 2  # texels, each way, from which on lines are as wide as one
     if lines is None or shrink > finest:
-        return person.wrinkles
-    return with_lines(person.wrinkles, lines, shrink)
+        wrinkles = replace(person.wrinkles, map=shared_map(shrink))
+    else:
+        wrinkles = with_lines(person.wrinkles, lines, shrink)
+    return with_folds(wrinkles, person)
 
 
 def _beside_light_skin(angle: float) -> Floats64:

@@ -124,11 +124,19 @@ def _sample_of(reach: tuple[float, float], along: Floats64) -> Floats64:
 
 
 @lru_cache(maxsize=2)
+def shared_map(shrink: int) -> Image:
+    """The map of the built-in head's furrows; shrink: as in `with_lines`."""
+    known = load("head").wrinkles.map
+    found = np.rint(shrunk(known.astype(np.float32), shrink)).astype(np.uint8)
+    found.flags.writeable = False
+    return found
+
+
+@lru_cache(maxsize=2)
 def _places(shrink: int) -> _Places:
     """Where lines go; all lengths are chosen by eye, but for the brows'."""
     head = load("head")
-    known = head.wrinkles.map
-    plain = np.rint(shrunk(known.astype(np.float32), shrink)) if shrink > 1 else known.copy()
+    plain = shared_map(shrink).copy()
     size = len(plain)
     rows, columns, place = _face(size)
     near = plain[rows, columns].astype(np.float32)
@@ -167,7 +175,7 @@ def _places(shrink: int) -> _Places:
     one = np.ones_like(x)
     corner = rows.start, columns.start
     return _Places(
-        plain.astype(np.uint8),
+        plain,
         _region(corner, above, leaning, x_sample, one),
         _region(corner, between, x, _sample_of(GLABELLA_REACH, y), one),
         tuple(_region(corner, fan * (side * x > 0.0), angle, radii, radius) for side in (1, -1)),

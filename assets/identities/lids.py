@@ -3,11 +3,13 @@
 Visible skin below the crease of an open eye is 1.4 ± 1.1 mm high in whites of 41 to 60 years. It is
 higher in women, and varies more with age (Cartwright and others 1994, "Measurements of upper eyelid
 and eyebrow dimensions in healthy white individuals", Am. J. Ophthalmology 117:231-234). We assume
-this spread for all people. The fold is in the maps alone.
+this spread for all people. The fold is in the map of wrinkles alone, and is there at rest. It
+flattens where skin is stretched: the skin of a fold covers the eyeball when the lid shuts.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -16,26 +18,61 @@ import scipy
 
 from risorius.geometry.texels import Texels
 
-from ...geometry.arrays import Floats64, Integers64
-from ..data_files import Image
+from ...geometry.arrays import Floats32, Floats64, Integers64
 from ..loading import load
+from ..model import Wrinkles
 from ..smooth import smooth_step
 from .person import Person
-from .relief import Relief, relief_of
+from .relief import Relief, add_to, relief_of
 
 EYES = ("left", "right")
 STEPS = 81  # along the edge of a lid
 
 
-def shaded(occlusion: Image, person: Person) -> Image:
-    """Ambient light on the skin, shape (H, H), with less in the creases of lids."""
-    found = occlusion.copy()
+def with_folds(wrinkles: Wrinkles, person: Person) -> Wrinkles:
+    """Wrinkles with the folds of a person's upper lids, which show at rest."""
+    found = wrinkles.map.copy()
+    size = len(found)
     for side in EYES:
-        fold = fold_of(person, side, len(found))
-        near = found[fold.rows, fold.columns]
-        near[...] = np.rint(near * fold.light)
+        fold = fold_of(person, side, size)
+        near = found[fold.rows, fold.columns, :3]
+        down, right = np.gradient(fold.heights.astype(np.float32))
+        darkest = 2.3  # bytes of a furrow's depth for each byte of light that is missing
+        more = np.stack([right, -down, (1.0 - fold.light).astype(np.float32)], axis=2)
+        steep = 127.0 * size / wrinkles.steepest
+        add_to(near, more * np.array([steep, steep, 255.0 * darkest], np.float32))
     found.flags.writeable = False
-    return found
+    across, share = _yielding()
+    resting = np.maximum(wrinkles.resting, share)
+    return replace(wrinkles, map=found, across=across, resting=resting)
+
+
+@lru_cache(maxsize=1)
+def _yielding() -> tuple[Floats32, Floats32]:
+    """Directions of wrinkles with those of the upper lids; the share of folds in each vertex.
+
+    Folds lie along the lid, so the skin yields away from its edge.
+    """
+    head = load("head")
+    across = head.wrinkles.across.copy()
+    share = np.zeros(len(across), np.float32)
+    for side in EYES:
+        edge = _samples(head.vertices, side)
+        away, nearest = scipy.spatial.cKDTree(edge).query(head.vertices)
+        way = head.vertices - edge[nearest]
+        is_seen = (way[:, 1] > -0.1) & (way[:, 2] > -4.0)
+        along = nearest / (STEPS - 1.0)
+        is_between = (along > 0.15) & (along < 0.95)
+        reach = 6.5  # [mm] from the edge, up to the skin that hangs over the crease
+        is_lid = is_seen & is_between & (away < reach)
+        share[is_lid] = 1.0
+        is_free = is_lid & (across == 0.0).all(axis=(1, 2))
+        upward = way / np.maximum(away, 1e-6)[:, None]
+        upward[away < 0.5] = [0.0, 1.0, 0.0]
+        across[is_free] = upward[is_free, None]
+    for each in (across, share):
+        each.flags.writeable = False
+    return across, share
 
 
 def fold_of(person: Person, side: str, size: int) -> Relief:

@@ -6,6 +6,7 @@ import pytest
 from risorius.app.refining.wrinkling import Compression
 from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
+from risorius.assets.loading import load
 
 SETTLED = 1.2  # [s]
 
@@ -90,3 +91,16 @@ def test_furrows_of_age_are_pulled_flat():
     assert after[fold, 0].mean() < 0.48 * before[fold, 0].mean()
     assert (after[fold, 0] < 0.75 * before[fold, 0]).all()
     assert after[lip].max() > 1.5 * before[lip].max() > 0.0
+
+
+def test_folds_of_lids_flatten_when_the_eyes_shut():
+    """The crease of an open eye crossed the shut lid as a dark band above a step."""
+    person = person_called("maria")
+    faces = FaceScene(person)
+    measure = Compression(faces)
+    open_eyed, shut = (amounts(faces, measure, **pose) for pose in ({}, {"blink": 1.0}))
+    head = load("head")
+    for side in ("left", "right"):
+        creased = head.rings[f"eye_3_{side}"][3:8]
+        assert (open_eyed[creased] > 0.99).all()
+        assert shut[creased].max() < 0.3

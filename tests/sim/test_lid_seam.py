@@ -4,6 +4,9 @@ import numpy as np
 from numpy.linalg import norm
 from numpy.testing import assert_allclose, assert_array_equal
 
+from risorius import sim
+from risorius.assets.identities import make_person, sample_identity
+from risorius.sim.face_model import build_face_model
 from risorius.sim.lids import COLUMNS, gaze_share_of, raised_at_corners
 from tests.sim.poses import both_sides, settled_displacement
 
@@ -44,6 +47,20 @@ def test_a_shut_lid_is_a_smooth_sheet_over_the_ball(simulation, head):
     for row in ("eye_3_left", "eye_3_right"):
         upper = head.rings[row][:11]
         assert np.abs(np.diff(moved[upper, 1])).max() < 4.0
+
+
+def test_a_shut_lid_of_deep_set_eyes_lies_on_the_ball():
+    """An old man's lid was a pouch, which stood 6 mm before the ball under a high brow."""
+    man = make_person(sample_identity(47))
+    simulation = sim.Simulation(build_face_model(man))
+    shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
+    moved = settled_displacement(simulation, shut)
+    for eye in man.eyes:
+        away = simulation.rest_positions + moved - eye.centre
+        is_lid = (np.abs(away[:, [0, 1]]) < [7.0, 3.0]).all(axis=1) & (away[:, 2] > 0.0)
+        stands = norm(away[is_lid], axis=1) - eye.radius
+        assert is_lid.sum() >= 8
+        assert stands.max() < 4.8
 
 
 def test_skin_beside_the_inner_corner_slides_along(simulation, head):
