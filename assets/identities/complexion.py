@@ -357,9 +357,14 @@ def _tints() -> _Tints:
     melanins = np.linspace(most_melanin, least_melanin, 200)
     changes = [_changes(float(melanin), 1.0) for melanin in melanins]
     tones = [skin * np.exp(-weights[0] * more - weights[1] * red) for more, red, _ in changes]
-    lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3))
+    is_skin = (hair < 0.02).astype(np.float32)
+    lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3)) * is_skin
     detail_size = 9  # [texels]: finer changes of colour are relief
-    detail = (lightness - scipy.ndimage.uniform_filter(lightness, detail_size)) * (hair < 0.02)
+    # Beside hair the mean is that of skin alone: skin between dark hairs is no raised relief.
+    around, share = (
+        scipy.ndimage.uniform_filter(each, detail_size) for each in (lightness, is_skin)
+    )
+    detail = lightness - is_skin * around / np.maximum(share, 1e-3)
     return _Tints(
         bare,
         **soft,
