@@ -116,7 +116,7 @@ def recoloured(
     hairs = fringe * shrunk_strands(shrink * len(kept), shrink) if fringe else 0.0 * kept
     root_light = 0.5  # share between hairs where they are dense
     picture = np.empty_like(tints.light, np.uint8)
-    lips = features.lips * BLOOD - features.pale_lips * np.maximum(density, 0.0)
+    lips = features.lips * BLOOD + _paleness(features.pale_lips, density)
     # In double precision it takes twice as long.
     density, redness, hair, skin, lips, beard = np.array(
         [density, redness, hair, skin, lips, features.beard * SHADOW], dtype=np.float32
@@ -147,6 +147,17 @@ def recoloured(
             steps = np.sqrt(np.clip(light, 0.0, 1.0)) * (LEVELS - 1)
             picture[rows, :, channel] = _screen_bytes().take(steps.astype(np.intp))
     return picture
+
+
+def _paleness(pale: float, density: Floats64) -> Floats64:
+    """Additional density of lips that lack a share of the skin's additional melanin, shape (3,).
+
+    Blood shows where melanin is missing, so such lips are pinker, not the colour of lighter skin.
+    """
+    most_lacking = 0.65  # of that share: all of it looked like paint
+    redness = 0.45  # of blood in lips, for each unit of density that they lack
+    lacking = pale * np.maximum(density, 0.0)
+    return np.asarray(redness * lacking.mean() * BLOOD - most_lacking * lacking)
 
 
 def _hair_light(angle: float, features: Features) -> Floats64:

@@ -305,6 +305,8 @@ def test_lips_differ_by_person(head):
     off = recoloured(-40.0, features=pale).astype(int) - recoloured(-40.0)
     assert off[head.segments == Segment.TOP_LIP].mean() > 5.0
     assert np.abs(off[head.segments == Segment.NECK]).max() == 0
+    red, green, _ = off[head.segments == Segment.TOP_LIP].mean(axis=0)
+    assert red > 1.7 * green  # pink: all of it once was the colour of lighter skin
 
 
 def test_hair_turns_grey_as_in_the_survey():
