@@ -11,6 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from risorius.geometry.colour import to_linear
+
+from ..geometry.arrays import Floats64
+
 MELANIN = np.array([0.64, 0.87, 1.13])
 BLOOD = np.array([0.07, 0.56, 0.47])
 SHADOW = np.array([0.47, 0.47, 0.42])  # shaved hair: grey, a little blue
@@ -32,3 +36,28 @@ COMPLEXIONS = (  # from light to dark
     Complexion(0.75, 0.95, (0.135, 0.095, 0.075)),
     Complexion(1.55, 0.85, (0.075, 0.058, 0.052)),
 )
+
+
+def changes_of(melanin: float, blood: float) -> tuple[Floats64, Floats64, Floats64]:
+    """Added densities of melanin and blood, and light of hair, (3,) each."""
+    amounts = [complexion.melanin for complexion in COMPLEXIONS]
+    usual = np.interp(melanin, amounts, [complexion.blood for complexion in COMPLEXIONS])
+    hair = [
+        np.interp(melanin, amounts, channel)
+        for channel in to_linear(np.array([complexion.hair for complexion in COMPLEXIONS])).T
+    ]
+    more = max(melanin - amounts[-1], 0.0)
+    dark_melanin = np.array([0.80, 0.88, 0.90])  # beyond the darkest complexion; chosen by eye
+    density = (melanin - more - OWN.melanin) * MELANIN + more * dark_melanin
+    return density, (blood * usual - OWN.blood) * BLOOD, np.array(hair)
+
+
+def paleness_of_lips(pale: float, density: Floats64) -> Floats64:
+    """Additional density of lips that lack a share of the skin's additional melanin, shape (3,).
+
+    Blood shows where melanin is missing, so such lips are pinker, not the colour of lighter skin.
+    """
+    most_lacking = 0.65  # of that share: all of it looked like paint
+    redness = 0.45  # of blood in lips, for each unit of density that they lack
+    lacking = pale * np.maximum(density, 0.0)
+    return np.asarray(redness * lacking.mean() * BLOOD - most_lacking * lacking)

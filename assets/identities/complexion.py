@@ -29,7 +29,7 @@ from ...geometry.arrays import Floats32, Floats64, Integers64
 from ..data_files import Image, read_arrays, read_image
 from ..loading import load
 from ..model import FineShape, Head, Part, Segment, Wrinkles
-from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
+from ..pigments import BLOOD, OWN, SHADOW, changes_of, paleness_of_lips
 from ..smooth import shrunk
 from .brows import painted, stubble
 from .eyes import beside_skin, with_irises
@@ -107,7 +107,7 @@ def recoloured(
     if not DARKEST <= angle <= LIGHTEST:
         raise ValueError(f"angle is {angle}; it must be {DARKEST:g} (dark) to {LIGHTEST:g} (light)")
     tints = _tints() if shrink == 1 else _shrunk_tints(shrink)
-    density, redness, _ = _changes(tints.melanin_of(angle), blood)
+    density, redness, _ = changes_of(tints.melanin_of(angle), blood)
     hair = _hair_light(angle if haired_as is None else haired_as, features)
     grey_share = 0.12  # share of the scalp's greyness for lashes, which are in the segment of brows
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
@@ -116,7 +116,7 @@ def recoloured(
     hairs = fringe * shrunk_strands(shrink * len(kept), shrink) if fringe else 0.0 * kept
     root_light = 0.5  # share between hairs where they are dense
     picture = np.empty_like(tints.light, np.uint8)
-    lips = features.lips * BLOOD + _paleness(features.pale_lips, density)
+    lips = features.lips * BLOOD + paleness_of_lips(features.pale_lips, density)
     # In double precision it takes twice as long.
     density, redness, hair, skin, lips, beard = np.array(
         [density, redness, hair, skin, lips, features.beard * SHADOW], dtype=np.float32
@@ -149,20 +149,9 @@ def recoloured(
     return picture
 
 
-def _paleness(pale: float, density: Floats64) -> Floats64:
-    """Additional density of lips that lack a share of the skin's additional melanin, shape (3,).
-
-    Blood shows where melanin is missing, so such lips are pinker, not the colour of lighter skin.
-    """
-    most_lacking = 0.65  # of that share: all of it looked like paint
-    redness = 0.45  # of blood in lips, for each unit of density that they lack
-    lacking = pale * np.maximum(density, 0.0)
-    return np.asarray(redness * lacking.mean() * BLOOD - most_lacking * lacking)
-
-
 def _hair_light(angle: float, features: Features) -> Floats64:
     """Linear light of a person's hair without grey, shape (3,); angle: ITA [deg]."""
-    hair = _changes(_tints().melanin_of(angle), 1.0)[2]
+    hair = changes_of(_tints().melanin_of(angle), 1.0)[2]
     fair_hair = (0.58, 0.44, 0.29)  # sRGB
     return np.asarray(hair + features.fair * (to_linear(np.array(fair_hair)) - hair))
 
@@ -256,7 +245,7 @@ def _beside_light_skin(angle: float) -> Floats64:
     light_skin = 41.0  # ITA from which skin is called light
     lost = np.zeros((2, 3))
     for row, tone in enumerate((min(angle, light_skin), light_skin)):
-        density, redness, _ = _changes(tints.melanin_of(tone), 1.0)
+        density, redness, _ = changes_of(tints.melanin_of(tone), 1.0)
         lost[row] = tints.skin[3] * density + tints.skin[4] * redness
     return np.asarray(np.exp(lost[1] - lost[0]))
 
@@ -330,20 +319,6 @@ def _behind(tints: _Tints, features: Features) -> Floats32:
     return behind
 
 
-def _changes(melanin: float, blood: float) -> tuple[Floats64, Floats64, Floats64]:
-    """Added densities of melanin and blood, and light of hair, (3,) each."""
-    amounts = [complexion.melanin for complexion in COMPLEXIONS]
-    usual = np.interp(melanin, amounts, [complexion.blood for complexion in COMPLEXIONS])
-    hair = [
-        np.interp(melanin, amounts, channel)
-        for channel in to_linear(np.array([complexion.hair for complexion in COMPLEXIONS])).T
-    ]
-    more = max(melanin - amounts[-1], 0.0)
-    dark_melanin = np.array([0.80, 0.88, 0.90])  # beyond the darkest complexion; chosen by eye
-    density = (melanin - more - OWN.melanin) * MELANIN + more * dark_melanin
-    return density, (blood * usual - OWN.blood) * BLOOD, np.array(hair)
-
-
 @lru_cache(maxsize=1)
 def _tints() -> _Tints:
     from PIL import Image as Pictures
@@ -366,7 +341,7 @@ def _tints() -> _Tints:
     least_melanin = 0.05
     most_melanin = 3.4
     melanins = np.linspace(most_melanin, least_melanin, 200)
-    changes = [_changes(float(melanin), 1.0) for melanin in melanins]
+    changes = [changes_of(float(melanin), 1.0) for melanin in melanins]
     tones = [skin * np.exp(-weights[0] * more - weights[1] * red) for more, red, _ in changes]
     is_skin = (hair < 0.02).astype(np.float32)
     lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3)) * is_skin
