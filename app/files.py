@@ -8,6 +8,7 @@ complete.
 from __future__ import annotations
 
 import contextlib
+import difflib
 import os
 import re
 import shutil
@@ -35,7 +36,20 @@ def read_text(path: Path, *, what: str, longest: int) -> str:
     try:
         return read_bytes(path, what=what, longest=longest).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise UserError(f"{path}: cannot be read as a text file: {error}") from None
+        where = f"byte {error.start} is {error.object[error.start]:#04x}"
+        raise UserError(
+            f"{path}: is no text in UTF-8 ({where}); a {what} is one: save it in this encoding"
+        ) from None
+
+
+def _similar(path: Path) -> str:
+    """The end of an error text: the most similar name beside a missing file, if there is one."""
+    try:
+        names = [each.name for each in path.parent.iterdir() if each.is_file()]
+    except (OSError, ValueError):
+        return ""
+    near = difflib.get_close_matches(path.name, names, n=1, cutoff=0.8)
+    return f"; did you mean {path.with_name(near[0])}?" if near else ""
 
 
 def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None) -> bytes:
@@ -54,7 +68,7 @@ def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None)
         with path.open("rb") as file:
             return file.read(longest if first is None else first)
     except FileNotFoundError:
-        raise NoSuchFileError(f"{path}: no such {what}") from None
+        raise NoSuchFileError(f"{path}: no such {what}{_similar(path)}") from None
     except (OSError, ValueError) as error:  # an impossible name is a ValueError
         why = getattr(error, "strerror", None) or error
         raise UserError(f"{path}: cannot be read: {why}") from None

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from risorius.app.cli.options import FiniteRange, Size
+from risorius.app.cli.value_types import FiniteRange, Size
 from risorius.app.errors import UserError
 from risorius.app.text import in_one_line
 

@@ -16,7 +16,10 @@ from risorius.faces import UNITS, Faces
 if __name__ == "__main__":
     command = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     command.add_argument("folder", type=Path, help="of a set that `risorius dataset` made")
-    faces = Faces(command.parse_args().folder)
+    try:
+        faces = Faces(command.parse_args().folder)
+    except FileNotFoundError as error:
+        command.error(str(error))
     training, testing = faces.split()
     units = np.stack([faces[number]["units"] for number in range(len(faces))])
     print(f"{len(training)} samples to train with, {len(testing)} to test with")

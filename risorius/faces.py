@@ -27,9 +27,13 @@ class Faces:
     """A set made by `risorius dataset`, in single files or shards; each item is a sample."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
-        """folder: the set's folder. Raises OSError if there is no index."""
+        """folder: the set's folder. Raises FileNotFoundError if it has no index."""
         self.folder = Path(folder)
-        with (self.folder / "index.csv").open(encoding="utf-8", newline="") as file:
+        index = self.folder / "index.csv"
+        if not index.is_file():
+            made_by = "`risorius dataset` writes it when all samples are made"
+            raise FileNotFoundError(f"{index}: no such index of a data set; {made_by}")
+        with index.open(encoding="utf-8", newline="") as file:
             self.rows = list(csv.DictReader(file))
 
     def __len__(self) -> int:

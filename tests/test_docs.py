@@ -109,6 +109,13 @@ def test_pages_have_short_lines():
             assert len(line) <= 120 or not is_prose, f"{page.name}: {line}"
 
 
+def test_prose_is_not_indented():
+    """Four blanks make code: a page shows a paragraph that begins so with its stars and links."""
+    for page in [README, ROOT / "CHANGELOG.md", *tracked("docs", "*.md")]:
+        prose = re.sub(r"^```.*?^```$", "", page.read_text("utf-8"), flags=re.M | re.S)
+        assert not re.findall(r"^ {4,}\*\*\w.*", prose, flags=re.M), page.name
+
+
 @pytest.mark.usefixtures("own_refiners")
 @pytest.mark.parametrize(
     "page",
@@ -150,7 +157,8 @@ def test_own_head(tmp_path, monkeypatch):
     """The tutorial's head is fitted and filmed by its commands."""
     page = TUTORIALS / "own_head.md"
     monkeypatch.chdir(tmp_path)
-    exec(compile(blocks(page, "python"), page, "exec"), {})
+    for program in re.findall(r"^```python\n(.*?)^```", page.read_text("utf-8"), flags=re.M | re.S):
+        exec(compile(program, page, "exec"), {})  # each stands alone: other pages lead to the last
     hello = (ROOT / "docs" / "hello.toml").read_text(encoding="utf-8")
     (tmp_path / "docs").mkdir()
     capture_as_shown(page, {"docs/hello.toml": hello}, tmp_path, monkeypatch)

@@ -17,7 +17,8 @@ from ..errors import UserError
 from ..files import cannot_be_written, check_apart, check_folder
 from ..stopping import cleaned_up_if_stopped
 from ..text import counted, in_one_line
-from .options import PATH, SILENT
+from .options import SILENT
+from .value_types import PATH
 
 LISTED = ("capture", "export", "convert")  # commands that a line may hold
 OUTPUTS = ("output", "sheet")  # names of their parameters for output files

@@ -12,23 +12,9 @@ from ..errors import UserError
 from ..refining.presets import PAPERS_PRESET, STATIC, Refinement
 from ..text import in_one_line
 from .help import GroupedCommand
-from .options import (
-    MAP_BACKGROUND,
-    PATH,
-    SCENE,
-    SCRIPT,
-    SETTINGS,
-    SOUND,
-    BackgroundName,
-    Drawing,
-    FiniteRange,
-    Size,
-    Times,
-    option,
-    packed,
-    played,
-)
+from .options import SCENE, SCRIPT, SETTINGS, SOUND, Drawing, option, packed, played
 from .styles import LIGHT_NAMES, STYLE_WORDS
+from .value_types import MAP_BACKGROUND, PATH, BackgroundName, FiniteRange, Size, Times
 
 if TYPE_CHECKING:
     from risorius import render
@@ -45,7 +31,10 @@ class Filming:
         type=Size(), default=(1280, 720), help="Size of pictures [pixels], 1280x720 by default."
     )
     fps: float = option(
-        type=FiniteRange(1, 240), default=30.0, show_default=True, help="Frames a second."
+        type=FiniteRange(1, 240),
+        default=30.0,
+        show_default=True,
+        help="Frames a second, as 25 or 30000/1001.",
     )
     compare: str | None = option(
         is_flag=False,

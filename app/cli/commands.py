@@ -26,18 +26,17 @@ from .help import GroupedCommand
 from .options import (
     GAIN,
     MIRROR,
-    PATH,
     QUIET,
     SCENE_NAMES,
     SOUND,
     Drawing,
-    Size,
     option,
     packed,
     played,
     with_playback,
 )
 from .rig import rig
+from .value_types import PATH, Size
 
 if TYPE_CHECKING:
     from risorius.assets.fitting import FittedHead

@@ -9,7 +9,8 @@ import click
 
 from ..errors import UserError
 from ..text import counted, in_one_line
-from .options import PATH, SILENT, Size, printing
+from .options import SILENT, printing
+from .value_types import PATH, Size
 
 
 @click.command()

@@ -13,17 +13,8 @@ from ..export.formats import FORMATS, ExportRequest, check_request, format_for
 from ..export.formats import export as write
 from ..text import in_one_line
 from .help import GroupedCommand
-from .options import (
-    PATH,
-    SCENE,
-    SCRIPT,
-    SETTINGS,
-    FiniteRange,
-    Subject,
-    option,
-    packed,
-    played,
-)
+from .options import SCENE, SCRIPT, SETTINGS, Subject, option, packed, played
+from .value_types import PATH, FiniteRange
 
 if TYPE_CHECKING:
     from risorius.assets.fitting import FittedHead
@@ -39,7 +30,10 @@ class Exporting:
         help="The format, where the name does not show it: obj is a folder of one file a frame.",
     )
     fps: float = option(
-        type=FiniteRange(1, 240), default=30.0, show_default=True, help="Frames a second."
+        type=FiniteRange(1, 240),
+        default=30.0,
+        show_default=True,
+        help="Frames a second, as 25 or 30000/1001.",
     )
     refined: bool = option(
         is_flag=True,

@@ -1,10 +1,8 @@
-"""Options that commands share: their types, and the settings objects made of them."""
+"""Options that commands share, and the settings objects made of them."""
 
 from __future__ import annotations
 
 import functools
-import math
-import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, fields
 from importlib.resources import files
@@ -18,6 +16,7 @@ from ..errors import UserError
 from ..playback import LEAD, Playback
 from ..refining.presets import FIRST_PRESET, PRESETS, Refinement
 from .styles import LIGHT_NAMES, STRUCTURES, anatomy_in, style_in
+from .value_types import PATH, FiniteRange, HeadName
 
 if TYPE_CHECKING:
     from risorius import render
@@ -27,120 +26,7 @@ if TYPE_CHECKING:
     from ..recordings.report import Report
     from ..script import Script
 
-LEAST_SIDE = 16  # [pixels]
-LONGEST_SIDE = 8192  # [pixels]
-BACKGROUNDS = ("light", "dark", "white", "black")  # those of `render`
-HEAD_NAMES = ("ada", "kofi", "maria", "coarse")  # those of `assets`, which is not imported yet
-
-
-class Size(click.ParamType[tuple[int, int]]):
-    """Width x height in pixels, written 1280x720."""
-
-    name = "WxH"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[int, int]:
-        """Turn the text into two numbers, or fail with the allowed sizes."""
-        if isinstance(value, tuple):
-            return value
-        written = re.fullmatch("([0-9]{1,6})x([0-9]{1,6})", str(value).lower())
-        if written:
-            size = (int(written[1]), int(written[2]))
-            if all(LEAST_SIDE <= side <= LONGEST_SIDE for side in size):
-                return size
-        self.fail(
-            f"'{value}' is no size; write width x height, each {LEAST_SIDE} to {LONGEST_SIDE}, "
-            "as in 1280x720"
-        )
-
-
-MAP_BACKGROUND = "map"
-
-
-class BackgroundName(click.ParamType["render.Background | str | None"]):
-    """The background of the scene, by name or as a colour; None is transparent.
-
-    The word "map" stays a word: other options choose the map that lights the scene.
-    """
-
-    name = "COLOUR"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> render.Background | str | None:
-        """Look the name up, or fail with the allowed names."""
-        from risorius import render
-
-        word = str(value).lower()
-        if word == "transparent":
-            return None
-        if word == MAP_BACKGROUND:
-            return word
-        if word in BACKGROUNDS:
-            named: render.Background = getattr(render, word.upper())
-            return named
-        if re.fullmatch("#[0-9a-f]{6}", word):
-            red, green, blue = (part / 255.0 for part in bytes.fromhex(word[1:]))
-            return render.Background((red, green, blue), (red, green, blue))
-        self.fail(
-            f"'{value}' is no background; take {', '.join(BACKGROUNDS)}, {MAP_BACKGROUND}, "
-            "transparent, or a colour as #00b140"
-        )
-
-
-class Times(click.ParamType[tuple[float, ...]]):
-    """A time [s], or two with a colon between them: 2.5, or 1:2.5."""
-
-    name = "T|FROM:TO"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, ...]:
-        """Turn the text into one or two numbers of seconds, or fail with the allowed forms."""
-        if isinstance(value, tuple):
-            return value
-        try:
-            times = tuple(float(part) for part in str(value).split(":"))
-        except ValueError:
-            times = ()
-        if len(times) not in (1, 2) or not all(0.0 <= each <= 86_400.0 for each in times):
-            self.fail(f"'{value}' is no time [s]; write it as 2.5, or FROM:TO as 1:2.5", param, ctx)
-        return times
-
-
-class FiniteRange(click.FloatRange):
-    """A number within limits; unlike its parent class it refuses NaN."""
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> float:
-        """Turn the text into a number, or fail with the limits."""
-        number = float(super().convert(value, param, ctx))
-        if not math.isfinite(number):
-            self.fail(f"{value} is not a finite number", param, ctx)
-        return number
-
-
-class HeadName(click.ParamType["Path | int | str"]):
-    """A head: a file, the number or name of a person, or the coarse head."""
-
-    name = "FILE|NAME"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> Path | int | str:
-        """A number is a person, HEAD_NAMES are heads; all else is a path."""
-        if value in HEAD_NAMES:
-            return str(value)
-        if str(value).isdecimal():
-            return click.IntRange(0, 2**53 - 1).convert(value, param, ctx)
-        path: Path = PATH.convert(value, param, ctx)
-        return path
-
-
 Command = Callable[..., Any]
-PATH = click.Path(path_type=Path)
 SCENE_NAMES = click.Choice(["face", "plane"])
 SOUND = click.option(
     "--sound", type=PATH, help="Sound to play along: a WAV, MP3, ..., or a film with sound."

@@ -11,7 +11,8 @@ import click
 from ..errors import UserError
 from ..text import counted, in_one_line
 from .help import RenewedCommand
-from .options import PATH, HeadName, option, packed
+from .options import option, packed
+from .value_types import PATH, HeadName
 
 if TYPE_CHECKING:
     from ..script import Script

@@ -59,6 +59,15 @@ def test_frames_and_one_picture(smile, tmp_path):
 
 
 @pytest.mark.slow
+def test_frames_a_second_may_be_a_fraction(smile, tmp_path):
+    """Rates of television are exact: 24000/1001 is no rounded 23.976."""
+    film = tmp_path / "film.mp4"
+    succeeded("capture", smile, "-o", film, "--fps", "24000/1001", "--size", "64x36")
+    about = next(imageio_ffmpeg.read_frames(str(film)))
+    assert about["fps"] == 23.98
+    assert imageio_ffmpeg.count_frames_and_secs(str(film))[0] == 11
+
+
 def test_looks_and_refiners_side_by_side(smile, tmp_path):
     """Each part of a comparison is the picture that its look or refiner makes alone."""
 

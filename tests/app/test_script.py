@@ -203,13 +203,22 @@ def test_missing_and_unreadable_files(tmp_path):
         load_script(tmp_path / "nothing.toml")
     binary = tmp_path / "binary.toml"
     binary.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(UserError, match="cannot be read as a text file"):
+    with pytest.raises(UserError, match=r"no text in UTF-8 \(byte 0 is 0xff\); a script is one"):
         load_script(binary)
     long = tmp_path / "long.toml"
     with long.open("wb") as file:
         file.truncate(2**25 + 1)
     with pytest.raises(UserError, match="is longer than a script may be, 32 MB"):
         load_script(long)
+
+
+def test_a_misspelt_file_names_the_one_beside_it(tmp_path):
+    """A missing script is answered with the most similar name in its folder, if there is one."""
+    (tmp_path / "smile.toml").write_text("[tracks]\njoy = [{ time = 1, value = 1 }]\n")
+    with pytest.raises(UserError, match=r"tml: no such script; did you mean .*smile\.toml\?"):
+        load_script(tmp_path / "smile.tml")
+    with pytest.raises(UserError, match=r"anger\.toml: no such script$"):
+        load_script(tmp_path / "anger.toml")
 
 
 def test_names_are_reported_on_one_line():

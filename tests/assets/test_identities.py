@@ -10,7 +10,7 @@ from numpy.linalg import norm
 from pytest import approx
 
 from risorius import sim
-from risorius.app.cli.options import HEAD_NAMES
+from risorius.app.cli.value_types import HEAD_NAMES
 from risorius.app.scenes import FaceScene
 from risorius.assets.coarse import COARSE
 from risorius.assets.fitting.mesh_validation import SkinPiece, check_manifold, check_openings

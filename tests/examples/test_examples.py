@@ -100,6 +100,19 @@ def test_read_dataset(tmp_path):
     assert len(result.stdout.splitlines()) == 13
 
 
+def test_a_folder_without_a_set_is_named_in_one_line(tmp_path):
+    """A wrong folder gives one line without a traceback."""
+    result = subprocess.run(
+        [sys.executable, str(FOLDER / "read_dataset.py"), str(tmp_path / "fcaes")],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == 2
+    assert "Traceback" not in result.stderr
+    assert "fcaes/index.csv: no such index of a data set" in result.stderr
+
+
 def test_faces_are_cut_out_with_their_points(tmp_path):
     """A photograph and its `.pts` become one face, and its points stay on their features."""
     random = np.random.default_rng(4)

@@ -41,6 +41,8 @@ REFUSED = {
     "bench reference folder -o x": "has no FaceXModel/generic_neutral_mesh.obj",
     # Numbers.
     f"{IMAGE} --fps 0": "is not in the range",
+    f"{IMAGE} --fps fast": "'fast' is not a valid number",
+    f"{IMAGE} --fps 1/0": "'1/0' is not a valid number",
     f"{IMAGE} --style wrinkles={'9' * 5000}": "write a number from 0 to 1",
     f"{IMAGE} --style skin=red": "'red' is none of textured, plain, clay",
     f"{IMAGE} --style shiny": "'shiny' is unknown; allowed are wireframe, splits, wires, skin=",
@@ -111,6 +113,8 @@ REFUSED = {
     "convert nothing.csv -o c.png": "c.png: scripts are written as .toml",
     "convert good.toml -o out.toml": "is a script already",
     # Persons.
+    "capture --head nobody -o x.png": "'nobody' is no head; take ada, kofi, maria, coarse, the num",
+    "rig Coarse -o x.glb": "'Coarse' is no head; take ada",
     "capture --head 3 --landmarks marks.json -o x.png": "--head 3: its landmarks are known",
     "capture --head 3 --scene plane -o x.png": "--head goes with the scene face",
     # Recordings.
