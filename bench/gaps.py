@@ -148,7 +148,7 @@ def meshes_of(
 def widest_slit(positions: Floats64, triangles: Triangles, landmarks: Floats64) -> float:
     """Greatest height [mm] of a slit between the lips that is visible in any of VIEWS.
 
-    `landmarks`: the present 68 (68, 3).
+    landmarks: the 68 points as they lie now, (68, 3) [mm].
     """
     lip = landmarks[list(LOWER_EDGES["mouth"])]
     mouth_radius = 60.0  # mm around the mouth's middle in which skin may cover it

@@ -280,7 +280,7 @@ def report(found: Mapping[str, Rest]) -> str:
 
 
 def targets(found: Mapping[str, Rest]) -> list[Target]:
-    """The targets of the form of a head."""
+    """The bounds that the form of a head must keep."""
     fine = found["finer"]
     limits = MOST_DISTANCES.items()
     most_angle = 5.0  # [deg] of the finer mesh

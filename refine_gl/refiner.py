@@ -197,7 +197,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         return cast(RefinedMesh, self._refine_in(out, operator.call, view))
 
     def follow_values(self) -> None:
-        """Send new values of a frame to the card, with the frame."""
+        """Note that values have changed; the next frame takes them to the card."""
         super().follow_values()
         self._has_new_values = True
 

@@ -72,7 +72,7 @@ def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_sca
 def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: PlacedView) -> None:
     """Set highlights of a part, from dull (broad and faint) to wet (small and bright).
 
-    Call `set_light` before; its light from behind does not reach enclosed parts, or fibres.
+    Call `set_light` before. Enclosed parts and fibres get none of its light from behind.
     """
     kind = part.kind
     shine = part.shine

@@ -143,8 +143,8 @@ class Renderer:
     def _draw(self, frame: Frame, view: PlacedView) -> None:
         """Draw everything in the order that depth and blending ask for.
 
-        Solid parts come before an opened skin. All other parts come after the skin, whose shadow
-        and depths they need, and mixed ones after solid ones.
+        Solid parts come before an opened skin, which shows them. All other parts come after the
+        skin, because they need its shadow and its depths. Hair and other fibres come last.
         """
         parts = self._parts.uploaded(frame.parts)
         later = parts

@@ -106,7 +106,7 @@ class Within:
 class OneOf:
     """A rule: exactly one of these values, or of those that a function returns at the first read.
 
-    description: words for many values in errors.
+    description: the words that an error has in place of a long list of values.
     """
 
     allowed: Iterable[Any] | Callable[[], Iterable[Any]]

@@ -133,7 +133,7 @@ class Controls:
 
     @property
     def sums(self) -> dict[str, float]:
-        """The sum of each lowest control: its own value and those of the layers above it."""
+        """For each muscle, jaw, gaze: its own value, and the values that layers above add to it."""
         return dict(zip(self.lowest, self.wanted.tolist(), strict=True))
 
     def places_in_reached(self, names: Iterable[str]) -> npt.NDArray[np.intp]:

@@ -50,7 +50,7 @@ class Brought:
 
 
 def make_samples(share: Share, send: Send) -> None:
-    """Make the missing samples of a share, and send `Brought` for each."""
+    """Make the missing samples of a share; after each one, `send` gets a `Brought`."""
     request = share.request
     here = version("risorius")
     if request.version != here:

@@ -52,7 +52,7 @@ class Sender:
         clock: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        """Send a take's channels that packets hold, in time, once or forever; UserError if none."""
+        """Send a take in its own time, once or forever; UserError if no packet has its channels."""
         channels = {name: values for name, values in take.channels.items() if name in CARRIED}
         if not channels:
             raise UserError(

@@ -233,7 +233,7 @@ def weighted_normals(
 ) -> None:
     """Write unit vertex normals, each corner weighted as at rest, shape (V, 3).
 
-    `starts`, `corners`: those at each vertex (mesh/fans.py).
+    starts, corners: the corners of triangles at each vertex, as in mesh/fans.py.
     """
     assert weights.shape[1] == crosses.shape[1] == normals.shape[1] == WIDTH
     for k in range(first, last):

@@ -2,11 +2,11 @@
 
 The search begins with the nearest place on the flat triangles. From there the place slides over the
 surface until the point stands upright above it: x = p + h n, with p on the cubic patch and n the
-mean of the vertex normals there, by Newton's method, from patch to patch through the edges inside.
-Vertex normals have no jump at an edge, so places that are neighbours on the fine mesh are
-neighbours on the surface (Panozzo, Baran, Diamanti, Sorkine-Hornung 2013, "Weighted averages on
-surfaces", who call it Phong projection). A point that stands upright above no place, such as one
-beyond a border, keeps the best place that was found; its offset is the remaining vector.
+mean of the vertex normals there. Newton's method finds p; a step that leaves a patch goes on in the
+patch behind the edge. Vertex normals have no jump at an edge, so places that are neighbours on the
+fine mesh are neighbours on the surface (Panozzo, Baran, Diamanti, Sorkine-Hornung 2013, "Weighted
+averages on surfaces", who call it Phong projection). Some points, such as those beyond a border,
+stand upright above no place. They keep the best place that was found, and the vector from there.
 """
 
 import numpy as np

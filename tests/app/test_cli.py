@@ -76,7 +76,8 @@ def test_looks_and_refiners_side_by_side(smile, tmp_path):
         picture = tmp_path / "x.png"
         size = ("--size", f"{width}x120", "--quiet")
         said = succeeded("capture", smile, "-o", picture, *size, *options)
-        return np.asarray(Image.open(picture)).astype(int), int(said.split()[1])
+        last = said.splitlines()[-1]  # before it there may be a note that kernels are compiled
+        return np.asarray(Image.open(picture)).astype(int), int(last.split()[1])
 
     alone = [
         drawn(160, *options)
