@@ -104,10 +104,12 @@ class Pipeline:
             values = drawn.splits()
         elif drawn.mesh is not None and style.colour_by is render.ColourBy.SPLIT_WIRES:
             values = drawn.splits_beyond_rest()
-        fading = None
+        fading = mouth = None
         if self._fading is not None and drawn.can_fade and drawn.positions is not None:
             fading = drawn.positions[self._fading]
-        skin = render.Skin(drawn.stream, maps, fading, values)
+            rims = self.scene.rims(render.Opening.RIM_POINTS)
+            mouth = rims["mouth"].points if "mouth" in rims else None
+        skin = render.Skin(drawn.stream, maps, fading, values, mouth)
         style = replace(style, opacity=style.opacity * seen.opacity)
         view = render.CameraView(camera, area, clip)
         return render.Frame(view, style, skin, seen.parts, seen.cut, overlays)

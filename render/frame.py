@@ -124,6 +124,8 @@ class Skin:
     maps: they need a stream of 8 columns or more, ValueError else.
     fading: places around all of the mesh that fades as its columns 17 and 18 have it, (n, 3); None:
         all of it shows. They need a stream of 18 columns, ValueError else.
+    mouth: the rim of its lips, see `Opening.rim`: through them the inner side of a neck shows that
+        is hidden where it fades; None: there are none.
     values: the number that colours each triangle, see `ColourBy`, shape (M,), uint8; needed unless
         that is NONE.
     """
@@ -132,6 +134,7 @@ class Skin:
     maps: SkinMaps = NO_MAPS
     fading: Floats64 | None = None
     values: Unsigned8 | None = None
+    mouth: Floats64 | None = None
     mesh: UploadedMesh = field(init=False)
     """The upload that this skin shows."""
 

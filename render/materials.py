@@ -19,8 +19,10 @@ VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl reads
 _PALETTE = np.array([to_linear(colour) for colour in SPLIT_PALETTE], np.float32)
 
 
-def mesh_shader(style: Style, has_texture: bool, maps: Iterable[BumpMap], fades: bool) -> list[str]:
-    """The file and the defines of the program of a mesh."""
+def mesh_shader(
+    style: Style, has_texture: bool, maps: Iterable[BumpMap], fade: Iterable[str]
+) -> list[str]:
+    """The file and the defines of the program of a mesh; fade: see `fade_defines`."""
     return [
         "surface.glsl",
         style.shading.name,
@@ -31,7 +33,7 @@ def mesh_shader(style: Style, has_texture: bool, maps: Iterable[BumpMap], fades:
         *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
         *(["SHADOWS"] if style.shadows else []),
         *(each.define for each in maps),
-        *(["FADED"] if fades else []),
+        *fade,
         *(["AROUND"] if style.light.around else []),
     ]
 

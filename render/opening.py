@@ -32,15 +32,24 @@ class Opening:
     def defines(self) -> tuple[str, str]:
         """The define of its kind in opening.glsl, and the number of points of its rim."""
         kind = "FILLED" if self.is_filled else "BEHIND"
-        return kind, f"RIM_POINTS {self.RIM_POINTS}"
+        return kind, RIM_DEFINE
 
     def set_uniforms(self, program: moderngl.Program, view: PlacedView) -> None:
         """Set the uniforms that place it in the view."""
-        seen = np.column_stack([self.rim, np.ones(len(self.rim))]) @ view.world_to_view
         if self.is_filled:
+            seen = np.column_stack([self.rim, np.ones(len(self.rim))]) @ view.world_to_view
             _set_lids(program, seen[:, :3])
         else:
-            write_uniform(program, "rim", seen[:, :3])
+            set_rim(program, "rim", self.rim, view)
+
+
+RIM_DEFINE = f"RIM_POINTS {Opening.RIM_POINTS}"
+
+
+def set_rim(program: moderngl.Program, name: str, rim: Floats64, view: PlacedView) -> None:
+    """Set a rim, see `Opening.rim`, as places in the view."""
+    seen = np.column_stack([rim, np.ones(len(rim))]) @ view.world_to_view
+    write_uniform(program, name, seen[:, :3])
 
 
 def _set_lids(program: moderngl.Program, rim: Floats64) -> None:

@@ -28,6 +28,7 @@ from .materials import (
     set_part,
     value_texture,
 )
+from .opening import set_rim
 from .parts import PartStore, PlacedBuffers
 from .programs import compile_program, write_uniform
 from .render_target import RenderTarget
@@ -41,7 +42,7 @@ from .translucency import (
     SUNK_DEPTH,
     blending,
     draw_nearest,
-    is_fade_seen,
+    fade_defines,
     set_cut,
     set_translucency,
 )
@@ -227,11 +228,11 @@ class Renderer:
             values = value_texture(self._gl, frame.skin.values, stream.triangle_count)
         if not self._use_surfaces(view, stream.corners):
             return
-        fades = is_fade_seen(frame.skin, view)
+        fade = fade_defines(frame.skin, view)
         if values is not None:
             values.use(_VALUE_UNIT)
         drawn = [
-            (self._skin_program(frame, view, maps, shadow, fades=fades), share)
+            (self._skin_program(frame, view, maps, shadow, fade), share)
             for share, maps in _shares(frame.skin, style)
         ]
         if frame.is_opened:
@@ -239,7 +240,7 @@ class Renderer:
                 set_translucency(program, frame, view)
             draw_nearest(self._gl, stream, drawn)
             return
-        with blending(self._gl, hides=True) if fades else nullcontext():
+        with blending(self._gl, hides=True) if fade else nullcontext():
             if self.surface.is_software:
                 self._draw_sides(stream, drawn)
                 return
@@ -264,19 +265,20 @@ class Renderer:
         view: PlacedView,
         maps: dict[BumpMap, float],
         shadow: Shadow | None,
-        *,
-        fades: bool,
+        fade: Sequence[str],
     ) -> moderngl.Program:
         """The program of a frame's skin, with its textures."""
         assert frame.skin is not None
         style = frame.style
         texture = frame.skin.maps.texture if style.textured else None
-        names = mesh_shader(style, texture is not None, maps, fades)
+        names = mesh_shader(style, texture is not None, maps, fade)
         program = self._program(*names)
         write_uniform(program, "model_view", view.world_to_view)
         write_uniform(program, "projection", view.projection)
         set_numbers(program, SKIN_NUMBERS, view)
         set_mesh(program, style, view, self._line_scale)
+        if frame.skin.mouth is not None and "mouth_rim" in program:
+            set_rim(program, "mouth_rim", frame.skin.mouth, view)
         if shadow is not None:
             shadow.set_uniforms(program, _SHADOW_UNIT)
         if texture is not None:

@@ -9,6 +9,8 @@ import numpy as np
 
 from .camera import PlacedView
 from .frame import Frame, Plane, Skin
+from .opening import RIM_DEFINE
+from .render_target import intersection
 from .stream import MeshBuffers, Share
 
 CUT_WIDTH = 0.008  # of the scene's radius: visible thickness of cut skin
@@ -82,9 +84,17 @@ def in_view(plane: Plane, view: PlacedView) -> Plane:
     return a, b, c, d
 
 
-def is_fade_seen(skin: Skin, view: PlacedView) -> bool:
-    """Whether a picture may show that a skin fades."""
-    fading = skin.fading
-    if fading is None or not len(fading):
-        return False
-    return min(view.covered_pixels(fading, 0.0)[2:]) > 0
+def fade_defines(skin: Skin, view: PlacedView) -> tuple[str, ...]:
+    """The defines for a skin that fades, empty where a picture cannot show it.
+
+    MOUTH: the part that fades may lie before the mouth, or in it.
+    """
+    if skin.fading is None or not len(skin.fading):
+        return ()
+    fading = view.covered_pixels(skin.fading, 0.0)
+    if min(fading[2:]) <= 0:
+        return ()
+    if skin.mouth is None:
+        return ("FADED",)
+    shared = intersection(fading, view.covered_pixels(skin.mouth))
+    return ("FADED", "MOUTH", RIM_DEFINE) if min(shared[2:]) > 0 else ("FADED",)

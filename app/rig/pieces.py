@@ -131,6 +131,8 @@ def _is_beard(points: Floats64, middle: Floats64, landmarks: Floats64) -> bool:
     high = points.max(axis=0)
     jaw_line = landmarks[:17]
     is_low = low[1] < landmarks[LOWER_LIP, 1] and high[1] < landmarks[NOSE_BRIDGE, 1]
+    below_chin = 15.0  # [mm] that the top of a goatee may lie there; clothes begin lower
+    is_low = is_low and high[1] > landmarks[CHIN, 1] - below_chin
     is_ahead = low[2] > jaw_line[:, 2].min() - 30.0 and middle[2] > jaw_line[:, 2].mean()
     is_amid = abs(middle[0] - landmarks[CHIN, 0]) < 15.0
     return bool(is_low and is_ahead and is_amid)

@@ -4,7 +4,7 @@
 // from a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), STRANDS (thin cones of
 // three sides; pixels take as much of them as they cover), FIBRES (striation), TRANSLUCENT (skin that
 // shows the parts under it), SUNK (those parts, hidden where skin is opaque), FADED (skin that fades
-// as its vertices have it), TRIANGLES (numbered singly), FILLED or BEHIND (parts to which light comes through an opening; opening.glsl).
+// as its vertices have it; MOUTH: and may come into its mouth), TRIANGLES (numbered singly), FILLED or BEHIND (parts to which light comes through an opening; opening.glsl).
 
 #include "lighting.glsl"
 #if defined(FILLED) || defined(BEHIND)
@@ -330,6 +330,33 @@ vec3 front_albedo() {
     return front;
 }
 
+#if defined(MOUTH)
+uniform vec3 mouth_rim[RIM_POINTS];  // of the lips, clockwise seen from outside
+
+// Whether a place is seen through the open lips: their outline goes clockwise around it. The
+// outline is taken wider, since lips hide what is beside their opening.
+bool is_in_mouth(vec3 place) {
+    const float GROWTH = 1.4;
+    vec3 middle = vec3(0.0);
+    for (int i = 0; i < RIM_POINTS; i++) middle += mouth_rim[i] / float(RIM_POINTS);
+    if (place.z > middle.z) return false;
+    vec2 at = place.xy / place.z;
+    int turns = 0;
+    vec3 last = mix(middle, mouth_rim[RIM_POINTS - 1], GROWTH);
+    vec2 from = last.xy / min(last.z, -1e-6);
+    for (int i = 0; i < RIM_POINTS; i++) {
+        vec3 next = mix(middle, mouth_rim[i], GROWTH);
+        vec2 to = next.xy / min(next.z, -1e-6);
+        if ((from.y > at.y) != (to.y > at.y)) {
+            float x = mix(from.x, to.x, (at.y - from.y) / (to.y - from.y));
+            if (x > at.x) turns += to.y < from.y ? 1 : -1;
+        }
+        from = to;
+    }
+    return turns > 0;
+}
+#endif
+
 #if !defined(GOURAUD)
 // Toward the viewer, on either side of the surface.
 vec3 shading_normal() {
@@ -348,8 +375,16 @@ void main() {
     float solid = 1.0;
 #if defined(FADED)
     solid = smoothstep(0.0, 1.0, surface.fade.x);
-    // From below one would look into the neck. To discard its inside costs early depth tests.
-    if (!gl_FrontFacing && (solid < 1.0 || surface.fade.y < 0.0)) solid = 0.0;
+    // From below one would look into the neck. A chin that goes down may take the front of a neck
+    // into the mouth, where nothing would show behind it. To discard costs early depth tests.
+    bool is_hidden = !gl_FrontFacing && (solid < 1.0 || surface.fade.y < 0.0);
+#if defined(MOUTH)
+    bool in_mouth = (is_hidden || solid < 1.0) && is_in_mouth(surface.position);
+    if (in_mouth && gl_FrontFacing) discard;
+    if (in_mouth) solid = 1.0;
+    is_hidden = is_hidden && !in_mouth;
+#endif
+    if (is_hidden) solid = 0.0;
 #endif
 #if defined(GOURAUD)
     Lit lit = Lit(surface.key, surface.rest, surface.specular);

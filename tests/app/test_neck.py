@@ -4,9 +4,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
+import PIL.Image
+import PIL.ImageDraw
 import pytest
 
 from risorius import assets, render
+from risorius.app.passes.camera import CameraLabels
 from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
@@ -99,3 +102,32 @@ def test_an_open_chin_does_not_fade_beside_a_short_neck(short_necked, renderer, 
         assert off[shown >= 0].max() <= 2
         assert np.isin(scene.faces[shown[shown >= 0]], jaw).any(axis=1).sum() > 50
         assert (off[shown < 0] > 20).sum() > 50  # the neck
+
+
+@pytest.fixture(scope="module")
+def thick_necked() -> FaceScene:
+    """A head with a short neck that comes forward, so that the chin of a nod goes into it."""
+    head = assets.load("head")
+    vertices = head.vertices.copy()
+    below = np.minimum(vertices[:, 1] - vertices[head.landmarks[8], 1], 0.0)
+    vertices[:, 1] -= 0.75 * below
+    vertices[:, 2] += np.where(below < -40.0, 60.0, 0.0)
+    return FaceScene(fit(Mesh(vertices, head.faces), head.landmarks))
+
+
+def test_a_faded_neck_makes_no_hole_in_a_mouth(thick_necked, renderer):
+    """A nod with an open jaw takes the front of a neck into the mouth; the mouth stays dark."""
+    thick_necked.reset()
+    thick_necked.pose({"jaw_open": 1.0, "head_pitch": -1.0})
+    thick_necked.step(0.6)
+    for yaw in (-30.0, 0.0, 30.0):
+        camera = render.OrbitCamera.framing(thick_necked.rest_positions, view="front")
+        camera.orbit(yaw, 0.0)
+        camera.fit(thick_necked.positions, 0.02)
+        picture = Sitter(thick_necked, renderer, "none").picture(camera)
+        places = CameraLabels.of(camera, SIZE).project(
+            thick_necked.positions[thick_necked.landmarks[60:68]]
+        )
+        lips = PIL.Image.new("1", SIZE)
+        PIL.ImageDraw.Draw(lips).polygon([tuple(place) for place in places.tolist()], fill=1)
+        assert (picture.min(axis=2) > 250)[np.asarray(lips)].sum() == 0

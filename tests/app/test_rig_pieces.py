@@ -68,6 +68,17 @@ def sideburns(maker: Maker) -> tuple[Points, Faces]:
     return maker.shell(is_low & (points[:, 1] > maker.landmark(8)[1] - 8.0), 1.5)
 
 
+def bow_tie(maker: Maker) -> tuple[Points, Faces]:
+    """A knot that touches the throat, below the chin and in front of the jaw."""
+    points = maker.scene.rest_positions
+    chin = maker.landmark(8)
+    throat = points[(points[:, 1] < chin[1] - 40.0) & (np.abs(points[:, 0]) < 15.0)]
+    front = throat[throat[:, 2].argmax()]
+    depth = chin[2] - front[2] + 20.0
+    knot = trimesh.creation.box((30.0, 20.0, depth)).subdivide()
+    return np.asarray(knot.vertices) + front + np.array([0.0, 0.0, 0.5 * depth]), knot.faces
+
+
 def glasses(maker: Maker) -> tuple[Points, Faces]:
     """Two rims and a bridge before the eyes; the bridge touches the nose."""
     ring = trimesh.creation.torus(22.0, 1.2, 24, 6)
@@ -111,6 +122,7 @@ CASES = {
     "lashes": (lambda maker: maker.part("lashes"), "on_skin"),
     "beard": (beard, "on_skin"),
     "sideburns": (sideburns, "on_skin"),
+    "bow tie": (bow_tie, "body"),
     "glasses": (glasses, "hair"),
     "hair": (lambda maker: maker.part("hair"), "hair"),
 }

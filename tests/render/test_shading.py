@@ -108,3 +108,17 @@ def test_a_fade_needs_its_columns(renderer):
     stream = lent(renderer, square(), columns=16)
     with pytest.raises(ValueError, match="a fade on a stream of 16 columns"):
         render.Skin(stream, fading=np.zeros((1, 3)))
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_the_inside_of_a_faded_neck_shows_through_the_lips(renderer, turn):
+    """Where they are seen from outside there is no hole; beside them the inside is hidden."""
+    shape = square(30.0)
+    turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
+    skin = fading(renderer, turned, (1.75, 1.75, 1.75, 1.75), -0.5)
+    round_ = np.linspace(np.pi, -np.pi, render.Opening.RIM_POINTS, endpoint=False)[::turn]
+    middle = np.array([0.0, 0.0, 10.0])
+    rim = middle + 5.0 * np.column_stack([np.cos(round_), np.sin(round_), np.zeros(len(round_))])
+    image = draw(renderer, replace(skin, mouth=rim))
+    assert (image[48, 48].mean() < 250.0) == (turn == 1)
+    assert image[48, 80].mean() > 250.0
