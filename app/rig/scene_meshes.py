@@ -114,12 +114,15 @@ def _add_material(glb: Glb, scene: Scene, surface: MovingSurface) -> int:
     if ambient_occlusion is not None:
         material["occlusionTexture"] = glb.texture(ambient_occlusion)
     if scene.skin.fine_shape is not None:
-        material["normalTexture"] = glb.texture(_normal_map(surface, scene.skin.fine_shape), "png")
+        normals = _normal_map(surface, scene.skin.fine_shape, scene.skin.wrinkles)
+        material["normalTexture"] = glb.texture(normals, "png")
     return glb.add("materials", material)
 
 
-def _normal_map(surface: MovingSurface, fine: assets.FineShape) -> npt.NDArray[np.uint8]:
-    """Normals of the fine shape (H, W, 3): components along u, across u, and out of the surface."""
+def _normal_map(
+    surface: MovingSurface, fine: assets.FineShape, wrinkles: assets.Wrinkles | None
+) -> npt.NDArray[np.uint8]:
+    """Normals of the fine shape with wrinkles at rest: along u, across u, and outward (H, W, 3)."""
     assert surface.uv is not None and surface.face_uv is not None
     places = surface.uv[surface.face_uv]
     texels = Texels.within(places.astype(np.float64), fine.slopes.shape[:2], margin=1.0)
@@ -130,6 +133,10 @@ def _normal_map(surface: MovingSurface, fine: assets.FineShape) -> npt.NDArray[n
     height = np.maximum(np.linalg.norm(np.cross(along, aside), axis=1) / length, 1e-9)
     steps = fine.slopes[texels.rows, texels.columns] - 128.0
     slope_u, slope_v = steps.T * (fine.steepest / 127.0)
+    if wrinkles is not None and len(wrinkles.across) == len(surface.rest):
+        more_u, more_v = _resting_slopes(surface, wrinkles, texels, len(fine.slopes)).T
+        slope_u += more_u
+        slope_v += more_v
     slope_u /= length[texels.faces]
     slope_v = (slope_v - shear[texels.faces] * slope_u) / height[texels.faces]
     normals = np.column_stack([-slope_u, -slope_v, np.ones_like(slope_u)])
@@ -137,3 +144,21 @@ def _normal_map(surface: MovingSurface, fine: assets.FineShape) -> npt.NDArray[n
     image = np.full((*fine.slopes.shape[:2], 3), (128, 128, 255), np.uint8)
     image[texels.rows, texels.columns] = np.rint(127.5 + 127.5 * normals)
     return image
+
+
+def _resting_slopes(
+    surface: MovingSurface, wrinkles: assets.Wrinkles, texels: Texels, size: int
+) -> npt.NDArray[np.float64]:
+    """Slopes along u and v of wrinkles that show at rest, such as folds of lids, shape (n, 2).
+
+    texels: those of a map of `size` texels each way.
+    """
+    readiness = np.minimum(np.linalg.norm(wrinkles.across, axis=2), 1.0)
+    amounts = wrinkles.resting[:, None] * readiness  # (V, 2)
+    first, second = texels.interpolate(amounts[surface.faces].astype(np.float64)).T
+    scale = len(wrinkles.map) / size
+    rows, columns = ((scale * (each + 0.5)).astype(int) for each in (texels.rows, texels.columns))
+    found = wrinkles.map[rows, columns].astype(np.float64)
+    amount = first + found[:, 3] / 255.0 * (second - first)
+    steepest = wrinkles.steepest / 127.0
+    return np.asarray(amount[:, None] * (found[:, :2] - 128.0) * steepest)

@@ -19,8 +19,11 @@ from risorius.app.export.formats import ExportRequest, format_for, write
 from risorius.app.export.morphs import decompose
 from risorius.app.recordings.names import ARKIT
 from risorius.app.rig.poses import rest_in
+from risorius.app.rig.scene_meshes import _normal_map
+from risorius.app.rig.surface import MovingSurface
 from risorius.app.script.script_file import parse_script
 from risorius.assets.fitting import fit_head
+from risorius.assets.identities import person_called
 from risorius.geometry.normals import vertex_normals
 
 from .command_line import positions_in_blender
@@ -338,3 +341,20 @@ def test_our_own_file_is_a_head_to_fit(head, glb, tmp_path):
     fitted = fit_head(glb, marks)
     assert fitted.faces.shape == head.faces.shape
     assert np.abs(fitted.vertices[fitted.landmarks] - head.vertices[head.landmarks]).max() < 0.1
+
+
+def test_folds_of_lids_are_in_the_normal_map():
+    """Wrinkles of a person that show at rest are exported, too: slopes and fine shape add up."""
+    person = person_called("maria")
+    surface = MovingSurface(
+        "skin", person.vertices, person.faces, uv=person.uv, face_uv=person.face_uv
+    )
+    with_folds, without = (
+        _normal_map(surface, person.fine_shape, each).astype(int)
+        for each in (person.wrinkles, None)
+    )
+    rows, columns = np.nonzero(np.abs(with_folds - without).max(axis=2) > 20)
+    size = len(without)
+    lid = person.uv[person.anatomy["palpebrale_superius_left"]] * [size, -size] + [0.0, size]
+    near = np.hypot(columns - lid[0], rows - lid[1]) < 40.0
+    assert near.sum() > 100
