@@ -10,6 +10,7 @@ import numpy as np
 from risorius.geometry.colour import to_linear
 
 from ..geometry.arrays import Floats32, Floats64, Integers32
+from ..geometry.directions import unit_vectors
 from ..geometry.sides import different_pairs
 from ..geometry.transforms import moved_points
 from .camera import PlacedView, box_corners
@@ -23,6 +24,10 @@ LAYERS = 9  # of shells; more take longer, fewer show gaps
 FEWEST_LAYERS = 2  # shells
 LAYER_PIXELS = 10.0  # for each layer, where shells are thickest
 SHADING_DENSITY = 0.6  # of shells, from which they throw a shadow
+# Of shells, from which on the lowest layer lets nothing through, wherever it is seen from: there
+# is 1 in shells.glsl for the most ragged strand.
+HIDING_DENSITY = 1.2
+LEAST_RISE = 0.5  # of strands out of the surface, as a cosine, where they hide what is below
 
 
 class PartBuffers:
@@ -56,13 +61,17 @@ class PartBuffers:
         self._uploaded: Floats32 | None = None
         self._striation = part.striation
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
-        self._throwing = self._indices
-        self._throwing_count = len(part.faces)
+        self._throwing = self._indices, len(part.faces)
+        self._hiding = self._indices, 0
         if self._way is not None and part.striation is not None:
-            throws = (part.striation[:, 5] > SHADING_DENSITY)[part.faces].all(axis=1)
-            self._throwing_count = int(throws.sum())
-            throwing = np.ascontiguousarray(part.faces[throws], np.uint32)
-            self._throwing = gl.buffer(throwing.tobytes() or bytes(12))
+            least = part.striation[:, 5][part.faces].min(axis=1)
+            self._throwing = _chosen(gl, part.faces[least > SHADING_DENSITY])
+            # Not the inside of hair that hangs, seen from the roots, and no hair that lies flat.
+            a, b, c = np.moveaxis(part.vertices[part.faces], 1, 0)
+            outward = unit_vectors(np.cross(b - a, c - a))[:, None]
+            rise = (unit_vectors(self._way)[part.faces] * outward).sum(axis=2).min(axis=1)
+            is_hiding = (least >= HIDING_DENSITY) & (rise > LEAST_RISE)
+            self._hiding = _chosen(gl, part.faces[is_hiding])
         self._arrays: dict[tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray] = {}
 
     def upload(self, placed: PlacedPart) -> None:
@@ -86,13 +95,19 @@ class PartBuffers:
 
     def draw_shadow(self, program: moderngl.Program) -> None:
         """Draw the faces that throw a shadow; the thin hem of shells throws none."""
-        if self._throwing_count:
-            self._render(program, self._throwing, self._throwing_count, 1)
+        self._render(program, *self._throwing, 1)
+
+    def draw_hiding(self, program: moderngl.Program, view: PlacedView) -> None:
+        """Draw shells where they are so dense that they hide all below."""
+        program["layers"] = self.layer_count(view)
+        self._render(program, *self._hiding, 1)
 
     def _render(
         self, program: moderngl.Program, indices: moderngl.Buffer, count: int, layers: int
     ) -> None:
         """Draw this many triangles of an index buffer, their outer side."""
+        if not count:
+            return
         if (program, indices) not in self._arrays:
             self._arrays[program, indices] = self._gl.vertex_array(
                 program,
@@ -120,6 +135,12 @@ class PartBuffers:
             program["first"] = first
             with blending(self._gl, hides=first == 0):
                 self.draw(program, layers=count)
+
+
+def _chosen(gl: moderngl.Context, faces: Integers32) -> tuple[moderngl.Buffer, int]:
+    """A buffer of triangles, which may be none, and their number."""
+    indices = np.ascontiguousarray(faces, np.uint32)
+    return gl.buffer(indices.tobytes() or bytes(12)), len(indices)
 
 
 def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:

@@ -16,6 +16,7 @@ from ..geometry.arrays import Floats64
 from .backdrop import Backdrop
 from .camera import PlacedView, box_corners
 from .coverage import SKIN_NUMBERS, Drawn, part_numbers, set_numbers
+from .dense_hair import hide_below
 from .errors import GLError
 from .frame import Frame, Plane, Skin
 from .geometry_buffer import Geometry, GeometryBuffer
@@ -157,6 +158,8 @@ class Renderer:
             parts = [each.as_background() for each in solid] + later
         shadow = self._shadow(frame, view, later, with_skin=True)
         if frame.skin is not None:
+            if not frame.is_opened:
+                hide_below(later, view, self.surface.target, self._program("shadow.glsl", "SHELLS"))
             self._draw_skin(frame, view, shadow)
         self._draw_parts(later, frame.style, view, shadow)
         self._smooth(frame, view, parts, with_skin=True)

@@ -75,10 +75,10 @@ class ShadowMap:
         gl.scissor = None
         self._target.clear(depth=1.0)
         if with_skin and frame.skin is not None:
-            write_uniform(self._program, "light_matrix", to_light)
+            write_uniform(self._program, "to_clip", to_light)
             frame.skin.stream.draw(self._program)
         for buffers, part, _ in parts:
-            write_uniform(self._program, "light_matrix", part.transform.T @ to_light)
+            write_uniform(self._program, "to_clip", part.transform.T @ to_light)
             buffers.draw_shadow(self._program)
         return Shadow(self._depth, view_to_light, view.camera.scene_radius)
 

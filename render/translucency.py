@@ -43,6 +43,17 @@ def blending(gl: moderngl.Context, *, hides: bool = False) -> Iterator[None]:
         gl.disable(moderngl.BLEND)
 
 
+@contextlib.contextmanager
+def changing_depth_alone(gl: moderngl.Context) -> Iterator[None]:
+    """Change no colours by the drawings of this block."""
+    gl.enable(moderngl.BLEND)
+    gl.blend_func = moderngl.ZERO, moderngl.ONE
+    try:
+        yield
+    finally:
+        gl.disable(moderngl.BLEND)
+
+
 def draw_nearest(
     gl: moderngl.Context, stream: MeshBuffers, shares: Sequence[tuple[moderngl.Program, Share]]
 ) -> None:
@@ -55,10 +66,9 @@ def draw_nearest(
     for program, share in shares:
         stream.draw(program, share)
     gl.cull_face = "back"
-    gl.enable(moderngl.BLEND)
-    gl.blend_func = moderngl.ZERO, moderngl.ONE  # changes no colours
-    for program, share in shares:
-        stream.draw(program, share)
+    with changing_depth_alone(gl):
+        for program, share in shares:
+            stream.draw(program, share)
     with blending(gl):
         for program, share in shares:
             stream.draw(program, share)

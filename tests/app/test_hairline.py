@@ -5,10 +5,13 @@ import pytest
 
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.drawing import camera_for
 from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
+from risorius.render import renderer
+from risorius.render.stream import MeshBuffers
 
 SIZE = (480, 360)
 HEIGHT = 105.0  # [mm] height of the picture
@@ -69,3 +72,34 @@ def test_a_forehead_with_raised_brows_stays_below_hair():
     dark = 90.0  # levels: her hair has less, her skin more
     assert 0.2 < (calm < dark).mean() < 0.8
     assert np.count_nonzero((calm < dark) & (raised > dark)) < 60
+
+
+@pytest.mark.parametrize("person", [None, 12, 71])
+def test_skin_below_dense_hair_is_not_shaded(person, monkeypatch):
+    """Short, hanging and tied hair look the same; from behind half of the skin is left out."""
+    scene = FaceScene() if person is None else FaceScene(person_called(person))
+    counts = []
+    draw = MeshBuffers.draw
+
+    def counted(stream, *how):
+        """Count the pixels that a drawing shades."""
+        query = stream.context.query(samples=True)
+        with query:
+            draw(stream, *how)
+        if stream.context.fbo.size == SIZE:
+            counts[-1] += query.samples
+
+    with Capture(scene, CaptureOptions(size=SIZE)) as capture:
+        for view in ("front", "90,0", "180,0", "20,-50,2.5"):
+            capture.camera = camera_for(scene, view)
+            with monkeypatch.context() as patched:
+                patched.setattr(MeshBuffers, "draw", counted)
+                counts.append(0)
+                image = capture.draw_image().astype(int)
+                patched.setattr(renderer, "hide_below", lambda *_: None)
+                counts.append(0)
+                whole = capture.draw_image().astype(int)
+            off = np.abs(image - whole).max(axis=2)
+            assert (off > 2).sum() <= 4
+            if view == "180,0":
+                assert counts[-2] < 0.75 * counts[-1]
