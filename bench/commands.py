@@ -83,6 +83,19 @@ def bench_embedding() -> None:
     conclude(embedding.report(rows), embedding.targets(rows))
 
 
+@bench.command("coarse")
+@click.option("--flips", is_flag=True, help="Print the edges of its layout whose flips help.")
+def bench_coarse(flips: bool) -> None:
+    """Measure how near the refined coarse head comes to the form of the built-in head."""
+    from . import coarse
+
+    comparison = coarse.Comparison()
+    click.echo(coarse.report(comparison))
+    if flips:
+        click.echo()
+        coarse.search(comparison, coarse.layout(), click.echo)
+
+
 @bench.command("quality")
 @reference_option
 @click.option(

@@ -1,0 +1,205 @@
+"""How near the coarse head's refined surface comes to the built-in head, and flips that help.
+
+The built-in head holds some poses. Vertices of the coarse layout (assets/coarse.toml) are taken
+from it, so that nothing but the layout's triangles makes a difference. Every edge is split twice,
+and the normals of the new triangles are compared with those of the built-in head nearby: shading
+shows normals.
+
+A flip replaces the edge between two triangles by their other diagonal. `search` flips one edge
+after another in a random order, and keeps each flip that lowers the angle of the whole face (after
+Lawson 1977, "Software for C1 surface interpolation", who flips edges by another measure).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+import trimesh
+
+from risorius import assets, refine, sim
+from risorius.assets.coarse import LAYOUT_FILE, CoarseHead, coarse_head
+from risorius.assets.data_files import read_toml
+from risorius.geometry.arrays import Flags, Floats64, Integers32
+from risorius.geometry.directions import unit_vectors
+from risorius.geometry.normals import cross_products, vertex_normals
+
+from .report import table
+from .subjects import settled_positions
+
+POSES: tuple[Mapping[str, float], ...] = (
+    {},
+    {"joy": 1.0},
+    {"blink": 0.5},
+    {"AU1": 1.0, "AU2": 1.0},
+    {"AU4": 1.0},
+    {"AU5": 1.0},
+    {"jaw_open": 0.6},
+    {"kiss": 0.7},
+    {"disgust": 0.7},
+)
+SCHEMES = ("static", "loop", "cubic")
+FREE_GROUPS = ("above the mouth", "eyelids", "forehead", "cheeks")
+"""Groups whose edges may be flipped: loops of lips and nostrils stay, and a chin without lumps."""
+LEAST_ANGLE = 14.0  # degrees
+MOST_NEIGHBOURS = 10
+"""Edges at a vertex."""
+LEAST_GAIN = 0.005  # degrees
+
+
+class Layout(NamedTuple):
+    """The left half of the coarse head: triangles, shape (F, 3), and the group of each."""
+
+    triangles: Integers32
+    groups: npt.NDArray[np.str_]
+
+
+class Surface(NamedTuple):
+    """The built-in head in a pose: all vertices [mm], and points with normals to compare with."""
+
+    vertices: Floats64
+    tree: scipy.spatial.cKDTree
+    normals: Floats64
+
+
+def layout() -> Layout:
+    """The layout of assets/coarse.toml, in vertices of the coarse head."""
+    head = coarse_head()
+    table_of_groups = read_toml(LAYOUT_FILE)["triangles"]
+    triangles = np.searchsorted(head.file_vertices, np.vstack([*table_of_groups.values()]))
+    groups = np.repeat(list(table_of_groups), [len(each) for each in table_of_groups.values()])
+    return Layout(triangles.astype(np.int32), groups)
+
+
+def surfaces() -> list[Surface]:
+    """The built-in head in all poses, refined once by the cubic scheme."""
+    head = assets.load("head")
+    simulation = sim.create(head)
+    edge_count = len(refine.create("kahler", head.faces, head.vertices).edges)
+    splits = np.ones(edge_count, np.uint8)
+    refiner = refine.create("kahler", head.faces, head.vertices, scheme="cubic", splits=splits)
+    found = []
+    for pose in POSES:
+        vertices = settled_positions(simulation, pose, 40)
+        mesh = refiner.refine(vertices)
+        tree = scipy.spatial.cKDTree(mesh.positions.copy())
+        found.append(Surface(vertices, tree, mesh.normals.astype(float)))
+    return found
+
+
+class Comparison:
+    """Angles between a refined layout and the built-in head in all poses."""
+
+    def __init__(self) -> None:
+        self._head = coarse_head()
+        self._surfaces = surfaces()
+
+    def angles(self, tried: Layout, scheme: str = "cubic") -> Mapping[str, float]:
+        """The RMS angle [degrees] of each group, weighted by area; "face": of all FREE_GROUPS."""
+        head = self._head
+        faces = np.vstack([tried.triangles, head.mirror[tried.triangles][:, ::-1]])
+        edge_count = len(refine.create("kahler", faces, head.vertices).edges)
+        splits = np.full(edge_count, 0 if scheme == "static" else 2, np.uint8)
+        chosen = "loop" if scheme == "static" else scheme
+        refiner = refine.create("kahler", faces, head.vertices, scheme=chosen, splits=splits)
+        sums = {group: np.zeros(2) for group in dict.fromkeys(tried.groups)}
+        for surface in self._surfaces:
+            mesh = refiner.refine(surface.vertices[head.file_vertices])
+            is_left = mesh.source < len(tried.triangles)
+            angles, areas = _angles_and_areas(mesh, is_left, surface)
+            groups = tried.groups[mesh.source[is_left]]
+            for group, total in sums.items():
+                is_here = groups == group
+                total += (angles[is_here] ** 2 @ areas[is_here], areas[is_here].sum())
+        sums["face"] = sum((sums[group] for group in FREE_GROUPS), np.zeros(2))
+        return {group: float(np.sqrt(total[0] / total[1])) for group, total in sums.items()}
+
+
+def _angles_and_areas(
+    mesh: refine.RefinedMesh, is_chosen: Flags, surface: Surface
+) -> tuple[Floats64, Floats64]:
+    """Angles [degrees] to the nearest points that face the same way, and areas of triangles."""
+    triangles = mesh.triangles[is_chosen].astype(np.int64)
+    middles = mesh.positions[triangles].mean(axis=1)
+    normals = unit_vectors(mesh.normals[triangles].mean(axis=1).astype(float))
+    distances, nearest = surface.tree.query(middles, k=6)
+    cosines = np.einsum("nkc,nc->nk", surface.normals[nearest], normals)
+    distances = np.where(cosines > 0.2, distances, np.inf)
+    chosen = np.take_along_axis(cosines, distances.argmin(axis=1)[:, None], axis=1)[:, 0]
+    areas = 0.5 * np.linalg.norm(cross_products(mesh.positions.astype(float), triangles), axis=1)
+    return np.degrees(np.arccos(np.clip(chosen, -1.0, 1.0))), areas
+
+
+def search(
+    comparison: Comparison, start: Layout, say: Callable[[str], None], rounds: int = 3
+) -> Layout:
+    """Flip edges of FREE_GROUPS that lower the angle by LEAST_GAIN; `say` reports each flip."""
+    known = coarse_head()
+    fine = assets.load("head")
+    outward = vertex_normals(fine.vertices, fine.faces)[known.file_vertices]
+    best = comparison.angles(start)["face"]
+    present = start
+    for turn in range(rounds):
+        before = best
+        edges = trimesh.geometry.faces_to_edges(present.triangles)
+        edges = np.unique(np.sort(edges, axis=1), axis=0)
+        for first, second in np.random.default_rng(turn).permutation(edges):
+            tried = flipped(present, int(first), int(second))
+            if tried is None or not _is_sound(tried, present, known, outward):
+                continue
+            angle = comparison.angles(tried)["face"]
+            if angle < best - LEAST_GAIN:
+                ends = known.file_vertices[[first, second]]
+                say(f"edge {ends[0]}-{ends[1]}: {best:.3f} -> {angle:.3f} degrees")
+                best = angle
+                present = tried
+        if best == before:
+            break
+    return present
+
+
+def flipped(start: Layout, first: int, second: int) -> Layout | None:
+    """The layout with the other diagonal at the edge between two vertices; None if none may be."""
+    triangles = start.triangles
+    beside = np.flatnonzero((triangles == first).any(axis=1) & (triangles == second).any(axis=1))
+    if len(beside) != 2 or not np.isin(start.groups[beside], FREE_GROUPS).all():
+        return None
+    rows = [list(triangles[t]) for t in beside]
+    if rows[0][(rows[0].index(first) + 1) % 3] != second:
+        rows.reverse()
+        beside = beside[::-1]
+    ahead, behind = ((set(row) - {first, second}).pop() for row in rows)
+    if ((triangles == ahead).any(axis=1) & (triangles == behind).any(axis=1)).any():
+        return None
+    changed = triangles.copy()
+    changed[beside] = [[ahead, first, behind], [ahead, behind, second]]
+    return start._replace(triangles=changed)
+
+
+def _is_sound(tried: Layout, start: Layout, head: CoarseHead, outward: Floats64) -> bool:
+    """Whether the flipped triangles are no slivers and look outward, and neighbours are few."""
+    is_new = (tried.triangles != start.triangles).any(axis=1)
+    triangles = tried.triangles[is_new]
+    smallest = np.degrees(trimesh.triangles.angles(head.vertices[triangles])).min()
+    facing = cross_products(head.vertices, triangles)
+    is_outward = (facing * outward[triangles].sum(axis=1)).sum(axis=1) > 0.0
+    faces = np.vstack([tried.triangles, head.mirror[tried.triangles]])
+    neighbours = np.bincount(trimesh.geometry.faces_to_edges(faces).ravel()) // 2
+    return bool(smallest > LEAST_ANGLE and is_outward.all() and neighbours.max() <= MOST_NEIGHBOURS)
+
+
+def report(comparison: Comparison) -> str:
+    """The table to print."""
+    present = layout()
+    by_scheme = [comparison.angles(present, scheme) for scheme in SCHEMES]
+    rows = [(group, *(angles[group] for angles in by_scheme)) for group in by_scheme[0]]
+    lines = [
+        "Angle between normals of the coarse and of the built-in head [degrees], RMS over area",
+        f"and {len(POSES)} poses; loop, cubic: every edge is split twice.",
+        "",
+        *table("group:<18|" + "|".join(f"{scheme}:8.2f" for scheme in SCHEMES), rows),
+    ]
+    return "\n".join(lines)

@@ -1,0 +1,58 @@
+"""`risorius bench coarse`: the refined coarse head has the form of the built-in head."""
+
+import numpy as np
+import pytest
+
+from risorius.assets.coarse import coarse_head
+from risorius.bench import coarse
+from tests.app.command_line import succeeded
+
+
+@pytest.fixture(scope="module")
+def comparison():
+    """The built-in head in all poses."""
+    return coarse.Comparison()
+
+
+def numbers(*of_file):
+    """Numbers of the coarse head's vertices, by those of the built-in head."""
+    return np.searchsorted(coarse_head().file_vertices, of_file).tolist()
+
+
+def test_smooth_surface_is_nearer_than_triangles(comparison):
+    """In each part of the face the cubic scheme turns normals toward those of the built-in head."""
+    layout = coarse.layout()
+    smooth = comparison.angles(layout)
+    static = comparison.angles(layout, "static")
+    for group in (*coarse.FREE_GROUPS, "chin", "nose", "lips"):
+        assert smooth[group] < 0.85 * static[group], group
+    assert smooth["eyelids"] < 18.5  # 20.5 with a bright wedge above the lid, and dents below
+    assert smooth["face"] < 9.0  # 9.4 with a block at the upper lip
+
+
+@pytest.mark.parametrize("ends", [(24, 130), (333, 356), (19, 373), (162, 193)])
+def test_edges_that_made_lumps_stay_flipped(comparison, ends):
+    """A flip back makes the surface worse: beside the upper lip, at the lids, at the jaw."""
+    layout = coarse.layout()
+    back = coarse.flipped(layout, *numbers(*ends))
+    assert back is not None
+    assert comparison.angles(back)["face"] > comparison.angles(layout)["face"] + 0.005
+
+
+def test_flip_and_its_reverse():
+    """Both together give the same triangles; edges of lips and missing edges have no flip."""
+    layout = coarse.layout()
+    once = coarse.flipped(layout, *numbers(24, 130))
+    back = coarse.flipped(once, *numbers(133, 136))
+    sorted_rows = [np.unique(np.sort(each.triangles), axis=0) for each in (layout, once, back)]
+    assert np.array_equal(sorted_rows[0], sorted_rows[2])
+    assert not np.array_equal(sorted_rows[0], sorted_rows[1])
+    assert coarse.flipped(layout, *numbers(433, 465)) is None
+    assert coarse.flipped(layout, *numbers(133, 136)) is None
+
+
+def test_command_prints_all_groups():
+    """A line for each part of the layout, with the angles of triangles and of both schemes."""
+    printed = succeeded("bench", "coarse")
+    for group in ("lips", "above the mouth", "eyelids", "nose", "face"):
+        assert f"\n{group} " in printed
