@@ -150,13 +150,15 @@ def place_parts(
     kept_bone: bone of parts that do not change.
     """
     mouth = _mouth_of(known, fitted, warp)
+    rises = _rises_of_jaws(known, fitted.landmarks, mouth)
     balls = {f"eye_{old.name}": (old, new) for old, new in zip(known.eyes, eyes, strict=True)}
     parts = []
     for part in known.parts:
         if part.bone in balls:
             placed = _resized(part, *balls[part.bone])
         elif part.name.startswith(STIFF):
-            placed = _moved(part, mouth)
+            rise = np.array([0.0, rises[part.bone == "mandible"], 0.0])
+            placed = _moved(part, replace(mouth, shift=mouth.shift + rise))
         elif part.bone == kept_bone:
             placed = part
         else:
@@ -190,6 +192,21 @@ def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similar
     farthest_back = 10.0  # [mm] that the teeth move back for this
     back = float(np.clip((placed[:, 2] - depth).max(initial=0.0), 0.0, farthest_back))
     return replace(mouth, shift=mouth.shift - np.array([0.0, 0.0, back]))
+
+
+def _rises_of_jaws(known: Head, landmarks: Floats64, mouth: Similarity) -> tuple[float, float]:
+    """How far [mm] the upper and the lower jaw rise from their place in a shut mouth.
+
+    Each goes with its lip where a mouth is open at rest. landmarks: places of the 68 [mm], (68, 3).
+    """
+    inner_lips = slice(61, 64), slice(65, 68)
+    upper, lower = (landmarks[lip, 1].mean() for lip in inner_lips)
+    most_of_shut = 3.0  # [mm] between lips while teeth are together
+    if upper - lower <= most_of_shut:
+        return 0.0, 0.0
+    own = mouth.points(known.vertices[known.landmarks])
+    own_upper, own_lower = (own[lip, 1].mean() for lip in inner_lips)
+    return float(upper - own_upper), float(lower - own_lower)
 
 
 def _moved(part: Part, similarity: Similarity) -> Part:

@@ -127,6 +127,20 @@ def test_teeth_lie_behind_the_skin(fitted):
             assert (part.vertices[:, 2] < front[beside, 2])[is_covered].all(), part.name
 
 
+def test_teeth_are_apart_in_a_mouth_that_is_open_at_rest():
+    """Each row stays as near to its lip as in the built-in head."""
+    known = assets.load("head")
+    opening = np.array([0.0, -14.0, 0.0])  # [mm]
+    opened = known.vertices + known.mandible_weight[:, None] * opening
+    heights = []
+    for head in (known, fit(Mesh(opened, known.faces), known.landmarks)):
+        rows = {part.name: part.vertices[:, 1] for part in head.parts}
+        lips = head.vertices[head.landmarks, 1]
+        upper = rows["teeth_upper"].min() - lips[61:64].mean()
+        heights.append((upper, rows["teeth_lower"].max() - lips[65:68].mean()))
+    assert np.abs(np.subtract(*heights)).max() < 2.0
+
+
 def test_depth_and_texture_come_from_the_same_place(fitted):
     """A copy of the built-in head gets the built-in values at the same vertices."""
     known = assets.load("head")
