@@ -53,7 +53,8 @@ def load(name: str) -> Head | Plane:
         return load_head()
     if name == "plane":
         return Plane(*make_grid(COLUMNS, ROWS, CELL))
-    raise AssetError(f"no asset is called {name!r}; available: head, plane")
+    others = "a mesh file is read by `read_mesh`, a head fitted by `fitting.fit_head`"
+    raise AssetError(f"no asset is called {name!r}; available: head, plane; {others}")
 
 
 def load_head(head_file: Path = HEAD_FILE) -> Head:

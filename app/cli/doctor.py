@@ -7,6 +7,7 @@ import enum
 import os
 import platform
 import subprocess
+from collections.abc import Mapping
 from importlib.util import find_spec
 from typing import Any
 
@@ -26,6 +27,22 @@ EXTRAS = {
     "cluster": ("distributed",),
 }
 """The modules that `pip install '.[EXTRA]'` installs."""
+PARTS_OF_COMMANDS = {
+    "view": ("window",),
+    "replay": ("window",),
+    "capture": ("offscreen",),
+    "demo": ("offscreen", "films"),
+    "dataset": ("offscreen",),
+    "reproduce": ("offscreen",),
+    "bench": ("offscreen",),
+    "batch": (),
+    "export": (),
+    "rig": (),
+    "convert": (),
+    "send": (),
+    "controls": (),
+}
+"""The parts that each command needs. Without films, `capture` still writes pictures."""
 
 
 class Health(enum.IntEnum):
@@ -53,7 +70,7 @@ def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
     lines += map(str, found.values())
     if not offscreen_only:
         works["films"], films = _films()
-        lines += [_card(list(found.values())), films, _extras(), *_names()]
+        lines += [_card(list(found.values())), films, _extras(), *_names(), _commands(works)]
     missing = [name for name, is_there in works.items() if not is_there]
     names = f"Missing: {', '.join(missing)}; the cure is in its line above."
     lines = [in_one_line(line) for line in (*lines, names if missing else "Everything is there.")]
@@ -61,6 +78,14 @@ def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
         return Health.WHOLE, lines
     draws = works["offscreen"] or works.get("window", False)
     return Health.PARTLY if draws else Health.NOTHING, lines
+
+
+def _commands(works: Mapping[str, bool]) -> str:
+    """The commands that work with these parts, and those that do not."""
+    able = [name for name, parts in PARTS_OF_COMMANDS.items() if all(works[each] for each in parts)]
+    others = [name for name in PARTS_OF_COMMANDS if name not in able]
+    there = ", ".join(able)
+    return f"commands: {there} work; {', '.join(others)} do not" if others else "commands: all work"
 
 
 def _card(findings: list[render.Finding]) -> str:

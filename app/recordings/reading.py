@@ -116,7 +116,8 @@ def read_recording(path: Path) -> tuple[str, str]:
     text, encoding = _decoded(content)
     if text is None:
         raise UserError(
-            f"{path}: is not a text file; a recording of a face is a table (CSV) or JSON, no film"
+            f"{path}: is not a text file; a recording of a face is a table (CSV) or JSON, no film "
+            "and no sound, which --sound adds"
         )
     return text, encoding
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from risorius import render
+from risorius.__main__ import command
 from risorius.app.cli import doctor
 
 from .command_line import risorius
@@ -38,6 +39,17 @@ def ask(*options):
 
 
 PARTS = ("offscreen", "window", "films")
+
+
+def test_every_command_is_said_to_work_or_not(ill):
+    """Without a screen, all commands work but those of the window."""
+    ill("window")
+    said = next(line for line in ask().output.splitlines() if line.startswith("commands: "))
+    able, _, unable = said.removeprefix("commands: ").partition(" work; ")
+    assert unable == "view, replay do not"
+    assert set(able.split(", ")) == set(command().commands) - {"view", "replay", "doctor"}
+    ill()
+    assert "commands: all work" in ask().output
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ MOST_DATA = 3_600_000  # bytes of all data files together; a quarter of it is th
 
 def test_unknown_name_is_refused_with_the_known_ones():
     """A typing error is answered with the known names."""
-    with pytest.raises(AssetError, match=r"'haed'; available: head, plane"):
+    with pytest.raises(AssetError, match=r"'haed'; available: head, plane; a mesh file is"):
         assets.load("haed")
 
 
