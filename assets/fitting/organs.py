@@ -197,7 +197,8 @@ def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similar
 def _rises_of_jaws(known: Head, landmarks: Floats64, mouth: Similarity) -> tuple[float, float]:
     """How far [mm] the upper and the lower jaw rise from their place in a shut mouth.
 
-    Each goes with its lip where a mouth is open at rest. landmarks: places of the 68 [mm], (68, 3).
+    Each goes with its lip where a mouth is open at rest: as one body in the middle of such lips,
+    they would show shut teeth and much gum. landmarks: places of the 68 [mm], (68, 3).
     """
     inner_lips = slice(61, 64), slice(65, 68)
     upper, lower = (landmarks[lip, 1].mean() for lip in inner_lips)
