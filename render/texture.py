@@ -36,7 +36,7 @@ class _Mipmaps:
         surface.make_current()
         self.size = texels.shape[1], texels.shape[0]
         rows = np.ascontiguousarray(texels[::-1])  # OpenGL counts rows, and v, from below
-        self._texture = surface.gl.texture(self.size, rows.shape[2], rows.tobytes())
+        self._texture = surface.gl.texture(self.size, rows.shape[2], rows)
         self._texture.repeat_x = self._texture.repeat_y = False
         self._texture.build_mipmaps()
         self._texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
@@ -71,18 +71,12 @@ class Texture(_Mipmaps):
                 f"takes at most {limit} each way: shrink the image"
             )
         self.redness = _median_redness(image)
-        lights = to_linear(np.arange(256) / 255.0).astype(np.float32)
-        shares = np.arange(256, dtype=np.float32) / np.float32(255.0)
-        values = np.concatenate([lights, shares])
-        places = np.empty((*image.shape[:2], 4), np.intp)  # in `values`
-        places[..., :3] = image
-        places[..., 3] = 255 if occlusion is None else occlusion
-        places[..., 3] += 256
-        super().__init__(surface, _roots(values).take(places))
-        texels = values.take(places)
+        lit = np.full((1, 1), 255, np.uint8) if occlusion is None else occlusion
+        super().__init__(surface, _lit_texels(image, lit))
+        texels = _first_halved(image, lit)
         for level in range(1, max(self.size).bit_length()):
-            texels = _halved(texels)
             self._texture.write(_roots(texels)[::-1].tobytes(), level=level)
+            texels = _halved(texels)
         # Drivers without the extension report 0. Software OpenGL has it, at several times the cost.
         if gl.max_anisotropy > 1.0 and not is_software(gl.info["GL_RENDERER"]):
             self._texture.anisotropy = min(ANISOTROPY, gl.max_anisotropy)
@@ -138,6 +132,37 @@ class BumpMap(_Mipmaps):
         program[f"{name}_map"] = self._unit
         program[f"{name}_slope"] = self.steepest
         program[f"{name}_strength"] = strength
+
+
+def _values() -> Floats32:
+    """The 256 lights that an image's bytes stand for, then 256 shares of light."""
+    lights = to_linear(np.arange(256) / 255.0).astype(np.float32)
+    shares = np.arange(256, dtype=np.float32) / np.float32(255.0)
+    return np.concatenate([lights, shares])
+
+
+def _lit_texels(image: Image, occlusion: Image) -> Image:
+    """Roots of light and share of light of each texel, (H, W, 4); occlusion: (H, W) or (1, 1)."""
+    from .texture_kernels import write_roots  # numba, which an import does not wait for
+
+    texels = np.empty((*image.shape[:2], 4), np.uint8)
+    write_roots(image, occlusion, _roots(_values()), texels)
+    return texels
+
+
+def _first_halved(image: Image, occlusion: Image) -> Floats32:
+    """Lights and shares of the version that is smaller by half."""
+    from .texture_kernels import write_halved
+
+    height, width = image.shape[:2]
+    if min(height, width) == 1:
+        places = np.empty((height, width, 4), np.intp)  # in the values
+        places[..., :3] = image
+        places[..., 3] = 256 + occlusion.astype(np.intp)
+        return _halved(_values().take(places))
+    found = np.empty((height // 2, width // 2, 4), np.float32)
+    write_halved(image, occlusion, _values(), found)
+    return found
 
 
 def _roots(values: Floats32) -> Image:

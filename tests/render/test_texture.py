@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from risorius import render
-from risorius.render.texture import _halved
+from risorius.render.texture import _first_halved, _halved, _lit_texels, _roots, _values
 
 from .scenes import PLAIN, Shape, draw, draw_image, lent, sphere, square
 
@@ -96,6 +96,21 @@ def test_smaller_versions_are_means_of_blocks(size):
     whole = values[: tall * height, : wide * width].astype(np.float64)
     means = whole.reshape(height, tall, width, wide, 4).mean(axis=(1, 3))
     assert _halved(values) == pytest.approx(means, abs=1e-6)
+
+
+@pytest.mark.parametrize("size", [(6, 4), (7, 5), (1, 6), (5, 1), (1, 1)])
+@pytest.mark.parametrize("is_shaded", [False, True])
+def test_compiled_texels_are_those_of_whole_arrays(size, is_shaded):
+    """The kernels give each texel, and the first smaller version, the bits of numpy's lines."""
+    random = np.random.default_rng(1)
+    image = random.integers(0, 256, (*size, 3), np.uint8)
+    occlusion = random.integers(0, 256, size if is_shaded else (1, 1), np.uint8)
+    places = np.empty((*size, 4), np.intp)
+    places[..., :3] = image
+    places[..., 3] = 256 + occlusion.astype(np.intp)
+    values = _values()
+    assert (_lit_texels(image, occlusion) == _roots(values)[places]).all()
+    assert (_first_halved(image, occlusion) == _halved(values[places])).all()
 
 
 def test_untextured_style_is_the_plain_picture(surface):
