@@ -20,4 +20,4 @@ def shrunk(values: Floats32, shrink: int) -> Floats32:
         count = values.shape[axis] // shrink
         blocks = np.moveaxis(values, axis, 0).reshape(count, shrink, *np.delete(values.shape, axis))
         values = np.moveaxis(blocks.mean(axis=1, dtype=np.float32), 0, axis)
-    return values
+    return np.ascontiguousarray(values)

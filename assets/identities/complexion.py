@@ -51,14 +51,14 @@ BEHIND = 30.0  # [mm] from the hairline back, in the map of the scalp
 IN_FRONT = 10.0
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
 LEVELS = 4096  # of the table from light to bytes
-BAND = 64  # rows of texels that are coloured together: caches hold them
+BAND = 16  # rows of texels that are coloured together: caches hold them
 
 
 @dataclass(frozen=True)
 class _Tints:
     """The maps that recolour the picture, from `data/head_tints.npz`."""
 
-    light: Floats32  # the picture, linear, without hair (H, W, 3)
+    light: Floats32  # the picture, linear, without hair (3, H, W)
     melanin: Floats32  # (H, W)
     blood: Floats32  # (H, W)
     hair: Floats32  # (H, W)
@@ -104,6 +104,9 @@ def recoloured(
     fringe: how much its hem is single hairs, 0 to 1. shrink: this many texels, each way, become
     one, a power of 2 up to 16.
     """
+    # numba, which an import does not wait for
+    from risorius.geometry.tones import Absorbed, Grown, Hairs, absorb, compose
+
     if not DARKEST <= angle <= LIGHTEST:
         raise ValueError(f"angle is {angle}; it must be {DARKEST:g} (dark) to {LIGHTEST:g} (light)")
     tints = _tints() if shrink == 1 else _shrunk_tints(shrink)
@@ -115,37 +118,27 @@ def recoloured(
     behind = None if haired_as is None else _behind(tints, features)
     hairs = fringe * shrunk_strands(shrink * len(kept), shrink) if fringe else 0.0 * kept
     root_light = 0.5  # share between hairs where they are dense
-    picture = np.empty_like(tints.light, np.uint8)
     lips = features.lips * BLOOD + paleness_of_lips(features.pale_lips, density)
     # In double precision it takes twice as long.
-    density, redness, hair, skin, lips, beard = np.array(
-        [density, redness, hair, skin, lips, features.beard * SHADOW], dtype=np.float32
+    single = np.float32
+    beard = features.beard * SHADOW
+    absorbed = Absorbed(
+        (density.astype(single), redness.astype(single), lips.astype(single), beard.astype(single)),
+        (tints.melanin, tints.blood, tints.lips, tints.beard),
+        single(features.relief),
+        tints.detail,
     )
+    grey = features.grey * np.array([1.0, grey_share], single)
+    shown = Hairs(hair.astype(single), grey, GREY_LIGHT, kept, tints.scalp)
+    bare = skin.astype(single)
+    covered = kept[:0] if behind is None else grown_over(behind)
+    grown = Grown(covered, hairs, MOST_COVER, np.float32(root_light))
+    picture = np.empty((*kept.shape, 3), np.uint8)
     for first in range(0, len(picture), BAND):
-        rows = slice(first, first + BAND)
-        on_scalp = tints.scalp[rows] > 0.01
-        grey = features.grey * np.where(on_scalp, np.float32(1.0), np.float32(grey_share))
-        relief = features.relief * tints.detail[rows]
-        haired = kept[rows]
-        covered = shaded = np.zeros((), np.float32)
-        if behind is not None:
-            haired = np.where(on_scalp, np.float32(0.0), haired)
-            covered = grown_over(behind[rows])
-            shaded = 1.0 - (1.0 - root_light) * covered
-            covered += hairs[rows] * covered * (MOST_COVER - covered)
-        for channel in range(3):
-            lost = density[channel] * tints.melanin[rows] + redness[channel] * tints.blood[rows]
-            lost -= relief
-            lost += lips[channel] * tints.lips[rows]
-            lost += beard[channel] * tints.beard[rows]
-            light = tints.light[rows, :, channel] * np.exp(-lost)
-            light += skin[channel] * (tints.hair[rows] - haired)
-            own = hair[channel] + grey * (GREY_LIGHT[channel] - hair[channel])
-            light += own * haired
-            if behind is not None:
-                light += covered * (own * shaded - light)
-            steps = np.sqrt(np.clip(light, 0.0, 1.0)) * (LEVELS - 1)
-            picture[rows, :, channel] = _screen_bytes().take(steps.astype(np.intp))
+        left = np.empty((3, min(BAND, len(kept) - first), kept.shape[1]), np.float32)
+        absorb(absorbed, first, left)
+        np.exp(left, out=left)
+        compose(left, first, tints.light, bare, tints.hair, shown, grown, _screen_bytes(), picture)
     return picture
 
 
@@ -330,7 +323,7 @@ def _tints() -> _Tints:
     for name in ("melanin", "blood", "lips", "beard", "brow", "scalp"):
         coarse = Pictures.fromarray(arrays[name].astype(np.float32) / 100.0)
         finer = coarse.resize((width, height), Pictures.Resampling.BILINEAR)
-        soft[name] = np.asarray(finer, dtype=np.float32)
+        soft[name] = np.array(finer, dtype=np.float32)
     beard_blur = 14.0  # [texels]
     soft["beard"] = scipy.ndimage.gaussian_filter(soft["beard"], beard_blur) * (1.0 - soft["lips"])
     hair = (arrays["hair"] / 100.0).astype(np.float32)
@@ -352,7 +345,7 @@ def _tints() -> _Tints:
     )
     detail = lightness - is_skin * around / np.maximum(share, 1e-3)
     return _Tints(
-        bare,
+        np.ascontiguousarray(np.moveaxis(bare, 2, 0)),
         **soft,
         hair=hair,
         lids=np.asarray(read_image(head.beside("_lids.png"), mode="L") / 255.0, np.float32),
@@ -371,9 +364,10 @@ def _shrunk_tints(shrink: int) -> _Tints:
     maps: dict[str, Any] = {
         name: shrunk(getattr(whole, name), shrink)
         for name in names
-        if name not in ("skin", "melanins", "angles")
+        if name not in ("light", "skin", "melanins", "angles")
     }
-    return replace(whole, **maps)
+    light = np.stack([shrunk(channel, shrink) for channel in whole.light])
+    return replace(whole, light=light, **maps)
 
 
 @lru_cache(maxsize=2)

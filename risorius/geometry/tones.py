@@ -1,0 +1,141 @@
+"""Colours of skin with hair, texel by texel, in two passes around numpy's exponential.
+
+Compiled, they read each map once. All steps are of single precision and in numpy's order, so the
+bits are those of the same lines on whole arrays.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..jit import njit
+from .arrays import Floats32, Unsigned8
+
+
+class Absorbed(NamedTuple):
+    """What takes light from skin; for each an amount by channel, (3,), and a map, (H, W)."""
+
+    amounts: tuple[Floats32, Floats32, Floats32, Floats32]
+    maps: tuple[Floats32, Floats32, Floats32, Floats32]
+    relief: np.float32  # strength of `detail`
+    detail: Floats32  # (H, W), in powers of e
+
+
+class Hairs(NamedTuple):
+    """The hair that a picture shows now, and on which texels."""
+
+    light: Floats32  # (3,), linear
+    grey: Floats32  # shares of grey on the scalp, and elsewhere, (2,)
+    grey_light: Floats32  # (3,), linear
+    kept: Floats32  # share of hair's colour on each texel, (H, W)
+    scalp: Floats32  # above 0.01 on the scalp, (H, W)
+
+
+class Grown(NamedTuple):
+    """Hair that is painted under hair that stands on it; arrays of height 0 if there is none."""
+
+    covered: Floats32  # share that it covers, without single hairs, (H, W)
+    hairs: Floats32  # how much single hairs add, (H, W)
+    most: np.float32  # share that dense hair covers
+    root_light: np.float32  # share of light between hairs where they are dense
+
+
+@njit
+def absorb(absorbed: Absorbed, first: int, lost: Floats32) -> None:
+    """Write what rows from `first` on lose, (3, rows, W), as powers of 1/e with the sign turned."""
+    amounts, maps = absorbed.amounts, absorbed.maps
+    strength = absorbed.relief
+    for y in range(lost.shape[1]):
+        first_map, second_map = maps[0][first + y], maps[1][first + y]
+        third_map, last_map = maps[2][first + y], maps[3][first + y]
+        detail = absorbed.detail[first + y]
+        for channel in range(3):
+            found = lost[channel, y]
+            a, b, c, d = (
+                amounts[0][channel],
+                amounts[1][channel],
+                amounts[2][channel],
+                amounts[3][channel],
+            )
+            for x in range(len(found)):
+                total = a * first_map[x] + b * second_map[x]
+                total -= strength * detail[x]
+                total += c * third_map[x]
+                total += d * last_map[x]
+                found[x] = -total
+
+
+@njit
+def compose(
+    left: Floats32,
+    first: int,
+    light: Floats32,
+    skin: Floats32,
+    former: Floats32,
+    hairs: Hairs,
+    grown: Grown,
+    table: Unsigned8,
+    picture: Unsigned8,
+) -> None:
+    """Write rows from `first` on of a picture, (H, W, 3).
+
+    left: share of light that skin keeps, (3, rows, W). light: from skin, linear, (3, H, W). skin:
+    light of bare skin where hair was before, (3,); former: share of that hair, (H, W). table: bytes
+    for squares of steps from 0 to 1.
+    """
+    width = left.shape[2]
+    haired = np.empty(width, np.float32)
+    grey = np.empty(width, np.float32)
+    covered = np.empty(width, np.float32)
+    shaded = np.empty(width, np.float32)
+    steps = np.empty(width, np.int32)
+    last = np.float32(len(table) - 1)
+    for y in range(left.shape[1]):
+        row = first + y
+        _hair_of_row(hairs, grown, row, haired, grey, covered, shaded)
+        for channel in range(3):
+            hair = hairs.light[channel]
+            to_grey = hairs.grey_light[channel] - hair
+            lit, kept, before = light[channel, row], left[channel, y], former[row]
+            bare = skin[channel]
+            for x in range(width):
+                own = hair + grey[x] * to_grey
+                value = lit[x] * kept[x]
+                value += bare * (before[x] - haired[x])
+                value += own * haired[x]
+                value += covered[x] * (own * shaded[x] - value)
+                value = min(max(value, np.float32(0.0)), np.float32(1.0))
+                steps[x] = np.int32(np.sqrt(value) * last)
+            for x in range(width):
+                picture[row, x, channel] = table[steps[x]]
+
+
+@njit
+def _hair_of_row(
+    hairs: Hairs,
+    grown: Grown,
+    row: int,
+    haired: Floats32,
+    grey: Floats32,
+    covered: Floats32,
+    shaded: Floats32,
+) -> None:
+    """Write hair of the texels of a row, its grey, what grows over it, and the light there."""
+    one = np.float32(1.0)
+    kept, scalp = hairs.kept[row], hairs.scalp[row]
+    for x in range(len(haired)):
+        on_scalp = scalp[x] > np.float32(0.01)
+        grey[x] = hairs.grey[0] if on_scalp else hairs.grey[1]
+    if len(grown.covered) == 0:
+        haired[:] = kept
+        covered[:] = np.float32(0.0)
+        shaded[:] = one
+        return
+    cover, single = grown.covered[row], grown.hairs[row]
+    for x in range(len(haired)):
+        within = kept[x]
+        haired[x] = np.float32(0.0) if scalp[x] > np.float32(0.01) else within
+        shaded[x] = one - (one - grown.root_light) * cover[x]
+        covered[x] = cover[x] + single[x] * cover[x] * (grown.most - cover[x])
