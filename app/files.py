@@ -64,7 +64,7 @@ def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None)
             raise UserError(f"{path}: is a {kind}, not a file; a {what} is a plain file")
         if status.st_size > longest:
             most = f"{longest >> 20} MB" if longest >= 2**20 else f"{longest >> 10} kB"
-            raise UserError(f"{path}: is longer than a {what} may be, {most}")
+            raise UserError(f"{path}: is too long; a {what} may have {most}")
         with path.open("rb") as file:
             return file.read(longest if first is None else first)
     except FileNotFoundError:
@@ -150,7 +150,7 @@ def check_folder(target: Path, *, overwrite: bool) -> None:
         is_empty = not target.exists() or all(map(is_staging_folder, target.iterdir()))
     if not is_empty and not overwrite:
         raise UserError(
-            f"{target}: is there and not empty; name another folder, or add --overwrite"
+            f"{target}: exists and is not empty; choose another folder, or add --overwrite"
         )
 
 
@@ -220,7 +220,9 @@ def check_apart(outputs: Sequence[Path | None], inputs: Sequence[Path | None]) -
             continue
         entry = entry_of(path)
         if entry in read:
-            raise UserError(f"{path}: is read and would be written; choose another name")
+            raise UserError(
+                f"{path}: is both an input and an output; choose another name for the output"
+            )
         if entry in written:
-            raise UserError(f"{path}: is the name of two outputs; choose another name for one")
+            raise UserError(f"{path}: is the name of two outputs; rename one of them")
         written.add(entry)

@@ -36,12 +36,13 @@ def script_for(
     playback = playback or Playback()
     if settings and path is not None:
         raise UserError(
-            f"{path}: a script and --set exclude each other; "
-            "every NAME=VALUE has a --set of its own"
+            f"{path}: a script and --set exclude each other; write --set before every NAME=VALUE"
         )
     if path is None:
         if playback != Playback():
-            raise UserError(f"{options_in(playback)} is for recordings, and none is given")
+            raise UserError(
+                f"{options_in(playback)} needs a recording; add one, or leave the option out"
+            )
         own = Path(str(files("risorius.assets") / "scripts" / f"{scene or 'face'}.toml"))
         script = held_pose(settings) if settings else load_script(own)
     else:
@@ -93,7 +94,7 @@ def read_performance(
         return script_of(take, playback, limits or limits_of("face"))
     script = load_script(path)
     if playback != Playback():
-        raise UserError(f"{path}: is a script, and {options_in(playback)} is for recordings")
+        raise UserError(f"{path}: is a script, but {options_in(playback)} needs a recording")
     return script, None
 
 

@@ -203,7 +203,7 @@ class WorkerPool:
                 self._workers.remove(worker)
         if self._is_over:
             raise UserError("stopped")
-        times = f" {attempts} times, at last" if attempts > 1 else ""
+        times = f" {attempts} times, the last time" if attempts > 1 else ""
         raise UserError(f"the process that worked on it died{times} of {why}")
 
     def stop(self) -> None:

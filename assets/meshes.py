@@ -160,8 +160,8 @@ def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:
     if not is_there.all():
         where = int(np.argmin(is_there))
         raise AssetError(
-            f"triangle {where} (counted from 0) has the vertices {faces[where].tolist()}; there "
-            f"are 0 to {len(vertices) - 1}: save the mesh anew"
+            f"triangle {where} (counted from 0) has the vertices {faces[where].tolist()}; "
+            f"allowed are 0 to {len(vertices) - 1}: save the mesh anew"
         )
     is_near = (np.abs(vertices) <= FARTHEST).all(axis=1)  # False for NaN
     if not is_near.all():

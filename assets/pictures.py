@@ -64,7 +64,9 @@ def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple
     if not used or not len(surface.uv):
         return None, tuple(missing)
     if surface.face_uv.max(initial=-1) >= len(surface.uv):
-        raise AssetError(f"a face has a vt beyond the last, {len(surface.uv)}; save it anew")
+        raise AssetError(
+            f"a face names a vt above the last one, {len(surface.uv)}; save the mesh anew"
+        )
     numbers = [-1 if each is None else used.index(each) for each in of_materials]
     picture = np.array([*numbers, -1])[surface.material]
     picture[(surface.face_uv < 0).any(axis=1)] = -1

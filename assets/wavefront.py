@@ -118,7 +118,7 @@ def _unusable(number: int, line: bytes) -> AssetError:
     excerpt_length = 30  # bytes
     shown = line[:excerpt_length].decode(errors="ignore").strip()
     return AssetError(
-        f"line {number}: '{named(shown)}' cannot be used; right are 'v x y z', 'vt u v', and 'f' "
+        f"line {number}: '{named(shown)}' cannot be used; allowed are 'v x y z', 'vt u v', and 'f' "
         "with three or more vertex numbers, from 1 on, or from -1 back"
     )
 

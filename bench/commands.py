@@ -21,7 +21,9 @@ reference_option = click.option(
 needed_reference = click.option(
     "--reference", type=FOLDER, required=True, help="A folder of `risorius bench reference`."
 )
-size_option = click.option("--size", type=Size(), default=(1280, 720), help="By default 1280x720.")
+size_option = click.option(
+    "--size", type=Size(), default=(1280, 720), help="Size [pixels]; by default 1280x720."
+)
 
 
 @click.group()
@@ -35,7 +37,7 @@ def bench() -> None:
     "sizes",
     type=click.Choice(("face", "2k", "20k", "200k", "1M")),
     multiple=True,
-    help="Only this mesh; may be given several times. By default all but 2k.",
+    help="Time only this mesh. The option may be repeated; by default all but 2k are timed.",
 )
 @click.option(
     "--seconds",
@@ -49,13 +51,19 @@ def bench() -> None:
     type=click.Choice(["kahler", "kahler-gl"]),
     default="kahler",
     show_default=True,
-    help="kahler-gl: on the graphics card, beside kahler.",
+    help="kahler-gl times refinement on the graphics card beside kahler.",
 )
 @click.option(
-    "--threads", "pairs", flag_value="threads", help="Pairs of frames: by one thread, and by all."
+    "--threads",
+    "pairs",
+    flag_value="threads",
+    help="Time pairs of frames: one by one thread, one by all.",
 )
 @click.option(
-    "--matrix", "pairs", flag_value="matrix", help="Pairs of frames: ours, and a kept Loop matrix."
+    "--matrix",
+    "pairs",
+    flag_value="matrix",
+    help="Time pairs of frames: one by kahler, one by a kept Loop matrix.",
 )
 def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str, pairs: str | None) -> None:
     """Time refinement on the face and on meshes of up to a million triangles."""
@@ -63,7 +71,7 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str, pairs: st
 
     if pairs is not None:
         if refiner != "kahler":
-            raise UserError(f"--{pairs} goes with --refiner kahler alone; leave one of them out")
+            raise UserError(f"--{pairs} needs --refiner kahler; leave one of the two out")
         if pairs == "threads":
             click.echo(threads.report(threads.measure(sizes, seconds, say_progress)))
         else:
@@ -76,7 +84,7 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str, pairs: st
 
 @bench.command("embedding")
 def bench_embedding() -> None:
-    """Measure how near a fine mesh, carried by a coarse one, comes to its true place."""
+    """Measure the error of a fine mesh that follows a coarse one."""
     from . import embedding
 
     rows = embedding.measure()
@@ -99,12 +107,15 @@ def bench_coarse(flips: bool) -> None:
 @bench.command("quality")
 @reference_option
 @click.option(
-    "--expression", "expressions", multiple=True, help="Only this one; may be given several times."
+    "--expression",
+    "expressions",
+    multiple=True,
+    help="Measure only this expression. The option may be repeated.",
 )
 def bench_quality(reference: Path | None, expressions: tuple[str, ...]) -> None:
-    """Measure how near every scheme comes to a dense face and its picture, for its triangles.
+    """Measure the distance of every scheme from a dense face, and from its picture.
 
-    The face is the built-in head, with --reference a scan.
+    The face is the built-in head, or with --reference a scan.
     """
     from risorius import assets
 
@@ -130,10 +141,11 @@ def bench_quality(reference: Path | None, expressions: tuple[str, ...]) -> None:
     help="How long each surface is timed, at least five calls of each method.",
 )
 def bench_rivals(reference: Path | None, seconds: float) -> None:
-    """Compare refinement with other libraries: distance to true surfaces, and time.
+    """Compare refinement with other libraries: errors and times.
 
-    They refine a sphere, the plane, the built-in head, and a scan with --reference. A library that
-    is not installed is skipped with one line; pip install '.[rivals]' installs all.
+    All refine a sphere, the plane, the built-in head, and with --reference a scan. Errors are
+    distances from the true surface. One line names each library that is not installed; pip install
+    '.[rivals]' installs all.
     """
     from . import rivals, subjects
 
@@ -166,15 +178,15 @@ def bench_motion(reference: Path) -> None:
 @click.option("--makehuman", type=FOLDER, help="A folder with MakeHuman's base.obj and base.json.")
 @reference_option
 def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
-    """Make heads into avatars: are vertices in place, how far are sums and guessed landmarks off?
+    """Measure avatars: places of vertices, sums of shapes, guessed landmarks.
 
-    Heads are the built-in one and a person, and those of the folders that are given.
+    Heads are the built-in one, a person, and those of the folders of both options.
     """
     from . import avatar, guesses
 
     for name, folder in (("makehuman", makehuman), ("reference", reference)):
         if folder is None:
-            click.echo(f"--{name} is not given: its head is left out", err=True)
+            click.echo(f"without --{name} its head is left out", err=True)
     rows = []
     for row in avatar.measure(makehuman, reference):
         say_progress(row.name)
@@ -183,9 +195,14 @@ def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
 
 
 @bench.command("persons")
-@click.option("--count", type=click.IntRange(2, 10000), default=200, help="By default 200 of each.")
+@click.option(
+    "--count",
+    type=click.IntRange(2, 10000),
+    default=200,
+    help="Number of women, and of men; by default 200.",
+)
 def bench_persons(count: int) -> None:
-    """Compare our women and men with published measures."""
+    """Compare random women and men with published body measures."""
     from . import persons
 
     rows = persons.measure(count)
@@ -198,7 +215,7 @@ def bench_persons(count: int) -> None:
     "--head", "head_file", type=FILE, help="The head.npz of another head than the built-in one."
 )
 def bench_human(reference: Path, head_file: Path | None) -> None:
-    """Measure how human the head's form is: its distance from all persons of a reference."""
+    """Measure how human the head's form is, by the persons of a reference."""
     from . import human
 
     found = human.measure(reference, head_file)
@@ -207,9 +224,9 @@ def bench_human(reference: Path, head_file: Path | None) -> None:
 
 @bench.command("reference")
 @click.argument("checkout", type=FOLDER)
-@click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")
+@click.option("-o", "--output", "folder", type=PATH, required=True, help="The folder to write.")
 def bench_reference(checkout: Path, folder: Path) -> None:
-    """Make the folder that --reference takes from CHECKOUT, a checkout of ICT-FaceKit."""
+    """Make the folder for --reference from CHECKOUT, a clone of ICT-FaceKit."""
     from . import reference
 
     for line in reference.make(checkout, folder):
@@ -224,7 +241,7 @@ def bench_reference(checkout: Path, folder: Path) -> None:
     help="face_landmarker.task, the model of MediaPipe's face landmarker.",
 )
 def bench_seen(model: Path) -> None:
-    """Show every shape of ARKit to a face tracker: is it seen under its own name?"""
+    """Show every shape of ARKit to a face tracker; count recognised ones."""
     from . import seen
 
     with seen.face_tracker(model) as tracker:
@@ -233,17 +250,20 @@ def bench_seen(model: Path) -> None:
 
 @bench.command("landmarks")
 @click.argument("folder", type=FOLDER)
-@click.option("--detector", type=click.Choice(("dlib", "mediapipe")), required=True)
+@click.option(
+    "--detector", type=click.Choice(("dlib", "mediapipe")), required=True, help="The detector."
+)
 @click.option(
     "--model",
     type=FILE,
-    help="Its file: shape_predictor_68_face_landmarks.dat, by default that of the package "
-    "face_recognition_models; or face_landmarker.task.",
+    help="The detector's file: for dlib shape_predictor_68_face_landmarks.dat, by default that of "
+    "the package face_recognition_models; for mediapipe face_landmarker.task.",
 )
 def bench_landmarks(folder: Path, detector: str, model: Path | None) -> None:
-    """Compare a detector's 68 points with the labels of FOLDER, a set of `risorius dataset`.
+    """Compare a detector's 68 points with the labels of a data set.
 
-    Without the detector's library one line says that this was skipped.
+    `risorius dataset` made the data set FOLDER. Nothing is measured if the detector's library is
+    not installed; one line reports it.
     """
     from . import landmarks
 
@@ -256,9 +276,15 @@ def bench_landmarks(folder: Path, detector: str, model: Path | None) -> None:
 
 
 @bench.command("gaps")
-@click.option("--mixtures", type=click.IntRange(0, 100_000), default=500, show_default=True)
+@click.option(
+    "--mixtures",
+    type=click.IntRange(0, 100_000),
+    default=500,
+    show_default=True,
+    help="Number of random mixtures of expressions, too.",
+)
 def bench_gaps(mixtures: int) -> None:
-    """Look for gaps in shut lips and lids, torn skin and failing contacts, in every pose."""
+    """Look for gaps in shut lips and lids, torn skin and failed contacts."""
     from . import gaps
 
     poses = gaps.measure(mixtures)
@@ -268,20 +294,26 @@ def bench_gaps(mixtures: int) -> None:
 @bench.command("window")
 @size_option
 @click.option(
-    "--seconds", type=FiniteRange(0.3, 600.0), default=5.0, show_default=True, help="Of each case."
+    "--seconds",
+    type=FiniteRange(0.3, 600.0),
+    default=5.0,
+    show_default=True,
+    help="Time of each case [s].",
 )
-@click.option("--head", type=FILE, help="A mesh of yours in place of the built-in head.")
-@click.option("--landmarks", type=FILE, help="Its landmark file, where it needs one.")
+@click.option("--head", type=FILE, help="A mesh in place of the built-in head.")
+@click.option(
+    "--landmarks", type=FILE, help="The landmarks of --head, as JSON; known heads need none."
+)
 def bench_window(
     size: tuple[int, int], seconds: float, head: Path | None, landmarks: Path | None
 ) -> None:
-    """Time the window while a smile plays, and while nothing happens; needs a screen."""
+    """Time the window while a smile plays, and at rest; needs a screen."""
     from risorius.app.scenes import own_head
 
     from . import window
 
     if landmarks is not None and head is None:
-        raise UserError("--landmarks goes with --head; add the mesh, or leave out --landmarks")
+        raise UserError("--landmarks needs --head; add the mesh, or leave out --landmarks")
     fitted = None if head is None else own_head(head, landmarks)
     conclude(*window.measure(seconds, size, fitted))
 
@@ -289,7 +321,11 @@ def bench_window(
 @bench.command("capture")
 @size_option
 @click.option(
-    "--seconds", type=FiniteRange(1.0, 60.0), default=8.0, show_default=True, help="Of the script."
+    "--seconds",
+    type=FiniteRange(1.0, 60.0),
+    default=8.0,
+    show_default=True,
+    help="Length of the film [s].",
 )
 def bench_capture(size: tuple[int, int], seconds: float) -> None:
     """Time a film without a screen."""

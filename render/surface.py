@@ -183,7 +183,7 @@ def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurfa
         if isinstance(error, moderngl.Error):
             raise GLError(
                 f"a frame of {size[0]} x {size[1]} pixels with {samples} samples each cannot be "
-                f"had ({error}). Cure: ask for a smaller frame, or for fewer samples"
+                f"made ({error}). Cure: ask for a smaller frame, or for fewer samples"
             ) from None
         raise
     Surface._current = surface

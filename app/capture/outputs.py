@@ -200,8 +200,8 @@ def film(
     fastest = FORMATS[target.suffix.lower()].fastest
     if frames_per_second > fastest:
         raise UserError(
-            f"{target}: has at most {fastest:g} frames a second, and --fps is "
-            f"{frames_per_second:g}; take fewer, or a film of another kind"
+            f"{target}: can have at most {fastest:g} frames a second, but --fps is "
+            f"{frames_per_second:g}; lower --fps, or write another kind of film"
         )
     check_file(target)
     with written_atomically(target) as part:

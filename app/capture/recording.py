@@ -123,7 +123,7 @@ def _check(
     """Raise UserError, before any work is done, for an impossible output."""
     if time is not None and not _is_image(output):
         raise UserError(
-            f"--time {time:g}: is the time of a picture.png; for a film write --time FROM:TO"
+            f"--time {time:g}: one time needs a picture.png as -o; for a film write --time FROM:TO"
         )
     if time is not None and time > script.duration:
         raise UserError(f"--time {time:g}: {script.source} ends at {script.duration:g} s")
@@ -144,7 +144,7 @@ def _check(
     if output is None and sheet is None:
         raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
     if sheet and not script.key_poses:
-        raise UserError(f"{script.source}: no pose has a name, so there is nothing for a sheet")
+        raise UserError(f"{script.source}: no pose has a name; --sheet draws named poses alone")
     if sheet is not None:
         check_png(sheet)
     if output is not None:
@@ -153,7 +153,8 @@ def _check(
         check_png(output)
     elif output is not None and format_of(output) and options.is_transparent:
         raise UserError(
-            f"{output}: a film has a background; take a folder of pictures, or another --background"
+            f"{output}: a film cannot be transparent; write a folder of pictures, or choose "
+            "another --background"
         )
     elif output is not None and script.sound is not None and output.suffix.lower() in HEARD:
         try:
@@ -172,7 +173,7 @@ def _check_passes(script: Script, output: Path | None, options: CaptureOptions) 
             "--passes are files beside each picture: give -o a folder, or one picture.png"
         )
     if options.beside:
-        raise UserError("--passes are those of one mesh: leave --compare out")
+        raise UserError("--passes and --compare exclude each other; leave one of them out")
     if _is_image(output):
         for path in beside(output):
             check_file(path)

@@ -29,7 +29,7 @@ OUTPUTS = ("output", "sheet")  # names of their parameters for output files
 @click.option(
     "--jobs",
     type=click.IntRange(1, 1024),
-    help="Number of lines run at once; by default one for each core.",
+    help="Number of lines to run at once; by default one for each core.",
 )
 @click.option(
     "--scheduler",
@@ -39,10 +39,10 @@ OUTPUTS = ("output", "sheet")  # names of their parameters for output files
 @click.option(
     "--resume",
     is_flag=True,
-    help="Skip lines whose outputs exist and are no older than their inputs.",
+    help="Skip lines whose outputs exist and are not older than their inputs.",
 )
 @click.option(
-    "--logs", type=PATH, help="Folder for the lines' logs; by default LIST_logs beside LIST."
+    "--logs", type=PATH, help="Folder for the logs of the lines; by default LIST_logs beside LIST."
 )
 @SILENT
 def batch(
@@ -55,9 +55,9 @@ def batch(
 ) -> None:
     """Run a list of commands in parallel.
 
-    LIST is a text file with a command in each line, without the word risorius. Lines may hold
-    capture, export and convert; lines that begin with # are ignored. Relative paths begin in the
-    current folder. All lines are checked before the first is begun.
+    LIST is a text file. Each line is a capture, export or convert command without the word
+    risorius; lines that begin with # are ignored. Relative paths begin in the current folder. All
+    lines are checked before the first one runs.
     """
     from tqdm import tqdm
 
@@ -65,7 +65,9 @@ def batch(
     from ..workers import share_of_cores
 
     if jobs is not None and scheduler is not None:
-        raise UserError("--jobs is for this computer; with --scheduler the cluster has its workers")
+        raise UserError(
+            "--jobs and --scheduler exclude each other: the cluster has its own workers"
+        )
     start = time.monotonic()
     logs = (logs or listing.parent / f"{listing.stem}_logs").absolute()
     listed = jobs_in(listing, logs, resume=resume)
@@ -158,7 +160,7 @@ def _parsed(command: click.Command, arguments: Sequence[str]) -> dict[str, Any]:
         try:
             return command.make_context(f"risorius {command.name}", list(arguments)).params
         except click.exceptions.Exit:
-            raise UserError("it writes nothing") from None
+            raise UserError("the command prints and writes no file; remove the line") from None
 
 
 def _check_files(
@@ -166,7 +168,7 @@ def _check_files(
 ) -> None:
     """UserError for inputs that do not exist, and for outputs that cannot be written."""
     if not outputs:
-        raise UserError("it writes nothing: give -o OUTPUT")
+        raise UserError("the command writes no file; add -o OUTPUT")
     for path in inputs:
         if not path.exists():
             raise UserError(f"{path}: there is no such file")

@@ -28,50 +28,51 @@ class Filming:
     """Options of capture alone."""
 
     size: tuple[int, int] = option(
-        type=Size(), default=(1280, 720), help="Size of pictures [pixels], 1280x720 by default."
+        type=Size(), default=(1280, 720), help="Size of pictures [pixels]; by default 1280x720."
     )
     fps: float = option(
         type=FiniteRange(1, 240),
         default=30.0,
         show_default=True,
-        help="Frames a second, as 25 or 30000/1001.",
+        help="Frames per second, as 25 or 30000/1001.",
     )
     compare: str | None = option(
         is_flag=False,
         flag_value=STATIC,
         metavar="[NAME,...]",
-        help="Looks or refiners to show on the left; without a name the mesh as it is.",
+        help="Looks or refiners to show on the left; without a name the unrefined mesh.",
     )
     camera: str | None = option(
-        help="Named view, or yaw,pitch[,zoom] in degrees; turntable, alone or after a view and a "
-        "comma: the camera goes round once.",
+        help="The view, by name or as yaw,pitch[,zoom], angles in degrees. turntable, alone or "
+        "after a view and a comma, moves the camera once around the head.",
     )
     times: tuple[float, ...] | None = option(
         "--time",
         type=Times(),
-        help="Time of a .png [s]; by default the first named pose, or else the end. FROM:TO: the "
-        "part of the script that a film or a folder shows.",
+        help="Time of a .png [s]; by default that of the first named pose, or else the end. "
+        "FROM:TO: the part of the script that a film or a folder shows [s].",
     )
     background: render.Background | str | None = option(
         type=BackgroundName(),
         default="light",
-        help="light, dark, white, black, a colour as #00b140, transparent, or map: the map of "
-        "light, out of focus.",
+        help="light, dark, white, black, a colour as #00b140, transparent, or map: the map that "
+        "lights the scene, out of focus.",
     )
     light: Path | None = option(
         type=PATH,
-        help="A map of light from all around, .hdr or .exr, twice as wide as high; its middle lies "
-        "behind the head. --style light=NAME has ours.",
+        help="A map of the light from all directions, .hdr or .exr, twice as wide as high. Its "
+        "middle lies behind the head. --style light=NAME chooses a built-in one.",
     )
     passes: str | None = option(
         metavar="NAME,...",
-        help="Beside each picture: depth, normal, triangle, splits, segmentation, landmarks.",
+        help="Files to write beside each picture: depth, normal, triangle, splits, segmentation, "
+        "landmarks.",
     )
     alive: bool | None = option(
         "--alive/--not-alive",
         default=None,
-        help="Idle life: eyes blink and look at the camera, and the head nods with speech, unless "
-        "the script moves them. By default: for recordings without motion of the head.",
+        help="Add idle life: eyes blink and look at the camera, and the head nods with speech, "
+        "unless the script moves them. By default recordings without motion of the head get it.",
     )
     overwrite: bool = option(is_flag=True, help="Replace the frames in a folder.")
     quiet: bool = option(is_flag=True, help="No progress bar.")
@@ -112,9 +113,7 @@ class Filming:
                 raise UserError("--light and --style light= are both given; leave one out")
             if self.light.name in LIGHT_NAMES and not self.light.exists():
                 name = self.light.name
-                raise UserError(
-                    f"--light takes a file of a map; for {name} write --style light={name}"
-                )
+                raise UserError(f"--light {name}: no such file; write --style light={name}")
             light_map = read_light_map(self.light)
             style = replace(style, light=light_map.light())
         if not isinstance(self.background, str):
@@ -156,8 +155,13 @@ class Filming:
 @click.command(cls=GroupedCommand)
 @SCRIPT
 @SETTINGS
-@click.option("-o", "--output", type=PATH, help="out.mp4, .webm, .gif, .webp, a folder, or .png")
-@click.option("--sheet", type=PATH, help="Contact sheet of the named poses.")
+@click.option(
+    "-o",
+    "--output",
+    type=PATH,
+    help="The film: out.mp4, .webm, .gif or .webp; a .png; or a folder of frames.",
+)
+@click.option("--sheet", type=PATH, help="A .png with the named poses side by side.")
 @SCENE
 @SOUND
 @packed(Filming)
@@ -174,9 +178,9 @@ def capture(
 ) -> None:
     """Draw SCRIPT as a film, frames, a picture or a contact sheet.
 
-    A recording of a face is a SCRIPT, too: Live Link Face, OpenFace, MediaPipe, ... `risorius
-    convert` calibrates it. Without SCRIPT the scene's own one is played, or a pose of controls is
-    held: --set AU12=0.8.
+    SCRIPT is a .toml, or a recording of a face by Live Link Face, OpenFace, MediaPipe or others;
+    `risorius convert` calibrates recordings. Without SCRIPT the built-in script of the scene is
+    played, or --set AU12=0.8 holds a pose.
     """
     from ..capture import capture as film_of
     from ..capture.outputs import HEARD
@@ -186,7 +190,9 @@ def capture(
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
     check_apart(written, (script, sound, *drawing.files))
     if sound is not None and (output is None or output.suffix.lower() not in HEARD):
-        raise UserError(f"--sound {sound}: only a film is heard; end -o in {', '.join(HEARD)}")
+        raise UserError(
+            f"--sound {sound}: only films with sound can hold it; end -o in {', '.join(HEARD)}"
+        )
     performance = played(script, scene, settings=settings, sound=sound, quiet=filming.quiet)
     is_recording = script is not None and script.suffix.lower() != ".toml"
     is_still = output is not None and output.suffix.lower() == ".png"  # not during a blink
@@ -206,10 +212,10 @@ def capture(
 
 @click.command()
 def demo() -> None:
-    """Film the coarse head while it speaks: as it is, by the paper's rule, and smooth.
+    """Film the coarse head: unrefined, by the paper's rule and smooth.
 
-    Writes out/demo.mp4, and the expressions of the same head to out/demo.png. Wires show the edges
-    that are split because muscles bend them.
+    The head speaks in out/demo.mp4; out/demo.png has its expressions. Wires outline triangles that
+    are split because muscles bend the skin.
     """
     from risorius import render
 

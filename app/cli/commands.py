@@ -49,15 +49,16 @@ class Live:
     """Options of a window that follows a face over the network."""
 
     live: str | None = option(
-        type=click.Choice(list(PROTOCOLS)), help="Follow a face over the network, by this protocol."
+        type=click.Choice(list(PROTOCOLS)),
+        help="Follow a face that arrives over the network by this protocol.",
     )
     port: int | None = option(
-        type=click.IntRange(1, 65535), help="Port; the protocol's own by default."
+        type=click.IntRange(1, 65535), help="Port to listen on; by default the protocol's own."
     )
     address: str = option(
         default=LOOPBACK,
         show_default=True,
-        help="Address of this computer to listen on; 0.0.0.0 for its whole network.",
+        help="Address of this computer to listen on. 0.0.0.0 listens on all its networks.",
     )
 
     def listening(self, gains: tuple[str, ...], mirror: bool) -> Listening | None:
@@ -69,11 +70,11 @@ class Live:
             source = click.get_current_context().get_parameter_source
             for name in ("port", "address"):
                 if source(name) is not ParameterSource.DEFAULT:
-                    raise UserError(f"--{name} goes with --live, which names the protocol")
+                    raise UserError(f"--{name} needs --live; add --live with a protocol")
             if gains or mirror:
                 option = "--gain" if gains else "--mirror"
                 raise UserError(
-                    f"{option} goes with --live; for a recording it goes with risorius convert"
+                    f"{option} needs --live; for a recording give it to `risorius convert`"
                 )
             return None
         PROTOCOLS[self.live].check()
@@ -82,7 +83,7 @@ class Live:
 
 @click.command(cls=GroupedCommand)
 @click.option("--size", type=Size(), help="Size of the window; by default as it was last.")
-@click.option("--scene", type=SCENE_NAMES, help="The scene to animate, face by default.")
+@click.option("--scene", type=SCENE_NAMES, help="The scene to animate; by default the face.")
 @click.option("--script", type=PATH, help="The script or recording that the space key plays.")
 @SOUND
 @QUIET
@@ -103,9 +104,9 @@ def view(
 ) -> None:
     """Open the window: a face with a slider for every muscle.
 
-    With --head and a mesh alone, you mark the landmarks of that mesh first, unless its vertices are
-    known by their numbers. With --live the face follows one that a phone or `risorius send` sends;
-    --gain and --mirror are of that face.
+    If --head is a mesh without --landmarks, you mark its landmarks in the window. A head of
+    MakeHuman or ICT-FaceKit needs none. With --live the face copies a face that a phone or
+    `risorius send` sends; --gain and --mirror change its values.
     """
     listening = live.listening(gains, mirror)
     mesh = None
@@ -118,16 +119,17 @@ def view(
 
 @click.command()
 @click.argument("recording", type=PATH, required=False)
-@click.option("--port", type=click.IntRange(1, 65535), help="Port; the protocol's own by default.")
+@click.option(
+    "--port", type=click.IntRange(1, 65535), help="Port to send to; by default the protocol's own."
+)
 @click.option(
     "--address", default=LOOPBACK, show_default=True, help="Address of the receiving computer."
 )
 @click.option("--loop", is_flag=True, help="Repeat until Ctrl-C.")
 def send(recording: Path | None, port: int | None, address: str, loop: bool) -> None:
-    """Send RECORDING as Live Link Face would.
+    """Send RECORDING over the network, as the app Live Link Face does.
 
-    `risorius view --live livelink` follows it. Without RECORDING it sends a short one that is
-    included.
+    `risorius view --live livelink` receives it. Without RECORDING a short built-in one is sent.
     """
     from ..live.sender import Sender
     from ..recordings.reading import read_take
@@ -145,7 +147,7 @@ def send(recording: Path | None, port: int | None, address: str, loop: bool) -> 
 
 @click.command(cls=GroupedCommand)
 @click.argument("script", type=PATH)
-@click.option("--size", type=Size(), help="Size of the window: as it was last, or 1280x800.")
+@click.option("--size", type=Size(), help="Size of the window; by default as it was last.")
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
 @SOUND
 @QUIET
@@ -165,7 +167,7 @@ def replay(
 
 @click.command()
 @click.argument("recording", type=PATH)
-@click.option("-o", "--output", type=PATH, required=True, help="script.toml")
+@click.option("-o", "--output", type=PATH, required=True, help="The script: script.toml.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing script.")
 @QUIET
 @with_playback
@@ -174,7 +176,7 @@ def convert(
 ) -> None:
     """Turn the RECORDING of a face into a script.
 
-    Live Link Face, OpenFace, py-feat, MediaPipe and others write recordings.
+    RECORDING is a file of Live Link Face, OpenFace, py-feat, MediaPipe or another tracker.
     """
     from ..files import check_apart, check_file
     from ..script.script_file import save_script
@@ -271,11 +273,17 @@ def fitted_head_of(drawing: Drawing, *, may_be_marked: bool) -> tuple[FittedHead
 
 
 @click.command()
-@click.option("--scene", type=SCENE_NAMES, default="face", show_default=True)
+@click.option(
+    "--scene",
+    type=SCENE_NAMES,
+    default="face",
+    show_default=True,
+    help="The scene whose controls are listed.",
+)
 def controls(scene: str) -> None:
-    """List every name that a script may use.
+    """List the names of all controls that a script may use.
 
-    These are muscles, action units, expressions, visemes and ARKit's shapes.
+    Controls are muscles, action units, expressions, visemes and ARKit's shapes.
     """
     from ..scenes import controls_of
 
@@ -289,12 +297,12 @@ def controls(scene: str) -> None:
 
 
 @click.command()
-@click.option("--offscreen", is_flag=True, help="Only ask for offscreen OpenGL.")
+@click.option("--offscreen", is_flag=True, help="Examine offscreen OpenGL alone.")
 @click.option("--quiet", is_flag=True, help="Print nothing; only set the exit code.")
 def doctor(offscreen: bool, quiet: bool) -> None:
-    """Report which commands work here, and the remedy for those that do not.
+    """Report which commands work here, and how to enable the others.
 
-    Exit code 0: everything is there. 1: some commands work. 2: nothing can be drawn.
+    The exit code is 0 if all commands work, 1 if some work, 2 if nothing can be drawn.
     """
     from .doctor import examine
 

@@ -18,7 +18,7 @@ from .value_types import PATH, Size
     "--count",
     type=click.IntRange(1, 10**6),
     required=True,
-    help="Number of samples; their names have six digits.",
+    help="How many samples to make; their names have six digits.",
 )
 @click.option(
     "--first",
@@ -27,11 +27,11 @@ from .value_types import PATH, Size
     show_default=True,
     help="Number of the first sample.",
 )
-@click.option("-o", "--output", type=PATH, required=True, help="The set's folder.")
+@click.option("-o", "--output", type=PATH, required=True, help="The folder of the set.")
 @click.option(
     "--sample",
     type=PATH,
-    help="Your own table of expressions and poses; --sample-table prints ours.",
+    help="A table of expressions and poses, in place of the one that --sample-table prints.",
 )
 @click.option(
     "--seed",
@@ -45,47 +45,48 @@ from .value_types import PATH, Size
     default="segmentation",
     metavar="NAME,...",
     show_default=True,
-    help="Beside each picture: depth, normal, triangle, splits, segmentation; "
-    "landmarks are always there.",
+    help="Files to write beside each picture: depth, normal, triangle, splits, segmentation. "
+    "Landmarks are always written.",
 )
 @click.option(
-    "--size", type=Size(), default=(512, 512), help="Size of pictures [pixels], 512x512 by default."
+    "--size", type=Size(), default=(512, 512), help="Size of pictures [pixels]; by default 512x512."
 )
-@click.option("--refiner", metavar="NAME", help="Another refiner than the look's, as in capture.")
+@click.option("--refiner", metavar="NAME", help="A refiner in place of the default, as in capture.")
 @click.option(
     "--background",
     metavar="COLOUR|FOLDER",
-    help="A colour, as '#8090a0' or grey, or a folder of pictures; soft colours by default.",
+    help="A colour, as '#8090a0' or grey, or a folder of pictures; by default soft colours.",
 )
 @click.option(
     "--light",
     type=PATH,
-    help="A map of light from all around, .hdr or .exr, or a folder of them; else the table's.",
+    help="A map of the light from all directions, .hdr or .exr, or a folder of such maps; by "
+    "default the lights of the table.",
 )
 @click.option(
     "--degrade",
     is_flag=True,
-    help="Blur, noise and JPEG in the pictures, as the table of --sample draws them.",
+    help="Add blur, noise and JPEG to the pictures, by the table's random amounts.",
 )
 @click.option(
     "--shards",
     type=click.IntRange(1, 10**6),
     metavar="SAMPLES",
-    help="Number of samples in each tar file of WebDataset.",
+    help="Write tar files of WebDataset with this many samples each.",
 )
-@click.option("--jobs", type=click.IntRange(1, 256), help="Number of processes; one by default.")
+@click.option("--jobs", type=click.IntRange(1, 256), help="Number of processes; by default one.")
 @click.option(
     "--scheduler",
     metavar="ADDRESS",
     help="Address of a Dask cluster that makes the samples: tcp://host:8786.",
 )
-@click.option("--resume", is_flag=True, help="Go on with a set, or make it larger.")
+@click.option("--resume", is_flag=True, help="Continue a set, or make it larger.")
 @SILENT
 @printing(
     "--sample-table",
     "risorius.app.dataset",
     "aus.toml",
-    "Print the table that --sample replaces, and end.",
+    "Print the built-in table of expressions and poses, and end.",
 )
 def dataset(
     count: int,
@@ -100,14 +101,16 @@ def dataset(
 ) -> None:
     """Make pictures of faces with exact labels.
 
-    Labels are action units, landmarks, head pose, gaze, camera, and the passes that you choose.
-    Every sample depends on --seed and its number alone, not on the process that makes it.
+    Labels are action units, landmarks, head pose, gaze, camera, and the passes that you choose. A
+    sample depends on --seed and its number alone, not on the process that makes it.
     """
     from ..dataset.making import make_set
     from ..dataset.request import request_of
 
     if jobs is not None and scheduler is not None:
-        raise UserError("--jobs is for this computer; with --scheduler the cluster has its workers")
+        raise UserError(
+            "--jobs and --scheduler exclude each other: the cluster has its own workers"
+        )
     if first + count > 10**6:
         raise UserError(
             f"--first {first} --count {count}: ends at sample {first + count - 1}, the last can be "

@@ -27,41 +27,45 @@ class Exporting:
     name: str | None = option(
         "--as",
         type=click.Choice([each.name for each in FORMATS]),
-        help="The format, where the name does not show it: obj is a folder of one file a frame.",
+        help="The format, if the name of the output does not show it. obj is a folder with a file "
+        "for each frame.",
     )
     fps: float = option(
         type=FiniteRange(1, 240),
         default=30.0,
         show_default=True,
-        help="Frames a second, as 25 or 30000/1001.",
+        help="Frames per second, as 25 or 30000/1001.",
     )
     refined: bool = option(
         is_flag=True,
-        help="Write the refined skin, the same triangles in all frames, by --look, --refiner and "
-        "--option.",
+        help="Write the refined skin, with the same triangles in all frames. --look, --refiner and "
+        "--option refine it.",
     )
     changing: bool = option(
         is_flag=True,
-        help="With --refined: other triangles in each frame, as few as it needs (USD, OBJ, "
+        help="With --refined: give each frame its own triangles, as few as it needs (USD, OBJ, "
         "VTKHDF).",
     )
     simplified: bool = option(
         is_flag=True,
-        help="Of a head above 20000 triangles: write the simplified mesh that is simulated, in "
-        "place of the file's own.",
+        help="For a head above 20000 triangles: write the simplified mesh that is simulated, in "
+        "place of the file's mesh.",
     )
     named_only: bool = option(
         is_flag=True,
-        help="glTF without residual targets: ARKit's shapes alone, with errors of millimetres.",
+        help="Write glTF with ARKit's shapes alone, without residual targets; errors are "
+        "millimetres.",
     )
-    overwrite: bool = option(is_flag=True, help="Replace frames in a folder, or files beside -o.")
+    overwrite: bool = option(
+        is_flag=True, help="Replace the frames of a folder, or the files beside -o."
+    )
     quiet: bool = option(is_flag=True, help="No progress bar.")
 
 
 @click.command(cls=GroupedCommand)
 @SCRIPT
 @SETTINGS
-@click.option("-o", "--output", type=PATH, required=True, help="A file, or a folder with --as.")
+@click.option("-o", "--output", type=PATH, required=True, help="The file; with --as also a folder.")
 @SCENE
 @packed(Exporting)
 @packed(Subject)
@@ -75,8 +79,8 @@ def export(
 ) -> None:
     """Write the motion of SCRIPT for other programs.
 
-    A recording of a face is a SCRIPT, too; `risorius convert` calibrates it. Without SCRIPT the
-    scene's own one is played, or a pose is held for a second: --set joy.
+    SCRIPT is a .toml, or a recording of a face; `risorius convert` calibrates recordings. Without
+    SCRIPT the built-in script of the scene is played, or --set joy holds a pose for a second.
     """
     from ..files import check_apart
 

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 Command = Callable[..., Any]
 SCENE_NAMES = click.Choice(["face", "plane"])
 SOUND = click.option(
-    "--sound", type=PATH, help="Sound to play along: a WAV, MP3, ..., or a film with sound."
+    "--sound", type=PATH, help="The sound: a WAV, an MP3, another sound file, or a film with sound."
 )
-QUIET = click.option("--quiet", is_flag=True, help="Print nothing about a recording.")
+QUIET = click.option("--quiet", is_flag=True, help="Print no report of a recording.")
 SILENT = click.option("--quiet", is_flag=True, help="No progress bar.")
 SCRIPT = click.argument("script", type=PATH, required=False)
 SETTINGS = click.option(
@@ -39,7 +39,7 @@ SETTINGS = click.option(
     "settings",
     multiple=True,
     metavar="NAME=VALUE",
-    help="Hold a control at a value, instead of a SCRIPT.",
+    help="Hold a control at this value, in place of a SCRIPT.",
 )
 SCENE = click.option("--scene", type=SCENE_NAMES, help="The scene to animate.")
 
@@ -88,30 +88,31 @@ class Subject:
 
     head: Path | int | str | None = option(
         type=HeadName(),
-        help="A head of your own, any triangle mesh; or a person: any number, ada, kofi or maria; "
-        "or coarse, the built-in head with a quarter of its triangles.",
+        help="The head: a triangle mesh of yours; a person, by any number or as ada, kofi or "
+        "maria; or coarse, the built-in head with a quarter of its triangles.",
     )
     landmarks: Path | None = option(
         type=PATH,
-        help="The 68 iBug landmarks of --head, as JSON; MakeHuman and ICT-FaceKit need none.",
+        help="The 68 iBug landmarks of --head, as JSON. Heads of MakeHuman and ICT-FaceKit need "
+        "none.",
     )
     look: str = option(
         type=click.Choice(list(PRESETS)),
         default=FIRST_PRESET,
         show_default=True,
-        help="How the mesh is refined; paper is the paper's own rule.",
+        help="How the mesh is refined: smooth, or by the paper's own rule.",
     )
     refiner: str | None = option(
         metavar="NAME",
-        help="Another refiner than the look's (risorius doctor lists them); none draws the mesh as "
-        "it is.",
+        help="A refiner in place of the look's; `risorius doctor` lists them. none draws the mesh "
+        "unrefined.",
     )
     refiner_settings: tuple[str, ...] = option(
         "--option",
         multiple=True,
         metavar="NAME=VALUE",
         help="An option of the refiner, in place of the look's: scheme=cubic, "
-        "criterion=displacement, rest.levels=1, ... ; --option help lists them with their values.",
+        "criterion=displacement, rest.levels=1, ... --option help lists all with their values.",
     )
 
     @property
@@ -126,7 +127,7 @@ class Subject:
             raise UserError(f"--head {self.head}: its landmarks are known; leave --landmarks out")
         if self.head is None and self.landmarks is not None:
             raise UserError(
-                f"--landmarks {self.landmarks}: goes with --head HEAD.obj, whose landmarks they are"
+                f"--landmarks {self.landmarks}: needs --head; add the mesh of these landmarks"
             )
 
     def fitted_head(self) -> FittedHead | None:
@@ -161,16 +162,16 @@ class Drawing(Subject):
         is_flag=False,
         flag_value=",".join(STRUCTURES),
         metavar="[NAME,...]",
-        help="Draw muscles, skull or both under translucent skin; opacity=0..1 of the skin, 0.25 "
-        "by default; dissect=left or right: the subject's side that alone has such skin.",
+        help="Draw muscles, skull or both under translucent skin. opacity=0..1: of the skin, 0.25 "
+        "by default. dissect=left or right: only this side of the subject has translucent skin.",
     )
     style_settings: tuple[str, ...] = option(
         "--style",
         multiple=True,
         metavar="NAME[=VALUE],...",
-        help="wireframe, splits (colours by number of splits), wires (outlines of triangles "
-        "that are split more than at rest), skin=textured, plain or clay, "
-        f"light={', '.join(LIGHT_NAMES[:-1])} or {LIGHT_NAMES[-1]}, wrinkles=0..1.",
+        help="How the head looks: wireframe; splits, colours by the number of splits; wires, "
+        "outlines of triangles that are split more than at rest; skin=textured, plain or clay; "
+        f"light={', '.join(LIGHT_NAMES[:-1])} or {LIGHT_NAMES[-1]}; wrinkles=0..1, their depth.",
     )
 
     @property
@@ -215,15 +216,16 @@ GAIN = click.option(
     "gains",
     multiple=True,
     metavar="NAME=x",
-    help="Factor on the values of a channel; NAME may be a pattern (mouth*, *Left), or all.",
+    help="Multiply the values of a channel by x. NAME is a channel, a pattern (mouth*, *Left), or "
+    "all.",
 )
-MIRROR = click.option("--mirror", is_flag=True, help="Left and right change places.")
+MIRROR = click.option("--mirror", is_flag=True, help="Swap left and right.")
 PLAYBACK = (
     click.option(
         "--neutral",
         metavar="HOW",
-        help="The face at rest, to subtract: first:1, the median of the first second; "
-        "percentile, the 5th of each channel; none. The default depends on the kind of file.",
+        help="The face at rest, which is subtracted: first:1, the median of the first second; "
+        "percentile, the 5th of each channel; or none. The default depends on the kind of file.",
     ),
     GAIN,
     MIRROR,
@@ -232,11 +234,11 @@ PLAYBACK = (
         type=FiniteRange(0, 0.5),
         default=LEAD,
         show_default=True,
-        help="How much earlier than the recording muscles move [s], because skin follows late.",
+        help="Time by which muscles move before the recording [s]: skin follows muscles late.",
     ),
-    click.option("--face", metavar="ID", help="The face to play, if a file has several."),
+    click.option("--face", metavar="ID", help="The face to read, if the file has several."),
     click.option(
-        "--rate", type=FiniteRange(1, 1000), help="Frames a second, in place of the file's times."
+        "--rate", type=FiniteRange(1, 1000), help="Frames per second, in place of the file's times."
     ),
 )
 with_playback = packed(Playback, PLAYBACK)

@@ -24,31 +24,31 @@ class Rigging:
 
     landmarks: Path | None = option(
         type=PATH,
-        help="The 68 iBug landmarks of HEAD, as JSON; MakeHuman and ICT-FaceKit need none.",
+        help="The 68 iBug landmarks of HEAD, as JSON. Heads of MakeHuman and ICT-FaceKit need "
+        "none.",
     )
     name: str = option(
         "--as",
         type=click.Choice(["glb", "obj"]),
         default="glb",
         show_default=True,
-        help="The format: obj is a folder of one file a shape.",
+        help="The format. obj is a folder with a file for each shape.",
     )
     shapes: str = option(
         default="arkit",
         show_default=True,
         metavar="KIND,...",
-        help="Kinds of shapes: arkit, units, visemes, expressions.",
+        help="Kinds of shapes to write: arkit, units, visemes, expressions.",
     )
     eyes: str | None = option(
         type=click.Choice(["nodes", "targets"]),
-        help="How eyeballs turn: as nodes of their own (default), or by the shapes.",
+        help="How eyeballs turn: as nodes (default), or by the shapes.",
     )
     pieces: tuple[str, ...] = option(
         "--piece",
         multiple=True,
         metavar="PIECE=ROLE",
-        help="Role of a piece of the file, if the printed one is wrong: 3=tongue, 4-20=hair, "
-        "Beard=on_skin.",
+        help="Correct the printed role of pieces of the file: 3=tongue, 4-20=hair, Beard=on_skin.",
     )
     parts: bool = option(
         is_flag=True, help="Add built-in eyes, teeth, tongue and mouth where HEAD has none."
@@ -57,25 +57,27 @@ class Rigging:
         type=click.IntRange(0, 200),
         default=0,
         show_default=True,
-        help="Shapes of pairs whose sums are farthest off, this many at most.",
+        help="Add at most this many shapes, each of which corrects the sum of two shapes.",
     )
     take: Path | None = option(
         type=PATH,
-        help="Compare sums of shapes with this recording or script, with a few words by default; "
-        "--correctives are chosen for it.",
+        help="A recording or script with which sums of shapes are compared, and for which "
+        "--correctives are chosen. By default sums are compared with a few words.",
     )
     quiet: bool = option(is_flag=True, help="Print nothing but errors.")
 
 
 @click.command(cls=RenewedCommand)
 @click.argument("head", metavar="[HEAD]", type=HeadName(), required=False)
-@click.option("-o", "--output", type=PATH, required=True, help="avatar.glb")
+@click.option(
+    "-o", "--output", type=PATH, required=True, help="The file avatar.glb; with --as obj a folder."
+)
 @packed(Rigging)
 def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     """Make an avatar of HEAD: its own vertices, with named shapes.
 
-    HEAD is a file, or the number or name of a person. Without it the built-in head is taken. Lines
-    on the error stream report the role of each piece of the file, and the errors of sums of shapes.
+    HEAD is a file, or the number or name of a person; by default it is the built-in head. Lines on
+    the error stream report the role of each piece of the file, and the errors of sums of shapes.
     """
     from ..rig.avatar import RigRequest, avatar_of
     from ..rig.writing import write_avatar
@@ -83,7 +85,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
 
     file_path = head if isinstance(head, Path) else None
     if file_path is None and rigging.landmarks is not None:
-        raise UserError(f"--landmarks {rigging.landmarks}: goes with a file as HEAD; add its name")
+        raise UserError(f"--landmarks {rigging.landmarks}: needs a file as HEAD; add the mesh")
     is_folder = rigging.name == "obj"
     _check_output(output, (file_path, rigging.landmarks, rigging.take), is_folder=is_folder)
     kinds = tuple(rigging.shapes.split(","))
@@ -124,7 +126,7 @@ def _take_of(rigging: Rigging, kinds: tuple[str, ...]) -> Script | None:
 
     if "arkit" not in kinds:
         if rigging.take is not None:
-            raise UserError("--take goes with the shapes of ARKit; add arkit to --shapes")
+            raise UserError("--take needs the shapes of ARKit; add arkit to --shapes")
         return None
     if rigging.quiet and (rigging.take is None or not rigging.correctives):
         return None

@@ -55,7 +55,7 @@ class SetFolder:
         """
         check_links(self.path)
         if self.path.is_file():
-            raise UserError(f"{self.path}: is a file; name a folder")
+            raise UserError(f"{self.path}: is a file; choose a folder")
         with cannot_be_written(self.path):
             self.path.mkdir(parents=True, exist_ok=True)
             self._check(options, resume=resume)
@@ -88,24 +88,28 @@ class SetFolder:
         if not begun.exists():
             items = (item for item in self.path.iterdir() if not is_staging_folder(item))
             if any(item.name != UNFINISHED for item in items):
-                raise UserError(f"{self.path}: is not empty and no data set; name another folder")
+                raise UserError(
+                    f"{self.path}: is not empty, and no data set; choose another folder"
+                )
             return
         try:
             was = json.loads(begun.read_text("utf-8"))
             assert isinstance(was, dict) and "risorius" in was
         except (ValueError, AssertionError):
             raise UserError(
-                f"{begun}: does not say how a set was begun; name another folder"
+                f"{begun}: does not hold the options of a data set; choose another folder"
             ) from None
         if not self._has_samples():
             return
         if not resume:
-            raise UserError(f"{self.path}: holds a data set; add --resume, or name another folder")
+            raise UserError(
+                f"{self.path}: holds a data set; add --resume, or choose another folder"
+            )
         for name in dict.fromkeys((*was, *options)):
             if was.get(name) != options.get(name):
                 raise UserError(
                     f"{self.path}: was begun with {name} {_short(was.get(name))}, not "
-                    f"{_short(options.get(name))}; give the same to --resume, or name another "
+                    f"{_short(options.get(name))}; repeat the old value, or choose another "
                     "folder"
                 )
 

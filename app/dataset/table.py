@@ -51,7 +51,7 @@ def _units() -> list[str]:
 def _drawn(shares: dict[str, float]) -> Shares:
     """Shares for a random name; raises ValueError if no name is possible."""
     if not any(shares.values()):
-        raise ValueError("all shares are 0; one at least must be above")
+        raise ValueError("all shares are 0; at least one must be above 0")
     return shares
 
 

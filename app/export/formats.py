@@ -139,14 +139,14 @@ def check_request(output: Path, chosen: Format, request: ExportRequest) -> None:
     """UserError, before any work is done, if the requested output is impossible."""
     if request.refinement is not None and not chosen.refines:
         names = ", ".join(each.name for each in FORMATS if each.refines)
-        raise UserError(f"--refined does not go with {chosen.title}; it goes with {names}")
+        raise UserError(f"--refined: cannot be written as {chosen.title}; allowed are {names}")
     if request.changes and request.refinement is None:
-        raise UserError("--changing goes with --refined; add it, or leave out --changing")
+        raise UserError("--changing needs --refined; add it, or leave out --changing")
     if request.changes and not chosen.changes:
         names = ", ".join(each.name for each in FORMATS if each.changes)
-        raise UserError(f"--changing does not go with {chosen.title}; it goes with {names}")
+        raise UserError(f"--changing: cannot be written as {chosen.title}; allowed are {names}")
     if request.named_only and chosen.name != "gltf":
-        raise UserError(f"--named-only does not go with {chosen.title}; it goes with gltf")
+        raise UserError(f"--named-only: cannot be written as {chosen.title}; allowed is gltf")
     chosen.load()
     if not chosen.suffixes:
         check_folder(output, overwrite=request.overwrite)
@@ -156,7 +156,7 @@ def check_request(output: Path, chosen: Format, request: ExportRequest) -> None:
         for other in chosen.outputs(output)[1:]:
             if os.path.lexists(other):
                 raise UserError(
-                    f"{other}: is there, and {output.name} would come with such a file; "
+                    f"{other}: exists already, and {output.name} needs a file of this name; "
                     "choose another name, or add --overwrite"
                 )
 

@@ -80,7 +80,7 @@ def resolved(address: str) -> str:
     """The IPv4 address of a computer, from its name or address; UserError without one."""
     try:
         if not address or address.startswith("<"):  # the system takes these for all networks
-            raise OSError("that is no name")
+            raise OSError("this is not a name")
         found = socket.getaddrinfo(address, None, socket.AF_INET, socket.SOCK_DGRAM)
         return str(found[0][4][0])
     except (OSError, TypeError, ValueError) as error:  # Python's errors for names too long or odd

@@ -56,8 +56,8 @@ class Sender:
         channels = {name: values for name, values in take.channels.items() if name in CARRIED}
         if not channels:
             raise UserError(
-                f"{in_one_line(take.source)}: {take.kind} has nothing that can be sent; these "
-                "are ARKit's shapes, and the turns of head and eyes"
+                f"{in_one_line(take.source)}: {take.kind} has no values to send; Live Link "
+                "Face sends ARKit's shapes, and the turns of head and eyes"
             )
         last_step = take.duration / max(len(take.times) - 1, 1)
         begin = clock()

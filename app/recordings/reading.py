@@ -55,7 +55,7 @@ def read_take(path: Path, *, face: str | None = None, rate: float | None = None)
     Raises UserError with the file, the fault, its place, and the allowed values.
     """
     if rate is not None and not 1.0 <= rate <= 1000.0:
-        raise UserError(f"rate {rate:g}: must lie within 1 and 1000 frames a second")
+        raise UserError(f"rate {rate:g}: must be from 1 to 1000 frames a second")
     text, encoding = read_recording(path)
     take = _take_in(text, path, TakeRequest(face, rate))
     if encoding == "UTF-8":

@@ -99,8 +99,8 @@ class Refinement:
         unused = [name for name in THRESHOLDS if name in self.options]
         if unused and not self.has_thresholds(scene):
             raise UserError(
-                f"--option {unused[0]}: counts for the criterion {PAPERS_CRITERION} alone, and "
-                f"here it is {self.criterion_on(scene)}; leave it out, or add "
+                f"--option {unused[0]}: is an option of the criterion {PAPERS_CRITERION}, but "
+                f"the criterion is {self.criterion_on(scene)}; leave it out, or add "
                 f"--option criterion={PAPERS_CRITERION}"
             )
 

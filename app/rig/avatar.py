@@ -142,12 +142,14 @@ def avatar_of(head: FittedHead | None, request: RigRequest, say: Say) -> Avatar:
             pairs = worth_correcting(scene, poses, count, progress=request.progress)
         poses.update(corrective_poses(scene, pairs))
         names = tuple(poses)
-        say(f"correctives: {', '.join(names[len(names) - len(pairs) :]) or 'none pays'}")
+        say(
+            f"correctives: {', '.join(names[len(names) - len(pairs) :]) or 'none reduces an error'}"
+        )
     sums = table(scene, poses, pairs)
     if take is not None:
         sums.append(difference_on(take, scene, poses, pairs))
     for difference in sums:
-        say(f"sums of shapes, off the simulation: {difference}")
+        say(f"error of a sum of shapes: {difference}")
     shapes = tuple(_without_sums(each, pairs, names) for each in moving(bodies, poses))
     return Avatar(scene, file, shapes, names, tuple(pairs), eyes_are_nodes, tuple(sums))
 

@@ -77,7 +77,7 @@ def build_scene(name: str, head: FittedHead | None = None) -> Scene:
     if head is None:
         return SCENES[name]()
     if name != "face":
-        raise UserError(f"--head goes with the scene face, not with '{name}'")
+        raise UserError(f"--head needs the scene face; the scene is '{name}'")
     return build_face(head)
 
 

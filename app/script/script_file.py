@@ -177,8 +177,8 @@ def save_script(target: Path, script: Script) -> None:
     text = script_text(script, target.parent)
     if len(text) > LONGEST_FILE:
         raise UserError(
-            f"{target}: the script would be longer than can be read again, "
-            f"{LONGEST_FILE >> 20} MB; leave out some keys"
+            f"{target}: the script is too long; it may have {LONGEST_FILE >> 20} MB: "
+            "delete some keys"
         )
     save_text(target, text)
 

@@ -131,12 +131,12 @@ def load_sound(file: Path) -> Sound:
     samples = _samples(heard.stdout)
     if not samples.size:
         raise UserError(
-            f"{file}: there is no sound in it that ffmpeg can read; give a WAV, MP3, FLAC, M4A, "
+            f"{file}: holds no sound that ffmpeg can read; give a WAV, MP3, FLAC, M4A, "
             "or a film with sound"
         )
     sound = Sound(file, samples)
     if sound.duration > longest:
-        raise UserError(f"{file}: is longer than a sound may be, {longest / 60:g} minutes")
+        raise UserError(f"{file}: is too long; a sound may have {longest / 60:g} minutes")
     return sound
 
 

@@ -37,8 +37,9 @@ def placed(points: Floats64, known: Head) -> Similarity:
         raise AssetError(disordered[0].complaint)
     if is_far:
         raise AssetError(
-            f"the landmarks are no face: landmark {off.argmax()} lies {off.max():.0f} mm off, the "
-            f"mean one {off[ORIENTING].mean():.0f} mm; give the 68 iBug points in their order"
+            f"the landmarks are no face: they lie {off[ORIENTING].mean():.0f} mm off one in the "
+            f"mean, landmark {off.argmax()} {off.max():.0f} mm; give the 68 iBug points in their "
+            "order"
         )
     if similarity.is_mirrored:
         raise AssetError(
@@ -68,6 +69,6 @@ def _check_different(points: Floats64, template: Floats64) -> None:
     least_distance = 1.0  # [mm]
     if ways[a, b] < least_distance:
         raise AssetError(
-            f"landmarks {a} and {b} are {ways[a, b]:.2g} mm apart, on the built-in head "
-            f"{known[a, b]:.0f} mm; give each its own place"
+            f"landmarks {a} and {b} are {ways[a, b]:.2g} mm apart; on the built-in head "
+            f"they are {known[a, b]:.0f} mm apart: give each its own place"
         )

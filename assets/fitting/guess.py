@@ -84,8 +84,8 @@ def placing(known: Known) -> Similarity:
             if less.mean() <= most_mean_distance and not other.is_mirrored:
                 raise AssetError(f"the {pair} are swapped, landmarks {a} and {b}: {right}")
         raise AssetError(
-            f"these points are no face's: landmark {sorted(known)[int(off.argmax())]} lies "
-            f"{off.max():.0f} mm off, the mean one {off.mean():.0f} mm; give each its own place"
+            f"these points are no face: they lie {off.mean():.0f} mm off one in the mean, landmark "
+            f"{sorted(known)[int(off.argmax())]} {off.max():.0f} mm; give each its own place"
         )
     if similarity.is_mirrored:
         raise AssetError(f"left and right are swapped, or the mesh is mirrored: {right}")

@@ -120,7 +120,7 @@ def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHea
         reason = error
         are_faces = [is_face(found.vertices[numbers - first]) for first in (0, 1)]
         if points is None and are_faces == [False, True]:
-            reason = AssetError("landmarks count vertices from 1; count from 0: take 1 off each")
+            reason = AssetError("landmarks number vertices from 1; subtract 1 from each")
         raise AssetError(f"{named(mesh)}: {reason}") from None
     return replace(fitted, files=(path, file))
 
@@ -167,8 +167,8 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
     known = recognised(mesh)
     if known is None:
         raise UnfinishedError(
-            f"{named(path)}: its vertices are those of no known head, so mesh and landmark file "
-            "go together; `risorius view --head MESH` helps to mark the landmarks"
+            f"{named(path)}: needs a landmark file, because its vertices are those of no known "
+            "head; mark the landmarks in the window: `risorius view --head MESH`"
         )
 
     def marks_of(parted: Mesh) -> Marks:

@@ -57,8 +57,8 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]
         found = _all_in(_document(path))
         if None in found:
             raise UnfinishedError(
-                f"landmark {found.index(None)} is null: not marked yet, as {found.count(None)} of "
-                f"{COUNT}; go on in the window, with the mesh alone: risorius view --head MESH"
+                f"landmark {found.index(None)} is null: {found.count(None)} of {COUNT} are not "
+                "marked yet; mark them in the window: `risorius view --head MESH`"
             )
         if _are_numbers(found):
             numbers = _numbers(found, len(mesh.vertices))
@@ -140,7 +140,7 @@ def _numbers(found: list[Any], count: int) -> Integers32:
     try:
         return np.array(_read_each(vertex, found), dtype=np.int32)
     except ValueError as error:
-        raise AssetError(f"{error}: count from 0, in the mesh that is given") from None
+        raise AssetError(f"{error}: number the vertices of this mesh from 0") from None
 
 
 def _points(found: list[Any]) -> Floats64:
@@ -148,7 +148,7 @@ def _points(found: list[Any]) -> Floats64:
         return np.array(_read_each(Point, found))
     except ValueError as error:
         raise AssetError(
-            f"{error}; every landmark must be a vertex number, or every one a point [x, y, z] on "
+            f"{error}; all landmarks must be vertex numbers, or all must be points [x, y, z] on "
             "the mesh"
         ) from None
 
@@ -169,7 +169,7 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
         place = int(distance.argmax())
         raise AssetError(
             f"landmark {place} lies {distance[place]:.3g} units off the mesh; allowed are "
-            f"{allowed:.3g} (a twentieth of the eyes' distance): are unit and axes the mesh's?"
+            f"{allowed:.3g} (a twentieth of the eyes' distance): give unit and axes of the mesh"
         )
     # At an eye a lash may have been marked, or the ball: most points lie on the skin.
     piece = pieces_of(mesh.faces, len(mesh.vertices))[mesh.faces[:, 0]]

@@ -59,8 +59,8 @@ def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Ski
     others = np.flatnonzero(piece[landmarks] != np.bincount(piece[landmarks]).argmax())
     if len(others):
         raise AssetError(
-            f"landmark {others[0]} lies on another piece of the mesh than most; the skin must hang "
-            "together (weld its seams)"
+            f"landmark {others[0]} lies on another piece of the mesh than most; the skin must be "
+            "one piece: weld its seams"
         )
     is_in_piece = piece == piece[landmarks[0]]
     used = np.flatnonzero(is_in_piece).astype(np.int32)
@@ -191,7 +191,7 @@ def check_openings(skin: SkinPiece) -> None:
     if over == under or across < welded_share * around:
         raise ShutMouthError(
             "the mouth is shut: skin joins landmarks "
-            f"{middle_of_lips[0]} and {middle_of_lips[1]} on a way of {across:.0f} mm; "
+            f"{middle_of_lips[0]} and {middle_of_lips[1]} over {across:.0f} mm; "
             "cut the mesh open between the lips"
         )
     corners = skin.vertices[skin.faces]

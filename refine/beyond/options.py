@@ -81,8 +81,8 @@ def create_kahler(
     decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice), splits)
     if blend and coherent:
         raise ValueError(
-            "coherent=True continues the triangulations of the frame before; with blend=True "
-            "none ever turns a diagonal; set one of the two"
+            "coherent=True and blend=True exclude each other: one continues the triangulation of "
+            "the last frame, the other never turns a diagonal; set one of the two"
         )
     if blend is None:
         blend = chosen.interpolates and not coherent

@@ -196,7 +196,7 @@ def _given_places(
 ) -> tuple[Integers64, Floats64]:
     """The given places, one for each of `count` fine vertices, checked."""
     if labels is not None:
-        raise ValueError("places say where points are bound; leave labels out")
+        raise ValueError("places and labels exclude each other; leave one of them out")
     number = np.arange(count) if groups is None else groups
     given = as_array("places[0]", places[0], "integers of shape (P,)")
     wanted = int(number.max(initial=-1)) + 1

@@ -117,9 +117,9 @@ def test_every_wrong_line_is_reported_and_nothing_is_done():
         (5, "allowed are capture, export, convert"),
         (6, "'risorius' is no command"),
         (7, "nothere.toml: there is no such file"),
-        (8, "writes nothing"),
+        (8, "writes no file"),
         (10, "not empty"),
-        (11, "is read and would be written"),
+        (11, "is both an input and an output"),
     )
     assert ended.exit_code == 2
     assert ended.stdout == ""
@@ -144,7 +144,7 @@ def test_a_list_of_nothing(text, message):
 def test_jobs_and_scheduler_exclude_each_other():
     """A cluster has a fixed number of workers."""
     message = refusal(batch("--jobs", "2", "--scheduler", "tcp://a:1"))
-    assert "--jobs is for this computer" in message
+    assert "--jobs and --scheduler exclude each other" in message
 
 
 @pytest.mark.slow

@@ -154,7 +154,7 @@ def test_what_is_no_such_set_is_left_alone(made, tmp_path):
         (made, ("--resume", "--background", "red"), "was begun with background null, not [1.0"),
         (made, ("--resume", "--passes", "depth"), "was begun with passes"),
         (made, ("--resume", "--refiner", "none"), 'was begun with refiner null, not "none"'),
-        (other, ("--resume",), "is not empty and no data set"),
+        (other, ("--resume",), "is not empty, and no data set"),
     ):
         assert message in refusal(run(folder, *options))
     assert content(made) == before

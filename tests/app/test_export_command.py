@@ -89,12 +89,13 @@ def test_files_of_somebody_else_stay(folder):
     """Files beside the output, a head of the user's, and files in a folder stay."""
     Path("x.obj").write_text("mine")
     line = refusal(export("plane.toml", "-o", "x.pc2"))
-    assert "x.obj: is there, and x.pc2 would come with such a file" in line
+    assert "x.obj: exists already, and x.pc2 needs a file of this name" in line
     Path("frames").mkdir()
     Path("frames/notes.txt").write_text("mine")
     line = refusal(export("plane.toml", "--as", "obj", "-o", "frames"))
     assert (
-        line == "risorius: frames: is there and not empty; name another folder, or add --overwrite"
+        line
+        == "risorius: frames: exists and is not empty; choose another folder, or add --overwrite"
     )
     Path("frames/frame_00099.obj").write_text("of an earlier time")
     result = export("plane.toml", "--as", "obj", "-o", "frames", "--overwrite")
@@ -104,7 +105,7 @@ def test_files_of_somebody_else_stay(folder):
     Path("head.json").write_text("{}")
     head = ("--head", "head.obj", "--landmarks", "head.json")
     line = refusal(export("face.toml", "-o", "head.pc2", *head))
-    assert "head.obj: is read and would be written" in line
+    assert "head.obj: is both an input and an output" in line
 
 
 @pytest.mark.slow

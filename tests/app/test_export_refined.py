@@ -165,14 +165,14 @@ def test_a_refiner_that_never_changes_needs_no_splits(clip):
 @pytest.mark.parametrize(
     ("name", "request_", "error"),
     [
-        ("face.glb", ExportRequest(changes=True), "--changing goes with --refined"),
+        ("face.glb", ExportRequest(changes=True), "--changing needs --refined"),
         (
             "face.glb",
             ExportRequest(Refinement(), changes=True),
-            "not go with glTF.*usd, obj, vtkhdf",
+            "cannot be written as glTF.*usd, obj, vtkhdf",
         ),
-        ("face.csv", ExportRequest(Refinement()), "--refined does not go with ARKit"),
-        ("face.npz", ExportRequest(named_only=True), "--named-only does not go with numpy"),
+        ("face.csv", ExportRequest(Refinement()), "--refined: cannot be written as ARKit"),
+        ("face.npz", ExportRequest(named_only=True), "--named-only: cannot be written as numpy"),
     ],
 )
 def test_mistakes_are_reported(name, request_, error, tmp_path: Path):

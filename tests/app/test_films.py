@@ -88,7 +88,7 @@ def test_frames_are_in_order_and_complete(tmp_path, suffix):
 def test_a_gif_is_not_asked_for_frames_that_players_slow_down(tmp_path):
     """Frames last two hundredths of a second or more; a shorter time is refused in one line."""
     with (
-        pytest.raises(UserError, match=r"film.gif: has at most 50 frames a second, and"),
+        pytest.raises(UserError, match=r"film.gif: can have at most 50 frames a second, but"),
         outputs.film(tmp_path / "film.gif", (96, 64), 60.0),
     ):
         pass

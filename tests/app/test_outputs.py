@@ -32,7 +32,7 @@ def test_frames_in_a_folder(tmp_path):
     assert sorted(item.name for item in target.iterdir()) == ["frame_00000.png", "frame_00001.png"]
     (target / "notes.txt").write_text("mine")
     with (
-        pytest.raises(UserError, match="not empty; name another folder, or add --overwrite"),
+        pytest.raises(UserError, match="not empty; choose another folder, or add --overwrite"),
         outputs.folder(target, overwrite=False),
     ):
         pass

@@ -103,6 +103,6 @@ def test_no_input_is_written_over(tmp_path):
     recording.write_text("[]")
     result = risorius(*CAPTURE, recording, "--passes", "depth", "-o", tmp_path / "take.png")
     assert result.exit_code == 2
-    assert "take.json: is read and would be written" in result.output
+    assert "take.json: is both an input and an output" in result.output
     assert names_in(tmp_path) == ["take.json"]
     assert recording.read_text() == "[]"

@@ -106,7 +106,7 @@ def test_a_huge_file(tmp_path):
 @pytest.mark.parametrize("rate", [0.0, -1.0, 1e9, math.nan])
 def test_a_rate_that_is_none(rate, tmp_path):
     """The limits are named."""
-    with pytest.raises(UserError, match="1 and 1000"):
+    with pytest.raises(UserError, match="1 to 1000"):
         take_in(tmp_path, live_link(), rate=rate)
 
 

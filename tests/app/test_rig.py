@@ -408,7 +408,7 @@ def test_wrong_options_are_refused(whole, tmp_path):
     head = (whole.mesh, "--landmarks", landmarks)
     for words, expected in (
         (("-o", tmp_path / "a.fbx"), ".glb"),
-        ((unknown, "-o", tmp_path / "a.glb"), "landmark file go together"),
+        ((unknown, "-o", tmp_path / "a.glb"), "needs a landmark file"),
         ((3, "--landmarks", landmarks, "-o", tmp_path / "a.glb"), "--landmarks"),
         (("-o", tmp_path / "a.glb", "--shapes", "arkit,cats"), "cats"),
         ((*head, "-o", tmp_path / "a.glb", "--piece", "9000=hair"), "pieces 1 to"),

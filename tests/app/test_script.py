@@ -208,7 +208,7 @@ def test_missing_and_unreadable_files(tmp_path):
     long = tmp_path / "long.toml"
     with long.open("wb") as file:
         file.truncate(2**25 + 1)
-    with pytest.raises(UserError, match="is longer than a script may be, 32 MB"):
+    with pytest.raises(UserError, match="is too long; a script may have 32 MB"):
         load_script(long)
 
 

@@ -76,7 +76,7 @@ def test_what_is_no_sound_is_reported_in_one_line(tmp_path):
     with outputs.film(tmp_path / "mute.mp4", (64, 48), 25.0) as add:
         add(GREY)
     for name in ("text.wav", "empty.wav", "mute.wav", "list.m3u8", "mute.mp4"):
-        with pytest.raises(UserError, match=f"{name}: there is no sound in it") as raised:
+        with pytest.raises(UserError, match=f"{name}: holds no sound") as raised:
             load_sound(tmp_path / name)
         assert "\n" not in str(raised.value)
     with pytest.raises(UserError, match=r"nothing\.wav: no such sound file"):
@@ -160,9 +160,9 @@ def test_capture_takes_the_sound_of_script_and_option(tmp_path, monkeypatch):
         assert abs(lag(load_sound(Path(f"{name}.mp4")), load_sound(Path(f"{name}.wav")))) < 5e-3
     assert capture("-o", "frame.png")[0] == 0
     for silent in ("frame.png", "frames"):
-        assert "only a film is heard" in capture("-o", silent, "--sound", "own.wav")[1]
+        assert "only films with sound can hold it" in capture("-o", silent, "--sound", "own.wav")[1]
     assert "no such sound file" in capture("-o", "none.mp4", "--sound", "nothing.wav")[1]
-    assert "would be written" in capture("-o", "own.mp4", "--sound", "own.mp4")[1]
+    assert "is both an input and an output" in capture("-o", "own.mp4", "--sound", "own.mp4")[1]
     (tmp_path / "own.wav").unlink()
     assert capture("-o", "frame.png")[0] == 0
     assert "own.wav: no such sound file" in capture("-o", "gone.mp4")[1]

@@ -134,7 +134,7 @@ def test_the_sound_is_kept_with_the_script(desk, tmp_path):
     assert not is_there() and not desk.scripts.has_sound
     bad = tmp_path / "bad.mp3"
     bad.write_text("no sound")
-    assert "there is no sound in it" in desk.drop(bad).lower() and desk.messages.is_error
+    assert "holds no sound" in desk.drop(bad).lower() and desk.messages.is_error
     sound.unlink()
     session.work.open(load_script(script))
     with pytest.raises(UserError, match="no such sound file; the script plays without"):

@@ -133,7 +133,7 @@ def test_vertex_numbers_can_be_corrected(marking, tmp_path):
     assert not marking.marks.guessed
     wrong = Marking(marking.path, FileDialogs())
     numbers.write_text(json.dumps({"landmarks": np.roll(stranger().landmarks, 20).tolist()}))
-    with pytest.raises(UserError, match=r"\.json: these points are no face's"):
+    with pytest.raises(UserError, match=r"\.json: these points are no face"):
         wrong.open(numbers)
     assert not wrong.marks.places
     assert wrong.file is None
@@ -241,7 +241,7 @@ class TestInTheWindow:
         place = on_screen(viewer, left + 0.5 * width, top + 0.5 * height)
         xdotool(viewer, "mousemove", *place, "click", 1)
         assert not mode.marking.marks.places
-        assert "No skin looks at you" in viewer.messages.text
+        assert "There is no skin here" in viewer.messages.text
 
     def test_a_head_is_marked_from_the_first_click_to_the_picture(self, viewer, mesh, tmp_path):
         """A drop, five clicks, one drag, undo and save; then capture reads the file."""

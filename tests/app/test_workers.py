@@ -77,7 +77,7 @@ def test_what_dies_is_done_again(tmp_path):
 def test_what_kills_every_process_is_given_up(tmp_path):
     """It ends after three attempts, in one line; for a fault the log has the place."""
     log = tmp_path / "log"
-    with pytest.raises(UserError, match="died 3 times, at last of SIGSEGV"):
+    with pytest.raises(UserError, match="died 3 times, the last time of SIGSEGV"):
         run(working.die, log=log)
     assert "working.py" in log.read_text()
 

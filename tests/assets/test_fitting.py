@@ -274,7 +274,7 @@ def test_swapped_sides_are_noticed(other):
     [
         (
             (61, 62, 63, 65, 66, 67),
-            r"the mouth is shut: skin joins landmarks 62 and 66 on a way of \d+ mm",
+            r"the mouth is shut: skin joins landmarks 62 and 66 over \d+ mm",
         ),
         ((37, 38, 40, 41), r"the right eye has no opening: skin lies between landmarks 37 and 41"),
         ((43, 44, 46, 47), r"the left eye has no opening: skin lies between landmarks 43 and 47"),

@@ -66,7 +66,7 @@ def test_a_known_head_is_fitted_without_a_landmark_file(tmp_path):
     assert "its vertices are those of the built-in head" in fitted.notes[0]
     assert fitted.files == (mesh,)
     unknown, _ = stranger().write(tmp_path)
-    with pytest.raises(UnfinishedError, match="no known head, so mesh and landmark"):
+    with pytest.raises(UnfinishedError, match="needs a landmark file"):
         fit_head(unknown)
 
 

@@ -32,4 +32,4 @@ def test_pairs():
 def test_a_card_has_no_pairs():
     """One line names the options that exclude each other."""
     line = refusal(risorius("bench", "refine", "--matrix", "--refiner", "kahler-gl"))
-    assert line.startswith("risorius: --matrix goes with --refiner kahler alone")
+    assert line.startswith("risorius: --matrix needs --refiner kahler")

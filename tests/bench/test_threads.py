@@ -26,4 +26,4 @@ def test_one_thread_has_no_pair(monkeypatch):
     with pytest.raises(UserError, match="NUMBA_NUM_THREADS=2"):
         threads.measure(["2k"], 0.1)
     line = refusal(risorius("bench", "refine", "--threads", "--refiner", "kahler-gl"))
-    assert line.startswith("risorius: --threads goes with --refiner kahler alone")
+    assert line.startswith("risorius: --threads needs --refiner kahler")

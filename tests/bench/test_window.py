@@ -38,4 +38,4 @@ def test_a_head_of_the_users_is_timed(monkeypatch):
     assert f", {len(head.faces)} triangles," in table
     assert not targets
     line = refusal(risorius("bench", "window", "--landmarks", __file__))
-    assert line.startswith("risorius: --landmarks goes with --head")
+    assert line.startswith("risorius: --landmarks needs --head")

@@ -23,7 +23,7 @@ NUMBERS = HEAD.landmarks.tolist()
 POINTS = HEAD.vertices[HEAD.landmarks].tolist()
 BACK = int(np.argmin(HEAD.vertices[:, 2]))
 BROKEN = "broken, or not what its name says|holds no triangles"
-WRONG_KIND = "every landmark must be a vertex number, or every one a point"
+WRONG_KIND = "all landmarks must be vertex numbers, or all must be points"
 
 
 class Kind(Enum):
@@ -124,7 +124,7 @@ MARKS: dict[str, tuple[Any, Kind | str]] = {
     "deep": ("[" * 100_000, "not valid JSON: brackets are nested too deep"),
     "long": (json.dumps(NUMBERS) + " " * 1_000_000, "has 1 MB; a landmark file may have 1 MB"),
     "beyond": (_with(NUMBERS, 5, 10**7), "'landmark 5': was 10000000, must be a whole"),
-    "null": ([None] * 68, "landmark 0 is null: not marked yet, as 68 of 68"),
+    "null": ([None] * 68, "landmark 0 is null: 68 of 68 are not marked yet"),
     "mixed": (_with(POINTS, 67, 5), f"'landmark 67': was 5, .*{WRONG_KIND}"),
     "point at 1e8": (_with(POINTS, 8, [1e8, 0.0, 0.0]), "landmark 8 lies 1e.08 units off the mesh"),
     "mouth corners alike": (_with(NUMBERS, 54, NUMBERS[48]), "landmarks 48 and 54 are 0 mm apart"),

@@ -101,7 +101,9 @@ class MarkingMouse(CameraMouse):
         is_click = self._doing == "orbit" and imgui.is_mouse_released(LEFT)
         is_click = is_click and not self._has_moved(io)
         if is_click and not self._put(io):
-            self._messages.say("No skin looks at you here, as in a mouth or eye; click beside it")
+            self._messages.say(
+                "There is no skin here that faces you; click beside the mouth or the eye"
+            )
         elif is_click or self._doing == "mark":
             self._messages.carry_out(self._marking.note)
         self.forget()

@@ -228,7 +228,9 @@ class Session:
 
     def _refuse_while_recording(self) -> None:
         if self.is_recording:
-            raise UserError("stop the recording first ([Record]): it goes into the script as it is")
+            raise UserError(
+                "stop the recording first ([Record]); it is added to the script as it is now"
+            )
 
     def set_key(self, names: Iterable[str] | None = None) -> float:
         """Make the present face a key; returns its time [s].

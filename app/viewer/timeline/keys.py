@@ -111,7 +111,9 @@ class KeySelection:
     def key_controls(self, names: Collection[str]) -> Message:
         """Key these controls alone, at the present time."""
         if not names:
-            raise UserError("no control was moved since the last key; [Key whole pose] keys all")
+            raise UserError(
+                "no control was moved since the last key; [Key whole pose] sets keys for all"
+            )
         time = self._session.set_key(names)
         there = keyframes.places_of(self._session.script).near(time, keyframes.SAME).times
         tracks = {name: times for name, times in there.items() if name in names}

@@ -240,7 +240,7 @@ class Viewer:
     def show_scene(self, scene: Scene) -> None:
         """Replace the scene by another one with the same controls."""
         if self.marking_mode is not None and self.marking_mode.unsaved:
-            raise UserError("landmarks were moved meanwhile: use this head once more")
+            raise UserError("landmarks were moved meanwhile; press [Use this head] again")
         self.session.move_to(scene)
         self.leave_marking()
         display = self.settings.display
@@ -281,7 +281,7 @@ class Viewer:
         job = self.exporter.job
         if job is not None and not job.task.is_stopped:
             name = job.target.name
-            self.messages.say(f"{name} is being written: wait, or cancel it first", error=True)
+            self.messages.say(f"{name} is being written; wait, or cancel it first", error=True)
             return None
         if self.is_leaving:
             return self._close()

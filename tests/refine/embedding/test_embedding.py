@@ -285,7 +285,7 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "places and labels": (
         {"places": ([0, 0], np.full((2, 3), 1 / 3)), "labels": [1, 1], "face_labels": [1]},
-        "places say where points are bound",
+        "places and labels exclude each other",
     ),
     "an angle": ({"crease_angle": 200}, "crease_angle must be None or"),
 }
