@@ -241,7 +241,7 @@ class Renderer:
         if frame.is_opened:
             for program, _ in drawn:
                 set_translucency(program, frame, view)
-            draw_nearest(self._gl, stream, drawn)
+            draw_nearest(self._gl, stream, drawn, is_cut=frame.cut is not None)
             return
         with blending(self._gl, hides=True) if fade else nullcontext():
             if self.surface.is_software:

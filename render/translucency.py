@@ -55,16 +55,21 @@ def changing_depth_alone(gl: moderngl.Context) -> Iterator[None]:
 
 
 def draw_nearest(
-    gl: moderngl.Context, stream: MeshBuffers, shares: Sequence[tuple[moderngl.Program, Share]]
+    gl: moderngl.Context,
+    stream: MeshBuffers,
+    shares: Sequence[tuple[moderngl.Program, Share]],
+    *,
+    is_cut: bool,
 ) -> None:
     """Blend the nearest layer of a mesh alone: its depths first, then the colours at them.
 
-    The inner side of opaque parts comes before them.
+    is_cut: whether parts of it are opaque; their inner side comes before them.
     """
     gl.enable(moderngl.CULL_FACE)
-    gl.cull_face = "front"
-    for program, share in shares:
-        stream.draw(program, share)
+    if is_cut:
+        gl.cull_face = "front"
+        for program, share in shares:
+            stream.draw(program, share)
     gl.cull_face = "back"
     with changing_depth_alone(gl):
         for program, share in shares:

@@ -17,13 +17,13 @@ import scipy
 from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.sheets import NEAR, heights_over, sheet_of
 from risorius.sim import Simulation
 
 from ..scenes import Face
 
 ROWS = 22  # places along a band
 AROUND = 16  # places around its cross section
-NEAR = 8  # vertices that give the place of the skin
 RELAXED = np.array([0.68, 0.29, 0.245])  # sRGB
 CONTRACTED = np.array([0.50, 0.035, 0.045])  # sRGB
 TENDON = np.array([0.93, 0.87, 0.77])
@@ -110,7 +110,7 @@ class Muscles:
         for _ in range(4):
             outside, normal, _ = skin.at(rings)
             rings -= outside[..., None] * normal
-        away, self._carriers = skin.tree.query(rings, k=NEAR)
+        away, self._carriers = scipy.spatial.cKDTree(rest).query(rings, k=NEAR)
         self._share = 1.0 / (away + away.mean()) ** 2
         self._share /= self._share.sum(axis=-1, keepdims=True)
         self._shift = rings - np.einsum("brk,brkc->brc", self._share, rest[self._carriers])
@@ -212,26 +212,19 @@ class _Skin:
 
     def __init__(self, x: Floats64, faces: Any, bone: Floats64, middle: Floats64) -> None:
         """bone: how deep it is below each vertex of x; middle: from where a face looks outward."""
-        self.x = x
-        self._bone = bone
         self._middle = middle
-        self.normals = vertex_normals(x, faces)
-        self.tree = scipy.spatial.cKDTree(x)
+        self._sheet = sheet_of(x, vertex_normals(x, faces), bone)
 
     def at(self, points: Floats64) -> tuple[Floats64, Floats64, Floats64]:
-        """How far outside points (..., 3) are, which way is out, and how deep the bone is there."""
-        away, near = self.tree.query(points, k=NEAR)
-        normals = self.normals[near]
-        # Skin that turns away, such as the inner side of lips, lids and nostrils, is left out.
+        """How far outside points (..., 3) are, which way is out, and how deep the bone is there.
+
+        Skin that turns away, such as the inner side of lips, lids and nostrils, is left out.
+        """
+        shape = points.shape
+        points = points.reshape(-1, 3)
         out = (points - self._middle) * (1.0, 0.25, 1.0)
-        is_faced = np.einsum("...kc,...c->...k", normals, out) > 0.0
-        reach = 0.35 * away.max(axis=-1, keepdims=True) ** 2
-        weight = 1e-9 + is_faced * np.exp(-(away**2) / reach)
-        weight /= weight.sum(axis=-1, keepdims=True)
-        off = np.einsum("...kc,...kc->...k", points[..., None, :] - self.x[near], normals)
-        normal = np.einsum("...k,...kc->...c", weight, normals)
-        normal = unit_vectors(normal)
-        return (weight * off).sum(axis=-1), normal, (weight * self._bone[near]).sum(axis=-1)
+        height, normal, depth = heights_over(self._sheet, points, out)
+        return height.reshape(shape[:-1]), normal.reshape(shape), depth.reshape(shape[:-1])
 
 
 def _resampled(lines: Floats64) -> Floats64:
