@@ -37,9 +37,8 @@ def placed(points: Floats64, known: Head) -> Similarity:
         raise AssetError(disordered[0].complaint)
     if is_far:
         raise AssetError(
-            f"the landmarks are no face: they lie {off[ORIENTING].mean():.0f} mm off one in the "
-            f"mean, landmark {off.argmax()} {off.max():.0f} mm; give the 68 iBug points in their "
-            "order"
+            f"the landmarks are no face: they are {off[ORIENTING].mean():.0f} mm off on average, "
+            f"landmark {off.argmax()} {off.max():.0f} mm; give the 68 iBug points in their order"
         )
     if similarity.is_mirrored:
         raise AssetError(
