@@ -38,7 +38,7 @@ def read_text(path: Path, *, what: str, longest: int) -> str:
     except UnicodeDecodeError as error:
         where = f"byte {error.start} is {error.object[error.start]:#04x}"
         raise UserError(
-            f"{path}: is no text in UTF-8 ({where}); a {what} is one: save it in this encoding"
+            f"{path}: is not text in UTF-8 ({where}); save the {what} in this encoding"
         ) from None
 
 

@@ -74,59 +74,95 @@ def _fill(
     """Fill rows of height, normal and depth."""
     near = np.arange(NEAR)
     away = np.empty(NEAR)  # squared, increasing
+    for n in range(len(points)):
+        _find_nearest(x, starts, counts, corner, cell, points[n], near, away)
+        _weigh(x, normals, depths, points[n], outward[n], near, away, found[n])
+
+
+@njit
+def _find_nearest(
+    x: Floats64,
+    starts: Integers64,
+    counts: Integers64,
+    corner: Floats64,
+    cell: float,
+    point: Floats64,
+    near: Integers64,
+    away: Floats64,
+) -> None:
+    """Replace the last point's nearest vertices by those of this point, the nearest first.
+
+    The last ones are near this point, too: others must be nearer than these.
+    """
+    limit = 0.0
+    for k in range(NEAR):
+        limit = max(limit, _squared(point, x[near[k]]))
+    limit = limit * (1.0 + 1e-12) + 1e-30  # rounded up
     low = np.empty(3, np.int64)
     high = np.empty(3, np.int64)
-    for n in range(len(points)):
-        # The last point's vertices are near this one, too: others must be nearer than these.
-        limit = 0.0
-        for k in range(NEAR):
-            square = 0.0
-            for c in range(3):
-                square += (points[n, c] - x[near[k], c]) ** 2
-            limit = max(limit, square)
-        limit = limit * (1.0 + 1e-12) + 1e-30  # rounded up
+    for c in range(3):
+        place = (point[c] - corner[c]) / cell
+        radius = np.sqrt(limit) / cell
+        low[c] = min(max(int(np.floor(place - radius)), 0), counts[c] - 1)
+        high[c] = min(max(int(np.floor(place + radius)), 0), counts[c] - 1)
+    away[:] = limit
+    for i in range(low[0], high[0] + 1):
+        for j in range(low[1], high[1] + 1):
+            row = (i * counts[1] + j) * counts[2]
+            for v in range(starts[row + low[2]], starts[row + high[2] + 1]):
+                square = _squared(point, x[v])
+                if square >= away[NEAR - 1]:
+                    continue
+                rank = NEAR - 1
+                while rank > 0 and away[rank - 1] > square:
+                    away[rank] = away[rank - 1]
+                    near[rank] = near[rank - 1]
+                    rank -= 1
+                away[rank] = square
+                near[rank] = v
+
+
+@njit
+def _squared(point: Floats64, vertex: Floats64) -> float:
+    """The squared distance of two points."""
+    square = 0.0
+    for c in range(3):
+        square += (point[c] - vertex[c]) ** 2
+    return square
+
+
+@njit
+def _weigh(
+    x: Floats64,
+    normals: Floats64,
+    depths: Floats64,
+    point: Floats64,
+    outward: Floats64,
+    near: Integers64,
+    away: Floats64,
+    found: Floats64,
+) -> None:
+    """Fill a row of height, normal and depth: means over near vertices that look outward."""
+    reach = 0.35 * max(away[NEAR - 1], 1e-30)
+    total = 0.0
+    found[:] = 0.0
+    for k in range(NEAR):
+        v = near[k]
+        height = 0.0
+        facing = 0.0
         for c in range(3):
-            place = (points[n, c] - corner[c]) / cell
-            radius = np.sqrt(limit) / cell
-            low[c] = min(max(int(np.floor(place - radius)), 0), counts[c] - 1)
-            high[c] = min(max(int(np.floor(place + radius)), 0), counts[c] - 1)
-        away[:] = limit
-        for i in range(low[0], high[0] + 1):
-            for j in range(low[1], high[1] + 1):
-                row = (i * counts[1] + j) * counts[2]
-                for v in range(starts[row + low[2]], starts[row + high[2] + 1]):
-                    square = 0.0
-                    for c in range(3):
-                        square += (points[n, c] - x[v, c]) ** 2
-                    if square >= away[NEAR - 1]:
-                        continue
-                    rank = NEAR - 1
-                    while rank > 0 and away[rank - 1] > square:
-                        away[rank] = away[rank - 1]
-                        near[rank] = near[rank - 1]
-                        rank -= 1
-                    away[rank] = square
-                    near[rank] = v
-        reach = 0.35 * max(away[NEAR - 1], 1e-30)
-        total = 0.0
-        found[n] = 0.0
-        for k in range(NEAR):
-            v = near[k]
-            height = 0.0
-            facing = 0.0
-            for c in range(3):
-                height += (points[n, c] - x[v, c]) * normals[v, c]
-                facing += outward[n, c] * normals[v, c]
-            weight = 1e-9
-            if facing > 0.0:
-                weight += np.exp(-away[k] / reach)
-            total += weight
-            found[n, 0] += weight * height
-            for c in range(3):
-                found[n, 1 + c] += weight * normals[v, c]
-            found[n, 4] += weight * depths[v]
-        size = np.sqrt(found[n, 1] ** 2 + found[n, 2] ** 2 + found[n, 3] ** 2)
-        found[n, 0] /= total
-        found[n, 4] /= total
+            height += (point[c] - x[v, c]) * normals[v, c]
+            facing += outward[c] * normals[v, c]
+        weight = 1e-9
+        if facing > 0.0:
+            weight += np.exp(-away[k] / reach)
+        total += weight
+        found[0] += weight * height
         for c in range(3):
-            found[n, 1 + c] /= max(size, 1e-30)
+            found[1 + c] += weight * normals[v, c]
+        found[4] += weight * depths[v]
+    size = np.sqrt(found[1] ** 2 + found[2] ** 2 + found[3] ** 2)
+    found[0] /= total
+    found[4] /= total
+    for c in range(3):
+        found[1 + c] /= max(size, 1e-30)

@@ -184,7 +184,7 @@ def test_a_set_ends_within_six_digits(tmp_path):
 def test_jobs_and_scheduler_exclude_each_other(tmp_path):
     """A cluster has a fixed number of workers."""
     message = refusal(run(tmp_path, "--jobs", 2, "--scheduler", "tcp://a:1"))
-    assert "--jobs is for this computer" in message
+    assert "--jobs and --scheduler exclude each other" in message
 
 
 def test_two_cannot_make_one_set(made):

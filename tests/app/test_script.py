@@ -203,7 +203,7 @@ def test_missing_and_unreadable_files(tmp_path):
         load_script(tmp_path / "nothing.toml")
     binary = tmp_path / "binary.toml"
     binary.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(UserError, match=r"no text in UTF-8 \(byte 0 is 0xff\); a script is one"):
+    with pytest.raises(UserError, match=r"not text in UTF-8 \(byte 0 is 0xff\); save the script"):
         load_script(binary)
     long = tmp_path / "long.toml"
     with long.open("wb") as file:

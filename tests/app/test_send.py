@@ -100,7 +100,7 @@ def test_a_take_without_anything_to_send_is_refused():
     """One line reports it, with the file."""
     with (
         Sender(LOOPBACK, None, "test") as sender,
-        pytest.raises(UserError, match=r"test\.csv: test has nothing that can be sent"),
+        pytest.raises(UserError, match=r"test\.csv: test has no values to send"),
     ):
         sender.play(take_of(viseme_PP=[1.0]))
 

@@ -71,7 +71,7 @@ def test_a_bad_file_is_reported_and_survived(desk, tmp_path):
     assert desk.messages.is_error
     assert "no_such_muscle" in line and "\n" not in line
     bad.write_bytes(bytes(range(256)))
-    assert "cannot be read" in desk.drop(bad)
+    assert "is not text in UTF-8" in desk.drop(bad)
     assert "one of them is enough" in desk.drop(bad, tmp_path)
     assert desk.messages.is_error
     assert desk.session.script is before

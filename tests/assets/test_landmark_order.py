@@ -72,7 +72,7 @@ def test_a_group_in_disorder_is_refused_in_one_line(group, other):
 def test_numbers_counted_from_1_are_refused(other, tmp_path):
     """Each is the vertex after the intended one."""
     mesh, numbers = other.write(tmp_path, landmarks=other.landmarks + 1)
-    with pytest.raises(AssetError, match=r"\.obj: landmarks count vertices from 1"):
+    with pytest.raises(AssetError, match=r"\.obj: landmarks number vertices from 1"):
         fit_head(mesh, numbers)
 
 

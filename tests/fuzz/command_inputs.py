@@ -50,7 +50,7 @@ REFUSED = {
     # Options that commands had before.
     f"{IMAGE} --gain all=1": "--gain was removed: convert the recording first: risorius convert",
     f"{IMAGE} --wireframe": "--wireframe was removed: write --style wireframe",
-    f"{IMAGE} --light side": "for side write --style light=side",
+    f"{IMAGE} --light side": "no such file; write --style light=side",
     f"{IMAGE} --light x.hdr --style light=side": "are both given; leave one out",
     "view --light side": "--light was removed: write --style light=VALUE",
     "export good.toml -o x.glb --light side": "--light was removed: write --style light=VALUE",
