@@ -100,9 +100,9 @@ def _table(kind: str) -> Mapping[str, Any]:
 
 
 @cache
-def _synonyms() -> tuple[tuple[str, frozenset[str]], ...]:
+def _synonyms() -> tuple[tuple[str, tuple[str, ...]], ...]:
     return tuple(
-        (word, frozenset(found))
+        (word, tuple(found))
         for words, found in _table("synonyms").items()
         for word in words.split()
     )
@@ -142,11 +142,21 @@ def is_found(words: str, text: str, names: Collection[str]) -> bool:
     return all(
         any(
             form in text.lower()
-            or any(other.startswith(form) and found & stems for other, found in _synonyms())
+            or any(
+                other.startswith(form) and not stems.isdisjoint(found)
+                for other, found in _synonyms()
+            )
             for form in _forms(word)
         )
         for word in words.lower().split()
     )
+
+
+def meant_by(word: str, names: Collection[str]) -> list[str]:
+    """Those of the names that a word of everyday speech means, the nearest first."""
+    forms = _forms(word.lower())
+    meant = [name for other, found in _synonyms() if other in forms for name in found]
+    return [name for name in dict.fromkeys(meant) if name in names]
 
 
 def _forms(word: str) -> list[str]:

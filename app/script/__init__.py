@@ -23,6 +23,7 @@ import numpy.typing as npt
 from risorius.geometry.arrays import Flags, Floats64
 from risorius.schema import REST, OneOf, Record, Within, called
 
+from ..control_names import meant_by
 from ..control_names.limits import ControlValues, Limits
 from ..errors import UserError
 from .easings import ALLOWED, Easing, easing_named, easing_names, hermite, shares_of
@@ -327,8 +328,9 @@ def rounded(number: float) -> float:
 
 
 def suggestion(name: str, allowed: Iterable[str], scene: str) -> str:
-    """The end of an error message: similar names, or the command that lists all names."""
-    near = difflib.get_close_matches(name, list(allowed), n=3)
+    """The end of an error message: similar names, names of this meaning, or where names are."""
+    known = list(allowed)
+    near = difflib.get_close_matches(name, known, n=3) or meant_by(name, known)[:3]
     if near:
         return f"did you mean {' or '.join(near)}?"
     option = "" if scene == "face" else f" --scene {scene}"

@@ -135,12 +135,10 @@ def parse_script(text: str, *, source: str) -> Script:
     ends += [pose.time for pose in file.pose[-1:]]
     if not ends:
         raise UserError(f"{source}: no [[pose]] and no [tracks]: a script needs at least one key")
-    duration = max(ends) if file.duration is None else file.duration
+    held = 1.0  # [s] for which a pose is held that is the only key, at 0 s
+    duration = (max(ends) or held) if file.duration is None else file.duration
     if duration <= 0.0:
-        raise UserError(
-            f"{source}: duration is {duration:g} s; it must be above 0: "
-            "write duration = 1.0, or a key after 0 s"
-        )
+        raise UserError(f"{source}: duration is {duration:g} s; it must be above 0")
     for pose in file.pose:
         if pose.name is not None and pose.time > duration:
             raise UserError(

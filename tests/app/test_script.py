@@ -11,6 +11,7 @@ from risorius.app.errors import UserError
 from risorius.app.script import LARGEST, Channel, Key, Pose, Script
 from risorius.app.script.easings import EASINGS, easing_named, easing_names
 from risorius.app.script.script_file import load_script, parse_script, script_text
+from tests.app.command_line import refusal, risorius
 
 HELLO = """
 title = "Hello"
@@ -151,6 +152,21 @@ def test_easings_stay_between_the_keys(fraction, name):
 
 
 @pytest.mark.parametrize(
+    ("word", "names"), [("smile", "joy or AU12"), ("frowning", "anger or sadness or AU4")]
+)
+def test_an_everyday_word_finds_its_control(word, names):
+    """No control has this name, and none is spelled like it."""
+    assert f"did you mean {names}" in refusal(risorius("capture", "--set", word, "-o", "x.png"))
+
+
+def test_a_lone_pose_is_held_for_a_second():
+    """A first script has one pose at 0 s; its duration is not written."""
+    script = parse_script("[[pose]]\ntime = 0\njoy = 1.0", source="one.toml")
+    assert script.duration == 1.0
+    assert [pose.values for pose in script.poses] == [{"joy": 1.0}]
+
+
+@pytest.mark.parametrize(
     ("text", "message"),
     [
         ("pose = = 3", r"bad.toml: not valid TOML: .*line 1"),
@@ -159,7 +175,7 @@ def test_easings_stay_between_the_keys(fraction, name):
         ("[[pose]]\ntime=nan", r"'pose' 1, 'time': was nan"),
         ("[[pose]]\ntime=1\n[[pose]]\ntime=1", r"pose 2: time 1 s does not come after"),
         ("[[pose]]\ntime=1\neasing='x'", r"'easing': was 'x', must be linear, smooth"),
-        ("[[pose]]\ntime=0", r"duration is 0 s; it must be above 0: write duration = 1.0, or"),
+        ("duration=0\n[[pose]]\ntime=0", r"duration is 0 s; it must be above 0"),
         ("duration=1\n[[pose]]\ntime=2\nname='x'", r"pose 'x' at 2 s comes after the duration"),
         ("[tracks]\nblink = 3", r"'blink': was .*, must be a list"),
         ("[tracks]\nb='1 0 lineal'", r"key 1: was '1 0 lineal', must be .* easing: linear, smooth"),
