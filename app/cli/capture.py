@@ -55,8 +55,8 @@ class Filming:
     background: render.Background | str | None = option(
         type=BackgroundName(),
         default="light",
-        help="light, dark, white, black, a colour as #00b140, transparent, or map: the map that "
-        "lights the scene, out of focus.",
+        help="light, dark, white, black, a colour as #00b140 or grey, transparent, or map: the map "
+        "that lights the scene, out of focus.",
     )
     light: Path | None = option(
         type=PATH,

@@ -58,6 +58,8 @@ class BackgroundName(click.ParamType["render.Background | str | None"]):
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> render.Background | str | None:
         """Look the name up, or fail with the allowed names."""
+        import PIL.ImageColor
+
         from risorius import render
 
         word = str(value).lower()
@@ -68,13 +70,14 @@ class BackgroundName(click.ParamType["render.Background | str | None"]):
         if word in BACKGROUNDS:
             named: render.Background = getattr(render, word.upper())
             return named
-        if re.fullmatch("#[0-9a-f]{6}", word):
-            red, green, blue = (part / 255.0 for part in bytes.fromhex(word[1:]))
-            return render.Background((red, green, blue), (red, green, blue))
-        self.fail(
-            f"'{value}' is no background; take {', '.join(BACKGROUNDS)}, {MAP_BACKGROUND}, "
-            "transparent, or a colour as #00b140"
-        )
+        try:
+            red, green, blue = (part / 255.0 for part in PIL.ImageColor.getrgb(word)[:3])
+        except ValueError:
+            self.fail(
+                f"'{value}' is no background; take {', '.join(BACKGROUNDS)}, {MAP_BACKGROUND}, "
+                "transparent, or a colour as #00b140 or grey"
+            )
+        return render.Background((red, green, blue), (red, green, blue))
 
 
 class Times(click.ParamType[tuple[float, ...]]):

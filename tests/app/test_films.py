@@ -119,7 +119,12 @@ def test_a_transparent_picture_lies_over_any_colour(samples, colour):
 
 @pytest.mark.parametrize(
     ("word", "corner"),
-    [("white", (255, 255, 255)), ("black", (0, 0, 0)), ("#00B140", (0, 177, 64))],
+    [
+        ("white", (255, 255, 255)),
+        ("black", (0, 0, 0)),
+        ("grey", (128, 128, 128)),
+        ("#00B140", (0, 177, 64)),
+    ],
 )
 def test_backgrounds_by_name(tmp_path, word, corner):
     """The corner of a picture has exactly the requested colour."""
