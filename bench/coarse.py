@@ -127,7 +127,8 @@ def _angles_and_areas(
     normals = unit_vectors(mesh.normals[triangles].mean(axis=1).astype(float))
     distances, nearest = surface.tree.query(middles, k=6)
     cosines = np.einsum("nkc,nc->nk", surface.normals[nearest], normals)
-    distances = np.where(cosines > 0.2, distances, np.inf)
+    least_cosine = 0.2  # of points on the same side, not on the inner side of a lip or a lid
+    distances = np.where(cosines > least_cosine, distances, np.inf)
     chosen = np.take_along_axis(cosines, distances.argmin(axis=1)[:, None], axis=1)[:, 0]
     areas = 0.5 * np.linalg.norm(cross_products(mesh.positions.astype(float), triangles), axis=1)
     return np.degrees(np.arccos(np.clip(chosen, -1.0, 1.0))), areas

@@ -15,7 +15,7 @@ from .arrays import Floats32, Unsigned8
 
 
 class Absorbed(NamedTuple):
-    """What takes light from skin; for each an amount by channel, (3,), and a map, (H, W)."""
+    """Pigments that take light from skin: of each an amount by channel, (3,), and a map, (H, W)."""
 
     amounts: tuple[Floats32, Floats32, Floats32, Floats32]
     maps: tuple[Floats32, Floats32, Floats32, Floats32]
@@ -24,7 +24,7 @@ class Absorbed(NamedTuple):
 
 
 class Hairs(NamedTuple):
-    """The hair that a picture shows now, and on which texels."""
+    """The hair of a person: its light, and its share of each texel."""
 
     light: Floats32  # (3,), linear
     grey: Floats32  # shares of grey on the scalp, and elsewhere, (2,)
@@ -43,28 +43,23 @@ class Grown(NamedTuple):
 
 
 @njit
-def absorb(absorbed: Absorbed, first: int, lost: Floats32) -> None:
-    """Write what rows from `first` on lose, (3, rows, W), as powers of 1/e with the sign turned."""
-    amounts, maps = absorbed.amounts, absorbed.maps
-    strength = absorbed.relief
-    for y in range(lost.shape[1]):
-        first_map, second_map = maps[0][first + y], maps[1][first + y]
-        third_map, last_map = maps[2][first + y], maps[3][first + y]
-        detail = absorbed.detail[first + y]
+def absorb(absorbed: Absorbed, first: int, exponents: Floats32) -> None:
+    """Write exponents of e for the share of light that skin keeps, (3, rows, W).
+
+    first: the row of the maps that is the first row of `exponents`.
+    """
+    first_amount, second_amount, third_amount, last_amount = absorbed.amounts
+    first_map, second_map, third_map, last_map = absorbed.maps
+    for y in range(exponents.shape[1]):
+        row = first + y
         for channel in range(3):
-            found = lost[channel, y]
-            a, b, c, d = (
-                amounts[0][channel],
-                amounts[1][channel],
-                amounts[2][channel],
-                amounts[3][channel],
-            )
-            for x in range(len(found)):
-                total = a * first_map[x] + b * second_map[x]
-                total -= strength * detail[x]
-                total += c * third_map[x]
-                total += d * last_map[x]
-                found[x] = -total
+            for x in range(exponents.shape[2]):
+                total = first_amount[channel] * first_map[row, x]
+                total += second_amount[channel] * second_map[row, x]
+                total -= absorbed.relief * absorbed.detail[row, x]
+                total += third_amount[channel] * third_map[row, x]
+                total += last_amount[channel] * last_map[row, x]
+                exponents[channel, y, x] = -total
 
 
 @njit

@@ -35,10 +35,16 @@ def renderer() -> Iterator[render.Renderer]:
 @pytest.fixture(scope="module")
 def short_necked() -> FaceScene:
     """The built-in head with a quarter of its neck, cut off without a shirt, like a user's head."""
+    return with_short_neck(forward=0.0)
+
+
+def with_short_neck(forward: float) -> FaceScene:
+    """A scene of such a head, whose neck comes this far forward [mm] below the chin."""
     head = assets.load("head")
     vertices = head.vertices.copy()
     below = np.minimum(vertices[:, 1] - vertices[head.landmarks[8], 1], 0.0)
     vertices[:, 1] -= 0.75 * below
+    vertices[:, 2] += np.where(below < -40.0, forward, 0.0)
     return FaceScene(fit(Mesh(vertices, head.faces), head.landmarks))
 
 
@@ -107,12 +113,7 @@ def test_an_open_chin_does_not_fade_beside_a_short_neck(short_necked, renderer, 
 @pytest.fixture(scope="module")
 def thick_necked() -> FaceScene:
     """A head with a short neck that comes forward, so that the chin of a nod goes into it."""
-    head = assets.load("head")
-    vertices = head.vertices.copy()
-    below = np.minimum(vertices[:, 1] - vertices[head.landmarks[8], 1], 0.0)
-    vertices[:, 1] -= 0.75 * below
-    vertices[:, 2] += np.where(below < -40.0, 60.0, 0.0)
-    return FaceScene(fit(Mesh(vertices, head.faces), head.landmarks))
+    return with_short_neck(forward=60.0)
 
 
 def test_a_faded_neck_makes_no_hole_in_a_mouth(thick_necked, renderer):
