@@ -18,7 +18,7 @@ import scipy
 
 from risorius.geometry.texels import Texels
 
-from ...geometry.arrays import Floats32, Floats64, Integers64
+from ...geometry.arrays import Floats32, Floats64
 from ..loading import load
 from ..model import Wrinkles
 from ..smooth import smooth_step
@@ -26,7 +26,8 @@ from .person import Person
 from .relief import Relief, add_to, relief_of
 
 EYES = ("left", "right")
-STEPS = 81  # along the edge of a lid
+POINTS = 11  # on the edge of an upper lid
+STEPS = 81  # along its curve, from which searches begin
 
 
 def with_folds(wrinkles: Wrinkles, person: Person) -> Wrinkles:
@@ -57,11 +58,11 @@ def _yielding() -> tuple[Floats32, Floats32]:
     across = head.wrinkles.across.copy()
     share = np.zeros(len(across), np.float32)
     for side in EYES:
-        edge = _samples(head.vertices, side)
-        away, nearest = scipy.spatial.cKDTree(edge).query(head.vertices)
-        way = head.vertices - edge[nearest]
+        edge = _edge(head.vertices, side)
+        along = _nearest(head.vertices, edge)
+        way = head.vertices - _shares(along) @ edge
+        away = np.linalg.norm(way, axis=1)
         is_seen = (way[:, 1] > -0.1) & (way[:, 2] > -4.0)
-        along = nearest / (STEPS - 1.0)
         is_between = (along > 0.15) & (along < 0.95)
         reach = 6.5  # [mm] from the edge, up to the skin that hangs over the crease
         is_lid = is_seen & is_between & (away < reach)
@@ -82,10 +83,10 @@ def fold_of(person: Person, side: str, size: int) -> Relief:
     """
     near = _about(side, size)
     texels = near.texels
+    along = near.along
     places = texels.interpolate(person.vertices[person.faces])
-    way = places - _samples(person.vertices, side)[near.nearest]
+    way = places - near.shares @ _edge(person.vertices, side)
     away = np.sqrt((way**2).sum(axis=1))
-    along = near.nearest / (STEPS - 1.0)  # from the inner to the outer corner
     upward = way[:, 1] / np.maximum(away, 0.1)
     is_lid = smooth_step(0.15, 0.6, upward) * smooth_step(0.03, 0.15, along)
     arch = 0.35 + 0.65 * np.sin(np.pi * np.clip(0.1 + 0.75 * along, 0.0, 1.0))
@@ -109,34 +110,67 @@ def fold_of(person: Person, side: str, size: int) -> Relief:
 class _About(NamedTuple):
     """The texels about an eye.
 
-    nearest: for each texel, number of the nearest sample on the upper lid's edge of the built-in
-    head.
+    along: for each texel, the nearest place on the upper lid's edge of the built-in head, from 0 at
+        the inner corner to 1 at the outer one, shape (n,).
+    shares: of the points of the edge in that place, shape (n, 11).
     """
 
     texels: Texels
-    nearest: Integers64
+    along: Floats64
+    shares: Floats64
 
 
-def _samples(vertices: Floats64, side: str) -> Floats64:
-    """Points on the edge of an upper lid, from the inner corner, shape (STEPS, 3)."""
-    edge = vertices[load("head").rings[f"eye_2_{side}"][:11]]
-    steps = np.linspace(0.0, 10.0, STEPS)
-    return np.column_stack([np.interp(steps, np.arange(11.0), each) for each in edge.T])
+def _edge(vertices: Floats64, side: str) -> Floats64:
+    """The points of an upper lid's edge, from the inner corner, shape (11, 3)."""
+    return vertices[load("head").rings[f"eye_2_{side}"][:POINTS]]
+
+
+def _shares(along: Floats64, derivative: int = 0) -> Floats64:
+    """Shares of the edge's points in places along its curve, or their derivatives, (n, 11).
+
+    The curve is smooth and passes near the points. One through them has corners, and so would have
+    the crease, which lies beside it.
+    """
+    bend_cost = 1.0  # of the square of the second derivative by points, beside squares of distances
+    numbers = np.arange(float(POINTS))
+    columns = [
+        scipy.interpolate.make_smoothing_spline(numbers, each, lam=bend_cost)
+        for each in np.eye(POINTS)
+    ]
+    places = along * (POINTS - 1.0)
+    scale = (POINTS - 1.0) ** derivative
+    return scale * np.column_stack([each(places, nu=derivative) for each in columns])
+
+
+def _nearest(places: Floats64, points: Floats64) -> Floats64:
+    """The nearest places on the curve of an edge's points, from 0 to 1, shape (n,)."""
+    steps = np.linspace(0.0, 1.0, STEPS)
+    along = steps[scipy.spatial.cKDTree(_shares(steps) @ points).query(places)[1]]
+    for _ in range(2):  # by Newton's method
+        way, first, second = (_shares(along, n) @ points for n in range(3))
+        way = places - way
+        slope = (way * first).sum(axis=1)
+        bend = (way * second).sum(axis=1) - (first**2).sum(axis=1)
+        along = np.clip(along - slope / np.minimum(bend, -1.0), 0.0, 1.0)
+    return np.asarray(along, np.float64)
 
 
 @lru_cache(maxsize=8)
 def _about(side: str, size: int) -> _About:
     head = load("head")
     reach = 11.0  # [mm] about the edge of the lid, beyond all folds
-    edge = scipy.spatial.cKDTree(_samples(head.vertices, side))
-    is_near = (edge.query(head.vertices)[0] < reach)[head.faces].any(axis=1)
+    points = _edge(head.vertices, side)
+    curve = scipy.spatial.cKDTree(_shares(np.linspace(0.0, 1.0, STEPS)) @ points)
+    is_near = (curve.query(head.vertices)[0] < reach)[head.faces].any(axis=1)
     corners = head.uv[head.face_uv].astype(np.float64)
     corners[~is_near] = -1.0  # outside the map
     texels = Texels.within(corners, (size, size))
     places = texels.interpolate(head.vertices[head.faces])
-    away, nearest = edge.query(places)
-    kept = (away < reach) & (places[:, 1] > edge.data[nearest, 1] - 0.2)
+    along = _nearest(places, points)
+    shares = _shares(along)
+    way = places - shares @ points
+    kept = (np.linalg.norm(way, axis=1) < reach) & (way[:, 1] > -0.2)
     texels = Texels(
         texels.rows[kept], texels.columns[kept], texels.faces[kept], texels.weights[kept]
     )
-    return _About(texels, nearest[kept])
+    return _About(texels, along[kept], shares[kept])

@@ -43,6 +43,19 @@ def test_creases_lie_as_high_as_the_identity_says(person):
     assert hidden.heights.max() > 0.3
 
 
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_creases_have_no_kinks(side):
+    """Person 43's crease follows a smooth curve beside its lid, whose edge has eleven points."""
+    lids = fold_of(make_person(sample_identity(43)), side, 1280)
+    beyond = 0.22  # share of light that is missing below the crease, too
+    dark = np.maximum(1.0 - lids.light - beyond, 0.0)
+    dark = dark[:, dark.max(axis=0) > 0.05]
+    row = (dark * np.arange(len(dark))[:, None]).sum(axis=0) / dark.sum(axis=0)
+    end = len(row) // 8
+    assert len(row) > 60
+    assert np.abs(np.diff(row[end:-end], 2)).max() < 0.7  # texels
+
+
 def test_hooding_lowers_the_outer_half_alone(person):
     """There the crease is hidden; towards the nose it is unchanged."""
     plain, hooded = (
