@@ -1,7 +1,7 @@
-"""Arrange the folders of this checkout as installed: `python tests/as_installed.py FOLDER`.
+"""Arrange the folders of this checkout as if installed: `python tests/as_installed.py FOLDER`.
 
-Python itself finds `risorius.refine` in `refine/` by a note of `pip install --editable`. Tools that
-only search for files, like mypy and import-linter, get a tree of links.
+Python finds `risorius.refine` in `refine/` through a file that `pip install --editable` writes.
+Tools that only search for files, such as mypy and import-linter, need this tree of links.
 """
 
 import os
@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def lay(target: Path) -> None:
-    """Make the folder `risorius` in `target` again, from links to every source file."""
+    """Make the folder `risorius` in `target` anew, with a link to every source file."""
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
     folders = {"risorius": "risorius", **settings["package-dir"]}
     shutil.rmtree(target / "risorius", ignore_errors=True)

@@ -46,10 +46,10 @@ FREE_RELATIVE = re.compile(
 
 @dataclass
 class Count:
-    """Sums over the files of one room."""
+    """Sums over the files of one room (a group of folders with one budget)."""
 
     tokens: int = 0
-    lines: int = 0  # with a token of code
+    lines: int = 0  # lines that hold a token of code
     text_lines: int = 0
     packed: int = 0
     constants: int = 0
@@ -57,7 +57,7 @@ class Count:
     relatives: int = 0
 
     def add_python(self, text: str) -> None:
-        """Count a module by its text."""
+        """Count a module, given its text."""
         tree = ast.parse(text)
         documented = docstring_lines(tree)
         tokens = [
@@ -76,7 +76,7 @@ class Count:
 
 
 def docstring_lines(tree: ast.AST) -> set[int]:
-    """Lines of docstrings, and of strings below attributes."""
+    """Line numbers of docstrings, and of strings below attributes."""
     strings = [
         node
         for node in ast.walk(tree)
@@ -88,7 +88,7 @@ def docstring_lines(tree: ast.AST) -> set[int]:
 
 
 def is_packed(node: ast.AST) -> bool:
-    """Whether a node is `a, b = x, y`, without a swap."""
+    """Whether a node is an assignment `a, b = x, y` that is not a swap."""
     if not isinstance(node, ast.Assign):
         return False
     target = node.targets[0]
@@ -101,7 +101,7 @@ def is_packed(node: ast.AST) -> bool:
 
 
 def constants_of(node: ast.stmt) -> int:
-    """Number of names in capitals that a statement of a module sets."""
+    """The number of names in capitals that a module's statement assigns."""
     if isinstance(node, ast.Assign):
         targets = node.targets
     elif isinstance(node, ast.AnnAssign):
@@ -113,7 +113,7 @@ def constants_of(node: ast.stmt) -> int:
 
 
 def read_budgets() -> dict[str, int]:
-    """Read each room's budget; a room is named by the paths of its folders, with blanks between."""
+    """Read each room's budget; a room is named by the paths of its folders, separated by blanks."""
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
     rooms: dict[str, int] = settings["tool"]["risorius"]["budgets"]
     return rooms
@@ -152,7 +152,7 @@ def print_row(name: str, count: Count, budget: int) -> None:
 
 
 def main() -> int:
-    """Print the table; 1 if a room has more tokens than its budget."""
+    """Print the table; return 1 if a room has more tokens than its budget."""
     budgets = read_budgets()
     counts = count_rooms(list(budgets))
     heads = ["tokens", "budget", "per line", "packed", "constants", "told", "what is"]

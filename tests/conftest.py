@@ -1,4 +1,4 @@
-"""Fixtures of every test: numpy's floating-point errors raise, random numbers have a seed."""
+"""Fixtures of all tests: floating-point errors of numpy raise, and random numbers have a seed."""
 
 import os
 import random
@@ -13,8 +13,8 @@ from risorius.assets.model import Head
 from risorius.refine.border.registry import refiners
 
 # No deadlines: a shared machine may stall any example. In continuous integration the examples are
-# the same every time, and there are more; on a developer's machine hypothesis always tries new
-# ones.
+# the same every time, and there are more of them; on a developer's machine hypothesis always tries
+# new ones.
 settings.register_profile("everywhere", deadline=None, max_examples=40)
 settings.register_profile("integration", deadline=None, derandomize=True)
 settings.load_profile("integration" if os.environ.get("CI") else "everywhere")
@@ -29,13 +29,13 @@ def floating_point_errors_raise() -> Iterator[None]:
 
 @pytest.fixture(autouse=True)
 def fixed_seed() -> None:
-    """The standard generator starts each test in the same state."""
+    """The standard generator is in the same state at the start of each test."""
     random.seed(20030214)
 
 
 @pytest.fixture
 def own_refiners(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Remove refiners that a test registers."""
+    """Remove the refiners that a test registered."""
     monkeypatch.setattr(refiners, "_factories", dict(refiners._factories))
 
 

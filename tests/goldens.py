@@ -1,13 +1,13 @@
-"""The outputs of the program before and after a change of the code, compared file by file.
+"""Compare the program's outputs before and after a change of the code, file by file.
 
-    python tests/goldens.py make out/before with the old code
-    python tests/goldens.py make out/after with the new code
+    python tests/goldens.py make out/before      with the old code
+    python tests/goldens.py make out/after       with the new code
     python tests/goldens.py compare out/before out/after
 
-Both are made on one machine, so that bytes may be compared: another processor rounds differently.
-They are made by users' commands, which stay valid when code moves between files. A picture may
-differ in a few pixels by an invisible step, which is printed; every other file has the same bytes,
-or compare ends with 1.
+Make both folders on one machine, because another processor rounds differently. The outputs are made
+by users' commands, which stay valid when code moves between files. A picture may differ in a few
+pixels by an invisible step, which is printed; if any other file differs in a byte, compare ends
+with 1.
 """
 
 import shutil
@@ -27,11 +27,11 @@ FORMATS = ("gltf", "usd", "pc2", "vtkhdf", "npz", "arkit")
 SUFFIXES = {"gltf": "glb", "usd": "usdz", "vtkhdf": "vtkhdf", "arkit": "csv"}
 POSES = ("joy", "anger", "fear", "disgust", "surprise", "sadness", "kiss", "AU43=1", "jawOpen=1")
 CAMERAS = ("three-quarter", "profile", "top", "0,0,3")
-LARGEST_STEP, FEW_PIXELS = 2, 0.001  # of 255; as a share of all
+LARGEST_STEP, FEW_PIXELS = 2, 0.001  # steps of 255; share of all pixels
 
 
 def commands() -> Iterator[tuple[str, list[str]]]:
-    """Commands by name: files of 500 frames, of every look, of every format, and 20 pictures."""
+    """Commands by name: 500 exported frames, every look, every file format, and 20 pictures."""
     yield "frames", ["export", "-o", "frames.npz", "--fps", "60"]
     for scene in SCRIPTS:
         for look in ("smooth", "paper"):
@@ -71,7 +71,7 @@ def make(folder: Path) -> bool:
 
 
 def compare(before: Path, after: Path) -> bool:
-    """Print differences; true if none is noticeable for a user."""
+    """Print differences; return True if a user would notice none of them."""
     names = {file.relative_to(root) for root in (before, after) for file in root.rglob("*.*")}
     same_all = True
     for name in sorted(each for each in names if not (before / each).is_dir()):
@@ -89,7 +89,7 @@ def compare(before: Path, after: Path) -> bool:
 
 
 def contents(file: Path) -> object:
-    """The bytes of a file; for a package those of its members, without the times of writing."""
+    """The bytes of a file; for a package the bytes of its members, without the times of writing."""
     if file.suffix != ".usdz":
         return file.read_bytes()
     with zipfile.ZipFile(file) as package:
@@ -97,7 +97,7 @@ def contents(file: Path) -> object:
 
 
 def looks_the_same(old: Path, new: Path) -> bool:
-    """Whether two pictures differ in so few pixels, or by so little, that it is invisible."""
+    """Whether two pictures differ in so few pixels, or by so little, that nobody sees it."""
     first, second = (np.asarray(Image.open(each), dtype=np.int16) for each in (old, new))
     if first.shape != second.shape:
         return False

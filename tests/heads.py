@@ -1,4 +1,4 @@
-"""Another head for fitting: the built-in one, finer, with another shape, unit and orientation."""
+"""A head for fitting: the built-in head made finer, with another shape, unit and orientation."""
 
 import json
 from dataclasses import dataclass
@@ -13,20 +13,20 @@ from risorius.assets.meshes import Mesh
 from risorius.geometry.sides import sides_of
 
 Array = npt.NDArray[np.float64]
-TURN = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])  # z up, looking along y
+TURN = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])  # z up, facing y
 METRES = 0.001
 SHIFT = (3.0, -2.0, 1.6)
 
 
 @dataclass(frozen=True)
 class Stranger:
-    """A head of a user: metres, z up."""
+    """A user's head, in metres, with z up."""
 
     mesh: Mesh
     landmarks: npt.NDArray[np.int32]
 
     def write(self, folder: Path, *, points: bool = False, **changes: Any) -> tuple[Path, Path]:
-        """Write both files in the form of users; `changes`: other vertices or landmarks."""
+        """Write the mesh file and the landmark file; `changes` replaces vertices or landmarks."""
         vertices = changes.get("vertices", self.mesh.vertices)
         landmarks = changes.get("landmarks", self.landmarks)
         lines = [f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in vertices]
@@ -40,7 +40,7 @@ class Stranger:
 
 
 def write_topology(folder: Path, other: Stranger, **changes: Any) -> Path:
-    """Write a topology of the user's into its folder, by counts alone unless `changes` say more."""
+    """Write a topology as a user's folder, described by counts alone unless `changes` adds more."""
     file = folder / "risorius" / "topologies" / "mine.json"
     file.parent.mkdir(parents=True, exist_ok=True)
     mine = {
@@ -68,7 +68,7 @@ def shape(x: Array) -> Array:
 
 
 def stranger(level: int = 1) -> Stranger:
-    """The built-in head with 4^level times as many triangles, as another head."""
+    """The built-in head with 4^level times as many triangles, as a user's head."""
     head = assets.load("head")
     fine = head.finer(level)
     vertices = shape(fine.vertices) @ TURN.T * METRES + SHIFT
@@ -76,7 +76,10 @@ def stranger(level: int = 1) -> Stranger:
 
 
 def closed(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
-    """The mesh with a fan of triangles across the opening between some vertices on its edges."""
+    """The mesh with a new vertex in the middle of an opening, and a fan of triangles around it.
+
+    vertices: some vertices on the edge of the opening.
+    """
     loop = _edge_around(mesh, vertices)
     centre = mesh.vertices[vertices].mean(axis=0)
     middle = len(mesh.vertices)
@@ -85,7 +88,7 @@ def closed(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
 
 
 def filled(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
-    """The mesh with a strip across such an opening: triangles between vertices of its edge."""
+    """The mesh with an opening closed by a strip of triangles between vertices of its edge."""
     left = _edge_around(mesh, vertices)
     strip = []
     while len(left) > 2:
@@ -98,7 +101,7 @@ def filled(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
 
 
 def _edge_around(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> list[int]:
-    """The vertices of an opening's edge, one after the other, its right corner first."""
+    """Vertices around the edge of an opening, in order, from its right corner."""
     centre = mesh.vertices[vertices].mean(axis=0)
     ways = {tuple(way) for way in sides_of(mesh.faces).tolist()}
     following = {a: b for a, b in ways if (b, a) not in ways}
@@ -112,7 +115,7 @@ def _edge_around(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> list[int]:
 
 
 def with_card(mesh: Mesh) -> Mesh:
-    """The mesh with a card of hair behind it, seen from both sides: four triangles at its edge."""
+    """The mesh with a card of hair behind it: two triangles for each side."""
     count = len(mesh.vertices)
     card = mesh.vertices.mean(axis=0) + np.ptp(mesh.vertices) * np.eye(4, 3)
     sides = count + np.array([[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]])
@@ -121,7 +124,7 @@ def with_card(mesh: Mesh) -> Mesh:
 
 
 def sealed() -> Stranger:
-    """The built-in head with lips joined along the line where they meet, and nothing behind."""
+    """The built-in head with lips joined along their contact line, without a mouth behind them."""
     head = assets.load("head")
     vertices = head.vertices.copy()
     same = np.arange(len(vertices))
@@ -139,11 +142,11 @@ def sealed() -> Stranger:
 
 
 def masked() -> Stranger:
-    """The built-in head, its mouth a little open, with triangles across its mouth and eyes."""
+    """The built-in head with a slightly open mouth; triangles cover the mouth and the eyes."""
     head = assets.load("head")
     opening = np.array([0.0, -8.0, 0.0])  # [mm]
     vertices = head.vertices + head.mandible_weight[:, None] * opening
-    behind = ("mouth_0", "mouth_1", "eye_0", "eye_1")  # rings behind the edges of lips and lids
+    behind = ("mouth_0", "mouth_1", "eye_0", "eye_1")  # rings behind edges of lips and lids
     inner = [head.rings[f"{ring}_{side}"] for ring in behind for side in ("left", "right")]
     mesh = Mesh(vertices, head.faces[~np.isin(head.faces, np.concatenate(inner)).any(axis=1)])
     for around in (slice(60, 68), slice(36, 42), slice(42, 48)):

@@ -1,8 +1,8 @@
-"""The lowest version of every dependency in pyproject.toml, as a constraints file for pip.
+"""Print the lowest version of every dependency in pyproject.toml, as a constraints file for pip.
 
     python tests/lowest.py > constraints-lowest.txt
 
-`make test-lowest` runs the tests with exactly these: a bound without a test is a guess.
+`make test-lowest` runs the tests with exactly these versions, because an untested bound is a guess.
 """
 
 import re
@@ -16,7 +16,7 @@ REQUIREMENT = re.compile(r"(?P<name>[\w.-]+)>=(?P<version>[\w.]+)(?P<marker>;.*)
 
 
 def lowest(requirements: Sequence[str]) -> list[str]:
-    """Turn each NAME>=VERSION (; MARKER) into NAME==VERSION; ValueError for any other form."""
+    """Change each NAME>=VERSION (; MARKER) to NAME==VERSION; ValueError for any other form."""
     pinned = []
     for requirement in requirements:
         match = REQUIREMENT.fullmatch(requirement)

@@ -1,4 +1,4 @@
-"""Memory of this process, for tests of repeated use."""
+"""Memory of this process, for tests that repeat an operation."""
 
 import ctypes
 import gc
@@ -12,9 +12,9 @@ MEGABYTE = 2**20
 
 
 def held_memory() -> float:
-    """The memory of this process, without pages that the allocator keeps for later [MB].
+    """The memory of this process [MB], without pages that the allocator keeps for later.
 
-    It skips the test if the system does not report it.
+    The test is skipped if the system does not report it.
     """
     status = Path("/proc/self/statm")
     if not status.exists():
@@ -22,7 +22,7 @@ def held_memory() -> float:
     gc.collect()
     if sys.platform.startswith("linux"):
         trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
-        if trim is not None:  # of glibc
+        if trim is not None:  # a function of glibc
             trim(0)
     resident = int(status.read_text().split()[1])
     return resident * os.sysconf("SC_PAGE_SIZE") / MEGABYTE

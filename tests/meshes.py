@@ -41,7 +41,7 @@ def two_triangles() -> Mesh:
 
 
 def fan(valence: int = 6) -> Mesh:
-    """A flat disk: vertex 0 in the middle, `valence` vertices around it."""
+    """A flat disk: vertex 0 in the centre, and `valence` vertices around it."""
     angles = 2.0 * np.pi * np.arange(valence) / valence
     ring = np.stack([np.cos(angles), np.sin(angles), np.zeros(valence)], axis=1)
     faces = [(0, 1 + k, 1 + (k + 1) % valence) for k in range(valence)]
@@ -91,17 +91,17 @@ def open_grid(columns: int = 4, rows: int = 3) -> Mesh:
 
 
 def half_shut_book() -> Mesh:
-    """Two triangles folded towards each other like a book that is half shut."""
+    """Two triangles folded towards each other, like a half-closed book."""
     return _mesh([(0, 0, 0), (0, 1, 0), (1, 0.5, 0.3), (1, 0.5, -0.3)], [(0, 2, 1), (0, 1, 3)])
 
 
 def pillow() -> Mesh:
-    """Two triangles with the same three vertices, back to back: closed, valence two."""
+    """Two triangles with the same three vertices, back to back: closed, with valence two."""
     return _mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2), (0, 2, 1)])
 
 
 def bow_tie() -> Mesh:
-    """Two triangles that only meet in vertex 0: a non-manifold vertex."""
+    """Two triangles that share only vertex 0: a non-manifold vertex."""
     vertices = [(0, 0, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (-1, -1, 0)]
     return _mesh(vertices, [(0, 1, 2), (0, 3, 4)])
 
@@ -113,7 +113,7 @@ def three_on_an_edge() -> Mesh:
 
 
 def inconsistent_pair() -> Mesh:
-    """Two triangles with the same direction along their common edge."""
+    """Two triangles that run along their common edge in the same direction."""
     return _mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, -1, 0)], [(0, 1, 2), (0, 1, 3)])
 
 
@@ -127,7 +127,7 @@ def with_debris() -> Mesh:
         (count, count + 1, count + 4),  # collinear corners
         (0, 1, 1),  # names a vertex twice
         (2, 2, 2),  # names one vertex three times
-        (0, 1, 5),  # again, the second time
+        (0, 1, 5),  # names a vertex twice, like the first
     ]
     return _mesh(np.concatenate([grid.vertices, extra]), [*grid.faces.tolist(), *faces])
 
@@ -191,7 +191,10 @@ def irregular(seed: int, columns: int = 12, rows: int = 10, holes: int = 3) -> M
 
 
 def wrinkled(mesh: Mesh, seed: int, amplitude: float = 0.25) -> npt.NDArray[np.float64]:
-    """Deform a mesh with a few random plane waves, shape (V, 3): some places bend, some do not."""
+    """Positions deformed by a few random plane waves, shape (V, 3).
+
+    Some places bend, some do not.
+    """
     generator = np.random.default_rng(seed)
     deformed = mesh.vertices.copy()
     for _ in range(3):
@@ -238,8 +241,8 @@ def rotation(seed: int) -> npt.NDArray[np.float64]:
 def slit() -> Mesh:
     """A flat rectangle of unit cells around the origin, with a slit along x; symmetric in x and y.
 
-    Two cells at each end of the middle row are whole. Of the slit's two sides the lower one has the
-    numbers that a grid without it would have, and the upper one the last.
+    The two cells at each end of the middle row are not cut. The lower side of the slit has the
+    vertex numbers of a grid without slit; the upper side has the last numbers.
     """
     columns = 10
     rows = 6
@@ -258,14 +261,14 @@ def slit() -> Mesh:
             corners = [a, a + 1, b + 1, b]
             if row >= rows // 2:
                 corners = [upper.get(v, v) for v in corners]
-            first = int((row < rows // 2) != (column < columns // 2))  # of the two diagonals
+            first = int((row < rows // 2) != (column < columns // 2))  # one of two diagonals
             a, b, c, d = (corners[(k + first) % 4] for k in range(4))
             faces += [(a, b, c), (a, c, d)]
     return _mesh(np.concatenate([vertices, vertices[list(upper)]]), faces)
 
 
 def opened(mesh: Mesh, height: float) -> npt.NDArray[np.float64]:
-    """The mesh of `slit` with its sides moved apart in its plane, as arcs; shape (V, 3)."""
+    """Vertices of `slit` whose sides are moved apart in its plane, to arcs; shape (V, 3)."""
     columns, rows = np.ptp(mesh.vertices, axis=0)[:2]
     positions = mesh.vertices.copy()
     x = mesh.vertices[:, 0]

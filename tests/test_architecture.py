@@ -1,4 +1,4 @@
-"""The three rules of docs/architecture.md, as far as imports show, and limits of size."""
+"""The three rules of docs/architecture.md, as far as imports show them, and limits of size."""
 
 import ast
 import subprocess
@@ -14,7 +14,7 @@ FOLDERS = (
     *("app", "assets", "bench", "docs", "examples"),
     *("refine", "refine_gl", "render", "risorius", "sim"),
 )
-LONGEST_FILE, LONGEST_FUNCTION = 400, 60  # lines
+LONGEST_FILE, LONGEST_FUNCTION = 400, 60  # [lines]
 
 
 @pytest.mark.parametrize(
@@ -39,7 +39,7 @@ def test_fresh_import(package, banned):
 
 
 def test_scenes_answer_for_themselves():
-    """Outside of its room no code checks the kind of a scene, or makes its own scene."""
+    """Outside app/scenes no code tests the class of a scene, or derives a class of scenes."""
     asked = []
     made = []
     for folder in ("app", "bench", "docs", "examples"):
@@ -72,7 +72,7 @@ def test_scenes_answer_for_themselves():
     ],
 )
 def test_packages_import_only_what_they_may(folder, allowed):
-    """This includes imports in functions; a package can be taken out, with only these."""
+    """Each package imports only its allowed dependencies, also within functions."""
     found = {
         name.partition(".")[0]
         for path in tracked(folder, "*.py")
@@ -83,7 +83,7 @@ def test_packages_import_only_what_they_may(folder, allowed):
 
 
 def _imported(node):
-    """Names of the modules that a statement imports, without relative ones."""
+    """Names of the modules that a statement imports, without relative imports."""
     if isinstance(node, ast.Import):
         return [alias.name for alias in node.names]
     if isinstance(node, ast.ImportFrom) and node.level == 0:
@@ -92,7 +92,7 @@ def _imported(node):
 
 
 def test_files_and_functions_are_short():
-    """One screen for a function, a few for a file; each exception is really too long."""
+    """Files and functions have limited lengths, and each listed exception exceeds the limit."""
     sources = [path for folder in FOLDERS for path in tracked(folder, "*.py")]
     assert len(sources) > 100
     long = {

@@ -1,7 +1,7 @@
 """Typical files that were once refused or misread; they are in `tests/cases`.
 
-Recordings are named by their content (`a` and `e`: units, flags and times; `d`: ways in which
-tables are written), heads by `b`. All forms are the built-in head or made up.
+Recordings are named by their content (`a` and `e`: units, flags and times; `d`: ways of writing
+tables), heads by `b`. All face shapes are the built-in head, or made up.
 """
 
 import tomllib
@@ -23,7 +23,7 @@ SIZE = "160x120"
 
 
 class Take:
-    """A recording after `risorius convert`: the report, and the resulting script."""
+    """A recording after `risorius convert`: the printed report, and the written script."""
 
     def __init__(self, name, folder, *options):
         output = folder / f"{Path(name).stem}.toml"
@@ -37,12 +37,12 @@ class Take:
         return float(self.tracks[name][:, 1].max()) if name in self.tracks else 0.0
 
     def reach(self, name):
-        """Range of a track's values."""
+        """The range of a track's values."""
         return float(np.ptp(self.tracks[name][:, 1])) if name in self.tracks else 0.0
 
 
 def keys_of(track):
-    """Times and values of a track, which is a list of keys or lines of two numbers."""
+    """Times and values of a track, stored as a list of keys or as lines of two numbers."""
     if isinstance(track, str):
         rows = [line.split() for line in track.split("\n") if line.strip()]
         return [(float(row[0]), float(row[1])) for row in rows]
@@ -69,7 +69,7 @@ def keys_of(track):
     ],
 )
 def test_a_take_lasts_as_long_as_its_file_says(name, options, seconds, tmp_path):
-    """Clocks, timecode of any base and tables of any dialect keep their time, for any --rate."""
+    """Clocks, timecode of any base and tables of any dialect keep their duration at any --rate."""
     assert Take(name, tmp_path, *options).duration == approx(seconds, abs=0.06)
 
 
@@ -86,13 +86,13 @@ def test_shapes_in_percent_are_divided(tmp_path):
 
 
 def test_intensities_count_before_detections(tmp_path):
-    """AU12 follows its intensity; the detection of 0 or 1 is ignored."""
+    """AU12 follows its intensity column; its detection column of 0 or 1 is ignored."""
     values = Take("a_libreface_like.csv", tmp_path).tracks["AU12"][:, 1]
     assert np.abs(np.diff(values)).max() < 0.4
 
 
 def test_the_head_turns_by_angles_beside_shapes(tmp_path):
-    """The head's rotation in JSON moves the head, or the report names it."""
+    """Head angles beside shapes in JSON turn the head, or the report names them."""
     take = Take("a_json_head_rotation.json", tmp_path)
     turned = max(map(take.reach, ("head_yaw", "headYaw")))
     assert turned > 0.3 or "headRotation" in take.report
@@ -100,7 +100,7 @@ def test_the_head_turns_by_angles_beside_shapes(tmp_path):
 
 @pytest.mark.parametrize("name", ["e_lost_frames_zero.json", "e_lost_frames_zero_livelink.csv"])
 def test_frames_without_a_face_are_left_out(name, tmp_path):
-    """Rows of zeros without a face neither move our face nor count as calibrated."""
+    """Rows of zeros without a face do not move the face, and do not count for calibration."""
     take = Take(name, tmp_path)
     control = Take("e_lost_frames_control.json", tmp_path)
     assert "40 of 150" in take.report
@@ -113,7 +113,7 @@ POINTS = CASES / "own_landmark_points.json"  # points [m]
 
 
 def picture_of(head, landmarks, output):
-    """A head from a file at rest, as `capture` draws it, (H, W, 3)."""
+    """The picture of a head from a file at rest, as `capture` draws it, shape (H, W, 3)."""
     succeeded(
         *("capture", "--head", CASES / head, "--landmarks", landmarks, "--set", "joy=0"),
         *("-o", output, "--size", SIZE, "--background", "white", "--quiet"),
@@ -132,14 +132,14 @@ def picture_of(head, landmarks, output):
     ids=lambda value: value if isinstance(value, str) else value.stem,
 )
 def test_a_head_of_a_file_is_drawn(head, landmarks, tmp_path):
-    """Heads with hair cards, an open mouth, strips and masks are drawn."""
+    """Heads with hair cards, an open mouth, strips or covering triangles are drawn."""
     picture = picture_of(head, landmarks, tmp_path / "head.png")
     middle = picture[40:80, 60:100]
     assert middle.mean() < 230.0
 
 
 def test_glb_is_read_as_its_accessors_say(tmp_path):
-    """Normalized, transformed and quantized attributes give the same form and the same picture."""
+    """Normalized, transformed and quantized attributes give the same vertices and picture."""
     pictures = [
         picture_of(f"b_glb_{kind}.glb", POINTS, tmp_path / f"{kind}.png")
         for kind in ("texcoord_u16_normalized", "texture_transform", "quantized_positions")
@@ -150,13 +150,13 @@ def test_glb_is_read_as_its_accessors_say(tmp_path):
 
 
 def test_colours_of_vertices_are_linear():
-    """Linear colours of 16 bits, 0.2 0.5 0.9, become the blue (124, 188, 243)."""
+    """Linear 16-bit vertex colours 0.2 0.5 0.9 become the blue (124, 188, 243)."""
     mesh = assets.read_mesh(CASES / "b_glb_colours_u16.glb")
     assert np.abs(mesh.colours.reshape(-1, 3) - np.array([124.0, 188.0, 243.0])).max() < 2.0
 
 
 def test_a_material_with_tabs_has_its_picture(tmp_path):
-    """Tabs also separate words of an MTL: squares of green and yellow are drawn."""
+    """Tabs separate words in an MTL file: squares of green and yellow are drawn."""
     picture = picture_of("mtl_tab/head.obj", LANDMARKS, tmp_path / "head.png")
     middle = picture[40:80, 60:100]
     assert (middle[..., 1] > middle[..., 2] + 40.0).mean() > 0.5

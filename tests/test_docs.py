@@ -26,7 +26,7 @@ COMMAND = re.compile(r"(?:`|^(?:    )?(?:xvfb-run -a )?)(risorius [a-z][^`#\n]*)
 
 
 def anchor(title):
-    """The name of a heading in a link: ASCII letters, digits and hyphens, as in MkDocs."""
+    """A heading's fragment in links: ASCII letters, digits and hyphens, as in MkDocs."""
     plain = unicodedata.normalize("NFKD", title).encode("ascii", "ignore").decode()
     return re.sub(r"[-\s]+", "-", re.sub(r"[^\w\s-]", "", plain).strip().lower())
 
@@ -53,7 +53,7 @@ def test_links_lead_somewhere(page):
 
 
 def test_the_paper_is_where_the_page_says():
-    """Every file and name beside a statement of the paper exists."""
+    """Every file and name that docs/the_paper_in_code.md lists exists."""
     page = (ROOT / "docs" / "the_paper_in_code.md").read_text("utf-8")
     places = re.findall(r"\| `([\w/.]+)(?:: (\w+))?`", page)
     assert len(places) > 20
@@ -65,7 +65,7 @@ def test_the_paper_is_where_the_page_says():
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_commands_are_known(page):
-    """Every command on a page has the options shown with it."""
+    """Every command on a page accepts the options shown with it."""
     for words in COMMAND.findall(page.read_text(encoding="utf-8")):
         command = risorius()
         rest = shlex.split(words)[1:]
@@ -79,28 +79,28 @@ def test_commands_are_known(page):
 
 
 def test_pages_of_the_documentation_are_read():
-    """The patterns above find their targets."""
+    """The patterns above find the commands on the pages."""
     shown = [words for page in PAGES for words in COMMAND.findall(page.read_text("utf-8"))]
     assert len(shown) > 40
     assert any("--compare" in words for words in shown)
 
 
 def test_pictures_are_few_and_small():
-    """Every clone contains them: at most 40 files, and 8 MB in all."""
+    """The pictures, which every clone contains, are at most 40 files and 8 MB in all."""
     pictures = tracked("docs/pictures")
     assert len(pictures) <= 40
     assert sum(path.stat().st_size for path in pictures) < 8_000_000
 
 
 def test_every_picture_is_shown():
-    """Every picture of the documentation is on a page; unused pages stop the site's build."""
+    """Every picture of the documentation is on a page; unused pictures stop the site's build."""
     texts = "".join(page.read_text(encoding="utf-8") for page in PAGES)
     shown = {Path(target).name for target in re.findall(r"\]\(([^)\s#]+)", texts)}
     assert {path.name for path in tracked("docs/pictures")} <= shown
 
 
 def test_pages_have_short_lines():
-    """The README has at most 130 lines; prose has at most 120 columns, without tables and code."""
+    """The README has at most 130 lines; prose, except tables and code, at most 120 columns."""
     assert len(README.read_text(encoding="utf-8").splitlines()) <= 130
     for page in [README, ROOT / "CHANGELOG.md", *tracked("docs", "*.md")]:
         prose = re.sub(r"^```.*?^```$", "", page.read_text("utf-8"), flags=re.M | re.S)
@@ -110,7 +110,7 @@ def test_pages_have_short_lines():
 
 
 def test_prose_is_not_indented():
-    """Four blanks make code: a page shows a paragraph that begins so with its stars and links."""
+    """No paragraph is indented by four blanks, because Markdown would show it as code."""
     for page in [README, ROOT / "CHANGELOG.md", *tracked("docs", "*.md")]:
         prose = re.sub(r"^```.*?^```$", "", page.read_text("utf-8"), flags=re.M | re.S)
         assert not re.findall(r"^ {4,}\*\*\w.*", prose, flags=re.M), page.name
@@ -127,24 +127,24 @@ def test_prose_is_not_indented():
     ids=lambda page: page.name,
 )
 def test_code_runs(page, tmp_path, monkeypatch):
-    """The Python on a page is one program, and it runs in an empty folder."""
+    """The Python on a page is one program, which runs in an empty folder."""
     monkeypatch.chdir(tmp_path)
     program = blocks(page, "python")
-    if "pv.Plotter" in program:  # with other OpenGL, VTK may end the process of all tests
+    if "pv.Plotter" in program:  # with other OpenGL versions VTK may end the whole test process
         subprocess.run([sys.executable, "-c", program], check=True)
     else:
         exec(compile(program, page, "exec"), {"__name__": page.stem})
 
 
 def test_a_page_with_code_is_found():
-    """The pattern above finds fenced blocks."""
+    """The pattern above finds pages with fenced blocks of Python."""
     assert "refiner.refine(positions)" in blocks(README, "python")
     assert "risorius replay smile.toml" in blocks(TUTORIALS / "first_film.md", "sh")
 
 
 @pytest.mark.slow
 def test_first_film(tmp_path, monkeypatch):
-    """The tutorial's script gives the outputs that its commands name."""
+    """The tutorial's commands make the outputs that they name."""
     page = TUTORIALS / "first_film.md"
     capture_as_shown(page, {"smile.toml": blocks(page, "toml")}, tmp_path, monkeypatch)
     assert {path.name for path in tmp_path.iterdir()} == {
@@ -154,11 +154,11 @@ def test_first_film(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_own_head(tmp_path, monkeypatch):
-    """The tutorial's head is fitted and filmed by its commands."""
+    """The tutorial's commands fit and film a head."""
     page = TUTORIALS / "own_head.md"
     monkeypatch.chdir(tmp_path)
     for program in re.findall(r"^```python\n(.*?)^```", page.read_text("utf-8"), flags=re.M | re.S):
-        exec(compile(program, page, "exec"), {})  # each stands alone: other pages lead to the last
+        exec(compile(program, page, "exec"), {})  # alone: other pages link to the last
     hello = (ROOT / "docs" / "hello.toml").read_text(encoding="utf-8")
     (tmp_path / "docs").mkdir()
     capture_as_shown(page, {"docs/hello.toml": hello}, tmp_path, monkeypatch)
@@ -167,7 +167,7 @@ def test_own_head(tmp_path, monkeypatch):
 
 
 def capture_as_shown(page, files, folder, monkeypatch):
-    """Run every `risorius capture` of a page in a folder with these files; pictures are small."""
+    """Run every `risorius capture` of a page in a folder with these files, with small pictures."""
     monkeypatch.chdir(folder)
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")
@@ -199,13 +199,13 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.slow
 @pytest.mark.parametrize("package", ["refine", "sim", "render", "assets", "app.recordings"])
 def test_the_reference_has_every_public_name(site, package):
-    """Every export of a package has a place on its page; special methods have none."""
+    """Every export of a package has an anchor on its page, and special methods have none."""
     name = package.rpartition(".")[2]
     page = (site / "reference" / name / "index.html").read_text(encoding="utf-8")
     places = set(re.findall(r'id="(risorius[.\w]*)"', page))
     assert not any("__" in place for place in places)
     module = importlib.import_module(f"risorius.{package}")
-    # A function in a module of its own name is shown as that module's.
+    # A function in a module of the same name is shown under the module.
     places |= {place.rpartition(".")[0] for place in places}
     missing = [name for name in module.__all__ if f"{module.__name__}.{name}" not in places]
     assert not missing

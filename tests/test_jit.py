@@ -1,4 +1,4 @@
-"""Compiled code: kept in trusted folders, otherwise made again, and never old."""
+"""Cached machine code: stored in trusted folders, compiled anew otherwise, and never outdated."""
 
 import os
 import shutil
@@ -36,7 +36,7 @@ RESULT = "4.0 6.0"
 
 
 class Package:
-    """A package with a kernel that calls one of another file, and the user's folder of code."""
+    """A package with a kernel that calls a kernel of another file, and the user's cache folder."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -50,7 +50,7 @@ class Package:
         (self.refine / "kernels.py").write_text(KERNELS)
 
     def run(self, program=PROGRAM, **environment):
-        """Output lines of a process that calls the kernel, and must succeed."""
+        """Run a process that calls the kernel, and return its output lines; it must succeed."""
         clean = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
         result = subprocess.run(
             [sys.executable, "-B", "-c", program],
@@ -64,18 +64,18 @@ class Package:
         return result.stdout.splitlines()
 
     def kept(self):
-        """Folders of machine code."""
+        """Folders of cached machine code."""
         return sorted(self.code.glob("compiled-*"))
 
 
 @pytest.fixture
 def package(tmp_path: Path) -> Package:
-    """The package, without compiled code."""
+    """The package, without cached machine code."""
     return Package(tmp_path)
 
 
 def test_code_is_kept_and_never_old(package):
-    """A second start compiles nothing, whichever file changed counts, and the folder is private."""
+    """A second start compiles nothing, a change of either file does, and the folder is private."""
     assert package.run() == [*COMPILED, RESULT]
     assert package.run() == [RESULT]
     (folder,) = package.kept()
@@ -83,7 +83,7 @@ def test_code_is_kept_and_never_old(package):
     (package.refine / "other.py").write_text(OTHER.replace("2.0", "5.0"))
     assert package.run() == [*COMPILED, "10.0 15.0"]
     (package.refine / "other.py").write_text(OTHER)
-    assert package.run() == [RESULT]  # as after `git switch`, there and back
+    assert package.run() == [RESULT]  # as after `git switch` there and back
 
 
 @pytest.mark.parametrize(
@@ -96,7 +96,7 @@ def test_code_is_kept_and_never_old(package):
     ],
 )
 def test_without_a_folder_code_is_compiled_anew(package, fault):
-    """Code that others could have written is not run; one line names the cost."""
+    """Code in a folder that others can write is not run; one line states the cost of compiling."""
     if fault == "no folder":
         package.code.parent.write_text("")
     else:
@@ -118,20 +118,23 @@ def test_without_a_folder_code_is_compiled_anew(package, fault):
 
 
 def test_runs_as_python(package):
-    """With NUMBA_DISABLE_JIT=1 kernels are the written functions; no code is stored."""
+    """With NUMBA_DISABLE_JIT=1 kernels run as Python functions, and nothing is stored."""
     assert package.run(NUMBA_DISABLE_JIT="1") == [RESULT]
     assert not package.kept()
 
 
 def test_processes_that_start_together(package):
-    """Several that start at once without stored code all succeed, and the next compiles nothing."""
+    """Processes that start together without cached code all succeed.
+
+    The next one compiles nothing.
+    """
     with ThreadPoolExecutor(2) as threads:
         assert {lines[-1] for lines in threads.map(lambda _: package.run(), range(2))} == {RESULT}
     assert package.run() == [RESULT]
 
 
 def test_functions_without_a_module_compile():
-    """Kernels of other programs from `exec` do not appear in the log."""
+    """Kernels that other programs make with `exec` compile, and do not appear in the log."""
     program = (
         "import numba, risorius.jit; names = {}; exec('def twice(x): return 2 * x', names); "
         "names['twice'].__module__ = None; print(numba.njit(names['twice'])(3))"
@@ -143,7 +146,7 @@ def test_functions_without_a_module_compile():
 
 
 def test_lanes_are_a_setting_of_one_kernel(package):
-    """A kernel with lanes has the usual result, and restores numba's settings."""
+    """A kernel with `lanes` gives the same result, and numba's settings are restored."""
     (package.refine / "kernels.py").write_text(KERNELS.replace("@njit", "@njit(lanes=True)"))
     program = f"{PROGRAM}\nimport numba; print(numba.config.SLP_VECTORIZE)"
     assert package.run(program) == [*COMPILED, RESULT, "0"]

@@ -1,4 +1,4 @@
-"""The installed package: complete, the same from checkout and sdist, usable anywhere."""
+"""The installed package: complete, equal from checkout and sdist, and usable anywhere."""
 
 import ast
 import json
@@ -40,7 +40,7 @@ PASSED_OVER = shutil.ignore_patterns(
 
 
 def files_of_packages():
-    """Every file of the packages, with its package by folder."""
+    """Every file of the packages, with the package of its folder."""
     for top, folder in FOLDERS.items():
         for file in tracked(folder):
             inside = file.parent.relative_to(ROOT / folder).parts
@@ -48,7 +48,7 @@ def files_of_packages():
 
 
 def test_every_package_is_listed():
-    """A folder that is not in pyproject.toml would be missing after installation."""
+    """Every package folder is listed in pyproject.toml; otherwise it would not be installed."""
     found = {package for package, file in files_of_packages() if file.suffix == ".py"}
     assert sorted(SETUPTOOLS["packages"]) == sorted(found)
     assert all((ROOT / folder / "__init__.py").exists() for folder in FOLDERS.values())
@@ -68,7 +68,10 @@ def test_every_data_file_is_listed():
 
 
 def test_what_an_editor_leaves_is_not_listed(tmp_path):
-    """Locks, copies and partial files beside ours are left out, also those with our endings."""
+    """Editors' locks, copies and partial files are left out.
+
+    Also those with suffixes of data files.
+    """
     for package, patterns in SETUPTOOLS["package-data"].items():
         for pattern in patterns:
             folder = (tmp_path / package / pattern).parent
@@ -80,7 +83,7 @@ def test_what_an_editor_leaves_is_not_listed(tmp_path):
 
 
 def test_python_versions_agree():
-    """Every claimed version is tested by continuous integration."""
+    """Continuous integration tests every Python version that the package claims."""
     workflow = (ROOT / ".github" / "workflows" / "tests.yml").read_text(encoding="utf-8")
     (matrix,) = re.findall(r"python: (\[.*\])", workflow)
     start = "Programming Language :: Python :: 3."
@@ -93,7 +96,7 @@ def test_python_versions_agree():
 
 
 def test_the_release_is_the_same_everywhere():
-    """Version and date in pyproject.toml, the package, CHANGELOG.md, CITATION.cff, README."""
+    """Version and date agree in pyproject.toml, package, CHANGELOG.md, CITATION.cff and README."""
     changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     newest = re.search(r"^## \[Unreleased\]$.*?^## \[(\S+)\] - (\S+)$", changes, re.M | re.S)
     version, date = newest.groups()
@@ -104,12 +107,15 @@ def test_the_release_is_the_same_everywhere():
 
 
 def test_nothing_is_imported_by_its_folder():
-    """In the checkout `import render` would find a second copy of `risorius.render`."""
+    """No file imports a package by its folder.
+
+    `import render` would load `risorius.render` twice.
+    """
     names = "|".join(TOP_NAMES)
     looks_so = re.compile(rf"^\s*(from\s+({names})\b|import\s.*\b({names})\b)", re.MULTILINE)
     for file in tracked(pattern="*.py"):
         source = file.read_text(encoding="utf-8")
-        # It takes seconds to read all files as Python.
+        # Parsing all files takes seconds, so a pattern selects them first.
         for node in ast.walk(ast.parse(source)) if looks_so.search(source) else ():
             if isinstance(node, ast.Import):
                 found = [alias.name for alias in node.names]
@@ -123,7 +129,7 @@ def test_nothing_is_imported_by_its_folder():
 
 @dataclass(frozen=True)
 class Built:
-    """Wheels of the checkout and of its sdist, and an environment with the second installed."""
+    """Wheels of the checkout and of its sdist; an environment has the sdist's wheel installed."""
 
     wheels: tuple[Path, Path]
     sdist: Path
@@ -131,7 +137,7 @@ class Built:
 
 
 def run(*words, **options):
-    """Run a program that must succeed; return its output."""
+    """Run a program that must succeed, and return its output."""
     result = subprocess.run(
         [str(word) for word in words], capture_output=True, text=True, timeout=600, **options
     )
@@ -151,7 +157,7 @@ def wheel_of(folder, target):
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
-    """They are built in copies, so that no file stays in the checkout."""
+    """The wheels, built in copies, so that no file stays in the checkout."""
     folder = tmp_path_factory.mktemp("built")
     checkout = folder / "checkout"
     shutil.copytree(ROOT, checkout, ignore=PASSED_OVER, symlinks=True)
@@ -172,7 +178,8 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
     run(sys.executable, "-m", "venv", "--without-pip", folder / "environment")
     python = folder / "environment" / "bin" / "python"
     site = run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))").strip()
-    # Dependencies are found here; editable installs are not, because their .pth is not read twice.
+    # The environment finds dependencies here, but no editable installs, because Python does not
+    # read the .pth files of a folder that a .pth file names.
     Path(site, "needed.pth").write_text(sysconfig.get_path("purelib") + "\n", encoding="utf-8")
     run(sys.executable, "-m", "pip", "--python", python, "install", "--no-deps", "--no-index",
         wheels[1])  # fmt: skip
@@ -182,7 +189,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
 
 @pytest.mark.slow
 def test_wheel_of_the_sdist_is_that_of_the_checkout(built):
-    """Both have the same files, including each module and data file, under one name."""
+    """Both wheels have the same name and files, including each module and data file."""
     contents = []
     for wheel in built.wheels:
         with zipfile.ZipFile(wheel) as archive:
@@ -197,7 +204,7 @@ def test_wheel_of_the_sdist_is_that_of_the_checkout(built):
 
 @pytest.mark.slow
 def test_sdist_holds_what_its_tests_need(built):
-    """A packager for a system can run the tests, and read the documentation."""
+    """The sdist has the tests and the documentation, as packagers of systems need them."""
     with tarfile.open(built.sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     wanted = {

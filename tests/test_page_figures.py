@@ -1,4 +1,4 @@
-"""Numbers on pages equal those of today's commands, within the page's tolerance."""
+"""Numbers on pages equal the results of today's commands, within the page's tolerance."""
 
 import re
 from pathlib import Path
@@ -20,7 +20,10 @@ DOCS = ROOT / "docs"
 
 
 def numbers_of(page, pattern):
-    """The numbers that a pattern finds once on a page; a blank in it also means a line end."""
+    """The numbers of a pattern that occurs once on a page.
+
+    A blank in it also matches a line end.
+    """
     text = " ".join(page.read_text("utf-8").split())
     found = re.findall(pattern, text)
     assert len(found) == 1, f"{page.name} has {len(found)} places like {pattern!r}"
@@ -29,7 +32,7 @@ def numbers_of(page, pattern):
 
 
 def test_triangles_of_table_1():
-    """Two pages have the most triangles of face and plane that `reproduce table1` counts."""
+    """Two pages have the same largest triangle counts of face and plane as `reproduce table1`."""
     values = table1.outcome(rounds=1).values
     ours = [values["face, most triangles"], values["plane, most triangles"]]
     on_index = numbers_of(DOCS / "index.md", r"ours (\d+) and (\d+) \(`risorius reproduce table1`")
@@ -40,7 +43,7 @@ def test_triangles_of_table_1():
 
 @pytest.mark.parametrize("script", ["face", "speech"])
 def test_table_of_exported_files(script, tmp_path):
-    """The page on export has the right frames, targets and size of the built-in scripts."""
+    """The page on export has the frames, targets and file sizes of the built-in scripts."""
     row = rf"\| `{script}\.toml`, built in \| (\d+) \| (\d+) \| ([\d.]+) MB \| ([\d.]+) mm"
     frames, residual, size, _ = numbers_of(DOCS / "export.md", row)
     path = tmp_path / "exported.glb"
@@ -53,7 +56,7 @@ def test_table_of_exported_files(script, tmp_path):
 
 
 def test_size_of_a_sample(tmp_path):
-    """The page on data sets has the mean size of a sample, with and without floats."""
+    """The page on data sets has the mean size of a sample, with float passes and without."""
     plain, floats = numbers_of(
         DOCS / "dataset.md", r"A sample has ([\d.]+) kB; floats add ([\d.]+) MB"
     )
@@ -68,7 +71,7 @@ def test_size_of_a_sample(tmp_path):
 
 
 def test_code_that_reads_a_set(tmp_path, monkeypatch):
-    """The page's lines that read a set run unchanged in a checkout."""
+    """The page's lines that read a data set run unchanged in a checkout."""
     page = (DOCS / "dataset.md").read_text("utf-8")
     code = re.search(r"(?:^    .*\n|^\n)*^    sample = faces.*$", page, re.MULTILINE)
     monkeypatch.chdir(tmp_path)

@@ -1,4 +1,4 @@
-"""`mesh.risorius`, as used in PyVista: data are kept, mistakes have PyVista's words."""
+"""`mesh.risorius` in PyVista: data are kept, and errors are those of PyVista."""
 
 import doctest
 import subprocess
@@ -16,14 +16,14 @@ pyvista = pytest.importorskip("pyvista", reason="needs the extra 'pyvista'")
 
 @pytest.fixture(autouse=True)
 def warnings_are_errors() -> Iterator[None]:
-    """Deprecated parts of PyVista are not used."""
+    """Turn PyVista's deprecation warnings into errors."""
     with warnings.catch_warnings():
         warnings.simplefilter("error", pyvista.PyVistaDeprecationWarning)
         yield
 
 
 def wavy(mesh, height=0.3):
-    """The points of a plane under a sine wave."""
+    """The points of a plane, deformed to a sine wave."""
     points = mesh.points.copy()
     points[:, 2] += height * np.sin(9.0 * points[:, 0] + 4.0 * points[:, 1])
     return points
@@ -47,7 +47,10 @@ def plane():
 
 @pytest.mark.slow
 def test_it_is_found_by_itself():
-    """A program only imports pyvista; the refiner's import does not load PyVista."""
+    """`import pyvista` is enough for `mesh.risorius`.
+
+    Importing the refiner does not load PyVista.
+    """
     code = (
         "import sys, pyvista; assert 'risorius' not in sys.modules; mesh = pyvista.Sphere(); "
         "assert 'risorius' in dir(mesh); print(mesh.risorius.refine().n_cells > mesh.n_cells)"
@@ -59,7 +62,10 @@ def test_it_is_found_by_itself():
 
 
 def test_data_go_along():
-    """Point data by place and type, cell data by cell, fields, texture, normals, active scalars."""
+    """Refined meshes have point data by place, cell data by cell, fields, texture and normals.
+
+    Types and active scalars are kept.
+    """
     mesh = plane()
     refined = mesh.risorius.refiner(criterion="displacement", blend=False).refine(wavy(mesh))
     assert refined.n_cells > 2 * mesh.n_cells
@@ -84,7 +90,7 @@ def test_data_go_along():
 
 
 def test_the_paper_asks_what_has_bent():
-    """By the paper's rule, a mesh is refined against its own form at rest."""
+    """The paper's rule refines a mesh where it differs from a given form at rest."""
     mesh = plane()
     frame = mesh.copy()
     frame.points = wavy(mesh)
@@ -94,7 +100,7 @@ def test_the_paper_asks_what_has_bent():
 
 
 def test_doubled_points_do_not_crack():
-    """A cylinder's caps have separate points; its sharp edge stays closed, textures separate."""
+    """A cylinder's caps have separate points; its rim stays closed, and textures stay separate."""
     mesh = pyvista.Cylinder(resolution=16)
     assert mesh.n_open_edges > 0
     refined = mesh.risorius.refine()
@@ -105,7 +111,7 @@ def test_doubled_points_do_not_crack():
 
 
 def test_polygons_strips_and_lines():
-    """Everything with a surface is cut into triangles of known cells; the rest is left out."""
+    """Polygons and strips become triangles of known cells; cells without a surface are left out."""
     mesh = pyvista.Disc(inner=0.0, c_res=5).merge(pyvista.Line())
     mesh.cell_data["number"] = np.arange(mesh.n_cells)
     refined = mesh.risorius.refine()
@@ -126,7 +132,10 @@ def test_polygons_strips_and_lines():
     ],
 )
 def test_creases_stay_sharp(shape, crease_angle, growth, count):
-    """As in docs/refinement.md on volumes: sharp edges are rounded unless they are creases."""
+    """Edges sharper than `crease_angle` stay sharp, others become round.
+
+    Docs/refinement.md has the volumes.
+    """
     sizes = {"Cylinder": {"resolution": 16, "height": 2.0}, "Cube": {}}
     mesh = getattr(pyvista, shape)(**sizes[shape])
     refined = mesh.risorius.refine(crease_angle=crease_angle)
@@ -138,7 +147,7 @@ def test_creases_stay_sharp(shape, crease_angle, growth, count):
 
 
 def padded(cells):
-    """Cells in VTK's form: each after its number of points."""
+    """Cells in VTK's form: the number of points before each cell."""
     return [number for cell in cells for number in (len(cell), *cell)]
 
 
@@ -154,7 +163,7 @@ def test_cells_that_are_no_triangles():
 
 @pytest.mark.parametrize("seed", range(6))
 def test_cells_of_all_kinds(seed):
-    """Cells have different heights, so that each triangle shows its cell."""
+    """Each triangle shows its cell by its height."""
     generator = np.random.default_rng(seed)
     points = []
     kinds = [[], [], [], []]
@@ -184,7 +193,10 @@ def test_cells_of_all_kinds(seed):
 
 
 def test_polygons_that_vtk_leaves_holes_in():
-    """Points on one line or named twice: the polygon is covered; two points are not a polygon."""
+    """A polygon with collinear or repeated points is covered.
+
+    A polygon of two points is left out.
+    """
     points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [0, 1, 0], [3, 1, 0]], float)
     polygons = [[0, 1, 2, 3], [0, 1], [0, 1, 2, 3, 5, 4], [4, 5, 5, 0]]
     mesh = pyvista.PolyData(points, padded(polygons))
@@ -196,7 +208,7 @@ def test_polygons_that_vtk_leaves_holes_in():
 
 
 def test_many_frames(capsys):
-    """Frames come one by one, as separate meshes, with a bar on request."""
+    """Frames are yielded one by one as separate meshes, with a progress bar on request."""
     mesh = plane()
     heights = (0.0, 0.1, 0.2)
     refiner = mesh.risorius.refiner()
@@ -209,7 +221,7 @@ def test_many_frames(capsys):
 
 
 def test_one_topology_for_all_frames():
-    """`fixed=True` gives all frames the same points and cells, in the order of the same places."""
+    """With `fixed=True` all frames have the same points and cells in the same order."""
     mesh = plane()
     frames = [wavy(mesh, height) for height in (0.0, 0.1, 0.3)]
     refiner = mesh.risorius.refiner(scheme="loop", criterion="normal")
@@ -224,7 +236,10 @@ def test_one_topology_for_all_frames():
 
 
 def test_mistakes_are_reported():
-    """As PyVista does: its own errors for missing cells, ValueError with both sizes otherwise."""
+    """Errors are as in PyVista: MissingDataError for a mesh without faces, else ValueError.
+
+    A ValueError has both sizes.
+    """
     mesh = plane()
     with pytest.raises(pyvista.MissingDataError, match="mesh has no faces"):
         pyvista.Line().risorius.refine()
@@ -242,7 +257,7 @@ def test_mistakes_are_reported():
 
 
 def test_the_examples_of_the_docstrings():
-    """They run unchanged; nothing is plotted."""
+    """The examples in docstrings run unchanged, without plots."""
     import risorius.pyvista
 
     finder = doctest.DocTestFinder(exclude_empty=True)
@@ -257,7 +272,7 @@ def test_the_examples_of_the_docstrings():
 
 
 def test_point_data_of_every_frame():
-    """Heat that changes with frames has each frame's values, its own type, linear on edges."""
+    """Point data that change with frames have each frame's values and type, linear along edges."""
     plate = pyvista.Plane(i_resolution=6, j_resolution=6)
     refiner = plate.risorius.refiner(scheme="loop", criterion="normal")
     for time in (0.0, 0.7, 1.3):
@@ -271,6 +286,6 @@ def test_point_data_of_every_frame():
         np.testing.assert_array_equal(refined["label"], frame["label"][0])
         off = np.abs(
             refined["heat"] - time - refined.points[:, 0]
-        )  # loop moves in the plane little
+        )  # loop moves points little in the plane
         assert off.max() < 0.05
         np.testing.assert_array_equal(refined["heat"][: plate.n_points], frame["heat"])

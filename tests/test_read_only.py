@@ -1,4 +1,4 @@
-"""Arrays that never change cannot be written, neither by mistake nor by one `+=`."""
+"""Arrays that never change are read-only, so that a mistaken `+=` raises an error."""
 
 import enum
 import types
@@ -20,10 +20,10 @@ PLAIN = (str, bytes, int, float, bool, np.generic, type, types.ModuleType, enum.
 
 
 def arrays_of(thing, name, seen):
-    """All arrays reached by public attributes, items and rows, with the way there."""
+    """All arrays reached by public attributes, items and rows, each with its path."""
     if thing is None or id(thing) in seen or isinstance(thing, PLAIN) or callable(thing):
         return
-    seen[id(thing)] = thing  # this keeps it alive, so that no other gets its number
+    seen[id(thing)] = thing  # kept alive, so that no other object gets its id
     if isinstance(thing, np.ndarray):
         yield name, thing
     elif isinstance(thing, Mapping):
@@ -41,11 +41,11 @@ def arrays_of(thing, name, seen):
 
 
 def is_kept(thing, name):
-    """Whether an attribute can be read, and is the same in a second reading."""
+    """Whether an attribute can be read, and is the same object when read again."""
     try:
         first = getattr(thing, name)
         second = getattr(thing, name)
-    except Exception:  # attributes that this head has not, or not yet
+    except Exception:  # attributes that this head does not have, or not yet
         return False
     if isinstance(first, np.ndarray):
         return np.shares_memory(first, second)
@@ -59,7 +59,7 @@ def own_head():
 
 
 def person():
-    """A made person."""
+    """A generated person."""
     return make_person(sample_identity(63))
 
 
@@ -99,7 +99,7 @@ def moved(head):
 
 @pytest.mark.parametrize("name", THINGS)
 def test_nothing_of_it_can_be_written(name, head):
-    """This holds for all arrays reached by public attributes."""
+    """All arrays reached by public attributes of heads and faces are read-only."""
     found = dict(arrays_of(THINGS[name](head), name, {}))
     assert found
     assert [way for way, array in found.items() if array.flags.writeable] == []
@@ -107,7 +107,7 @@ def test_nothing_of_it_can_be_written(name, head):
 
 @pytest.mark.parametrize("name", REFINERS)
 def test_nothing_of_a_refiner_can_be_written(name, head):
-    """Except those that each frame writes again."""
+    """The only writable arrays of a refiner are those written in each frame."""
     kind, options = REFINERS[name]
     refiner = refine.create(kind, head.faces, head.vertices, head.uv, head.face_uv, **options)
     refiner.refine(head.vertices)
@@ -118,7 +118,7 @@ def test_nothing_of_a_refiner_can_be_written(name, head):
 
 
 def test_one_in_place_addition_harms_nobody(head):
-    """Vertex numbers for compiled code are protected, with numpy's own error."""
+    """Vertex numbers for compiled code are read-only, with numpy's own error."""
     simulation = sim.create(head)
     refiner = refine.create("kahler", simulation.faces, simulation.rest_positions, coherent=True)
     for array in (

@@ -1,4 +1,4 @@
-"""The files of this checkout that git tracks, without those that an editor leaves."""
+"""The files of this checkout that git tracks, without files left by an editor."""
 
 import functools
 import subprocess
@@ -8,14 +8,14 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def tracked(folder: str | Path = ROOT, pattern: str = "*") -> list[Path]:
-    """The tracked files in a folder of the checkout, and below it, with matching names."""
+    """The tracked files in a folder of the checkout and below it, with matching names."""
     top = ROOT / folder
     return [path for path in _files() if path.is_relative_to(top) and path.match(pattern)]
 
 
 @functools.cache
 def _files() -> tuple[Path, ...]:
-    """All tracked files; for an unpacked source distribution, which has no git, its files."""
+    """All tracked files, or all files of an unpacked source distribution, which has no git."""
     git = ["git", "-C", str(ROOT), "ls-files", "-z", "--cached"]
     try:
         if not (ROOT / ".git").exists():
@@ -28,7 +28,7 @@ def _files() -> tuple[Path, ...]:
 
 
 def _is_made(path: Path) -> bool:
-    """Whether a path is in a folder that programs make: compiled modules, environments, caches."""
+    """Whether a path is in a folder made by programs: compiled modules, environments, caches."""
     return any(
         name == "__pycache__" or name.endswith(".egg-info") or name.startswith((".venv", "build"))
         for name in path.relative_to(ROOT).parts

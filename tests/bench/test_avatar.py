@@ -1,4 +1,4 @@
-"""The benchmark of avatars: vertices in place, names, and errors of sums."""
+"""The benchmark of avatars: places of vertices, names of shapes, and errors of combined shapes."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,10 @@ from risorius.bench.guesses import persons_turned
 
 
 def test_the_built_in_head_keeps_its_vertices():
-    """All are in place, with 52 names; four pairs and a take are compared with the simulation."""
+    """All vertices and all 52 names are found.
+
+    Four pairs and a take are compared with the simulation.
+    """
     row = avatar.measured(None)
     assert row.in_place == row.vertices > 1000
     assert row.shapes == 52
@@ -23,14 +26,17 @@ def test_the_built_in_head_keeps_its_vertices():
 
 
 def test_turned_persons_are_guessed_as_others():
-    """In metres, on a side or upside down: half of the points are within 3 mm, none 8 mm off."""
+    """For heads in metres, on a side or upside down, half of the guessed landmarks are within 3 mm.
+
+    No landmark is 8 mm off.
+    """
     for found in persons_turned():
         assert np.median(found.off[17:]) < 3.0
         assert found.off[17:].max() < 8.0
 
 
 def test_another_order_is_seen():
-    """Exchanged and missing vertices do not count as in place."""
+    """Exchanged vertices and missing vertices do not count as in place."""
     points = np.arange(30.0).reshape(10, 3)
     assert avatar.in_place(points, points) == 10
     assert avatar.in_place(points, points[[1, 0, *range(2, 10)]]) == 8
@@ -38,6 +44,6 @@ def test_another_order_is_seen():
 
 
 def test_a_folder_without_the_mesh_is_refused(tmp_path):
-    """One line says what the folder needs."""
+    """The error is one line that lists the files the folder needs."""
     with pytest.raises(UserError, match="folder needs base"):
         avatar.makehuman(tmp_path)

@@ -1,4 +1,4 @@
-"""The criterion of Fig. 10, made from public names: mouths that open."""
+"""The criterion of Fig. 10, written with public names, on meshes with an opening slit."""
 
 from itertools import pairwise
 
@@ -29,7 +29,7 @@ def splits_of(mesh, deformed, criterion=None):
 
 
 def metrics_of(mesh, *poses):
-    """Need of every edge in each pose."""
+    """The metric of every edge in each pose."""
     connectivity = refine.connect(mesh.faces, len(mesh.vertices))
     none = refine.create("none", mesh.faces, mesh.vertices)
     criterion = BorderTurn()
@@ -45,7 +45,7 @@ def metrics_of(mesh, *poses):
 @settings(max_examples=60, deadline=None)
 @given(seeds, st.floats(-1e3, 1e3), st.booleans())
 def test_nothing_at_rest(seed, away, has_holes):
-    """Neither rest nor a rigid motion splits anything."""
+    """No edge is split at rest or after a rigid motion."""
     mesh = meshes.irregular(seed % 50) if has_holes else SLIT
     moved = mesh.vertices @ meshes.rotation(seed).T + away
     assert not splits_of(mesh, mesh.vertices).any()
@@ -55,7 +55,10 @@ def test_nothing_at_rest(seed, away, has_holes):
 @settings(max_examples=60, deadline=None)
 @given(soups())
 def test_any_triangles(soup):
-    """Fins, flips and debris split nothing at rest, and do not crack when they move."""
+    """Fins, flips and debris split nothing at rest.
+
+    After a motion the refined mesh has no crack.
+    """
     positions, faces = soup
     mesh = meshes.Mesh(positions, faces)
     assert not splits_of(mesh, positions).any()
@@ -63,7 +66,10 @@ def test_any_triangles(soup):
 
 
 def test_a_slit_that_opens_in_its_plane():
-    """It is split along all of its sides, and beside them; normals and rest see nothing."""
+    """Edges along the slit and beside it are split.
+
+    Criteria of normals and of rest split nothing there.
+    """
     deformed = meshes.opened(SLIT, 0.8)
     assert not splits_of(SLIT, deformed, "normal+rest").any()
     splits = splits_of(SLIT, deformed)
@@ -82,7 +88,7 @@ def test_a_slit_that_opens_in_its_plane():
 @settings(max_examples=40, deadline=None)
 @given(heights, heights)
 def test_symmetric_in_symmetric_out(height, lower):
-    """A mirrored border is split equally left and right; and above and below, if opened so."""
+    """A border that is symmetric in x, or in x and y, has splits with the same symmetry."""
     for axis, sides in ((0, (height, lower)), (1, (height, height))):
         deformed = meshes.opened(SLIT, sides[0])
         is_below = deformed[:, 1] < 0.0
@@ -91,7 +97,7 @@ def test_symmetric_in_symmetric_out(height, lower):
         middles = deformed[EDGES].mean(axis=1)
         mirrored = middles * np.where(np.arange(3) == axis, -1.0, 1.0)
         distances = norm(mirrored[:, None] - middles, axis=2)
-        # In a shut slit the upper side lies on the lower one, and both are equal anyway.
+        # In a shut slit the upper side lies on the lower side, and their splits are equal anyway.
         assert distances.min(axis=1).max() < 1e-9
         np.testing.assert_array_equal(splits, splits[distances.argmin(axis=1)])
 
@@ -99,9 +105,9 @@ def test_symmetric_in_symmetric_out(height, lower):
 @settings(max_examples=60, deadline=None)
 @given(seeds, st.floats(0.0, 0.5))
 def test_needs_are_continuous(seed, amplitude):
-    """They change no more than 200 times as much as the mesh moves [edges]: thresholds are small.
+    """Metrics change at most 200 times as much as the mesh moves, in lengths of the shortest edge.
 
-    Also through the moment in which a side folds back.
+    The factor is large because thresholds are small. Motions include sides that fold back.
     """
     mesh = meshes.irregular(seed % 50)
     start = meshes.wrinkled(mesh, seed, amplitude)
@@ -116,7 +122,7 @@ def test_needs_are_continuous(seed, amplitude):
 
 
 def plain_metric(mesh, normals, pose, rest_normals):
-    """The criterion again, by dictionaries, from the text of its file."""
+    """The criterion again, with dictionaries, from the description in its file."""
     around = Surroundings([tuple(int(v) for v in face) for face in mesh.faces])
 
     def unit(a, b, points):
@@ -163,7 +169,7 @@ def plain_metric(mesh, normals, pose, rest_normals):
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_equals_plain_twin(seed):
-    """Needs equal those of the simple implementation."""
+    """The metrics equal those of the simple implementation."""
     mesh = meshes.irregular(seed, columns=16, rows=16)
     pose = meshes.wrinkled(mesh, seed)
     none = refine.create("none", mesh.faces, mesh.vertices)
@@ -178,7 +184,7 @@ def test_equals_plain_twin(seed):
 
 
 def outline(positions, triangles, middle, reach):
-    """Angles of the border around a place, without its two corners [degrees]; sorted."""
+    """Sorted angles of the border around a place [degrees], without its two corners."""
     mesh = refine.connect(triangles, len(positions))
     after = dict(mesh.edges[~mesh.around.is_interior].tolist())
     before = {b: a for a, b in after.items()}
@@ -192,7 +198,10 @@ def outline(positions, triangles, middle, reach):
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
 def test_round_outline_of_a_slit(scheme):
-    """Between its corners an opened slit turns less than half as much; by loop not beside them."""
+    """An opened slit turns less than half as much per vertex after refinement.
+
+    With `loop` this does not hold beside the two corners.
+    """
     deformed = meshes.opened(SLIT, 1.2)
     refiner = kahler(SLIT, criterion=BorderTurn(), scheme=scheme, blend=False)
     mesh = refiner.refine(deformed)

@@ -1,4 +1,4 @@
-"""`risorius bench coarse`: the refined coarse head has the form of the built-in head."""
+"""`risorius bench coarse`: the refined coarse head compared with the form of the built-in head."""
 
 import numpy as np
 import pytest
@@ -10,29 +10,29 @@ from tests.app.command_line import succeeded
 
 @pytest.fixture(scope="module")
 def comparison():
-    """The built-in head in all poses."""
+    """The comparison with the built-in head in all poses."""
     return coarse.Comparison()
 
 
 def numbers(*of_file):
-    """Numbers of the coarse head's vertices, by those of the built-in head."""
+    """Vertex numbers of the coarse head for vertex numbers of the built-in head."""
     return np.searchsorted(coarse_head().file_vertices, of_file).tolist()
 
 
 def test_smooth_surface_is_nearer_than_triangles(comparison):
-    """In each part of the face the cubic scheme turns normals toward those of the built-in head."""
+    """In each part of the face, cubic edges bring normals nearer to the built-in head's."""
     layout = coarse.layout()
     smooth = comparison.angles(layout)
     static = comparison.angles(layout, "static")
     for group in (*coarse.FREE_GROUPS, "chin", "nose", "lips"):
         assert smooth[group] < 0.85 * static[group], group
-    assert smooth["eyelids"] < 18.5  # 20.5 with a bright wedge above the lid, and dents below
-    assert smooth["face"] < 9.0  # 9.4 with a block at the upper lip
+    assert smooth["eyelids"] < 18.5  # 20.5 with a bright wedge above the lid and dents below it
+    assert smooth["face"] < 9.0  # 9.4 with a lump at the upper lip
 
 
 @pytest.mark.parametrize("ends", [(24, 130), (333, 356), (19, 373), (162, 193)])
 def test_edges_that_made_lumps_stay_flipped(comparison, ends):
-    """A flip back makes the surface worse: beside the upper lip, at the lids, at the jaw."""
+    """Undoing a flip beside the upper lip, at the lids or at the jaw makes the normals worse."""
     layout = coarse.layout()
     back = coarse.flipped(layout, *numbers(*ends))
     assert back is not None
@@ -40,7 +40,10 @@ def test_edges_that_made_lumps_stay_flipped(comparison, ends):
 
 
 def test_flip_and_its_reverse():
-    """Both together give the same triangles; edges of lips and missing edges have no flip."""
+    """An edge flipped twice gives the first triangles.
+
+    Edges of lips and missing edges have no flip.
+    """
     layout = coarse.layout()
     once = coarse.flipped(layout, *numbers(24, 130))
     back = coarse.flipped(once, *numbers(133, 136))
@@ -52,7 +55,7 @@ def test_flip_and_its_reverse():
 
 
 def test_command_prints_all_groups():
-    """A line for each part of the layout, with the angles of triangles and of both schemes."""
+    """Each part of the layout has a line with the angles of the triangles and of two schemes."""
     printed = succeeded("bench", "coarse")
     for group in ("lips", "above the mouth", "eyelids", "nose", "face"):
         assert f"\n{group} " in printed

@@ -4,7 +4,7 @@ from risorius.bench import embedding
 
 
 def test_three_times_nearer_than_flat_binding():
-    """A plane, a sphere and a cylinder, bent: at most a third of the error of flat binding."""
+    """For a bent plane, sphere and cylinder the error is at most a third of flat binding's."""
     rows = embedding.measure()
     assert {row.surface for row in rows} == {"plane", "sphere", "cylinder"}
     assert all(3.0 * row.ours < row.with_offset for row in rows)

@@ -8,13 +8,13 @@ from risorius.bench.gaps import LARGEST_FAULTS, Pose, inverted_count, measure
 
 @pytest.fixture(scope="module")
 def poses() -> dict[str, Pose]:
-    """Every pose, with its one measurement."""
+    """Every pose with its measured gaps."""
     return {pose.name: pose for pose in measure(0)}
 
 
 @pytest.mark.slow
 def test_closed_lips_stay_closed(poses):
-    """Only units with this purpose part the lips, on either side or on both."""
+    """The lips part, on one side or both, only for action units that open the mouth."""
     slits = {name: pose.slit for name, pose in poses.items() if pose.slit is not None}
     assert len(slits) > 70
     assert {"AU12", "AU12_left", "AU17", "AU28", "AU29", "kiss"} < set(slits)
@@ -30,7 +30,7 @@ def test_shut_eyes_are_shut(poses):
 
 
 def test_a_folded_triangle_is_counted(head):
-    """One that turned over is found within skin that turned as a whole, which does not count."""
+    """A folded triangle is counted, but a patch of skin that turned as a whole is not."""
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     over = turn @ np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
     now = head.vertices @ over.T

@@ -1,4 +1,4 @@
-"""The measure of human form recovers people of its space, and reports other heads."""
+"""The measure of human form explains heads of its model space, and reports all other heads."""
 
 import numpy as np
 import pytest
@@ -17,12 +17,12 @@ from risorius.bench.human import (
 from risorius.geometry.normals import vertex_normals
 
 WEIGHTS = np.array([1.5, -0.8])
-TURN = 0.03  # radian
+TURN = 0.03  # [radians]
 
 
 @pytest.fixture(scope="module")
 def space() -> IdentitySpace:
-    """The built-in head as the mean, with two smooth modes, one of them asymmetric."""
+    """A model space around the built-in head, with two smooth modes, one of them asymmetric."""
     head = assets.load("head")
     x, y, z = head.vertices.T
     wide = np.stack([4.0 * np.sin(x / 40.0), 0.0 * y, 2.0 * np.cos(y / 35.0)], axis=1)
@@ -32,7 +32,7 @@ def space() -> IdentitySpace:
 
 
 def rest_of(space, vertices):
-    """The rest outside the space for a head that is turned and moved."""
+    """The residual outside the model space for a head that is turned and moved."""
     c = np.cos(TURN)
     s = np.sin(TURN)
     moved = vertices @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]).T + [3.0, -2.0, 4.0]
@@ -42,7 +42,7 @@ def rest_of(space, vertices):
 
 
 def test_a_person_of_the_space_is_explained(space):
-    """Weights are recovered at any place of the head, and the rest is 0."""
+    """For a turned and moved head of the space, the weights are recovered and the residual is 0."""
     rest = rest_of(space, space.person(WEIGHTS))
     assert rest.weights == pytest.approx(WEIGHTS, abs=0.06)
     assert rest.distances["all"] < 0.05
@@ -51,7 +51,10 @@ def test_a_person_of_the_space_is_explained(space):
 
 
 def test_a_bump_that_nobody_has_is_reported_where_it_is(space):
-    """4 mm on the chin remain there, hardly elsewhere, and are printed."""
+    """A bump of 4 mm on the chin stays in the residual of the chin, and is printed.
+
+    Other regions have hardly any residual.
+    """
     vertices = space.person(WEIGHTS)
     chin = vertices[space.landmarks[8]]
     away = np.linalg.norm(vertices - chin, axis=1)
@@ -66,7 +69,7 @@ def test_a_bump_that_nobody_has_is_reported_where_it_is(space):
 
 
 def test_what_is_left_is_held_to_targets():
-    """A larger rest, and a missing number, both miss their target."""
+    """A residual above its target and a missing number both miss the target."""
     names = ("all", "nose", "mouth")
     good = Rest(np.ones(2), dict.fromkeys(names, 0.3), {"all": 3.0})
     bad = Rest(np.ones(2), {**good.distances, "nose": float("nan")}, {"all": 6.0})
@@ -78,7 +81,7 @@ def test_what_is_left_is_held_to_targets():
 
 
 def test_what_looks_at_skin_is_no_region(space):
-    """The insides of lips are left out, the skin of cheeks and forehead is not."""
+    """The inner sides of lips are left out; the skin of cheeks and forehead is included."""
     regions = space.regions()
     marks = space.landmarks
     assert (regions[marks[[62, 66]]] == "").all()
@@ -86,7 +89,7 @@ def test_what_looks_at_skin_is_no_region(space):
 
 
 def test_a_folder_without_modes_is_reported(head, tmp_path):
-    """A file that is missing, or has other vertices, is named."""
+    """The error names a file that is missing, or has another number of vertices."""
     np.savez(
         tmp_path / "face.npz",
         vertices=head.vertices,

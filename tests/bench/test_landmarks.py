@@ -1,4 +1,4 @@
-"""The benchmark of landmarks: how it counts errors, and its message without a detector."""
+"""The benchmark of landmarks: errors of a detector, and the message without the detector."""
 
 import json
 
@@ -34,13 +34,13 @@ def labels_of_face(yaw=0.0, mask="none"):
 
 
 def test_an_error_is_a_share_of_the_distance_of_the_eyes():
-    """Two of forty pixels are 5 %, to the side and down."""
+    """An error of two pixels for eyes 40 pixels apart is 5 %, sideways as well as downward."""
     errors = landmarks.errors_of(FACE + np.array([2.0, -1.0]), labels_of_face())
     assert np.allclose(errors, [5.0, -2.5])
 
 
 def measured(folder, labels, points):
-    """The measure of pictures with these labels, of which a detector finds the same points."""
+    """Errors on pictures with these labels, for a detector that returns the same points."""
     for number, each in enumerate(labels):
         (folder / f"{number:06d}.json").write_text(json.dumps(each))
         PIL.Image.new("RGB", (8, 8)).save(folder / f"{number:06d}.png")
@@ -48,7 +48,10 @@ def measured(folder, labels, points):
 
 
 def test_a_constant_part_is_one_on_both_sides(tmp_path):
-    """A detector moves every corner of the mouth outward by 3 %, and finds the rest exactly."""
+    """A constant offset of both mouth corners, 3 % outward, is found.
+
+    Other points have no offset.
+    """
     outward = np.zeros((68, 2))
     outward[48, 0] = -1.2
     outward[54, 0] = 1.2
@@ -64,13 +67,13 @@ def test_a_constant_part_is_one_on_both_sides(tmp_path):
 
 
 def test_masked_persons_are_left_out(tmp_path):
-    """A detector guesses the parts beneath."""
+    """Persons with masks are left out, because a detector can only guess the covered points."""
     found = measured(tmp_path, [labels_of_face(mask=mask) for mask in ("none", "white")], FACE)
     assert (found.picture_count, len(found.yaw)) == (1, 1)
 
 
 def test_a_tracker_s_mesh_gives_all_68_points():
-    """Every point of the left has its mirror image on the right."""
+    """The mesh of a tracker gives all 68 points, and each left point mirrors one on the right."""
     mesh = np.random.default_rng(1).uniform(0.0, 100.0, (478, 2))
     points = landmarks.points_of_mesh(mesh)
     assert points.shape == (68, 2)
@@ -82,7 +85,7 @@ def test_a_tracker_s_mesh_gives_all_68_points():
 
 
 def test_without_the_detector_one_line_says_so(tmp_path, monkeypatch):
-    """It is an extra; without it no test fails."""
+    """The detector is an optional extra: its absence is reported in one line."""
     monkeypatch.setattr(landmarks, "is_installed", lambda name: False)
     output = succeeded("bench", "landmarks", tmp_path, "--detector", "dlib")
     assert output == "skipped: dlib is not installed; pip install '.[dlib]' brings it\n"

@@ -1,4 +1,4 @@
-"""`risorius bench refine --matrix` multiplies correctly, and times both sides of each pair."""
+"""`risorius bench refine --matrix` multiplies correctly, and times both methods of each pair."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from tests.app.command_line import refusal, risorius
 
 
 def test_a_plain_loop_is_the_product():
-    """The rival in numba computes the same product."""
+    """The compared numba kernel computes the same product."""
     starts = np.array([0, 2, 3])
     columns = np.array([0, 2, 1])
     weights = np.array([0.25, 0.75, 2.0])
@@ -19,7 +19,7 @@ def test_a_plain_loop_is_the_product():
 
 
 def test_pairs():
-    """Each rival has a row, with times that fit its gain."""
+    """Each compared method has a row, and its gain fits its times."""
     pytest.importorskip("igl")
     rows = matrices.measure(["2k"], 0.1)
     assert [row.rival for row in rows] == ["libigl, loop_matrix", "numba, a plain loop"]
@@ -30,6 +30,6 @@ def test_pairs():
 
 
 def test_a_card_has_no_pairs():
-    """One line names the options that exclude each other."""
+    """For a graphics card the error is one line with the options that exclude each other."""
     line = refusal(risorius("bench", "refine", "--matrix", "--refiner", "kahler-gl"))
     assert line.startswith("risorius: --matrix needs --refiner kahler")

@@ -1,4 +1,4 @@
-"""Scores of motion: made-up references of known motion, with every spelling of their names."""
+"""Scores of motion for artificial references of known motion, with all spellings of names."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ from risorius.bench.motion import Row, blobs_of, measure, report, targets
 from tests.heads import METRES, SHIFT, TURN, shape, stranger
 from tests.sim.poses import settled_displacement
 
-# Scored fields: the name of each -> the controls that make it on the built-in head.
+# Scored fields: each name in a reference -> the controls with the same motion on the built-in head.
 SCORED = {
     "jawOpen": {"jawOpen": 1.0},
     "JawForward": {"jawForward": 1.0},
@@ -30,7 +30,7 @@ SCORED = {
 
 @pytest.fixture(scope="module")
 def scored(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Row], list[str]]:
-    """Scores of a head with another shape, unit and orientation, and the built-in motion."""
+    """Scores of the built-in motion carried to a head with another shape, unit and orientation."""
     head = assets.load("head")
     simulation = sim.create(head)
 
@@ -59,28 +59,29 @@ def scored(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Row], li
 
 @pytest.mark.slow
 def test_own_motion_is_known_again(scored):
-    """Carried over by landmarks to another head, each shape nearly equals its original."""
+    """The built-in head's motion, carried to another head, nearly equals each original."""
     rows, left_out = scored
     assert set(rows) == {*SCORED, "mouthClose", "eyeBlinkLeft"} - {"eyeBlink_L"}
-    assert left_out == ["earWiggle", "eyeBlinkRight"]  # unknown, and nothing moves
+    assert left_out == ["earWiggle", "eyeBlinkRight"]  # an unknown name, and a field without motion
     cosines = {name: row.cosine for name, row in rows.items()}
-    # The built-in head has its own mandible; on another head it is guessed from landmarks.
+    # The built-in head has its own mandible; on another head the mandible is guessed from
+    # landmarks.
     assert all(c > (0.82 if name == "jawOpen" else 0.9) for name, c in cosines.items()), cosines
     assert np.mean(list(cosines.values())) > 0.96
     for name, row in rows.items():
-        is_guessed = name in ("jawOpen", "mouthClose")  # their mandible, from landmarks
+        is_guessed = name in ("jawOpen", "mouthClose")  # these use the guessed mandible
         assert 0.8 < row.magnitude < (1.5 if is_guessed else 1.25), name
         assert row.residual < (0.6 if is_guessed else 0.25), name
 
 
 def held_to(*rows):
-    """Missing rows beside a correct shape."""
+    """The missed targets of these rows beside a correct shape."""
     sound = Row("jawOpen", 0.99, 1.0, 0.02, 0.5)
     return [target.text for target in targets([sound, *rows], []) if not target.is_met]
 
 
 def test_a_shape_below_its_blob_is_missed():
-    """This is where a smooth bump is nearer to the scan: by its directions, or by its size."""
+    """A shape misses its target if a smooth bump is nearer to the scan, by direction or by size."""
     assert held_to() == []
     assert held_to(Row("mouthLeft", 0.95, 1.0, 0.1, 0.9)) == []
     (astray,) = held_to(Row("eyeWide", 0.95, 1.0, 0.1, 0.96))
@@ -91,7 +92,7 @@ def test_a_shape_below_its_blob_is_missed():
 
 
 def test_the_blob_stands_beside_each_shape():
-    """It is the last column, also for the mean."""
+    """The last column has each shape's score of the smooth bump, and the mean of these scores."""
     text = report([Row("jawOpen", 0.95, 1.0, 0.1, 0.901), Row("eyeWide", 0.96, 1.1, 0.1, 0.8)], [])
     lines = [line.split() for line in text.splitlines()]
     assert ["shape", "cosine", "magnitude", "residual", "blob"] in lines
@@ -99,7 +100,7 @@ def test_the_blob_stands_beside_each_shape():
 
 
 def test_a_bump_is_known_as_a_blob(head):
-    """One of the widths nearly equals a bump on one side, and one equals bumps on both sides."""
+    """One of the smooth bumps nearly equals a bump on one side, or bumps on both sides."""
     for corners in (["cheek_left"], ["cheek_left", "cheek_right"]):
         places = head.vertices[[head.anatomy[name] for name in corners]]
         away = norm(head.vertices[:, None] - places, axis=2)
@@ -114,7 +115,7 @@ def test_a_bump_is_known_as_a_blob(head):
 
 @pytest.fixture(scope="module")
 def arrays() -> dict[str, Any]:
-    """A head that can be fitted, with one field of the right shape."""
+    """The arrays of a head that can be fitted, with one field of the right shape."""
     other = stranger()
     return {
         "vertices": other.mesh.vertices,
@@ -146,7 +147,7 @@ def test_broken_references_are_named(arrays, tmp_path, name, value, message):
 
 @pytest.mark.parametrize("content", [b"hello", b"PK\x03\x04 cut short", b""])
 def test_files_that_hold_no_arrays_are_named(tmp_path, content):
-    """Neither text nor half an archive gives a traceback."""
+    """A text file and a truncated archive are reported by name, without a traceback."""
     (tmp_path / "face.npz").write_bytes(content)
     with pytest.raises(UserError, match=r"face.npz: is broken, or no file of arrays"):
         measure(tmp_path)

@@ -1,4 +1,4 @@
-"""Our women and men compared with published means."""
+"""The generated women and men compared with published means."""
 
 from pytest import approx
 
@@ -6,7 +6,10 @@ from risorius.bench import persons
 
 
 def test_sexes_lie_as_far_apart_as_published():
-    """Of thirty numbers; the calipers' pressure is subtracted, and every norm has a line."""
+    """Thirty measurements differ between women and men as published, less the calipers' pressure.
+
+    Every norm has a line.
+    """
     rows = persons.measure(30)
     assert [target.is_met for target in persons.targets(rows)] == [True]
     text = persons.report(rows)

@@ -1,4 +1,4 @@
-"""The measure of quality: subjects and errors."""
+"""The benchmark of quality: its test meshes and its errors."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def bent(points, angle):
 
 
 def rolled_plane():
-    """A flat plane, coarse and dense, and both rolled up: the truth is a cylinder."""
+    """A flat plane, coarse and dense, and both rolled up; the exact surface is a cylinder."""
     meshes = []
     for cells in (6, 48):
         grid = open_grid(cells, cells)
@@ -32,7 +32,7 @@ def rolled_plane():
 
 @pytest.mark.slow
 def test_scores_of_a_cylinder():
-    """Cubic edges follow a cylinder, Loop shrinks it; budgets are met."""
+    """Cubic edges follow a cylinder, Loop's surface shrinks; no budget of triangles is exceeded."""
     average = quality.means(scores := quality.measure(rolled_plane()))
     static = average[STATIC]
     loop = average["uniform Loop 16x"]
@@ -48,7 +48,7 @@ def test_scores_of_a_cylinder():
 
 
 def test_error_of_the_truth_is_zero():
-    """A coarse mesh equal to the dense one has no error; one turned aside has an error."""
+    """A coarse mesh equal to the dense mesh has no error; a turned one has an error."""
     subject = rolled_plane()
     rest = subject.rest.coarse
     pose = subject.poses["roll 1"].coarse
@@ -66,7 +66,10 @@ def test_error_of_the_truth_is_zero():
 
 
 def test_scans_are_read(tmp_path):
-    """A folder of scans: halves are joined, centimetres become millimetres, unknown names count."""
+    """In a folder of scans, left and right halves are joined and centimetres become millimetres.
+
+    A shape of unknown name counts, too.
+    """
     fine = assets.load("head").finer(1)
     lift = 0.1 * np.ones_like(fine.vertices)
     np.savez(
@@ -91,7 +94,7 @@ def test_scans_are_read(tmp_path):
 
 @pytest.mark.slow
 def test_built_in_head(head):
-    """The finer head moves by its own muscles, and the coarse one is its first vertices."""
+    """The finer head is moved by its own muscles; its first vertices are the coarse head."""
     subject = subjects.built_in(1)
     assert set(subject.poses) == set(head.expressions)
     assert len(subject.dense_faces) == 4 * len(subject.coarse_faces)
@@ -103,7 +106,7 @@ def test_built_in_head(head):
 
 @pytest.mark.slow
 def test_gains_on_the_built_in_head():
-    """Interpolating schemes come nearer in every expression, by the intended amount."""
+    """In every expression interpolating schemes reduce the error by the intended share."""
     calm = "detail displacement, blended 2x"
     methods = (STATIC, BEST, calm, "cubic twice", "detail twice")
     scores = quality.measure(subjects.built_in(1), ("joy", "blink"), methods=methods)

@@ -1,4 +1,4 @@
-"""Reference data from a checkout of ICT-FaceKit; a small one is written here."""
+"""Conversion of a checkout of ICT-FaceKit to reference data; the tests write a small checkout."""
 
 import gzip
 from pathlib import Path
@@ -16,7 +16,7 @@ LIFT = np.array([0.0, 0.5, 0.25])
 
 
 def face():
-    """A dome of quads, and one more vertex behind it, which a last quad uses."""
+    """A dome of quads, and one more vertex behind it, which the last quad uses."""
     x, y = np.meshgrid(*[np.linspace(-8.0, 8.0, SIZE + 1)] * 2)
     z = 8.0 - 0.05 * (x**2 + y**2) + 0.1 * np.sin(3.0 * x)
     vertices = np.stack([x, y, z], axis=-1).reshape(-1, 3)
@@ -27,7 +27,7 @@ def face():
 
 
 def obj(vertices, quads):
-    """The text of a file in the checkout's form, with texture coordinates."""
+    """The text of an OBJ file as in the checkout, with texture coordinates."""
     lines = ["# a head", *("v {:.6f} {:.6f} {:.6f}".format(*each) for each in vertices), "vt 0 0"]
     lines += ["f " + " ".join(f"{corner + 1}/1" for corner in quad) for quad in quads]
     return "\n".join(lines).encode()
@@ -35,7 +35,10 @@ def obj(vertices, quads):
 
 @pytest.fixture
 def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Neutral head, two expressions (one file packed), one component, licence and README."""
+    """A checkout: neutral head, two expressions, one component, licence and README.
+
+    One of the files is packed.
+    """
     monkeypatch.setattr(reference, "FACE_VERTICES", COUNT)
     model = tmp_path / "checkout" / "FaceXModel"
     model.mkdir(parents=True)
@@ -51,7 +54,7 @@ def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def made(checkout):
-    """The arrays written by the command, by file."""
+    """The arrays written by the command, by file name."""
     folder = checkout.parent / "made"
     said = succeeded("bench", "reference", checkout, "-o", folder)
     assert "not in the checkout: mouthSmile_R" in said
@@ -60,7 +63,10 @@ def made(checkout):
 
 
 def test_the_face_and_its_motion(checkout):
-    """Vertices stay, quads are fans, motion is a difference, and all else of the head is left."""
+    """Vertices are unchanged, quads become fans, and motion is a difference of positions.
+
+    Everything of the head but the face is left out.
+    """
     vertices, quads = face()
     arrays = made(checkout)["face"]
     assert set(arrays) == {"vertices", "triangles", "landmarks68", "jawOpen", "mouthSmile_L"}
@@ -73,7 +79,7 @@ def test_the_face_and_its_motion(checkout):
 
 
 def test_identity_modes(checkout):
-    """Each is the motion of the face by its component."""
+    """Each identity mode is the motion of the face by its component."""
     files = made(checkout)
     assert files["identity_modes"]["modes"].shape == (1, COUNT, 3)
     expected = 0.01 * files["face"]["vertices"]
@@ -82,10 +88,10 @@ def test_identity_modes(checkout):
 
 @pytest.mark.slow
 def test_bench_quality_runs_on_it(checkout):
-    """The folder is accepted by `--reference`."""
+    """`bench quality --reference` accepts the folder."""
     made(checkout)
     result = risorius("bench", "quality", "--reference", checkout.parent / "made")
-    assert result.exit_code in (0, 1), result.output  # targets are for faces, and this is a dome
+    assert result.exit_code in (0, 1), result.output  # targets are for faces; this is a dome
     rows = [line for line in result.output.splitlines() if line.startswith("cubic twice ")]
     triangles, _, better = rows[0].removeprefix("cubic twice").split()[:3]
     assert float(triangles) > 10 and float(better.rstrip("%")) > 50, "nearer to the dense face"
@@ -111,7 +117,7 @@ def test_bench_quality_runs_on_it(checkout):
     ],
 )
 def test_a_broken_checkout_is_reported_in_one_line(checkout, spoil, words):
-    """The file is named, and nothing is written."""
+    """One line names the broken file, and nothing is written."""
     spoil(checkout)
     result = risorius("bench", "reference", checkout, "-o", checkout.parent / "made")
     assert result.exit_code == 2

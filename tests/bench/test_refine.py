@@ -1,4 +1,4 @@
-"""The benchmark of the refiners measures as documented."""
+"""The benchmark of the refiners measures what its documentation states."""
 
 import gc
 
@@ -10,7 +10,7 @@ from tests.refine_gl.agreement import why_no_card
 
 @pytest.mark.slow
 def test_rows():
-    """It has the requested share of edges; times fit."""
+    """The requested share of edges is split, and the times of a row fit together."""
     rows = {row.method: row for row in refine.measure(["2k"], 0.05)}
     count = rows["kahler 10 %"].triangles_in
     assert abs(count - 2_000) < 100
@@ -22,7 +22,7 @@ def test_rows():
 
 
 def test_rows_of_the_card():
-    """Both methods are timed on the processor and on the card, which is named."""
+    """Both methods are timed on the processor and on the card, and the report names the card."""
     if reason := why_no_card():
         pytest.skip(reason)
     rows = refine.measure(["2k"], 0.05, on_card=True)
@@ -35,7 +35,7 @@ def test_rows_of_the_card():
 
 
 def test_calls_are_timed_in_turn():
-    """Forwards, then backwards; no garbage is collected meanwhile."""
+    """Calls are timed forwards, then backwards, and no garbage is collected in between."""
     order = []
     calls = [lambda name=name: order.append(f"{name}{gc.isenabled():d}") for name in "ab"]
     assert refine.interleaved(calls, 2).shape == (2, 2)

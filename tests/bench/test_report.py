@@ -1,4 +1,4 @@
-"""Output and targets of benchmarks: a missed target ends with exit code 1."""
+"""Reports and targets of benchmarks: a missed target gives exit code 1."""
 
 import pytest
 from click.testing import CliRunner
@@ -51,7 +51,7 @@ def of_quality(**change):
     ],
 )  # fmt: skip
 def test_a_missed_target_is_reported_and_ends_with_one(bench, broken):
-    """Without misses the command ends with 0, and prints "met" for each target."""
+    """The command prints "met" for each met target, and ends with 0 if none is missed."""
     code, output = bench()
     assert code == 0
     assert "  met     " in output
@@ -63,7 +63,7 @@ def test_a_missed_target_is_reported_and_ends_with_one(bench, broken):
 
 @pytest.mark.slow
 def test_table_of_gaps():
-    """It has every row and mixtures, and names the worst."""
+    """The table has every row, also of mixed poses, and names the worst pose."""
     text = gaps.report(poses := gaps.measure(3))
     assert f"{len(poses)} poses" in text
     assert len(poses) > 203

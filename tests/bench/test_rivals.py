@@ -11,19 +11,22 @@ from tests.bench.test_quality import rolled_plane
 
 @pytest.fixture(scope="module")
 def surfaces():
-    """The sphere and the sine plane."""
+    """The sphere and the sine plane, as meshes with known surfaces."""
     return {case.surface: case for case in rivals.cases([])}
 
 
 def rows_of(case, methods):
-    """Rows by the titles of methods."""
+    """Measured rows, by the title of the method."""
     rows, skipped = rivals.measure(case, methods, 0.01)
     assert skipped == []
     return {row.method: row for row in rows}
 
 
 def test_ours_keeps_to_the_triangles_and_comes_nearer(surfaces):
-    """At most four times the triangles; cubic edges come nearer than the mesh, Loop does not."""
+    """Risorius makes at most four times the triangles.
+
+    Cubic edges are nearer to the surface than the mesh, and Loop's surface is farther away.
+    """
     for case in surfaces.values():
         rows = rows_of(case, rivals.OURS)
         most = rivals.TIMES * len(case.faces)
@@ -36,7 +39,7 @@ def test_ours_keeps_to_the_triangles_and_comes_nearer(surfaces):
 
 
 def test_a_library_that_is_missing_is_one_line(monkeypatch):
-    """It names the package and the remedy, once for all methods of the library."""
+    """For all methods of a missing library, one line names its package and how to install it."""
     missing = Method("nobody, smooth", "nobody", "nobody_has_this", None, has_limit=False)
     monkeypatch.setattr(rivals, "METHODS", [missing, missing])
     methods, skipped = rivals.available()
@@ -46,7 +49,7 @@ def test_a_library_that_is_missing_is_one_line(monkeypatch):
 
 
 def test_a_mesh_that_is_refused_is_one_line(surfaces):
-    """A library that raises on a mesh is left out of the rows for this surface."""
+    """A library that raises an error on a mesh is left out of the rows for this surface."""
 
     def refuse(faces, rest):
         raise ValueError("not manifold")
@@ -60,7 +63,7 @@ def test_a_mesh_that_is_refused_is_one_line(surfaces):
 @pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.title)
 def test_each_library_that_is_there_refines(method, surfaces):
-    """It gives a mesh with nearly four times the triangles, near the surface."""
+    """Each installed library makes nearly four times the triangles, near the surface."""
     pytest.importorskip(method.module, reason="needs the extra 'rivals'")
     for case in surfaces.values():
         (row,) = rows_of(case, [method]).values()
@@ -70,7 +73,7 @@ def test_each_library_that_is_there_refines(method, surfaces):
 
 @pytest.mark.slow
 def test_loop_is_the_same_surface_in_libigl(surfaces):
-    """Our rule everywhere and libigl's matrix make the same points on a closed surface."""
+    """On a closed surface the uniform Loop rule and libigl's matrix make the same points."""
     pytest.importorskip("igl", reason="needs the extra 'rivals'")
     case = surfaces["sphere"]
     (libigl,) = (method for method in METHODS if method.package == "libigl")
@@ -81,7 +84,7 @@ def test_loop_is_the_same_surface_in_libigl(surfaces):
 
 
 def test_the_command(monkeypatch):
-    """It prints a table for each surface, also for a head, with versions."""
+    """The command prints versions, and a table for each surface, also for a head."""
     monkeypatch.setattr(rivals, "METHODS", METHODS[-1:])
     monkeypatch.setattr(subjects, "built_in", rolled_plane)
     output = succeeded("bench", "rivals", "--seconds", "0.05")

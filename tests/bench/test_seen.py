@@ -1,4 +1,4 @@
-"""A face tracker on our faces: how its scores are counted, and a run with the tracker itself.
+"""Scores of a face tracker on rendered faces: how they are counted, and a run with the tracker.
 
 The run needs MediaPipe (the extra 'mediapipe') and its model, the file named by the environment
 variable FACE_LANDMARKER.
@@ -32,7 +32,10 @@ def over(**scores):
 
 
 def test_every_shape_is_asked_for_once():
-    """Pairs have their name without a side, also for jaw and mouth; all 52 shapes are there."""
+    """All 52 shapes are scored once.
+
+    A pair of shapes, also of jaw and mouth, has a name without side.
+    """
     found = dict(seen.bases())
     assert sorted(name for names in found.values() for name in names) == sorted(ARKIT)
     assert found["eyeBlink"] == ("eyeBlinkLeft", "eyeBlinkRight")
@@ -41,7 +44,7 @@ def test_every_shape_is_asked_for_once():
 
 
 def test_a_pair_counts_by_its_mean():
-    """A smile of both sides counts with one side of a squint; the neutral face is subtracted."""
+    """A pair's score is the mean of both sides, after subtraction of the neutral face's scores."""
     scores = over(mouthSmileLeft=0.5, mouthSmileRight=0.3, eyeSquintLeft=0.7)
     shape = seen.compared(scores, CALM, ("mouthSmileLeft", "mouthSmileRight"))
     assert shape == (approx(0.4), "eyeSquint", approx(0.35))
@@ -50,7 +53,7 @@ def test_a_pair_counts_by_its_mean():
 
 
 def test_without_mediapipe_one_line_says_so(tmp_path, monkeypatch):
-    """It is an extra: the line says how to get it."""
+    """MediaPipe is an optional extra: one line says how to install it."""
     monkeypatch.setitem(sys.modules, "mediapipe", None)
     (tmp_path / "model.task").write_bytes(b"model")
     result = risorius("bench", "seen", "--model", tmp_path / "model.task")
@@ -63,7 +66,7 @@ def test_without_mediapipe_one_line_says_so(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("content", [b"", b"no model", b"PK\x03\x04 cut short"])
 def test_a_file_without_model_is_named(tmp_path, content):
-    """One line with the file, and the required file."""
+    """One line has the file's name, and names the required file."""
     pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
     (tmp_path / "other.task").write_bytes(content)
     result = risorius("bench", "seen", "--model", tmp_path / "other.task")
@@ -74,7 +77,7 @@ def test_a_file_without_model_is_named(tmp_path, content):
 
 @needs_model
 def test_the_tracker_sees_an_open_jaw():
-    """Our face looks like one; an empty picture does not."""
+    """The tracker detects an open jaw in a rendered face, and no face in an empty picture."""
     pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
     with face_tracker(MODEL) as tracker:
         assert tracker(np.zeros((64, 64, 3), dtype=np.uint8)) == {}

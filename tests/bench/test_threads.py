@@ -1,4 +1,4 @@
-"""`risorius bench refine --threads` times both sides of each pair, with the stated threads."""
+"""`risorius bench refine --threads` times both methods of each pair, for some thread counts."""
 
 import pytest
 
@@ -8,7 +8,10 @@ from tests.app.command_line import refusal, risorius
 
 
 def test_pairs(monkeypatch):
-    """A row for each rule, with times that fit its gain; the number of threads is restored."""
+    """Each rule has a row whose gain fits its times.
+
+    Afterwards the number of threads is restored.
+    """
     monkeypatch.setattr(threads.threads, "THREAD_COUNT", 2)
     rows = threads.measure(["2k"], 0.1)
     assert [row.rule for row in rows] == ["paper's rule", "window's look"]
@@ -21,7 +24,10 @@ def test_pairs(monkeypatch):
 
 
 def test_one_thread_has_no_pair(monkeypatch):
-    """One line says how to get more, and that a graphics card has no such threads."""
+    """With one thread, one line says how to get more.
+
+    A graphics card is refused for this option.
+    """
     monkeypatch.setattr(threads.threads, "THREAD_COUNT", 1)
     with pytest.raises(UserError, match="NUMBA_NUM_THREADS=2"):
         threads.measure(["2k"], 0.1)

@@ -16,7 +16,7 @@ pytestmark = [
 
 
 def test_the_window_is_timed(monkeypatch):
-    """`risorius bench window` plays each case, and reports the load of the idle window."""
+    """`risorius bench window` plays each case, and reports the load of an idle window."""
     monkeypatch.setattr(window, "IDLE_SECONDS", 0.1)
     monkeypatch.setattr(window, "WARM_UP", 0.02)
     table, targets = window.measure(0.1, (640, 400))
@@ -24,13 +24,16 @@ def test_the_window_is_timed(monkeypatch):
     rates = [float(line[30:39]) for line in table.splitlines() if line.startswith("smile")]
     assert len(rates) == 5
     assert min(rates) > 0.0
-    assert len(targets) in (0, 4)  # for software drawing
+    assert len(targets) in (0, 4)  # 4 where drawing is by software
     assert "Nothing moves:" in table
     assert "% of a core" in table
 
 
 def test_a_head_of_the_users_is_timed(monkeypatch):
-    """Its triangles are named, and no rate is promised for it; landmarks alone are refused."""
+    """The report names the triangles of a user's head, without a target.
+
+    Landmarks alone are refused.
+    """
     monkeypatch.setattr(window, "IDLE_SECONDS", 0.1)
     monkeypatch.setattr(window, "WARM_UP", 0.02)
     head = coarse_head()

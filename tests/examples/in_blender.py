@@ -1,4 +1,4 @@
-"""Run by Blender's Python: the add-on on a sheet under a wave; prints its results as JSON."""
+"""A program for Blender's Python: run the add-on on a waving sheet, and print results as JSON."""
 
 import json
 import sys
@@ -15,7 +15,7 @@ FOLDER = Path(sys.argv[1])
 
 
 def sheet():
-    """A grid with two materials, texture coordinates with a seam, and a wave that moves it."""
+    """A grid with two materials, a seam of texture coordinates, and a wave that moves it."""
     mesh = bpy.data.meshes.new("sheet")
     side = 14
     x, y = np.meshgrid(np.linspace(-1, 1, side), np.linspace(-1, 1, side))
@@ -49,7 +49,7 @@ def sheet():
 
 
 def add_heating(thing):
-    """A modifier that adds the frame's number to the heat of each point."""
+    """A modifier that adds the frame's number to the attribute "heat" of each point."""
     nodes = bpy.data.node_groups.new("heating", "GeometryNodeTree")
     nodes.is_modifier = True
     nodes.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
@@ -71,12 +71,12 @@ def add_heating(thing):
 
 
 def column(collection, name, width, kind=np.float32):
-    """An attribute of all items of a collection."""
+    """One attribute of all items of a collection."""
     return addon.numbers(collection, name, width, kind)
 
 
 def watch(copy, source):
-    """Step through all frames; compare each with the refiner itself."""
+    """Step through all frames, and compare each with the refiner's result."""
     seen = {"triangles": [], "others": 0, "off": 0.0, "invalid": 0, "uv_off": 0.0, "heat_off": 0.0}
     for frame in range(1, FRAMES + 1):
         bpy.context.scene.frame_set(frame)
@@ -106,7 +106,10 @@ def watch(copy, source):
 
 
 def render(frames):
-    """Render frames at once, as for a film; return the copy's triangles in each."""
+    """Render frames in one call, as for a film.
+
+    Return the number of the copy's triangles in each.
+    """
     scene = bpy.context.scene
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     camera.location = (1.0, 2.0, 8.0)

@@ -1,4 +1,4 @@
-"""Babylon.js, another reader of avatars, has their shapes by name."""
+"""Babylon.js, an independent glTF reader, loads an avatar's shapes by name."""
 
 import json
 import os
@@ -16,9 +16,10 @@ from tests.app.glb_player import Player
 
 @pytest.mark.slow
 def test_babylon_has_the_shapes_by_name(tmp_path):
-    """ARKit's 52 in Apple's order, eyes as nodes, and each shape at 1 moves the skin correctly.
+    """Babylon.js finds ARKit's 52 shapes in Apple's order, and the eyes as nodes.
 
-    RISORIUS_NODE_MODULES names the node_modules with @babylonjs/core and @babylonjs/loaders.
+    Each shape at weight 1 moves the skin correctly. RISORIUS_NODE_MODULES names the node_modules
+    with @babylonjs/core and @babylonjs/loaders.
     """
     modules = Path(os.environ.get("RISORIUS_NODE_MODULES", "none")).resolve()
     if not (modules / "@babylonjs" / "loaders").is_dir() or shutil.which("node") is None:

@@ -1,4 +1,4 @@
-"""The add-on in Blender: if bpy is here, or RISORIUS_BLENDER_PYTHON names a Python with it."""
+"""The add-on in Blender: needs bpy, or a Python that has it, named by RISORIUS_BLENDER_PYTHON."""
 
 import ast
 import json
@@ -46,7 +46,7 @@ def seen(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 @pytest.mark.blender
 def test_it_follows_the_source(seen):
-    """50 frames: triangles come and go, equal to the refiner's to the last bit."""
+    """In 50 frames triangles are added and removed, equal to the refiner's to the last bit."""
     assert len(set(seen["triangles"])) > 5
     assert min(seen["triangles"]) > 338
     assert seen["others"] == seen["invalid"] == 0
@@ -57,13 +57,16 @@ def test_it_follows_the_source(seen):
 
 @pytest.mark.blender
 def test_numbers_of_points_go_along(seen):
-    """A modifier changes them in every frame; new points have the values of their places."""
+    """Numbers that change in every frame are refined; new points have interpolated values."""
     assert seen["heat_off"] < 1e-5
 
 
 @pytest.mark.blender
 def test_the_copy_looks_like_its_source(seen):
-    """Same place, materials by face, and active UV map; the source is hidden, once."""
+    """The copy has the source's place, face materials and active UV map.
+
+    The source is hidden, once.
+    """
     assert seen["finished"] == ["FINISHED"]
     assert seen["hidden"]
     assert not seen["again"]
@@ -75,7 +78,7 @@ def test_the_copy_looks_like_its_source(seen):
 
 @pytest.mark.blender
 def test_settings(seen):
-    """They take effect at once: other looks split differently."""
+    """Settings take effect at once: each look splits other edges."""
     assert seen["paper"] > 338
     assert seen["unblended"] > 338
     assert seen["paper"] != seen["unblended"]
@@ -83,7 +86,10 @@ def test_settings(seen):
 
 @pytest.mark.blender
 def test_one_topology_for_the_frame_range(seen):
-    """The frames of the range get the same triangles, no fewer than any has; and let them go."""
+    """All frames of the range get the same triangles, at least as many as any frame needs.
+
+    A second operator gives each frame its own triangles again.
+    """
     assert seen["kept"] == seen["let_go"] == ["FINISHED"]
     assert seen["kept_at"] == 11
     assert len(set(seen["kept_triangles"])) == len(set(seen["kept_corners"])) == 1
@@ -93,7 +99,7 @@ def test_one_topology_for_the_frame_range(seen):
 
 @pytest.mark.blender
 def test_renders_files_and_undo(seen):
-    """A film has the triangles of each of its frames, and so has the file opened again."""
+    """A rendered film, and a file opened again, have the triangles of each frame."""
     assert seen["rendered"] == seen["triangles_there"]
     assert len(set(seen["rendered"])) > 2
     assert seen["after_loading"] == seen["triangles_there"][2]
@@ -111,7 +117,7 @@ def test_renders_files_and_undo(seen):
     ("version", "python", "beyond"), [("5.2", "cp313", "5.3.0"), ("5.0", "cp311", "5.1.0")]
 )
 def test_the_zip_has_all_that_it_needs(tmp_path, version, python, beyond):
-    """Built for Linux: the manifest names each bundled wheel, and Blender accepts it."""
+    """In the package for Linux, the manifest names each bundled wheel; Blender accepts it."""
     target = tmp_path / "a new folder"
     build = [sys.executable, EXAMPLES / "build.py", "--blender", version, "linux-x64", target]
     subprocess.run(build, check=True, capture_output=True)
@@ -139,7 +145,7 @@ def test_the_zip_has_all_that_it_needs(tmp_path, version, python, beyond):
 
 
 def test_the_manifest_keeps_the_rules():
-    """These are the rules of extensions: the package's version, a short tagline, no network."""
+    """The manifest has the package's version, a short tagline, and asks for no network access."""
     import risorius
 
     manifest = tomllib.loads(
@@ -155,7 +161,7 @@ def test_the_manifest_keeps_the_rules():
 
 
 def test_every_setting_of_the_looks_is_an_option():
-    """The refiner knows all options of the add-on, without Blender."""
+    """The refiner accepts every option of the add-on's looks; this needs no Blender."""
     from risorius import refine
 
     source = (EXAMPLES / "risorius_refine" / "__init__.py").read_text(encoding="utf-8")

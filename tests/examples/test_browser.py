@@ -1,4 +1,4 @@
-"""The page that plays an avatar in a browser."""
+"""The web page that plays an avatar in a browser."""
 
 import os
 import re
@@ -16,7 +16,7 @@ PAGE = Path(__file__).parents[2] / "examples" / "browser" / "avatar.html"
 
 
 def test_the_page_fetches_nothing_from_other_servers():
-    """three.js is beside it, installed by the user: the page has no other address."""
+    """The page has no address of another server: three.js, installed by the user, is beside it."""
     text = PAGE.read_text(encoding="utf-8")
     assert "npm install three" in text
     assert re.findall(r"(?:https?:)?//[\w.-]+\.\w+", text) == []
@@ -27,7 +27,7 @@ def test_the_page_fetches_nothing_from_other_servers():
 
 @pytest.mark.slow
 def test_a_browser_shows_the_shapes(tmp_path):
-    """A headless Chromium draws an open jaw, shut lids and a smile, each in its place.
+    """A headless Chromium draws an open jaw, shut lids and a smile, each at its place.
 
     RISORIUS_NODE_MODULES names the node_modules with three, puppeteer-core, @sparticuz/chromium.
     """

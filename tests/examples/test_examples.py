@@ -1,4 +1,4 @@
-"""Every program in examples/ runs, and does what its first lines promise."""
+"""Every program in examples/ runs, with the results that its first lines promise."""
 
 import importlib.util
 import shutil
@@ -28,7 +28,7 @@ def example(name: str) -> ModuleType:
 
 
 def test_every_example_is_tested():
-    """A new program in the folder needs a test here."""
+    """Every program in the folder has a test in this module."""
     found = {path.stem for path in tracked(FOLDER, "*.py") if path.parent == FOLDER}
     assert found == {
         "in_mujoco",
@@ -44,18 +44,18 @@ def test_every_example_is_tested():
 @pytest.mark.slow
 @pytest.mark.parametrize("library", ["mujoco", "newton"])
 def test_a_fine_mesh_on_a_coarse_cloth(library):
-    """The embedding is nearer to the finer simulation than the library's own flat binding.
+    """The embedding is nearer to the finer simulation than the library's flat binding.
 
-    A carried mesh can hardly be nearer than the coarse vertices themselves are.
+    An embedded mesh can hardly be nearer than the coarse vertices themselves.
     """
     pytest.importorskip(library, reason=f"needs the extra '{library}'")
     flat, ours, least = example(f"in_{library}").main().values()
     assert 0.9 * least < ours < 0.8 * flat
-    assert flat < 20.0  # mm, of a sheet that is 2 m wide
+    assert flat < 20.0  # [mm], for a sheet 2 m wide
 
 
 def test_plain_script(tmp_path):
-    """Started by a user, it makes more triangles with more bend, and the file has them."""
+    """The program makes more triangles where the mesh bends more, and the written file has them."""
     target = tmp_path / "tube.obj"
     result = subprocess.run(
         [sys.executable, str(FOLDER / "plain_script.py"), str(target)],
@@ -73,7 +73,7 @@ def test_plain_script(tmp_path):
 
 @pytest.mark.usefixtures("own_refiners")
 def test_own_refiner():
-    """A refiner from outside is registered, known by name, passes the checker, and cuts in four."""
+    """An external refiner is registered, passes the checker, and cuts each triangle in four."""
     assert "quarters" not in refine.refiners.available()
     module = example("own_refiner")
     assert module.main() == [8, 8, 32, 32]
@@ -87,7 +87,7 @@ def test_own_refiner():
 
 @pytest.mark.slow
 def test_read_dataset(tmp_path):
-    """Started by a user, it has no person both in training and in testing."""
+    """The program puts no person into both the training part and the test part."""
     request = request_of(tmp_path, seed=1, size=(48, 40), passes=("segmentation",))
     make_set(request, 4, progress=False)
     result = subprocess.run(
@@ -101,7 +101,7 @@ def test_read_dataset(tmp_path):
 
 
 def test_a_folder_without_a_set_is_named_in_one_line(tmp_path):
-    """A wrong folder gives one line without a traceback."""
+    """For a wrong folder the program prints one line without a traceback."""
     result = subprocess.run(
         [sys.executable, str(FOLDER / "read_dataset.py"), str(tmp_path / "fcaes")],
         capture_output=True,
@@ -114,14 +114,14 @@ def test_a_folder_without_a_set_is_named_in_one_line(tmp_path):
 
 
 def test_faces_are_cut_out_with_their_points(tmp_path):
-    """A photograph and its `.pts` become one face, and its points stay on their features."""
+    """A photograph and its `.pts` file become one cropped face with its points in place."""
     random = np.random.default_rng(4)
     points = random.uniform([150.0, 120.0], [350.0, 330.0], (68, 2))
     picture = PIL.Image.new("RGB", (500, 400))
     column, row = np.floor(points[30]).astype(int)
     picture.paste((255, 255, 255), (column - 4, row - 4, column + 5, row + 5))
     picture.save(tmp_path / "face.png")
-    rows = "\n".join(f"{x + 0.5} {y + 0.5}" for x, y in points)  # they count pixels from 1
+    rows = "\n".join(f"{x + 0.5} {y + 0.5}" for x, y in points)  # pixel numbers begin at 1
     marks = f"version: 1\nn_points: 68\n{{\n{rows}\n}}\n"
     (tmp_path / "face.pts").write_text(marks, encoding="utf-8")
     by_hand, by_dlib = example("landmark_faces").read_photographs(tmp_path)
@@ -134,7 +134,7 @@ def test_faces_are_cut_out_with_their_points(tmp_path):
 
 @pytest.mark.slow
 def test_train_landmarks(tmp_path):
-    """Started by a user on few faces, it learns, and prints errors on photographs, too."""
+    """In training on few faces the loss falls, and errors on photographs are printed, too."""
     pytest.importorskip("torch", reason="pip install '.[torch]' brings it")
     faces = tmp_path / "faces"
     make_set(request_of(faces, seed=1, size=(96, 96), passes=()), 8, progress=False)

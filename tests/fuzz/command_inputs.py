@@ -1,5 +1,7 @@
-"""Inputs of the command line: a table of mistakes with the words of their messages, and hostile
-values for every option of every command."""
+"""Inputs of the command line: mistakes with the words of their messages, and hostile values.
+
+Every option of every command gets each hostile value.
+"""
 
 import shlex
 from collections.abc import Iterator
@@ -67,7 +69,7 @@ REFUSED = {
     # Cameras.
     f"{IMAGE} --camera behind": "camera 'behind': allowed are",
     f"{IMAGE} --camera 0,0,0": "zoom above 0",
-    # Options of refiners.
+    # Options of refiners (looks).
     f"{IMAGE} --look Paper": "'Paper' is not one of 'smooth', 'paper'",
     f"{IMAGE} --compare none,none": "would be compared with itself",
     f"{IMAGE} --refiner magic": "refiner 'magic' is unknown; there are",
@@ -104,7 +106,7 @@ REFUSED = {
     "capture good.toml -o loop.png": "loop.png",
     f"capture good.toml -o {'x' * 300}.png": "File name too long",
     "bench quality --expression nobody": "--expression nobody: there are joy, ",
-    # Values that other rooms refuse.
+    # Values refused by other parts of the program.
     "capture --compare good.toml -o x.mp4": "a SCRIPT goes before --compare",
     "capture good.toml -o x.mp4 --size ²x²": "'²x²' is no size",
     "capture good.toml -o x.png --time 86400": "good.toml ends at",
@@ -153,13 +155,13 @@ HOSTILE = {
     "long": "x" * 5000,
 }
 
-GIVEN = {  # other options that a command needs to reach the tested one
+GIVEN = {  # other options that a command needs before the tested option has an effect
     "capture": "good.toml -o x.png --size 16x16 --fps 5 --time 0 --quiet",
     "replay": "good.toml",
     "bench motion": "--reference folder",
     "bench reference": "folder -o made",
 }
-INSTEAD = {  # replacements for a given option that the tested one excludes
+INSTEAD = {  # options in place of those above, where the tested option excludes one of those
     ("capture", "--set"): "-o x.png --size 16x16 --fps 5 --time 0 --quiet",
     ("capture", "--sound"): "good.toml -o x.mp4 --size 16x16 --fps 5 --quiet",
     ("capture", "--head"): f"{GIVEN['capture']} --landmarks marks.json",
@@ -168,7 +170,10 @@ INSTEAD = {  # replacements for a given option that the tested one excludes
 
 
 def hostile_values() -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Each hostile value for every option with a value: a name, and words of the command."""
+    """Each hostile value for each option and argument that takes a value.
+
+    Yields a name, and the words of the command.
+    """
     for path, command in commands(risorius(), ()):
         words = " ".join(path)
         for option in command.params:
@@ -179,7 +184,7 @@ def hostile_values() -> Iterator[tuple[str, tuple[str, ...]]]:
                 if is_option:
                     given = INSTEAD.get((words, option.opts[-1]), GIVEN.get(words, ""))
                     arguments = (*path, *shlex.split(given), f"{option.opts[-1]}={value}")
-                else:  # the first given word
+                else:  # the argument replaces the first word
                     arguments = (*path, *shlex.split(GIVEN.get(words, ""))[1:], "--", value)
                 yield f"{'-'.join(path)}-{option.name}-{name}", arguments
 

@@ -1,4 +1,4 @@
-"""Wrong inputs of every kind: shared fixtures, and counts of those that ended well."""
+"""Wrong inputs of every kind: shared fixtures."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -32,7 +32,7 @@ def face() -> FaceScene:
 
 @pytest.fixture
 def sandbox(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A working directory with files of every kind; no screen, no own settings."""
+    """A working directory with files of every kind, without a screen and without user settings."""
     furnish(tmp_path)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("DISPLAY", raising=False)
@@ -42,13 +42,13 @@ def sandbox(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def ready_face(face: FaceScene, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every command that needs the built-in face gets the same one."""
+    """Give the same face to every command that needs the built-in one."""
     monkeypatch.setitem(SCENES, "face", lambda *_: face)
 
 
 @pytest.fixture
 def no_long_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Long work ends at once with success: an input that gets there was accepted."""
+    """Replace long work by immediate success: the program accepted an input that gets this far."""
     for name in LONG_WORK:
         monkeypatch.setattr(name, _accepted(name))
 

@@ -5,7 +5,7 @@ import random
 from collections.abc import Sequence
 
 SEED = int(os.environ.get("FUZZ_SEED", "20030214"))  # another seed gives other damage
-MOST = 6  # damaged places
+MOST = 6  # [damaged places] at most
 
 
 def changed(
@@ -16,8 +16,8 @@ def changed(
 ) -> bytes:
     """The content with a few places overwritten, cut out or doubled.
 
-    tokens: possible replacements. reaches: possible limits in bytes from the beginning, chosen at
-    random.
+    tokens: possible replacements. reaches: limits in bytes from the beginning; each damaged place
+    starts before one of them, chosen at random.
     """
     for _ in range(chance.randint(1, MOST)):
         place = chance.randrange(min(len(content), chance.choice(reaches)) + 1)

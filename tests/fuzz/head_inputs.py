@@ -1,4 +1,4 @@
-"""Odd and broken heads: mesh files and landmark files, each with its wanted result.
+"""Odd and broken heads: mesh files and landmark files, each with its expected result.
 
 Only a few examples have headers with wrong sizes.
 """
@@ -27,7 +27,7 @@ WRONG_KIND = "all landmarks must be vertex numbers, or all must be points"
 
 
 class Kind(Enum):
-    """The wanted result of an input; a text in its place is part of the one line."""
+    """The expected result of an input; a text in place of it must occur in the one-line error."""
 
     MESH = "a mesh"
     HEAD = "a fitted head"
@@ -41,7 +41,7 @@ class Brought(NamedTuple):
 
 
 class OddHead(NamedTuple):
-    """One input."""
+    """One odd or broken head."""
 
     name: str
     write: Callable[[Path], Brought]
@@ -49,7 +49,7 @@ class OddHead(NamedTuple):
 
 
 def open_brought(brought: Brought) -> Mesh | FittedHead:
-    """Read or fit the written files, as the command does."""
+    """Read, or fit, the written files as the command does."""
     if brought.landmarks is None:
         return assets.read_mesh(brought.mesh)
     return fit_head(brought.mesh, brought.landmarks)
@@ -104,7 +104,7 @@ def _obj(where: Any = 0, to: Any = None, scale: float = 1.0, shift: float = 0.0)
 
 
 def _head(mesh: Callable[[], bytes], marks: Any, folder: Path) -> Brought:
-    """A mesh file, made when it is written, and a landmark file."""
+    """A mesh file, made by `write`, and a landmark file."""
     brought = Brought(folder / "head.obj", folder / "head.json")
     brought.mesh.write_bytes(mesh())
     text = marks if isinstance(marks, bytes | str) else json.dumps(marks)
@@ -153,7 +153,7 @@ WAYS: dict[str, tuple[Callable[[Path], object], str]] = {
 
 
 def _at(make: Callable[[Path], object], name: str, folder: Path) -> Brought:
-    """A path without a file, as the mesh or, under another name, as landmarks of a good one."""
+    """Make an odd path in place of the mesh file, or in place of a good mesh's landmark file."""
     if name == "head.json":
         brought = _head(_obj, "", folder)
         (folder / name).unlink()
@@ -164,7 +164,7 @@ def _at(make: Callable[[Path], object], name: str, folder: Path) -> Brought:
 
 
 def _exported(suffix: str, marks: Any, folder: Path) -> Brought:
-    """The built-in head as trimesh writes it."""
+    """The built-in head as exported by trimesh."""
     brought = _head(lambda: b"", marks, folder)._replace(mesh=folder / f"head.{suffix}")
     trimesh.Trimesh(HEAD.vertices, HEAD.faces, process=False).export(brought.mesh)
     return brought

@@ -1,4 +1,4 @@
-"""A folder full of traps, and the rules for the end of every input."""
+"""A working folder with hostile files, and the rules for how every command must end."""
 
 import os
 import re
@@ -16,9 +16,9 @@ from click.testing import CliRunner
 from risorius.__main__ import command
 
 LONGEST = 60.0  # [s] on a busy machine with compilation; the slowest takes 2 s otherwise
-MOST_MEMORY = 600 << 20  # [bytes] more than before
-ROOM = 8 << 30  # [bytes] of addresses: the system refuses larger requests
-LONGEST_LINE = 2200  # [characters]; names are cut, explanations need no more
+MOST_MEMORY = 600 << 20  # [bytes] above the memory before the input
+ROOM = 8 << 30  # [bytes] of address space; the system refuses larger requests
+LONGEST_LINE = 2200  # [characters]; names are shortened, and explanations need no more
 STATUS = Path("/proc/self/status")
 
 GOOD = """
@@ -34,13 +34,13 @@ joy = 1.0
 class TookTooLong(BaseException):
     """An input kept the program busy, or waiting, for too long.
 
-    It is not an Exception, so that no code on the way catches it.
+    It is a BaseException, so that no `except Exception` in the program catches it.
     """
 
 
 @dataclass(frozen=True)
 class Ended:
-    """The end of a command."""
+    """How a command ended: exit code and both outputs."""
 
     code: int
     out: str
@@ -48,7 +48,7 @@ class Ended:
 
 
 def furnish(folder: Path) -> None:
-    """Put files of every kind there: good ones, and traps."""
+    """Put good files and hostile files of every kind into a folder."""
     (folder / "good.toml").write_text(GOOD)
     (folder / "notes.txt").write_text("mine")
     (folder / "keep.png").write_text("mine")
@@ -73,7 +73,7 @@ def furnish(folder: Path) -> None:
 
 
 def contents(folder: Path) -> dict[str, str]:
-    """Every name in a folder with its content: bytes, link or kind."""
+    """Every name in a folder with its content, link target or kind."""
     found = {}
     for parent, folders, names in os.walk(folder):
         for name in (*folders, *names):
@@ -90,13 +90,13 @@ def contents(folder: Path) -> dict[str, str]:
 
 @contextmanager
 def bounded(seconds: float = LONGEST, memory: int = MOST_MEMORY) -> Iterator[None]:
-    """Fail if work takes too long, waits for ever, or takes too much memory."""
+    """Fail if the work takes too long, never ends, or takes too much memory."""
 
     def stop(*_: object) -> None:
         raise TookTooLong(f"more than {seconds:g} s")
 
     if STATUS.exists():
-        Path("/proc/self/clear_refs").write_text("5")  # the peak is measured from here
+        Path("/proc/self/clear_refs").write_text("5")  # the peak is measured from this point on
     before = _kilobytes("VmHWM")
     limits = resource.getrlimit(resource.RLIMIT_AS)
     handler = signal.signal(signal.SIGALRM, stop)
@@ -117,7 +117,7 @@ def bounded(seconds: float = LONGEST, memory: int = MOST_MEMORY) -> Iterator[Non
 
 
 def _kilobytes(name: str) -> int:
-    """A figure of this process, 0 if the system has no such figure."""
+    """A memory figure of this process [kB]; 0 if the system has no such figure."""
     if not STATUS.exists():
         return 0
     found = re.search(rf"{name}:\s+(\d+) kB", STATUS.read_text())
@@ -125,20 +125,23 @@ def _kilobytes(name: str) -> int:
 
 
 def run_command(arguments: tuple[str, ...]) -> Ended:
-    """Run the command in this process, within bounds; other errors pass through."""
+    """Run the command in this process, within the limits.
+
+    Errors that it does not handle pass through.
+    """
     with bounded():
         result = CliRunner(catch_exceptions=False).invoke(command(), arguments)
     return Ended(result.exit_code, result.stdout, result.stderr)
 
 
 def check_line(text: str) -> None:
-    """Check that a message is one line without control codes, and not endless."""
+    """Check that a message is one line of limited length, without control codes."""
     assert text.isprintable(), text
     assert 10 < len(text) < LONGEST_LINE, len(text)
 
 
 def check_end(ended: Ended, folder: Path, before: dict[str, str]) -> None:
-    """Check for success, or one clear line with code 2 and unchanged files."""
+    """Check for success, or for one clear line with exit code 2 and unchanged files."""
     assert "Traceback" not in ended.err
     after = contents(folder)
     assert not [name for name in after if ".risorius-" in name]

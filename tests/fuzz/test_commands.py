@@ -1,4 +1,4 @@
-"""The command line: every command and option with impossible values."""
+"""The command line: every command and option with invalid values."""
 
 import shlex
 
@@ -17,7 +17,7 @@ def _short(words):
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ACCEPTED, ids=_short)
 def test_good_commands(line, sandbox):
-    """They succeed, and leave only their outputs."""
+    """Commands without mistakes succeed, and add only their outputs."""
     before = contents(sandbox)
     ended = run_command(tuple(shlex.split(line)))
     assert ended.code == 0, ended.err
@@ -26,7 +26,7 @@ def test_good_commands(line, sandbox):
 
 @pytest.mark.parametrize("line", REFUSED, ids=_short)
 def test_mistakes(line, sandbox):
-    """Each is reported in one line, in the words of the table."""
+    """Each mistake is reported in one line, with the words in the table."""
     before = contents(sandbox)
     ended = run_command(tuple(shlex.split(line)))
     assert ended.code == 2, ended
@@ -37,6 +37,6 @@ def test_mistakes(line, sandbox):
 @pytest.mark.slow
 @pytest.mark.parametrize("words", [pytest.param(w, id=name) for name, w in hostile_values()])
 def test_hostile_values(words, sandbox):
-    """Any value of an option gives success, or one line."""
+    """With a hostile value of any option, the command succeeds or prints one line."""
     before = contents(sandbox)
     check_end(run_command(words), sandbox, before)

@@ -1,4 +1,4 @@
-"""Every odd head gives a mesh, a head, or one line; soon, and with little memory."""
+"""Every odd head gives a mesh, a head, or a one-line error, in limited time and memory."""
 
 import re
 import warnings
@@ -17,14 +17,14 @@ from .sandbox import bounded
 pytestmark = pytest.mark.slow
 
 LONGEST = 10.0  # [s] on a busy machine; the slowest takes 1 s on an idle one
-MOST_MEMORY = 400_000_000  # [bytes] more than before
+MOST_MEMORY = 400_000_000  # [bytes] above the memory before the input
 
 
 @contextmanager
 def quiet_and_bounded():
-    """Fail if work takes too long or too much memory, or prints a warning.
+    """Fail if the work takes too much time or memory, or prints a warning.
 
-    An underflow is silent (numpy's default), and its place depends on the processor.
+    An underflow is silent, as by numpy's default: the processor decides where one occurs.
     """
     with warnings.catch_warnings(record=True) as caught, np.errstate(all="warn", under="ignore"):
         warnings.simplefilter("always")
@@ -36,7 +36,7 @@ def quiet_and_bounded():
 
 @pytest.mark.parametrize("odd", head_inputs(), ids=lambda odd: odd.name)
 def test_odd_heads(odd, tmp_path, capfd):
-    """The wanted result is in the table; a refusal is one line that names the file."""
+    """The result is as in the table; a refusal is one line that names the file."""
     brought = odd.write(tmp_path)
     if isinstance(odd.expected, str):
         with quiet_and_bounded(), pytest.raises(AssetError) as refusal:

@@ -40,7 +40,7 @@ TOKENS = (
 
 
 def check(take):
-    """For any content of the file, a Take keeps its promises."""
+    """Check a Take read from any content: what its class promises holds."""
     assert len(take.times) > 0
     assert take.times[0] == 0.0
     assert np.isfinite(take.times).all()
@@ -57,7 +57,7 @@ def check(take):
 
 @pytest.mark.parametrize("name", GOOD)
 def test_good_recordings(name, tmp_path):
-    """They are read, so that damage in the next tests has an effect."""
+    """Undamaged recordings are read; otherwise damage in the next tests would have no effect."""
     path = tmp_path / "take"
     path.write_bytes(GOOD[name])
     assert is_recording(path)
@@ -73,7 +73,7 @@ def damaged(chance):
 
 
 def test_damaged_recordings(tmp_path):
-    """Each is read or refused in one line; a good part is read."""
+    """Each damaged recording is read, or refused in one line; a good part of them is read."""
     path = tmp_path / "take"
     read = 0
     for seed in range(SEED, SEED + ROUNDS):

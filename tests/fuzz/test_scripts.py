@@ -47,7 +47,7 @@ def scenes(face: FaceScene) -> dict[str, Scene]:
 
 
 def opened(path, scenes):
-    """Read a script and check all its requests before drawing."""
+    """Read a script, and check all its requests, without drawing."""
     with bounded():
         script = script_for(path, None)
         script.check(scenes[script.scene].limits)
@@ -57,7 +57,7 @@ def opened(path, scenes):
 
 @pytest.mark.parametrize("name", ACCEPTED)
 def test_odd_scripts(name, tmp_path, scenes):
-    """They are read."""
+    """Odd but valid scripts are read."""
     path = tmp_path / "odd.toml"
     path.write_bytes(ACCEPTED[name])
     assert opened(path, scenes).duration > 0.0
@@ -73,7 +73,10 @@ def damaged(chance):
 
 @pytest.mark.parametrize("number", range(ROUNDS))
 def test_damaged_scripts(number, tmp_path, scenes):
-    """Read or refused in one line; a read script has values, and is written back unchanged."""
+    """A damaged script is refused in one line, or read.
+
+    A read script has values, and is written unchanged.
+    """
     seed = SEED + number
     path = tmp_path / "damaged.toml"
     path.write_bytes(damaged(random.Random(seed)))

@@ -1,4 +1,4 @@
-"""Settings, the environment, and limits of the system: space, memory, files, streams."""
+"""Settings, environment variables, and limits of the system: disk, memory, files, streams."""
 
 import os
 import resource
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]
 COMMAND = "import sys; sys.argv[0] = 'risorius'; from risorius.__main__ import run; run()"
 STARTING = 60.0  # [s] a separate process may have to compile first
-# A variable (None: removed), the words of the command, and its exit code.
+# A changed variable (None: removed), the words of the command, and its exit code.
 Row = tuple[dict[str, str | None], str, int]
 IMAGE = "capture --scene plane --set amplitude -o x.png --size 16x16 --quiet"
 FILM = "capture --scene plane --set amplitude -o x.mp4 --size 16x16 --quiet"
@@ -37,7 +37,7 @@ ENVIRONMENTS = {
 
 @pytest.mark.parametrize("folder", ["", "/", "~", "a\nb", "loop", "notes.txt", "x" * 5000])
 def test_places_of_settings(folder, sandbox, monkeypatch):
-    """For any given place, the window opens with its defaults."""
+    """For any place of the settings file, the window opens with its defaults."""
     monkeypatch.setenv("XDG_CONFIG_HOME", folder)
     monkeypatch.setenv("HOME", str(sandbox))
     settings, message = load_settings(settings_path())
@@ -71,7 +71,7 @@ def surroundings(**changed):
 
 @pytest.mark.parametrize("name", ENVIRONMENTS)
 def test_environments(name, sandbox):
-    """It goes on, or names the fault in one line."""
+    """In each environment the command succeeds, or names the fault in one line."""
     changed, words, code = ENVIRONMENTS[name]
     before = contents(sandbox)
     ended = start(words, sandbox, surroundings(**changed))
@@ -99,7 +99,10 @@ def _limit(kind, most):
     ids=["png", "mp4", "frames", "figure", "files", "memory"],
 )
 def test_no_room(words, kind, most, code, sandbox):
-    """A full disk, few open files, too little memory: one line, and no partial files."""
+    """With a full disk, few open files or too little memory, one line is printed.
+
+    No partial file is left.
+    """
     before = contents(sandbox)
     ended = start(words, sandbox, surroundings(), _limit(kind, most))
     assert ended.code == code, ended
@@ -117,7 +120,7 @@ STREAMS = {
 
 @pytest.mark.parametrize("name", STREAMS)
 def test_streams_of_the_shell(name, sandbox):
-    """Closed and full streams, and a removed folder: no traceback, no files left."""
+    """Closed streams, full streams and a removed folder give no traceback, and no file is left."""
     before = contents(sandbox)
     command = STREAMS[name].format(risorius=f"{shlex.quote(sys.executable)} -m risorius")
     process = subprocess.run(

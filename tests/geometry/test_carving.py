@@ -1,4 +1,4 @@
-"""Lines that are carved into a map of heights."""
+"""Furrows carved into a map of heights."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,10 @@ from risorius.geometry.carving import carve
 
 
 def test_a_line_is_a_furrow_in_a_trough_where_it_is_deep():
-    """Deepest on its course, between samples too; nothing beside its trough or without cover."""
+    """A furrow is deepest on its curve, also between samples, and lies within a wider trough.
+
+    Texels outside the trough, or without cover, are unchanged.
+    """
     across = np.arange(-4.0, 4.01, 0.5)
     texels = np.zeros((3, len(across), 4), np.float32)
     texels[..., 0] = across

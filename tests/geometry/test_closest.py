@@ -27,7 +27,7 @@ def test_equals_brute_force(name):
 
 
 def test_points_on_the_mesh():
-    """Points of the mesh are at distance zero, also in a large mesh of uneven triangles."""
+    """A point on the mesh has distance zero, also in a large mesh of uneven triangles."""
     mesh = meshes.irregular(4, 60, 40)
     generator = np.random.default_rng(5)
     chosen = generator.integers(0, len(mesh.faces), 500)
@@ -39,7 +39,7 @@ def test_points_on_the_mesh():
 
 
 def test_finds_what_looks_the_same_way():
-    """Of two grids that almost touch, each point finds the one with the same direction."""
+    """Of two grids that face away from each other, a point finds the one that faces its way."""
     grid = meshes.open_grid(6, 6)
     count = len(grid.vertices)
     vertices = np.concatenate([grid.vertices, grid.vertices - [0.0, 0.0, 0.01]])
@@ -51,7 +51,7 @@ def test_finds_what_looks_the_same_way():
 
 
 def test_a_mesh_is_searched_as_often_as_wanted(generator):
-    """Each time with the answer of a search of its own."""
+    """One search object, used repeatedly, gives the same results as a new one each time."""
     vertices = generator.normal(size=(40, 3))
     faces = np.arange(39).reshape(-1, 3)
     search = MeshSearch.of(vertices, faces)

@@ -1,4 +1,4 @@
-"""Colours converted there and back, and the texels of triangles compared with areas."""
+"""Colour conversion in both directions, and texels of triangles compared with areas."""
 
 import numpy as np
 import pytest
@@ -9,14 +9,14 @@ from risorius.geometry.texels import Texels
 
 
 def test_colours_come_back():
-    """Screen colours come back from linear light; middle grey is a fifth of white's light."""
+    """Screen colours survive conversion to linear light and back; middle grey is 0.2 of white."""
     screen = np.linspace(0.0, 1.0, 256)
     assert_allclose(to_screen(to_linear(screen)), screen, atol=1e-7)
     assert to_linear(0.5) == pytest.approx(0.214, abs=1e-3)
 
 
 def test_texels_of_a_square():
-    """Two triangles have each texel of their square once, in its own place; margins add a ring."""
+    """Two triangles cover each texel of their square once; margins add a ring of texels."""
     square = np.array([[0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]])
     corners = square[[[0, 1, 2], [0, 2, 3]]]
     found = Texels.within(corners, (64, 64))

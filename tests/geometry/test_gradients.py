@@ -8,7 +8,7 @@ from tests.meshes import open_grid
 
 
 def test_stretched_and_turned_sheet():
-    """They are half as large on a sheet that is twice as long, at any turn."""
+    """On a sheet stretched to twice its length the gradient is half as large, for any rotation."""
     sheet = open_grid(4, 3)
     vertices = sheet.vertices
     faces = sheet.faces.astype(np.int32)
@@ -21,7 +21,7 @@ def test_stretched_and_turned_sheet():
 
 
 def test_flat_triangles_have_none():
-    """A sheet that is folded to a line has gradients that are finite numbers."""
+    """A sheet that is folded to a line has finite gradients."""
     sheet = open_grid(2, 2)
     vertices = sheet.vertices
     faces = sheet.faces.astype(np.int32)

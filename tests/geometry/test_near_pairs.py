@@ -1,4 +1,4 @@
-"""The pairs of triangles whose boxes touch."""
+"""Pairs of triangles whose bounding boxes touch."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from risorius.geometry.near_pairs import near_pairs
 
 
 def test_pairs_are_those_of_a_plain_comparison():
-    """In a seeded heap of small and large triangles every pair is found once, and no other."""
+    """For random small and large triangles, every pair of touching boxes is found exactly once."""
     random = np.random.default_rng(2)
     sizes = np.exp(random.uniform(-3.0, 1.0, (120, 1, 1)))
     corners = random.uniform(-2.0, 2.0, (120, 1, 3)) + sizes * random.normal(size=(120, 3, 3))

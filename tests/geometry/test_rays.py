@@ -8,7 +8,10 @@ from risorius.geometry.rays import crossings, exits
 
 
 def test_weights_and_distance_name_one_point():
-    """The point is the same on triangle and line; the volume's sign gives the side, 0 edge-on."""
+    """Weights and distance give the same point on triangle and line.
+
+    The sign of the volume gives the side, and is 0 for a line in the triangle's plane.
+    """
     random = np.random.default_rng(0)
     origins, directions = random.normal(size=(2, 200, 3))
     corners = random.normal(size=(200, 3, 3))
@@ -23,7 +26,7 @@ def test_weights_and_distance_name_one_point():
 
 
 def test_rays_leave_a_cube_where_its_walls_are():
-    """From any point within there is one exit each, at the wall's distance, with its cosine."""
+    """A ray from a point inside a cube has one exit; distance and cosine are those of its wall."""
     random = np.random.default_rng(1)
     vertices, faces = cube()
     origin = np.array([0.3, -0.2, 0.5])
@@ -39,7 +42,7 @@ def test_rays_leave_a_cube_where_its_walls_are():
 
 
 def test_what_a_ray_enters_is_no_exit():
-    """A box within the box, entered from outside by the ray, has one exit: its far side."""
+    """A ray that enters an inner box from outside has one exit: the far side of the outer box."""
     vertices, faces = cube()
     small = 0.2 * vertices + [0.6, 0.1, 0.2]
     both = np.vstack([vertices, small])

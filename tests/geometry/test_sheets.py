@@ -1,4 +1,4 @@
-"""Heights over a sheet: those of a plain search of the nearest vertices, wherever points are."""
+"""Heights over a sheet compared with a plain search of the nearest vertices."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from risorius.geometry.sheets import NEAR, heights_over, sheet_of
 
 
 def searched(x, normals, depths, points, outward):
-    """The plain twin, by a tree."""
+    """The simple implementation, by a k-d tree."""
     away, near = scipy.spatial.cKDTree(x).query(points, k=NEAR)
     is_faced = np.einsum("nkc,nc->nk", normals[near], outward) > 0.0
     weight = 1e-9 + is_faced * np.exp(-(away**2) / (0.35 * away[:, -1:] ** 2))
@@ -21,7 +21,10 @@ def searched(x, normals, depths, points, outward):
 
 @pytest.mark.parametrize("count", [NEAR, 9, 60, 1000])
 def test_heights_are_those_of_the_nearest_vertices(count):
-    """Points on, under and far from a sphere, in rows and in no order; few and many vertices."""
+    """Heights over a sphere equal the plain search's: for points on, below and far from it.
+
+    Points come in rows or in no order, over few and many vertices.
+    """
     rng = np.random.default_rng(count)
     normals = unit_vectors(rng.normal(size=(count, 3)))
     x = 80.0 * normals + (5.0, -20.0, 30.0)
@@ -37,7 +40,10 @@ def test_heights_are_those_of_the_nearest_vertices(count):
 
 
 def test_a_flat_sheet_has_exact_heights():
-    """All vertices in one plane: cells in one layer, equal distances, points outside the grid."""
+    """Vertices in one plane give exact heights.
+
+    Their cells form one layer, distances are equal, and one point lies outside the grid.
+    """
     across, along = np.meshgrid(np.arange(6.0), np.arange(6.0))
     x = np.stack([across.ravel(), along.ravel(), np.zeros(36)], axis=1)
     up = np.tile((0.0, 0.0, 1.0), (36, 1))

@@ -6,7 +6,7 @@ from risorius.geometry.sides import different_pairs
 
 
 def test_different_pairs_are_those_of_unique_rows():
-    """The order and numbers are the same; it also works for no pairs."""
+    """The order and numbers are those of `np.unique` over rows, also for no pairs."""
     for count in (0, 1, 500):
         pairs = np.random.default_rng(count).integers(0, 20, (count, 2)).astype(np.int32)
         rows, numbers = np.unique(pairs, axis=0, return_inverse=True)

@@ -1,4 +1,4 @@
-"""Colours of skin with hair: the kernels have the bits of the same steps on whole arrays."""
+"""Colours of skin with hair: the kernels have the same bits as numpy on whole arrays."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ MOST = np.float32(0.99)
 
 
 def in_whole_arrays(absorbed, light, skin, former, hairs, grown, table):
-    """The picture by numpy's lines on whole maps."""
+    """The picture, computed by numpy on whole maps."""
     picture = np.empty((*SHAPE, 3), np.uint8)
     on_scalp = hairs.scalp > 0.01
     grey = np.where(on_scalp, *hairs.grey)
@@ -38,7 +38,10 @@ def in_whole_arrays(absorbed, light, skin, former, hairs, grown, table):
 
 @pytest.mark.parametrize("is_grown", [False, True])
 def test_same_bits_as_whole_arrays(is_grown):
-    """Random maps, with light beyond both ends, give equal bytes, in two bands."""
+    """Random maps, with light below 0 and above 1, give equal bytes.
+
+    The kernels work in two bands.
+    """
     random = np.random.default_rng(0)
 
     def drawn(*shape, low=0.0, high=1.0):

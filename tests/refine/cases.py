@@ -1,4 +1,4 @@
-"""Shared by the tests of refine/: forced splits, names of output points, generated meshes."""
+"""Helpers for tests of refine/: forced splits, names of output points, generated meshes."""
 
 from typing import Any
 
@@ -36,7 +36,7 @@ def edge_count_of(mesh: meshes.Mesh) -> int:
 def scheme_of(
     name: str, finer_positions: npt.ArrayLike, finer_faces: npt.ArrayLike
 ) -> str | refine.Scheme:
-    """The scheme of a name; `detail` gets this finer mesh, which others do not need."""
+    """The scheme with this name; only `detail` gets the finer mesh."""
     return refine.DetailScheme((finer_positions, finer_faces)) if name == "detail" else name
 
 
@@ -51,7 +51,7 @@ class GivenMetric(refine.Criterion):
         metric[:] = self.metric
 
     def geomorph(self, edges: npt.NDArray[np.int32]) -> plain_twin.GeomorphWeights:
-        """Growth that blending makes from the metrics, for the simple twin."""
+        """Geomorph weights that blending computes from the metrics, in the simple twin's form."""
         once = np.clip(self.metric / RAMP_WIDTH, 0, 1)
         twice = np.clip((self.metric - 1) / RAMP_WIDTH, 0, 1)
         names = [plain_twin.edge_name(int(a), int(b)) for a, b in edges]
@@ -59,7 +59,7 @@ class GivenMetric(refine.Criterion):
 
 
 class Forced(refine.Criterion):
-    """A criterion that splits given edges in any pose."""
+    """A criterion that splits given edges, whatever the positions are."""
 
     def __init__(self, splits: npt.ArrayLike) -> None:
         self.wanted = np.asarray(splits, dtype=np.uint8)
@@ -69,12 +69,12 @@ class Forced(refine.Criterion):
         splits[:] = self.wanted
 
     def measure(self, positions: object, normals: object, metric: npt.NDArray[np.float32]) -> None:
-        """Write metrics by which points have grown."""
+        """Write metrics at which all points of these splits have grown."""
         metric[:] = np.where(self.wanted > 0, self.wanted, -np.inf)
 
 
 def point_names(origins: refine.Origins) -> list[plain_twin.Name]:
-    """Names, in the form of the simple twin, of the vertices of the last frame."""
+    """Names of the last frame's vertices, in the form of the simple twin."""
     names: list[plain_twin.Name] = []
     for vertices, weights in zip(origins.vertices, origins.weights, strict=True):
         parts = sorted((int(v), 4 * float(w)) for v, w in zip(vertices, weights, strict=True) if w)
@@ -96,10 +96,10 @@ def assert_equals_twin(
     normals_cancel: bool = False,
     tolerance: tuple[float, float] = (5e-7, 8e-6),
 ) -> None:
-    """Check that every point, normal and triangle is that of the simple twin, to float32.
+    """Check that every point, normal and triangle equals the simple twin's, to float32.
 
-    `normals_cancel`: leave out the normals, because opposite triangles may meet at a vertex, and
-    only rounding remains of its normal; `tolerance`: of positions and of normals.
+    `normals_cancel`: skip the normals, because opposite triangles at a vertex leave only rounding
+    errors; `tolerance`: for positions and for normals.
     """
     names = point_names(refiner.origins())
     assert set(names) == set(twin.positions)
@@ -127,7 +127,7 @@ def as_lists(
 def places_in_source(
     origins: refine.Origins, triangles: npt.NDArray[Any], faces: npt.NDArray[Any]
 ) -> npt.NDArray[np.float32]:
-    """Barycentric places of corners in their input triangles (M, 3), (M, 3, 3)."""
+    """Barycentric places (M, 3, 3) of subtriangle corners in their input triangles (M, 3)."""
     is_corner = origins.vertices[triangles][..., None] == faces[:, None, None, :]
     return np.asarray((origins.weights[triangles][..., None] * is_corner).sum(axis=2))
 
@@ -158,7 +158,7 @@ def surface_at(
 
 @st.composite
 def soups(draw: st.DrawFn) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
-    """Any triangles over a few vertices, including borders, fins, flips, doubles and debris."""
+    """Random triangles over a few vertices, including borders, fins, flips, doubles and debris."""
     vertex_count = draw(st.integers(3, 8))
     index = st.integers(0, vertex_count - 1)
     faces = draw(st.lists(st.tuples(index, index, index), min_size=1, max_size=12))

@@ -1,8 +1,8 @@
 """The scheme `detail` again, in plain Python: detail at rest moves with the surface.
 
-What the finer mesh adds is taken from the refiner itself, at rest and with everything split twice,
-by the names of its points; its motion is computed here. Another test compares it with the finer
-mesh (test_detail.py).
+The difference of the finer mesh is read from the refiner itself, at rest and with all edges split
+twice, by the names of its points; its motion is computed here. Another test compares the difference
+with the finer mesh (test_detail.py).
 """
 
 from tests.refine.plain_schemes import CurveRules, Face, cross, cubic, dot
@@ -14,9 +14,10 @@ Seen = dict[Name, Vector]
 
 
 def axes_of(form: CurveRules, edge: EdgeName, quarters: int) -> Axes:
-    """Directions of a point of an edge: up, as far as possible along the edge, across.
+    """Three directions at a point of an edge: up, nearly along the edge, and across.
 
-    Up is the mean normal, made normal to the edge; at quarters half way to the normal of their end.
+    Up is the mean normal, made perpendicular to the edge; at quarter points it is half way to the
+    normal of the nearer end.
     """
     a, b = edge
     along = mix((1, form.positions[b]), (-1, form.positions[a]))
@@ -31,7 +32,10 @@ def axes_of(form: CurveRules, edge: EdgeName, quarters: int) -> Axes:
 def detail_rules(
     rest: list[Vector], positions: list[Vector], faces: list[Face], seen: Seen
 ) -> CurveRules:
-    """Cubic edges, and the missing offsets at rest, along present axes as they were at rest."""
+    """Cubic edges plus offsets, turned from axes at rest to present axes.
+
+    The offsets are missing in the cubic edges at rest.
+    """
     before = cubic(rest, rest, faces)
     now = cubic(rest, positions, faces)
 

@@ -1,7 +1,7 @@
 """Normals of the refined surface again, in plain Python: sums over small triangles.
 
-Where every edge is split once, each triangle is a fan of six around its middle. A normal is the sum
-of the cross products of the small triangles around its point, of length one.
+With every edge split once, each triangle becomes a fan of six triangles around its middle. The
+normal at a point is the sum of the cross products of its fan's triangles, scaled to length one.
 """
 
 from collections import Counter, defaultdict
@@ -32,7 +32,10 @@ def area(*corners: Vector) -> Vector:
 
 
 class RefinedNormals(Rules):
-    """The points of a scheme, with the normals of its surface as far as they have grown."""
+    """The points of a scheme, with normals between the scheme's and the refined surface's.
+
+    Geomorph weights are the shares.
+    """
 
     def __init__(self, rules: Rules, faces: list[Face]) -> None:
         self.rules = rules
@@ -42,7 +45,7 @@ class RefinedNormals(Rules):
         """Corners and middles of each triangle in turn, by its number."""
 
     def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
-        """Points of the scheme, and normals between the mean and the surface's."""
+        """Points of the scheme, and normals blended by the geomorph weights."""
         edges = sorted(self.around.opposite)
         whole = self.rules.placed(
             Counter(dict.fromkeys(edges, 1)), dict.fromkeys(edges, (1.0, 1.0))
@@ -67,7 +70,8 @@ class RefinedNormals(Rules):
             corners = [whole.vertices[v] for v in face]
             names = edge_names(face)
             middles = [whole.points[name][2] for name in names]
-            # 0.511 x (middle - half of both ends): every corner is an end of two edges.
+            # 0.511 x (middle - half of both ends), summed over the edges; each corner is an end of
+            # two edges.
             centre = mix(*((1 / 3 - 0.511, p) for p in corners), *((0.511, m) for m in middles))
             for i in range(3):
                 k = (i + 1) % 3
@@ -94,7 +98,7 @@ class RefinedNormals(Rules):
     def centre(
         self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
     ) -> tuple[Vector, Vector]:
-        """The scheme's middle, turned to the area of the hexagon around it."""
+        """The scheme's middle; its normal is turned to the area vector of the hexagon around it."""
         point, normal = self.rules.centre(source, point, normal, grown)
         outline = self.fans[source]
         pieces = [area(outline[0], outline[i], outline[i + 1]) for i in range(1, 5)]

@@ -1,6 +1,7 @@
 """The interpolating schemes again, in plain Python, from the text of their papers.
 
-Each is a function from an edge (low, high) and a number of quarters to a point, in `CurveRules`.
+Each scheme is a function from an edge (low, high) and a number of quarters to a point, in
+`CurveRules`.
 """
 
 import math
@@ -27,7 +28,7 @@ Face = tuple[int, int, int]
 
 
 def dot(u: Vector, v: Vector) -> float:
-    """Inner product."""
+    """Inner product of two vectors."""
     return sum(x * y for x, y in zip(u, v, strict=True))
 
 
@@ -38,7 +39,10 @@ def length(v: Vector) -> float:
 
 @dataclass
 class CurveRules(Rules):
-    """A scheme with fixed vertices; split edges go to curves as far as they have grown."""
+    """A scheme with fixed vertices; points of split edges lie between chord and curve.
+
+    Geomorph weights are the shares of the curve.
+    """
 
     positions: list[Vector]
     faces: list[Face]
@@ -46,7 +50,7 @@ class CurveRules(Rules):
     normals: list[Vector]
 
     def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
-        """Points on the curves; normals between those at both ends."""
+        """Points of split edges, and normals interpolated between both ends."""
         points: AtPoints = {}
         normals: AtPoints = {}
         for (a, b), (once, twice) in grown.items():
@@ -80,7 +84,7 @@ def cubic_normals(rest: list[Vector], positions: list[Vector], faces: list[Face]
 
 
 def steepened(normals: list[Vector], edges: set[EdgeName]) -> list[Vector]:
-    """Normals minus 0.15 of the mean of neighbouring ones."""
+    """Normals minus 0.15 times the mean of neighbouring normals."""
     beside: list[list[Vector]] = [[] for _ in normals]
     for a, b in edges:
         beside[a].append(normals[b])
@@ -92,14 +96,14 @@ def steepened(normals: list[Vector], edges: set[EdgeName]) -> list[Vector]:
 
 
 def is_corner(before: Vector, here: Vector, after: Vector) -> bool:
-    """Whether a border turns by more than 60 degrees."""
+    """Whether a border turns by more than 60 degrees at a vertex."""
     u = mix((1, here), (-1, before))
     v = mix((1, after), (-1, here))
     return dot(u, v) < (0.5 - 1e-9) * length(u) * length(v)
 
 
 def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> CurveRules:
-    """Cubic edges, 1.2 times as full; borders end at corners."""
+    """Cubic edges that bulge 1.2 times as far; a border's curve ends at its corners."""
     around = Surroundings(faces)
     normals = cubic_normals(rest, positions, faces)
     steeper = steepened(normals, set(around.opposite))
@@ -122,7 +126,7 @@ def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> Cur
             share = length(d) / (length(d) + before)
             ends.append(mix((share if here == a else -share, chord)))
         first, last = ends
-        # Beside a corner the middle of a parabola has the direction of the chord.
+        # Beside a corner the curve is a parabola, whose middle has the direction of the chord.
         from_first = mix((2, d), (-1, first)) if first else d
         from_last = mix((2, d), (-1, last)) if last else d
         return first or from_last, last or from_first

@@ -1,9 +1,10 @@
-"""The whole algorithm again, in plain Python over dictionaries, from the text of the paper.
+"""The paper's whole algorithm again, in plain Python over dictionaries, from the paper's text.
 
-A second implementation that shares no line, no array and no table with the first: section 4.1 for
-the criterion, 4.2 with Figs. 3 and 4 for the positions, 4.3 for the triangles. Points have names
+The second implementation shares no line, no array and no table with the first: section 4.1 for the
+criterion, 4.2 with Figs. 3 and 4 for the positions, 4.3 for the triangles. Points have names
 instead of numbers, so nothing depends on an order:
-    ("vertex", v)  or  ("edge", low, high, quarters from low)
+
+    ("vertex", v) or ("edge", low, high, quarters from low)
 """
 
 import math
@@ -51,24 +52,27 @@ def mix(*terms: tuple[float, Vector]) -> Vector:
 
 
 def unit(vector: Vector) -> Vector:
-    """Vector of length one, or zero."""
+    """The vector, scaled to length one, or zero."""
     length = math.sqrt(sum(x * x for x in vector))
     return mix((1.0 / length, vector)) if length > 1e-15 else (0.0, 0.0, 0.0)
 
 
 def cross(u: Vector, v: Vector) -> Vector:
-    """Outer product."""
+    """Cross product of two vectors."""
     return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
 
 
 def normals_along(first: Vector, middle: Vector, last: Vector) -> dict[int, Vector]:
-    """Unit normals of the points of an edge, by quarters: halfway to the normal of its middle."""
+    """Unit normals of an edge's points, by quarters.
+
+    Quarter points are half way to the middle's normal.
+    """
     ends = {1: first, 2: middle, 3: last}
     return {quarters: unit(mix((1, n), (1, middle))) for quarters, n in ends.items()}
 
 
 def edge_name(a: int, b: int) -> EdgeName:
-    """The same name from both sides."""
+    """The name of an edge, the same for both of its directions."""
     return (a, b) if a < b else (b, a)
 
 
@@ -83,7 +87,7 @@ def is_proper(face: tuple[int, int, int]) -> bool:
 
 
 def vertex_normals(positions: list[Vector], faces: list[tuple[int, int, int]]) -> list[Vector]:
-    """Area-weighted normals: cross products have twice the area as their length."""
+    """Area-weighted normals: sums of cross products, whose lengths are twice the areas."""
     sums: list[Vector] = [(0.0, 0.0, 0.0)] * len(positions)
     for face in faces:
         a, b, c = (positions[v] for v in face)
@@ -127,7 +131,7 @@ class Surroundings:
 
 
 def moved_vertex(v: int, positions: list[Vector], around: Surroundings) -> Vector:
-    """Fig. 3, right."""
+    """A moved vertex (Fig. 3, right)."""
     ring = around.ring[v]
     border = around.border_ring[v]
     if len(border) == 2:
@@ -139,7 +143,7 @@ def moved_vertex(v: int, positions: list[Vector], around: Surroundings) -> Vecto
 
 
 def first_level_point(edge: EdgeName, positions: list[Vector], around: Surroundings) -> Vector:
-    """Fig. 3, left."""
+    """The first-level point of an edge (Fig. 3, left)."""
     a, b = (positions[v] for v in edge)
     if edge not in around.inner:
         return mix((0.5, a), (0.5, b))
@@ -165,15 +169,15 @@ class Rules:
     """A smoothing scheme, in simple code."""
 
     def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
-        """All points and normals, for these splits."""
+        """Positions and normals of all points, for these splits."""
         raise NotImplementedError
 
     def centre(
         self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
     ) -> tuple[Vector, Vector]:
-        """The middle of a triangle; all its edges have grown at least this far, on both levels.
+        """The middle of a triangle, with its normal; by default both stay as they are.
 
-        By default it stays in place.
+        grown: least geomorph weights of the triangle's edges, of first and second level.
         """
         return point, normal
 
@@ -186,7 +190,7 @@ class PaperRules(Rules):
         self.faces = faces
 
     def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
-        """Section 4.2."""
+        """Positions after section 4.2."""
         normals = vertex_normals(self.positions, self.faces)
         at_points = {}
         for a, b in grown:
@@ -204,10 +208,10 @@ def refine(
     geomorph: GeomorphWeights | None = None,
     rules: Rules | None = None,
 ) -> Twin:
-    """Split each edge by `splits`, which gives 0 for missing edges.
+    """Split each edge as often as `splits` states; missing edges are not split.
 
-    `geomorph`: growth of an edge's points on both levels, for blending, which also makes fans of
-    the triangles; `rules`: the scheme, by default the paper's.
+    `geomorph`: weights of an edge's points on both levels, for blending, which also cuts triangles
+    into fans; `rules`: the scheme, by default the paper's.
     """
     twin = Twin()
     count = Counter(splits)
@@ -292,7 +296,10 @@ def _smoothed(
 def _fan(
     twin: Twin, face: tuple[int, int, int], count: Counter[EdgeName], grown: GeomorphWeights
 ) -> tuple[list[tuple[Name, Name, Name]], Name]:
-    """Subtriangles around the middle of a triangle, and this point, which is added to the twin."""
+    """Subtriangles around the middle of a triangle, and the middle's name.
+
+    Adds the middle to the twin.
+    """
     outline: list[Name] = []
     centre: Name = ("centre", *sorted(face))
     edges = edge_names(face)
@@ -324,9 +331,10 @@ def _fan(
 
 
 def centre_weights(grown: list[float]) -> tuple[list[float], list[float]]:
-    """Weights of corners, and of the displacement of edges, in the middle of a triangle.
+    """Weights of corners, and of the displacements of edges, for the middle of a triangle.
 
-    `grown`: of the edges from corner 0 to 1, 1 to 2, 2 to 0. A mean of four rules.
+    `grown`: geomorph weights of the edges from corner 0 to 1, 1 to 2, 2 to 0. The result is a mean
+    of four rules.
     """
     first, second, third = sorted(range(3), key=lambda i: -grown[i])
     shared = next(i for i in range(3) if {first, second} == {i, (i + 2) % 3})
@@ -348,7 +356,10 @@ def centre_weights(grown: list[float]) -> tuple[list[float], list[float]]:
 
 
 def starting_at_least(corners: list[Name]) -> tuple[Name, Name, Name]:
-    """Rotate a triangle's corners so that equal triangles compare equal."""
+    """Rotate a triangle's corners so that the least comes first.
+
+    Equal triangles then compare equal.
+    """
     k = min(range(3), key=lambda i: [str(part) for part in corners[i]])
     return corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]
 

@@ -24,7 +24,10 @@ Triangles = list[tuple[int, int, int]]
 
 
 def loop_plainly(points, faces, normals):
-    """One step of Loop subdivision over dictionaries; numbers are given in order of first use."""
+    """One step of Loop subdivision over dictionaries.
+
+    New points are numbered in order of first use.
+    """
     around = Surroundings(faces)
     fine_points = [moved_vertex(v, points, around) for v in range(len(points))]
     fine_normals = list(normals)
@@ -64,7 +67,7 @@ def assert_is_plain(mesh, deformed, levels):
 @pytest.mark.parametrize("levels", [1, 2, 3])
 @pytest.mark.parametrize("name", meshes.NAMED)
 def test_named_meshes(name, levels):
-    """Every named mesh, deformed."""
+    """Every test mesh, deformed, is subdivided as by the simple implementation."""
     mesh = meshes.NAMED[name]()
     assert_is_plain(mesh, meshes.wrinkled(mesh, 3), levels)
 
@@ -72,7 +75,7 @@ def test_named_meshes(name, levels):
 @settings(max_examples=60, deadline=None)
 @given(soup=soups(), levels=st.integers(1, 3))
 def test_soups(soup, levels):
-    """Any triangles."""
+    """Random triangles are subdivided as by the simple implementation."""
     positions, faces = soup
     assert_is_plain(meshes.Mesh(positions, faces), positions, levels)
 
@@ -85,7 +88,7 @@ def test_interpolated_normals():
 
 
 def test_equals_kahler_at_one_level():
-    """With every edge split once the adaptive refiner is one step of Loop subdivision."""
+    """With every edge split once, the adaptive refiner makes one step of Loop subdivision."""
     mesh = meshes.irregular(9)
     deformed = meshes.wrinkled(mesh, 10)
     loop = refine.create("loop", mesh.faces, mesh.vertices).refine(deformed)
@@ -100,7 +103,7 @@ def test_equals_kahler_at_one_level():
 
 @pytest.mark.parametrize("levels", [0, 5, 1.5, 2.0, "2"])
 def test_bad_levels(levels):
-    """Only one to four levels are allowed."""
+    """Only one to four levels are accepted."""
     mesh = meshes.triangle()
     with pytest.raises(ValueError, match=r"levels was .*, must be a whole number from 1 to 4"):
         refine.create("loop", mesh.faces, mesh.vertices, levels=levels)

@@ -43,7 +43,7 @@ print(peaks[1] - peaks[0])
 
 @pytest.mark.parametrize("look", LOOKS)
 def test_arrays_go_with_their_refiner(look):
-    """Compiled code keeps none of its argument arrays, nor lent ones."""
+    """Compiled code keeps no reference to its arguments, nor to lent arrays."""
     mesh = meshes.irregular(5)
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, **LOOKS[look])
     assert isinstance(refiner, refine.Kahler)
@@ -66,9 +66,12 @@ def test_arrays_go_with_their_refiner(look):
 @pytest.mark.slow
 @pytest.mark.parametrize("look", LOOKS)
 def test_a_hundred_refiners_take_the_memory_of_one(look):
-    """Each is made for 20 000 triangles, refines a frame and is deleted: less than 5 MB remain."""
+    """A hundred refiners, deleted after a frame, leave less than 5 MB.
+
+    Each is made for 20 000 triangles.
+    """
     pytest.importorskip("resource", reason="measures the memory of a process; not on Windows")
     call = [sys.executable, "-c", MANY, look]
     found = subprocess.run(call, capture_output=True, text=True, check=True)
-    units = 2**20 if sys.platform == "darwin" else 2**10  # of ru_maxrss in a megabyte
+    units = 2**20 if sys.platform == "darwin" else 2**10  # units of ru_maxrss per megabyte
     assert int(found.stdout) / units < 5.0

@@ -1,8 +1,8 @@
-"""Any mesh with any options, judged only by corners and sub-edges.
+"""Random meshes with random options, judged only by corners and sub-edges.
 
-The other tests vary one option each. Here all of them vary together, in any numeric type and order
-in memory, and the result is judged in another way than by `refine.check`: the test follows the
-border of each triangle's pieces, and along an edge all triangles must have the same bytes.
+Other tests vary one option at a time. These tests vary all options together, in any numeric type
+and memory order, and judge the result in another way than `refine.check`: they follow the border of
+each triangle's pieces, and compare the bytes of all triangles along each edge.
 """
 
 from collections import Counter, defaultdict
@@ -31,7 +31,7 @@ INDEX_TYPES = ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", ">i4")
 
 @st.composite
 def options(draw):
-    """Options that may be combined."""
+    """A random valid combination of options."""
     scheme = draw(st.sampled_from(["loop", "cubic", "detail"]))
     blend = draw(st.sampled_from([None, False, True]))
     return {
@@ -45,7 +45,7 @@ def options(draw):
 
 
 def in_other_order(array, order):
-    """The same numbers in another memory order, read-only."""
+    """The same numbers, read-only, in another memory order."""
     if order == "fortran":
         array = np.asfortranarray(array)
     elif order == "reversed":
@@ -58,7 +58,7 @@ def in_other_order(array, order):
 
 
 def borders(mesh, face, pieces, names):
-    """Rows along the three edges of an input triangle, from the border of its pieces."""
+    """Output rows along the three edges of an input triangle; the border of its pieces has them."""
     sides = Counter((int(t[i]), int(t[(i + 1) % 3])) for t in pieces for i in range(3))
     assert max(sides.values()) == 1
     following = {a: b for a, b in sides if (b, a) not in sides}
@@ -77,7 +77,7 @@ def borders(mesh, face, pieces, names):
 
 
 def assert_no_crack(refiner, mesh, faces):
-    """Check that along every input edge all its triangles have the same bytes."""
+    """Check that all triangles at an input edge have the same bytes along it."""
     origins = refiner.origins()
     is_vertex = origins.weights.max(axis=1) == 1.0
     vertex = origins.vertices[np.arange(len(is_vertex)), origins.weights.argmax(axis=1)]
@@ -111,7 +111,7 @@ def assert_no_crack(refiner, mesh, faces):
     textured=st.booleans(),
 )
 def test_anything_goes(mesh, chosen, seed, precision, index, order, textured):
-    """Three frames of any mesh with any options are proper, without cracks, and change no input."""
+    """Three frames of any mesh with any options are valid, have no cracks, and change no input."""
     generator = np.random.default_rng(seed)
     rest = in_other_order(mesh[0].astype(precision), order)
     faces = in_other_order(mesh[1].astype(index), order)
@@ -139,7 +139,10 @@ def test_anything_goes(mesh, chosen, seed, precision, index, order, textured):
 
 
 def assert_linear(refiner, mesh, faces, corner_values):
-    """Check that texture coordinates are linear in their own triangles, (F, 3, 2) at corners."""
+    """Check that texture coordinates are linear in each input triangle.
+
+    `corner_values`: (F, 3, 2).
+    """
     origins = refiner.origins()
     proper = np.array([len(set(face)) == 3 for face in faces.tolist()])[mesh.source]
     triangles = mesh.triangles[proper]

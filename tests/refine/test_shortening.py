@@ -1,4 +1,4 @@
-"""Shortening along given directions: known strains, rigid motion, bends, bad input."""
+"""Shortening along given directions: known strains, rigid motion, bends, invalid input."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ ACROSS = (0.0, 1.0, 0.0)
 
 
 def grid(count=9):
-    """Triangles and vertices of a flat grid, 10 long and wide."""
+    """Triangles and vertices of a flat square grid with sides of 10."""
     mesh = meshes.open_grid(count - 1, count - 1)
     return mesh.faces, mesh.vertices * (10.0 / (count - 1)) - [5.0, 5.0, 0.0]
 
@@ -24,7 +24,7 @@ def both_ways(count):
 
 
 def test_at_rest_there_is_none():
-    """To the last bit, on an irregular mesh."""
+    """At rest the shortening is exactly zero, on an irregular mesh."""
     mesh = meshes.irregular(3)
     directions = np.random.default_rng(3).normal(size=(len(mesh.vertices), 2, 3))
     measured = refine.Shortening(mesh.faces, mesh.vertices, directions).measure(mesh.vertices)
@@ -32,7 +32,7 @@ def test_at_rest_there_is_none():
 
 
 def test_a_squeeze_is_found_along_its_direction_alone():
-    """A fifth shorter along x, a tenth longer along y give a fifth, and minus a tenth."""
+    """A grid a fifth shorter along x and a tenth longer along y gives 0.2 and -0.1."""
     faces, rest = grid()
     shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
     measured = shortening.measure(rest * [0.8, 1.1, 1.0])
@@ -41,7 +41,10 @@ def test_a_squeeze_is_found_along_its_direction_alone():
 
 
 def test_rigid_motions_and_bends_shorten_nothing():
-    """A turned grid, and one rolled up: less than the chords of its finest triangles lose."""
+    """A turned grid shortens by nothing.
+
+    A rolled one by less than the chords of its finest triangles.
+    """
     faces, rest = grid(41)
     shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
     turned = Rotation.from_euler("xyz", [0.3, -1.2, 2.0]).apply(rest + 300.0)
@@ -53,7 +56,7 @@ def test_rigid_motions_and_bends_shorten_nothing():
 
 
 def test_finds_the_largest_compression():
-    """Along its direction a flat deformation shortens by its smallest stretch."""
+    """Along its smallest stretch, a flat deformation shortens by 1 minus this stretch."""
     faces, rest = grid()
     gradient = np.array([[0.9, 0.15, 0.0], [-0.05, 0.75, 0.0], [0.0, 0.0, 1.0]])
     stretches, ways = np.linalg.svd(gradient[:2, :2])[1:]
@@ -64,7 +67,7 @@ def test_finds_the_largest_compression():
 
 
 def test_what_does_not_fit_is_refused():
-    """Directions and positions of another shape, and directions that are NaN, are refused."""
+    """Directions or positions of a wrong shape, and directions with NaN, are refused."""
     faces, rest = grid(3)
     for directions in (np.zeros((len(rest), 3)), np.full((len(rest), 1, 3), np.nan)):
         with pytest.raises(ValueError, match="directions must be finite"):

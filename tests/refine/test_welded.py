@@ -1,4 +1,4 @@
-"""Doubled vertices are one while refining; their values part again, as if bound by corners."""
+"""Welding: vertices at one place are refined as one, and their values are kept apart."""
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,7 @@ Points = npt.NDArray[np.float64]
 
 
 def doubled(mesh, seed):
-    """The same mesh; some corners have their own vertex at the same place."""
+    """The same mesh, in which some corners have their own vertex at the same place."""
     generator = np.random.default_rng(seed)
     faces = np.array(mesh.faces, dtype=np.int64)
     own = generator.random(faces.shape) < 0.3
@@ -32,7 +32,7 @@ def doubled(mesh, seed):
     options=st.sampled_from([{}, {"blend": False}, {"scheme": "loop", "criterion": "normal"}]),
 )
 def test_carried_as_if_bound(name, seed, options):
-    """`carry` equals a refiner that was bound with the values at every corner."""
+    """`carry` gives the values of a refiner to which they were bound at every corner."""
     mesh = meshes.NAMED[name]()
     points, faces = doubled(mesh, seed)
     values = np.random.default_rng(seed).random((len(points), 2))
@@ -57,7 +57,10 @@ def test_carried_as_if_bound(name, seed, options):
 
 
 def one_triangle(**options):
-    """The refiner of a triangle after a frame with one split, or other splits, on each edge."""
+    """The refiner of one triangle, after a frame.
+
+    Each edge is split once, or as the options state.
+    """
     options = {"criterion": Forced([1, 1, 1]), "blend": False, **options}
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     refiner = refine.WeldedRefiner(points, [[0, 1, 2]], **options)
@@ -66,7 +69,7 @@ def one_triangle(**options):
 
 
 def box():
-    """A tube of four sides, each with four vertices of its own."""
+    """A tube with four sides, each with four vertices of its own."""
     corners = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
     points = []
     faces = []
@@ -79,7 +82,7 @@ def box():
 
 
 def heights_of_borders(mesh):
-    """Heights of the sides that only one triangle has, by places in space."""
+    """Heights of the edges that belong to one triangle only; vertices at one place count as one."""
     places, number = np.unique(mesh.positions, axis=0, return_inverse=True)
     sides = number.reshape(-1)[mesh.triangles[:, [0, 1, 1, 2, 2, 0]]].reshape(-1, 2)
     sides, counts = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
@@ -88,7 +91,7 @@ def heights_of_borders(mesh):
 
 @pytest.mark.parametrize("seams", [False, True])
 def test_no_crack_opens_between_doubled_vertices(seams):
-    """Only the two ends of the tube are open; without welding each side is flat."""
+    """Only the two ends of the tube are open; without welding, each side stays flat."""
     points, faces = box()
     moved = points * [1.0, 1.0, 1.5]
     mesh = refine.WeldedRefiner(points, faces, seams=seams).refine(moved)
@@ -111,7 +114,7 @@ def test_no_crack_opens_between_doubled_vertices(seams):
     ids=["bytes", "integers", "not a number", "flags", "complex", "tables"],
 )
 def test_types_stay(values, expected):
-    """New points have the mean of both ends, rounded for integer types."""
+    """New points have the mean of both ends, rounded for integer types; types are kept."""
     refiner = one_triangle()
     carried = refiner.carry(values)
     assert carried.dtype == values.dtype
@@ -122,7 +125,10 @@ def test_types_stay(values, expected):
 
 @pytest.mark.parametrize("seams", [False, True])
 def test_values_of_a_frame_are_its_attributes(seams):
-    """They may have any type, as returned by `carry`; a frame without values has none."""
+    """The values of a frame, of any type, are its attributes, as returned by `carry`.
+
+    A frame without values has no attributes.
+    """
     points, faces = box()
     refiner = refine.WeldedRefiner(points, faces, seams=seams)
     heat = np.arange(16, dtype=np.int64) + 2**60
@@ -137,12 +143,12 @@ def test_values_of_a_frame_are_its_attributes(seams):
 
 
 def test_words_come_from_an_end():
-    """Words cannot be mixed."""
+    """Texts cannot be averaged, so a new point has the text of one end."""
     assert set(one_triangle().carry(["a", "b", "c"])) == {"a", "b", "c"}
 
 
 def test_splits_that_stay():
-    """With splits of a clip all frames have the same triangles, and carry the same values."""
+    """With the splits of a clip, all frames have the same triangles, and carry the same values."""
     ball = meshes.ball()
     points = ball.vertices[ball.faces].reshape(-1, 3)  # each triangle is separate
     triangles = np.arange(len(points)).reshape(-1, 3)
@@ -159,7 +165,7 @@ def test_splits_that_stay():
 
 
 def test_mistakes_are_reported():
-    """Wrong numbers of points and values, and a call before any frame."""
+    """Wrong numbers of points or values, and a call before the first frame, are reported."""
     points, faces = box()
     refiner = refine.WeldedRefiner(points, faces)
     with pytest.raises(ValueError, match="nothing is refined yet; call refine"):
@@ -173,7 +179,7 @@ def test_mistakes_are_reported():
 
 
 def vase():
-    """A turned surface; its seam is computed twice, at 0 and at 2 pi."""
+    """A surface of revolution; vertices of its seam are computed twice, at 0 and at 2 pi."""
     turn = np.linspace(0.0, 2.0 * np.pi, 13)
     height = np.linspace(0.0, 2.0, 7)
     turns, heights = np.meshgrid(turn, height, indexing="ij")
@@ -191,7 +197,7 @@ def vase():
 @pytest.mark.parametrize("kind", [np.float64, np.float32])
 @pytest.mark.parametrize("moved", [0.0, 3000.0])
 def test_seams_equal_but_for_the_last_bits(kind, moved):
-    """In any storage, both sides of a seam have the same normal."""
+    """Both sides of a seam have the same normal, in single and double precision."""
     turned = np.linalg.qr(np.random.default_rng(3).random((3, 3)))[0]
     points, faces = vase()
     points = (points @ turned + moved).astype(kind)
@@ -209,7 +215,10 @@ def test_seams_equal_but_for_the_last_bits(kind, moved):
 
 
 def test_how_far_apart_welded_vertices_may_lie():
-    """In sizes of the mesh: 1e-9 by default; 0 only joins equal points."""
+    """The tolerance of welding is a share of the mesh's size: 1e-9 by default.
+
+    A tolerance of 0 joins equal points only.
+    """
     points, faces = box()
     size = 2.0
     for apart, tolerance, count in (
@@ -233,7 +242,7 @@ def test_how_far_apart_welded_vertices_may_lie():
 @settings(max_examples=40)
 @given(seed=st.integers(0, 2**16), distance=st.sampled_from([1e-9, 1e-4, 0.03, 0.2]))
 def test_places_are_those_of_all_pairs(seed, distance):
-    """Points in a chain of near ones are one place, as a test of all distances confirms."""
+    """Points linked by a chain of near points have one number, as brute force confirms."""
     generator = np.random.default_rng(seed)
     points = generator.random((40, 3)).round(int(generator.integers(1, 4)))
     points += distance * generator.uniform(-1.0, 1.0, points.shape)
@@ -270,7 +279,10 @@ WIDE = (2**53, 2**53 + 1, 2**62 + 3)
     ids=str,
 )
 def test_points_of_the_input_keep_their_values(values, blend):
-    """They are exact, in any type; new points are between their corners, and equal values stay."""
+    """Points of the input keep their values exactly, in any type.
+
+    Values of new points lie between those of their corners, and equal values stay equal.
+    """
     asks = GivenMetric([1.1, 0.9, 0.3]) if blend else Forced([2, 1, 1])
     carried = one_triangle(criterion=asks, blend=blend).carry(values)
     assert carried.dtype == values.dtype
@@ -284,7 +296,7 @@ def test_points_of_the_input_keep_their_values(values, blend):
 
 
 def test_wide_integers_are_rounded_as_all_numbers_are():
-    """The mean of both ends is rounded to the nearest, halves to even; infinite ends stay."""
+    """The mean of wide integers is rounded to the nearest, halves to even; infinite values stay."""
     refiner = one_triangle()
     a = 2**62
     b = 2**62 + 1

@@ -1,7 +1,8 @@
-"""The refiner on the graphics card must agree with that of the processor.
+"""The graphics card's refiner must agree with the processor's.
 
 They agree to the bit if the driver rounds quotients and roots like a processor; OpenGL permits
-errors of some bits. A test of the driver decides. Mesa's software does, and so does NVIDIA's.
+errors of some bits. A test program decides for each driver: Mesa's software driver and NVIDIA's
+round correctly.
 """
 
 import functools
@@ -39,9 +40,9 @@ void main() {
 
 
 def why_no_card() -> str:
-    """Reason why the card cannot refine; empty if it can.
+    """The reason why the card cannot refine, or an empty text.
 
-    A missing OpenGL is not a reason to skip a test.
+    A missing OpenGL is an error, not a reason to skip a test.
     """
     try:
         own_context()
@@ -52,7 +53,7 @@ def why_no_card() -> str:
 
 @functools.cache
 def why_not_exact() -> str:
-    """Reason why the card cannot be compared with the processor's bits; empty if it can."""
+    """The reason why the card cannot be compared with the processor's bits, or an empty text."""
     if reason := why_no_card():
         return reason
     own = own_context()
@@ -77,7 +78,7 @@ def rounds_as_processors(gl: moderngl.Context) -> bool:
 
 @pytest.fixture
 def exact_driver() -> None:
-    """Skip, with the reason, if the card cannot be compared with the processor's bits."""
+    """Skip a test, with the reason, if the card cannot be compared with the processor's bits."""
     if reason := why_not_exact():
         pytest.skip(reason)
 
@@ -103,7 +104,10 @@ def assert_same(
     positions: Points,
     view: refine.View | None = None,
 ) -> refine.RefinedMesh:
-    """Refine a frame by both; splits, triangles, rows and attributes are the same to the bit."""
+    """Refine a frame on both.
+
+    Check that splits, triangles, rows and attributes are equal to the bit.
+    """
     wanted = processor.refine(positions, view=view)
     got = card.refine(positions, view=view)
     assert_array_equal(card.splits, processor.splits)
@@ -123,5 +127,5 @@ def assert_same(
 
 
 def bits(numbers: Any) -> npt.NDArray[np.uint32]:
-    """Numbers in single precision as their bits; there is one zero."""
+    """Numbers in single precision as integers of their bits; both zeros are equal."""
     return np.ascontiguousarray(numbers + np.float32(0.0)).view(np.uint32)

@@ -1,4 +1,4 @@
-"""Fixtures of the card's tests."""
+"""Fixtures of the graphics card's tests."""
 
 from .agreement import exact_driver
 

@@ -25,7 +25,7 @@ both_rules = pytest.mark.parametrize("rules", ["two levels", "window's look"])
 
 @pytest.fixture(scope="module")
 def poses(head: Head) -> dict[str, Points]:
-    """Vertices of the head by name of the pose; one is turned and far from the origin."""
+    """The head's vertices by name of the pose; one pose is turned and far from the origin."""
     found = {}
     face = sim.create(head)
     for name in POSES:
@@ -59,7 +59,7 @@ def with_seam(head):
     ],
 )
 def test_head(pose, is_seamed, rules, head, poses):
-    """Every pose of the head, with and without a texture seam, split once or up to twice."""
+    """Every pose of the head, with a texture seam and without, for one and two levels."""
     values = with_seam(head) if is_seamed else {}
     processor, card = bound_twice(head.faces, head.vertices, **RULES[rules], **values)
     mesh = assert_same(processor, card, poses[pose])
@@ -70,7 +70,7 @@ def test_head(pose, is_seamed, rules, head, poses):
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
 def test_splits_that_stay(scheme):
-    """With given splits all frames have the same triangles, on the card as on the processor."""
+    """With given splits all frames have the same triangles, on the card and on the processor."""
     mesh = meshes.irregular(7)
     edge_count = edge_count_of(mesh)
     splits = np.random.default_rng(3).integers(0, 3, edge_count)
@@ -86,7 +86,7 @@ def test_splits_that_stay(scheme):
 @both_rules
 @pytest.mark.parametrize("name", meshes.NAMED)
 def test_small_meshes(name, rules):
-    """One mesh for each oddity: borders, fins, flips, doubles, debris; three frames of each."""
+    """Three frames of each test mesh: borders, fins, flips, doubles, debris."""
     mesh = meshes.NAMED[name]()
     processor, card = bound_twice(mesh.faces, mesh.vertices, **RULES[rules])
     for seed, amplitude in ((0, 0.0), (1, 0.5), (2, 0.2)):
@@ -96,7 +96,10 @@ def test_small_meshes(name, rules):
 
 @both_rules
 def test_attributes(rules):
-    """Texture coordinates and other values of corners are mixed equally, also in wide rows."""
+    """Texture coordinates and other values at corners are interpolated equally.
+
+    Rows may be wide.
+    """
     mesh = meshes.tube()
     assert mesh.uv is not None
     assert mesh.face_uv is not None
@@ -118,7 +121,7 @@ def test_attributes(rules):
 @both_rules
 @pytest.mark.parametrize("side", [30, 100, pytest.param(330, marks=pytest.mark.slow)])
 def test_sums_over_many_groups(side, rules):
-    """Grids of up to 217 800 triangles: numbers continue from group to group of threads."""
+    """In grids of up to 217 800 triangles, numbers continue across groups of threads."""
     mesh = meshes.open_grid(side, side)
     x, y, _ = mesh.vertices.T
     height = 2.0 * np.sin(0.9 * x) * np.sin(0.7 * y) * x / side
@@ -139,7 +142,7 @@ def test_sums_over_many_groups(side, rules):
     ],
 )
 def test_criteria(options):
-    """Criteria that the card computes, their mixes, and others, which the processor measures."""
+    """The card computes some criteria and their combinations, the processor all others."""
     options = {"scheme": "cubic" if "blend" in options else "loop", **options}
     mesh = meshes.irregular(7, 8, 6, 1)
     card, processor = (
@@ -187,14 +190,14 @@ def assert_random_meshes_same(seeds):
 
 
 def test_random_meshes():
-    """Non-manifold meshes, with seams, with memory: all 27 configurations occur."""
+    """All 27 configurations occur; meshes are non-manifold, with seams, and split coherently."""
     assert assert_random_meshes_same(range(40)) == set(range(27))
 
 
 @both_rules
 @pytest.mark.parametrize("frames", [60, pytest.param(500, marks=pytest.mark.slow)])
 def test_coherent_frames(frames, rules, head):
-    """In a moving face, the memory of triangles stays on the card, and is the same."""
+    """In a moving face, the states of triangles stay on the card, and equal the processor's."""
     face = sim.create(head)
     processor, card = bound_twice(head.faces, head.vertices, coherent=True, **RULES[rules])
     for frame in range(frames):
@@ -208,7 +211,7 @@ def test_coherent_frames(frames, rules, head):
 
 @pytest.mark.parametrize("rules", ["two levels", "window's look"])
 def test_points_that_nothing_uses(rules):
-    """They are far away, or NaN: the first point does not matter."""
+    """Unused points that are far away or NaN change nothing, even if they come first."""
     mesh = meshes.irregular(4)
     strays = np.array([[np.nan, 0.0, 0.0], [1e14, 0.0, 0.0]])
     rest = np.concatenate([strays, mesh.vertices])

@@ -1,4 +1,4 @@
-"""Frames drawn directly from the card: the same pictures as from uploaded arrays."""
+"""Frames drawn directly from the card: the same pictures as with uploaded arrays."""
 
 import os
 import sys
@@ -36,7 +36,7 @@ STYLES = {
 
 @pytest.fixture(scope="module")
 def scene() -> FaceScene:
-    """A face that laughs."""
+    """A laughing face."""
     scene = FaceScene()
     scene.pose({"joy": 1.0})
     for _ in range(30):
@@ -46,13 +46,13 @@ def scene() -> FaceScene:
 
 @pytest.fixture(scope="module", params=[0, 4])
 def pipeline(request: pytest.FixtureRequest, scene: FaceScene) -> Iterator[Pipeline]:
-    """The scene on a surface, with one sample per pixel, and with four."""
+    """The scene on an offscreen surface, with one sample per pixel, or four."""
     with render.open_offscreen(SIZE, samples=request.param) as surface:
         yield Pipeline(scene, render.Renderer(surface))
 
 
 def image(pipeline, drawn, style):
-    """The picture of the pipeline."""
+    """The pipeline's picture."""
     surface = pipeline.renderer.surface
     camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="three-quarter")
     size = surface.frame_size if isinstance(surface, render.WindowSurface) else surface.size
@@ -61,7 +61,7 @@ def image(pipeline, drawn, style):
 
 
 def both(pipeline, look="paper"):
-    """Pictures of frames made by the processor, and on the card."""
+    """The frame made by the processor, and the frame made on the card."""
     drawn = [pipeline.bind(Refinement(look, name)) for name in ("kahler", "kahler-gl")]
     assert isinstance(drawn[1].refiner, KahlerGl)
     assert isinstance(drawn[1].stream, render.GpuStream)
@@ -75,7 +75,10 @@ def drawn_by(monkeypatch, kind):
 
 
 def test_a_card_takes_large_meshes_by_itself(pipeline, monkeypatch):
-    """Where a look is asked for, the driver is hardware and the mesh large; to the same picture."""
+    """A large mesh in a look is refined on the card without request, if the driver is hardware.
+
+    The picture is the same.
+    """
     smooth = Refinement("smooth")
     count = len(pipeline.scene.faces)
     monkeypatch.setattr(drawn_mesh, "LARGE_MESH", count)
@@ -97,7 +100,7 @@ def test_a_card_takes_large_meshes_by_itself(pipeline, monkeypatch):
 @pytest.mark.parametrize("kind", ["software", "hardware"])
 @pytest.mark.parametrize("style", STYLES)
 def test_pictures_are_the_same(pipeline, style, kind, monkeypatch):
-    """No pixel differs, in any style, as drawn by software and by graphics cards."""
+    """Pictures of both frames are equal in every style, for software and hardware drivers."""
     drawn_by(monkeypatch, kind)
     processor, card = both(pipeline)
     wanted, got = (image(pipeline, each, STYLES[style]) for each in (processor, card))
@@ -107,7 +110,7 @@ def test_pictures_are_the_same(pipeline, style, kind, monkeypatch):
 
 
 def test_nothing_comes_back(scene, monkeypatch):
-    """If no numbers are requested, a graphics card draws a frame that stays on the card."""
+    """A hardware driver draws a frame that stays on the card, if no numbers are requested."""
     drawn_by(monkeypatch, "hardware")
     with render.open_offscreen(SIZE, samples=4) as surface:
         pipeline = Pipeline(scene, render.Renderer(surface))
@@ -119,7 +122,7 @@ def test_nothing_comes_back(scene, monkeypatch):
 
 @pytest.mark.parametrize("options", [["paper", "--compare", "none"], ["smooth"]])
 def test_films_are_the_same(tmp_path, options):
-    """`capture --refiner kahler-gl` draws what `--refiner kahler` draws."""
+    """`capture --refiner kahler-gl` writes the film that `--refiner kahler` writes."""
     pictures = []
     for name in ("kahler-gl", "kahler"):
         path = tmp_path / f"{name}.png"
@@ -131,7 +134,7 @@ def test_films_are_the_same(tmp_path, options):
 
 @pytest.mark.slow
 def test_samples_of_data_sets_are_the_same(tmp_path):
-    """`dataset --refiner kahler-gl` makes the pictures, passes and labels that `kahler` makes."""
+    """`dataset --refiner kahler-gl` makes the same pictures, passes and labels as `kahler`."""
     passes = ("depth", "normal", "splits", "segmentation")
     requests = (
         request_of(tmp_path, seed=3, size=(80, 64), passes=passes, refiner=name)
@@ -151,7 +154,7 @@ def test_samples_of_data_sets_are_the_same(tmp_path):
 )
 @pytest.mark.parametrize("look", ["paper", "smooth"])
 def test_a_window_that_is_resized(scene, look):
-    """A window draws it in every size."""
+    """A resized window shows the same picture from the card as from the processor."""
     with render.open_window((200, 150), "kahler-gl", samples=0) as window:
         if window.gl.version_code < LEAST_VERSION:
             driver = window.gl.info["GL_RENDERER"]
@@ -166,7 +169,7 @@ def test_a_window_that_is_resized(scene, look):
 
 
 def resize(window, size):
-    """Request a size, and wait until the screen has set it."""
+    """Request a size, and wait until the window has it."""
     import glfw
 
     glfw.set_window_size(window.handle, *size)

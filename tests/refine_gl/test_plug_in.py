@@ -1,4 +1,4 @@
-"""The refiner on the graphics card: binding, lent arrays, calls; and its fallback without."""
+"""The graphics card's refiner: binding, lent arrays, errors, and the fallback to the processor."""
 
 import ast
 import logging
@@ -24,12 +24,12 @@ BENT = meshes.wrinkled(MESH, 3, 0.5)
 
 
 def bound(**options):
-    """Both refiners of a small mesh, with the same options."""
+    """Both refiners for a small mesh, with the same options."""
     return bound_twice(MESH.faces, MESH.vertices, **options)
 
 
 def test_it_joins_as_anybodys_would():
-    """By an entry point, with options of its own; others are refused as ever."""
+    """It is registered by an entry point, with its own options; wrong options are refused."""
     assert "kahler-gl" in refine.refiners.available()
     assert "kahler-gl" in refine.refiners.installed()
     names = [each.name for each in refine.parameters("kahler-gl")]
@@ -43,7 +43,7 @@ def test_it_joins_as_anybodys_would():
 
 
 def test_wrong_frames_are_refused():
-    """They are refused as by `kahler`; the next good one is correct."""
+    """Wrong frames are refused as by `kahler`, and the next good frame is correct."""
     processor, card = bound()
     for wrong, words in ((BENT[1:], "must be floats of shape"), (BENT * np.nan, "must be finite")):
         with pytest.raises(ValueError, match=words):
@@ -63,7 +63,7 @@ def lent(card):
 
 
 def test_lent_arrays_are_filled():
-    """Lent arrays get the frame."""
+    """A frame is written into the lent arrays."""
     processor, card = bound()
     stream = lent(card)
     wanted = processor.refine(BENT)
@@ -84,7 +84,7 @@ def surface() -> Iterator[render.Surface]:
 
 
 def test_buffers_of_another_context(surface):
-    """The stream's context is used, and no data are fetched before they are read."""
+    """The context of the given buffers is used; data are transferred only when they are read."""
     processor, card = bound()
     room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
     stream = GpuBuffers(surface.gl, *room)
@@ -104,7 +104,7 @@ def test_buffers_of_another_context(surface):
 
 @pytest.mark.parametrize("rules", ["two levels", "window's look"])
 def test_a_lost_context_is_made_anew(rules):
-    """A closed window loses all buffers; the next one gets the mesh again."""
+    """After the buffers are lost with a closed window, the next context gets the mesh again."""
     processor, card = bound(**RULES[rules])
     wanted = processor.refine(BENT)
     room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
@@ -116,7 +116,7 @@ def test_a_lost_context_is_made_anew(rules):
 
 
 def test_the_callers_context_stays_current(surface):
-    """Frames without a context do not change the current one."""
+    """Frames without a given context do not change the current context."""
     _, card = bound()
     surface.begin()
     surface.gl.clear(1.0, 0.0, 0.0)
@@ -127,10 +127,10 @@ def test_the_callers_context_stays_current(surface):
 
 @pytest.fixture
 def without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An OpenGL version that is too old."""
+    """Make OpenGL too old for the refiner."""
 
     def fails():
-        """Fail as `own_context` does in this case."""
+        """Fail as `own_context` does with OpenGL 4.1."""
         raise GpuError("no OpenGL 4.3 without a window (it has 4.1)")
 
     refiner.warn_once.cache_clear()
@@ -139,7 +139,7 @@ def without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("without_opengl")
 def test_without_opengl_the_processor_refines(caplog):
-    """One line says so, once, and the result is that of `kahler`."""
+    """One line reports the missing OpenGL once, and the result equals that of `kahler`."""
     with caplog.at_level(logging.WARNING):
         for _ in range(2):
             other = refine.create("kahler-gl", MESH.faces, MESH.vertices, threshold_once=0.01)
@@ -153,7 +153,7 @@ def test_without_opengl_the_processor_refines(caplog):
 
 
 def test_a_driver_that_refuses_a_shader(monkeypatch, caplog):
-    """The processor refines in this case, too, and the line has the driver's message."""
+    """If a driver refuses a shader, the processor refines; the line has the driver's message."""
     whole = frames.shader_text
     refiner.warn_once.cache_clear()
     monkeypatch.setattr(frames, "shader_text", lambda name: whole(name) + "?" * (name == "mark"))
@@ -165,7 +165,10 @@ def test_a_driver_that_refuses_a_shader(monkeypatch, caplog):
 
 
 def test_shaders_take_eight_buffers():
-    """OpenGL 4.3 guarantees no more storage buffers, nor a larger group of threads."""
+    """Shaders stay within OpenGL 4.3's limits.
+
+    Eight storage buffers, and its largest thread group.
+    """
     bindings = re.findall(r"std430, binding = (\d+)", frames.shader_text("common"))
     assert sorted(map(int, bindings)) == list(range(8))
     assert tables.GROUP <= 1024
@@ -187,7 +190,7 @@ def test_what_the_card_has_not(options, words):
 
 
 def test_it_imports_what_an_outsider_may():
-    """From refinement it only imports `risorius.refine` and `refine.port`, by exported names."""
+    """From refinement it imports only `risorius.refine` and `refine.port`, by exported names."""
     folder = Path(refine_gl.__file__).parent
     for file in folder.glob("*.py"):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):

@@ -1,4 +1,4 @@
-"""Verdicts can be bad; `reproduce all` writes page and pictures with any verdict."""
+"""A verdict can be bad, and `reproduce all` writes its page and pictures with any verdict."""
 
 import math
 import re
@@ -21,7 +21,7 @@ from tests.app.command_line import risorius
 
 
 def test_pairs_are_compared_round_by_round():
-    """A machine that becomes ten times slower meanwhile does not change c_rt."""
+    """The ratio c_rt does not change when the machine becomes ten times slower meanwhile."""
     times = np.array([[1.0, 3.0]] * 5 + [[10.0, 30.0]] * 6)
     row = Row.of("", 100, 200, times)
     assert (row.ratio, row.quartiles) == (1.5, (1.5, 1.5))
@@ -31,20 +31,20 @@ def test_pairs_are_compared_round_by_round():
     ("value", "differs", "verdict"),
     [
         (2.0, "", "met"),
-        (2.0, "it approximates", "differs"),  # the bounds are ours, and not the paper's
+        (2.0, "it approximates", "differs"),  # the bounds are this project's, not the paper's
         (0.9, "", "MISSED"),
         (3.1, "it approximates", "MISSED"),
         (math.nan, "", "MISSED"),
     ],
 )
 def test_verdicts(value, differs, verdict):
-    """Both bounds count, and NaN misses them."""
+    """A verdict checks the lower and the upper bound; NaN is outside."""
     claim = Claim("x", "", "", low=1.0, high=3.0, differs=differs)
     assert claim.verdict(value) == verdict
 
 
 def test_every_claim_can_fail():
-    """Each has a bound and a unique name within its experiment."""
+    """Each claim has a bound, and its name is unique within its experiment."""
     for experiment in EXPERIMENTS:
         names = [each.value for each in experiment.claims]
         assert len(set(names)) == len(names)
@@ -71,13 +71,16 @@ PLANTED = (
 
 @pytest.fixture
 def planted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two experiments that take no time: one meets its claim, one misses it."""
+    """Two experiments that take no time: the first meets its claim, the second misses its claim."""
     monkeypatch.setitem(sys.modules, f"{commands.__package__}.planted", SimpleNamespace(**MADE))
     monkeypatch.setattr(commands, "EXPERIMENTS", PLANTED)
 
 
 def test_a_missed_tolerance_is_reported_after_all_is_written(planted, tmp_path):
-    """Exit code 1, a line for each missed one, and every file is there."""
+    """After a missed tolerance, all files are written and the exit code is 1.
+
+    Each miss has a line.
+    """
     result = risorius("reproduce", "all", "-o", tmp_path / "new")
     assert result.exit_code == 1
     missed = [line for line in result.stderr.splitlines() if line.startswith("risorius: ")]
@@ -87,7 +90,7 @@ def test_a_missed_tolerance_is_reported_after_all_is_written(planted, tmp_path):
 
 
 def test_the_page_stands_alone(planted, tmp_path):
-    """It only loads pictures beside it, escapes its text, and shows every verdict."""
+    """The page loads only pictures beside it, escapes its text, and shows every verdict."""
     risorius("reproduce", "all", "-o", tmp_path)
     text = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert re.findall(r"(?:src|href)=\"([^\"]*)\"", text) == ["good.png"]
@@ -103,7 +106,7 @@ def test_the_page_stands_alone(planted, tmp_path):
 
 
 def test_every_experiment_can_be_named():
-    """The command knows it, and its entry names an existing function."""
+    """The help of `reproduce` lists each experiment, and each entry names an existing function."""
     help_text = risorius("reproduce", "--help").output
     for experiment in EXPERIMENTS:
         module, name = experiment.function.split(".")

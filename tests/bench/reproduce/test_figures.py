@@ -1,4 +1,4 @@
-"""The paper's figures 8, 9 and 10: their claims hold on the pictures."""
+"""The claims of the paper's figures 8, 9 and 10 hold on the reproduced pictures."""
 
 from collections.abc import Iterator
 
@@ -17,7 +17,7 @@ DRAWN = [each for each in EXPERIMENTS if each.picture]
 @pytest.mark.slow
 @pytest.mark.parametrize("experiment", DRAWN, ids=lambda each: each.name)
 def test_figures_are_as_the_paper_says(experiment):
-    """Every claim is met, or differs as documented; and its picture is not empty."""
+    """Every claim is met, or differs as documented, and the picture of each figure is not empty."""
     result = experiment.run()
     assert result.findings
     assert not result.missed
@@ -34,7 +34,7 @@ def rolled(cells, radius):
 
 
 def test_a_rolled_sheet_folds_along_its_axis():
-    """A flat sheet has no fold; rolled to a cylinder it is one fold; a ball bends both ways."""
+    """A flat sheet has no fold, a sheet rolled to a cylinder has one; a ball bends both ways."""
     vertices, faces, cylinder = rolled(12, 25.0)
     assert not figure_8.find_folds(faces, vertices)[1].any()
     directions, is_fold = figure_8.find_folds(faces, cylinder)
@@ -48,13 +48,13 @@ def test_a_rolled_sheet_folds_along_its_axis():
 
 @pytest.fixture(scope="module")
 def plane() -> Iterator[Waving]:
-    """The plane in the figure's own size."""
+    """The plane at the size used in the figure."""
     with Canvas((380, 230)) as canvas:
         yield Waving(canvas)
 
 
 def test_nothing_is_off_from_itself(plane):
-    """The measures are 0 for the truth, and detect another shade and another outline."""
+    """The measures are 0 for the reference itself, and detect another shade and another outline."""
     truth = plane.true_image(0.0)
     assert levels_apart(truth, truth) == outline_apart(truth, truth) == 0.0
     shows = truth.mean(axis=2) < 250

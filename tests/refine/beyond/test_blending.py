@@ -1,4 +1,4 @@
-"""Nothing pops: the refined surface is a continuous function of the positions."""
+"""Blending: the refined surface is a continuous function of the positions, so nothing pops."""
 
 import numpy as np
 import pytest
@@ -34,10 +34,11 @@ STEPS = 400
 
 
 def jumps(scheme, blend, criterion, mesh=None):
-    """Largest motion of the surface per motion of the input, and turn of a normal [rad] per step.
+    """The surface's largest motion per input motion, and a normal's largest change per step.
 
-    A grid is bent from flat to strongly wrinkled and on, in small steps, so that edges go through
-    both thresholds in both directions, one after the other.
+    A grid is bent in small steps from flat to strongly wrinkled and back, so that edges pass both
+    thresholds in both directions, one after the other. Changes of normals are lengths of
+    differences.
     """
     mesh = mesh or meshes.irregular(4, 4, 3, 0)
     wave = meshes.wrinkled(mesh, 5, 0.5) - mesh.vertices
@@ -67,15 +68,18 @@ def test_nothing_pops(scheme):
     """With blending every point of the surface moves at most in proportion to the input."""
     most, turn = jumps(scheme, True, "normal")
     assert most < BOUND
-    # Edges crumple here until the normals of neighbours are 120 degrees apart. With one more
-    # between them shading is interpolated otherwise: up to 0.15 at once, at any size of steps.
+    # Edges crumple until the normals of neighbours are 120 degrees apart. An added point between
+    # them changes interpolated shading by up to 0.15 at once, for steps of any size.
     assert turn < 0.5
 
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES)
 @pytest.mark.parametrize("name", ["seam", "valence 20"])
 def test_nothing_pops_at_seams_and_tips(name, scheme):
-    """Nor on a small tube with a seam, nor at a tip, where normals turn faster than elsewhere."""
+    """Nothing pops on a small tube with a seam, or at a tip.
+
+    Normals turn faster there than elsewhere.
+    """
     mesh = meshes.tube(6, 3) if name == "seam" else meshes.double_cone(20)
     blended = jumps(scheme, True, "normal", mesh)[0]
     assert blended < 2 * BOUND
@@ -85,16 +89,17 @@ def test_nothing_pops_at_seams_and_tips(name, scheme):
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[::2])
 @pytest.mark.parametrize("criterion", ["displacement", "normal+rest"])
 def test_nothing_pops_by_other_criteria(criterion, scheme):
-    """This holds for the other criteria and their maximum."""
+    """Nothing pops with the other criteria, or with their maximum."""
     assert jumps(scheme, True, criterion)[0] < BOUND
 
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
 @pytest.mark.parametrize("name", ["icosahedron", "box", "cone"])
 def test_outlines_do_not_pop(name, scheme):
-    """A body whose edges all turn by 40 degrees and more rolls in the view, and nothing jumps.
+    """Nothing jumps on a body that rolls in the view.
 
-    Without blending points go 53 to 104 times as far in these steps, with it 1.7 to 3.5 times.
+    All its edges turn by 40 degrees or more. In these steps points move 53 to 104 times as far as
+    the input without blending, and 1.7 to 3.5 times with blending.
     """
     body = {
         "icosahedron": trimesh.creation.icosahedron,
@@ -131,9 +136,10 @@ def test_outlines_do_not_pop(name, scheme):
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
 def test_any_change_of_needs_is_followed(scheme):
-    """For any metrics of three edges, the triangle between them does not jump.
+    """For any metrics of its three edges, a triangle does not jump.
 
-    Largest seen: 0.8 of the change of the metrics. A diagonal that turns would be 0.1 at once.
+    The largest jump seen is 0.8 of the change of the metrics. A diagonal that turns would jump 0.1
+    at once.
     """
     vertices = [[0, 0, 0], [1, 0, 0], [0.3, 0.9, 0], [1.2, 1, -0.6], [-0.6, 0.5, -0.6]]
     positions = np.array([*vertices, [0.4, -0.9, -0.6]])
@@ -164,9 +170,9 @@ def test_any_change_of_needs_is_followed(scheme):
 
 
 def test_folds_have_no_scales():
-    """Around a cylinder no piece of a triangle with two grown edges is tilted along the axis.
+    """On a cylinder with two grown edges per triangle, no subtriangle is tilted along the axis.
 
-    Lines from the centroid to the corners would tilt them by up to 5.5 degrees.
+    Lines from the centroid to the corners would tilt subtriangles by up to 5.5 degrees.
     """
     grid = meshes.open_grid(9, 9)
     angle = 0.5 * grid.vertices[:, 0]
@@ -183,20 +189,20 @@ def test_folds_have_no_scales():
 
 
 def _across(grid):
-    """Needs of edges: those along y have none, all others one whole split."""
+    """Metrics of edges: none for edges along y, 0.9 of a split for all others."""
     edges = refine.connect(grid.faces, len(grid.vertices)).edges
     is_along = np.ptp(grid.vertices[edges][..., 0], axis=1) < 1e-9
     return np.where(is_along, -1.0, 0.9)
 
 
 def test_without_blending_it_pops():
-    """The measure can detect a pop: the paper's rules have some."""
+    """Without blending the measure detects pops, because the paper's rules have some."""
     assert jumps("loop", False, "normal")[0] > 2 * BOUND
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_begins_at_the_unrefined_surface(scheme):
-    """Edges with metrics near 0 give the surface of the mesh itself; grown ones the full scheme."""
+    """Metrics near 0 give the surface of the unrefined mesh; there is no step at a metric of 1."""
     mesh = meshes.irregular(7, 5, 4, 0)
     deformed = meshes.wrinkled(mesh, 8)
     edge_count = edge_count_of(mesh)
@@ -217,7 +223,10 @@ def test_begins_at_the_unrefined_surface(scheme):
 
 
 def test_splits_as_a_measure():
-    """A criterion of whole splits measures them, and its blended points have grown."""
+    """A criterion of whole splits works as a metric.
+
+    Its blended points reach their final places.
+    """
     mesh = meshes.octahedron()
     wanted = np.arange(12) % 3
     refiner = kahler(mesh, blend=True, criterion=Forced(wanted))

@@ -24,7 +24,7 @@ RULES = [
 
 
 def prism(sides):
-    """A cylinder of so many sides, radius 1 and height 2, whose lids have a middle."""
+    """A cylinder with this number of sides, radius 1 and height 2; each cap has a middle vertex."""
     turn = 2.0 * np.pi * np.arange(sides) / sides
     ring = np.column_stack([np.cos(turn), np.sin(turn)])
     points = [np.column_stack([ring, np.full(sides, z)]) for z in (-1.0, 0.0, 1.0)]
@@ -54,7 +54,7 @@ def volume(points, faces):
 
 @pytest.mark.parametrize("options", [LOOK, {**LOOK, "blend": False}])
 def test_a_cylinder_keeps_its_rims(options):
-    """Its sides become round, with a cylinder's volume; without creases it swells."""
+    """A cylinder's sides become round, with a cylinder's volume; without creases it swells."""
     points, faces = prism(16)
     own = volume(points, faces)
     swollen = refine.create("kahler", faces, points, **options).refine(points)
@@ -72,7 +72,7 @@ def test_a_cylinder_keeps_its_rims(options):
 
 
 def test_a_cube_stays_one():
-    """Flat sides need no splits, and if they are split nothing moves by more than rounding."""
+    """A cube's flat sides need no splits; forced splits move nothing by more than rounding."""
     points, faces = cube()
     refined = refine.create("kahler", faces, points, crease_angle=80.0, **LOOK).refine(points)
     assert refined.triangle_count == 12
@@ -87,7 +87,10 @@ def test_a_cube_stays_one():
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
 def test_new_points_of_creases_lie_on_them(scheme):
-    """As on a border, neither of the two straight ridges of a roof leaves its line."""
+    """New points on creases follow the border rule.
+
+    Both straight ridges of a roof stay straight.
+    """
     x, y = np.meshgrid(np.arange(5.0), np.arange(7.0))
     flat = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
     points = flat + [0.0, 0.0, 1.0] * np.abs(x.ravel() - 2.0)[:, None]
@@ -112,7 +115,10 @@ def test_new_points_of_creases_lie_on_them(scheme):
 
 @pytest.mark.parametrize("levels", [1, 2, 3])
 def test_uniform_subdivision_keeps_them(levels):
-    """Halves of creases are creases: a cube's corners stay, and its sides stay flat."""
+    """Halves of creases are creases.
+
+    In uniform subdivision a cube keeps its corners and flat sides.
+    """
     points, faces = cube()
     refiner = refine.create("loop", faces, points, levels=levels, crease_angle=60.0)
     refined = refiner.refine(points)
@@ -130,7 +136,10 @@ def test_uniform_subdivision_keeps_them(levels):
     seed=st.integers(0, 999),
 )
 def test_no_crack_whatever_is_sharp(soup, angle, options, seed):
-    """For soups with edges of one triangle or three, turned, doubled: `check` holds."""
+    """With any creases on any triangles, `check` finds no crack.
+
+    Triangles include edges of one or three triangles, turned ones and doubled ones.
+    """
     points, faces = soup
     refiner = refine.create("kahler", faces, points, crease_angle=angle, **options)
     moved = points + np.random.default_rng(seed).normal(0.0, 0.2, points.shape)
@@ -140,7 +149,11 @@ def test_no_crack_whatever_is_sharp(soup, angle, options, seed):
 @settings(max_examples=60)
 @given(soup=soups(), angle=st.sampled_from([0.0, 20.0, 90.0]))
 def test_sectors_are_what_creases_leave_together(soup, angle):
-    """Corners at a vertex that other edges join have one sector; corners on both sides have two."""
+    """Creases at a vertex separate its corners into sectors.
+
+    Corners joined by an edge that is no crease have one sector; corners on both sides of a crease
+    have two.
+    """
     points, faces = soup
     refiner = refine.create("kahler", faces, points, crease_angle=angle)
     assert isinstance(refiner, refine.Kahler)
@@ -162,7 +175,7 @@ def test_sectors_are_what_creases_leave_together(soup, angle):
 
 
 def test_angles_by_hand():
-    """A cube's edges turn by 90 degrees, its diagonals, borders and slivers by none."""
+    """A cube's edges turn by 90 degrees; its diagonals, borders and slivers by none."""
     points, faces = cube()
     mesh = refine.connect(faces, 8)
     angles = np.degrees(dihedral_angles(mesh, points))
@@ -175,7 +188,10 @@ def test_angles_by_hand():
 
 
 def test_off_by_default_and_refused_in_words():
-    """None and 180 degrees change no bit; a value that is not an angle is named."""
+    """By default, and at 180 degrees, creases change no bit.
+
+    A value that is not an angle is refused.
+    """
     mesh = meshes.irregular(3)
     bent = meshes.wrinkled(mesh, 4)
     frames = [
@@ -192,7 +208,7 @@ def test_off_by_default_and_refused_in_words():
 
 @pytest.mark.parametrize("rules", [{}, LOOK])
 def test_on_the_card(rules):
-    """The paper's rule has creases there; cubic edges are refined by the processor."""
+    """On the card the paper's rule supports creases; the processor refines cubic edges."""
     points, faces = prism(12)
     moved = points * [1.0, 0.6, 1.3]
     options = {"crease_angle": 40.0, **rules}

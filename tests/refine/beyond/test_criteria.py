@@ -1,4 +1,4 @@
-"""Criteria besides the paper's, and several at once."""
+"""Criteria besides the paper's, alone and combined."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,10 @@ def splits_of(mesh, deformed, criterion, **view):
 
 
 def test_rest_by_hand():
-    """At curved places of a tube, by height and length; the same edges for every bend and view."""
+    """The criterion `rest` splits curved places of a tube by height and length of the arc.
+
+    It splits the same edges for every deformation and view.
+    """
     tube = meshes.tube(24, 4)
     around = 2 * np.sin(np.pi / 24)
     edges = refine.connect(tube.faces, len(tube.vertices)).edges
@@ -39,7 +42,7 @@ def test_rest_by_hand():
 
 
 def test_rest_is_grown_at_once():
-    """Blended points that exist at rest have the same place without blending."""
+    """Points that exist at rest have the same place with blending as without."""
     sphere = meshes.ball(1)
     points = []
     for blend in (False, True):
@@ -47,11 +50,11 @@ def test_rest_is_grown_at_once():
         mesh = refiner.refine(sphere.vertices)
         points.append({tuple(row) for row in mesh.positions.round(5).tolist()})
     assert len(points[0]) > len(sphere.vertices)
-    assert points[0] < points[1]  # and the points in the middle of triangles
+    assert points[0] < points[1]  # a blended mesh also has points in the middle of triangles
 
 
 def test_view_is_needed():
-    """A criterion that depends on the eye says so."""
+    """A criterion that depends on the eye raises an error without a view."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh, criterion="silhouette")
     with pytest.raises(ValueError, match=r"needs the place of the eye; pass view=refine.View"):
@@ -62,7 +65,7 @@ def test_view_is_needed():
 
 
 def test_maximum():
-    """A list splits each edge by the criterion with the most splits."""
+    """A list of criteria splits each edge as often as its most demanding criterion."""
     mesh = meshes.irregular(1)
     deformed = meshes.wrinkled(mesh, 2)
     view = refine.View([0.0, 0.0, 50.0])
@@ -91,7 +94,7 @@ def test_blended_splits_are_the_same():
 
 @pytest.mark.parametrize("blend", [False, True])
 def test_one_level_only(blend):
-    """An infinite second threshold switches the second level off, blended or not."""
+    """An infinite second threshold disables the second level, with blending and without."""
     mesh = meshes.irregular(2)
     refiner = kahler(mesh, threshold_twice=np.inf, blend=blend)
     refiner.refine(meshes.wrinkled(mesh, 3, 1.0))
@@ -102,7 +105,7 @@ EYE = np.array([3.0, 2.0, 4.0])
 
 
 def plain_measure(kind, positions, normals, edges, most):
-    """The measure of a criterion at every edge, implemented again simply."""
+    """The measure of a criterion at every edge, in a second, simple implementation."""
     values = []
     for a, b in edges:
         cosine = float(normals[a] @ normals[b])
@@ -125,7 +128,10 @@ def plain_measure(kind, positions, normals, edges, most):
     ],
 )
 def test_needs_by_hand(kind, once, twice, level):
-    """Needs are measures over the distance of the thresholds; without a second, over the first."""
+    """A metric is the measure, scaled by the distance of both thresholds.
+
+    With an infinite second threshold it is scaled by the first threshold.
+    """
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3)
     none = refine.create("none", mesh.faces, mesh.vertices)
@@ -134,7 +140,7 @@ def test_needs_by_hand(kind, once, twice, level):
     at_rest = none.refine(mesh.vertices).normals.copy()
     now = none.refine(deformed).normals.copy()
     width = twice - once if level == "both" else once
-    most = once + 1.25 * width  # points have grown twice
+    most = once + 1.25 * width  # here points of both levels are at their final places
     expected = plain_measure(kind, deformed, now.astype(float), edges, most)
     if kind is refine.NormalDrop:
         expected -= plain_measure(kind, mesh.vertices, at_rest.astype(float), edges, most)
@@ -157,9 +163,9 @@ def test_needs_by_hand(kind, once, twice, level):
 
 @pytest.mark.parametrize("scheme", ["cubic", "detail"])
 def test_displacement(scheme):
-    """An edge is split if its full middle is farther than the threshold from the straight.
+    """An edge is split if its fully displaced middle is far enough from the chord.
 
-    An edge on a border is split at an eighth of it.
+    For an edge on a border, an eighth of the threshold counts.
     """
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3)
@@ -188,7 +194,10 @@ def test_displacement(scheme):
 
 
 def test_displacement_needs_measures():
-    """The paper's scheme does not measure the motion of edges; its refined normals do."""
+    """The paper's scheme has no measure of displacement and is refused.
+
+    Refined normals have one.
+    """
     mesh = meshes.octahedron()
     with pytest.raises(ValueError, match='LoopScheme does so with normals="refined" only'):
         kahler(mesh, criterion="displacement")
@@ -198,7 +207,7 @@ def test_displacement_needs_measures():
 
 
 def test_a_rule_of_ones_own_is_asked():
-    """A subclass with another mark is used."""
+    """A subclass that replaces `mark` is used, alone and in a list."""
     mesh = meshes.irregular(4)
 
     class Everything(refine.NormalDrop):
@@ -220,7 +229,7 @@ def test_a_rule_of_ones_own_is_asked():
 )
 @pytest.mark.parametrize("name", ["kahler", "kahler-gl"])
 def test_a_rule_that_says_nothing(name, options, text):
-    """A criterion or scheme without its one method is named with it, when a frame needs it."""
+    """A criterion or scheme without its required method is reported by name in a frame."""
     mesh = meshes.octahedron()
     if name == "kahler-gl" and "scheme" in options:
         pytest.skip("the card has schemes of its own")
@@ -230,14 +239,14 @@ def test_a_rule_that_says_nothing(name, options, text):
 
 
 class Heat(refine.Criterion):
-    """A user's criterion, which divides zero by zero at one edge."""
+    """A user's criterion that divides zero by zero at one edge."""
 
     def __init__(self, at, frame=0):
         self.at = at
         self.frame = frame
 
     def measure(self, positions, normals, metric):
-        """Write NaN from some frame on."""
+        """Write NaN, from a given frame on."""
         metric[:] = 0.5
         if self.frame <= 0:
             metric[self.at] = np.nan
@@ -245,10 +254,10 @@ class Heat(refine.Criterion):
 
 
 class Warmth(Heat):
-    """A criterion that decides by itself, and would spoil only a blended frame."""
+    """A criterion whose `mark` is correct, but whose `measure`, used for blending, writes NaN."""
 
     def mark(self, positions, normals, splits):
-        """Split nothing."""
+        """Split no edge."""
         splits[:] = 0
 
 
@@ -256,7 +265,7 @@ class Warmth(Heat):
 @pytest.mark.parametrize("name", ["kahler", "kahler-gl"])
 @pytest.mark.parametrize("is_part", [False, True])
 def test_no_number_is_reported(blend, name, is_part):
-    """The frame that measures it reports the criterion's name, alone or in a list."""
+    """The first frame with a NaN metric reports the criterion's name, alone or in a list."""
     mesh = meshes.irregular(3)
     for first in (0, 2):
         heat = Heat(7, first)
@@ -273,7 +282,7 @@ def test_no_number_is_reported(blend, name, is_part):
 
 
 def test_check_reports_what_would_be_no_number():
-    """For a criterion that decides by itself, `check` calls the measure."""
+    """`check` also calls `measure` of a criterion with its own `mark`, and reports NaN."""
     mesh = meshes.irregular(3)
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Warmth(7))
     refined = refiner.refine(mesh.vertices)

@@ -1,4 +1,4 @@
-"""Detail of a finer mesh: it is there at rest, and moves with the surface."""
+"""Detail of a finer mesh: it appears at rest, and moves with the surface."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ from tests.refine.plain_normals import RefinedNormals
 
 
 def bumpy(columns, rows):
-    """A grid of 4 x 3 with bumps that a coarse grid cannot show."""
+    """A grid of 4 x 3 cells with bumps that a coarse grid cannot represent."""
     grid = meshes.open_grid(columns, rows)
     vertices = grid.vertices * [4.0 / columns, 3.0 / rows, 1.0]
     x = vertices[:, 0]
@@ -73,7 +73,7 @@ def test_lies_on_the_finer_mesh(blend):
 
 
 def test_normals_of_the_surface_are_the_finer_ones():
-    """The surface with all splits is far nearer to the finer normals than a mean is."""
+    """With all edges split, refined normals are nearer to the finer mesh's than mean normals."""
     fine_normals = vertex_normals(FINE.vertices, FINE.faces)
     off = {}
     for normals in ("linear", "refined"):
@@ -88,8 +88,8 @@ def test_normals_of_the_surface_are_the_finer_ones():
 def test_no_stars_in_folds():
     """With a finer mesh that adds nothing, normals of a folded grid are as smooth as cubic ones.
 
-    Between a vertex and the quarter points around it they turn by a part of the fold; with one
-    direction for a whole edge they turned by half of it there and stood still from there on.
+    Between a vertex and the quarter points around it, normals turn by a part of the fold. With one
+    direction for a whole edge, they turned by half of the fold there, and by nothing from there on.
     """
     flat = meshes.open_grid(8, 6)
     x = flat.vertices[:, 0] - 4.0
@@ -108,14 +108,14 @@ def test_no_stars_in_folds():
         true /= norm(true, axis=1, keepdims=True)
         off[scheme] = angles(true, mesh.normals[is_middle])
     assert angles(shown["cubic"], shown["detail"]).max() < 5.0
-    # The middles of triangles lie elsewhere, so they are compared with the fold itself: up to 7.5
-    # degrees, and 24 with linear normals.
+    # The middles of triangles lie elsewhere in both schemes, so they are compared with the fold
+    # itself: up to 7.5 degrees, and 24 with linear normals.
     assert off["detail"].max() < off["cubic"].max() + 1.0
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_turns_with_the_mesh(seed):
-    """A rigid motion of the mesh moves all of it: points, middles and normals."""
+    """A rigid motion of the mesh moves all detail rigidly: points, middles and normals."""
     turn = meshes.rotation(seed)
     still = refined("detail", COARSE.vertices)
     moved = refined("detail", COARSE.vertices @ turn.T + [1.0, 2.0, 3.0])
@@ -135,7 +135,7 @@ def test_turns_with_the_mesh(seed):
     blend=st.booleans(),
 )
 def test_equals_plain_twin(mesh, seed, normals, blend):
-    """Relief at rest moves like the simple twin's, for any splits and geomorph weights."""
+    """Detail moves as in the simple twin, for any splits and geomorph weights."""
     generator = np.random.default_rng(seed)
     lift = 0.05 * generator.standard_normal(mesh.vertices.shape)
     edge_count = edge_count_of(mesh)
@@ -178,13 +178,16 @@ def test_equals_plain_twin(mesh, seed, normals, blend):
         geomorph=needed.geomorph(refiner.edges) if blend else None,
         rules=rules,
     )
-    # Short edges make long levers: directions are rounded to single precision twice.
+    # Short edges magnify errors: directions are rounded to single precision twice.
     assert_equals_twin(refiner, refined, twin, tolerance=(2e-5, 2e-4))
 
 
 @pytest.mark.slow
 def test_many_vertices_in_one_place():
-    """Thousands of vertices in one place are searched in bounded time, and give finite detail."""
+    """Thousands of finer vertices in one place are searched in bounded time.
+
+    Their detail is finite.
+    """
     random = np.random.default_rng(3)
     positions = np.zeros((3000, 3))
     positions[:3] = np.eye(3)
@@ -203,6 +206,6 @@ def test_many_vertices_in_one_place():
     ],
 )
 def test_bad_finer_meshes(finer, text):
-    """An invalid finer mesh is refused, and the error says how to pass one."""
+    """An invalid finer mesh is refused, and the error shows how to pass a valid one."""
     with pytest.raises(ValueError, match=text):
         refine.DetailScheme(finer)

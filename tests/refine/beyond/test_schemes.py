@@ -1,4 +1,4 @@
-"""Every scheme, blended and not, compared with its simple twin and the checker."""
+"""Every scheme, with blending and without, compared with its simple twin and the checker."""
 
 import numpy as np
 import pytest
@@ -31,13 +31,13 @@ MESHES = {**meshes.NAMED, **VALENCES, "irregular": lambda: meshes.irregular(3, 6
 
 
 def bound(mesh, scheme, blend, metric, **options):
-    """A refiner whose edges have given metrics; for `detail` the finer mesh is the mesh itself."""
+    """A refiner whose edges have given metrics; the finer mesh of `detail` is the mesh itself."""
     scheme = scheme_of(scheme, mesh.vertices + np.array([0.0, 0.0, 0.01]), mesh.faces)
     return kahler(mesh, scheme=scheme, blend=blend, criterion=GivenMetric(metric), **options)
 
 
 def twin_of(mesh, deformed, scheme, normals, blend, needed, edges):
-    """The same frame by the simple implementations."""
+    """The same frame by the simple implementation."""
     points, faces = as_lists(deformed, mesh.faces)
     rest, _ = as_lists(mesh.vertices, mesh.faces)
     rules = PaperRules(points, faces)
@@ -54,7 +54,7 @@ def twin_of(mesh, deformed, scheme, normals, blend, needed, edges):
 
 
 def random_metrics(mesh, seed):
-    """Needs of no, one and two splits, and all values between, for every edge."""
+    """Random metrics from -0.7 to 2 for every edge: no split, one or two, and values between."""
     count = edge_count_of(mesh)
     return np.random.default_rng(seed).uniform(-0.7, 2.0, count)
 
@@ -74,7 +74,7 @@ def test_equals_plain_twin(normals, scheme, blend, name):
         refine.check(refiner, refined, deformed)
         twin = twin_of(mesh, deformed, scheme, normals, blend, needed, refiner.edges)
         cancel = name == "pillow" and normals == "refined"
-        if name != "pillow" or not blend:  # whose two middles have one name
+        if name != "pillow" or not blend:  # the pillow's two middles have one name
             assert_equals_twin(
                 refiner, refined, twin, normals_cancel=cancel, tolerance=TOLERANCES[normals]
             )
@@ -104,7 +104,7 @@ def test_soups_equal_twin(soup, data, scheme, normals, blend):
 
 
 def _has_normals(refined):
-    """Whether no normal is only a rounding error, which cubic edges would follow."""
+    """Whether all normals are larger than rounding errors, since cubic edges follow them."""
     lengths = norm(refined.normals, axis=1)
     return bool((lengths > 0.5).all())
 
@@ -112,7 +112,7 @@ def _has_normals(refined):
 @pytest.mark.parametrize("blend", [False, True])
 @pytest.mark.parametrize("scheme", ["cubic", "detail"])
 def test_vertices_stay(scheme, blend):
-    """Schemes that interpolate keep every original vertex in place, to the last bit."""
+    """Interpolating schemes keep every original vertex in place, to the last bit."""
     mesh = meshes.irregular(5)
     deformed = meshes.wrinkled(mesh, 6)
     refiner = bound(mesh, scheme, blend, random_metrics(mesh, 7))
@@ -122,7 +122,7 @@ def test_vertices_stay(scheme, blend):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_flat_stays_flat(scheme):
-    """A plane refines into itself: all weights add up to one."""
+    """A plane refines into a plane: all weights have the sum one."""
     mesh = meshes.irregular(2)
     flat = mesh.vertices * [1.0, 1.0, 0.0]
     tilted = flat @ np.array([[1, 0, 0.5], [0, 1, -0.3], [0, 0, 1.0]])
@@ -134,7 +134,7 @@ def test_flat_stays_flat(scheme):
 
 
 def test_borders_beside_corners_are_parabolas():
-    """Beside the corner of a half disc its rim keeps its curve, and is not flatter there."""
+    """Beside a corner, the rim of a half disc follows a parabola, and is not flatter there."""
     angles = np.radians([0.0, 45.0, 90.0, 135.0, 180.0])
     rim = np.stack([np.cos(angles), np.sin(angles), np.zeros(5)], axis=1)
     half_disc = meshes.Mesh(

@@ -1,4 +1,4 @@
-"""Normals of the refined surface: correct, continuous, and the same for any splits."""
+"""Normals of the refined surface: correct, continuous, and independent of splits."""
 
 import numpy as np
 import numpy.typing as npt
@@ -43,14 +43,17 @@ def metrics(mesh, seed=None, metric=0.0):
 
 
 def turns(some, others):
-    """Angles [rad] between unit vectors, shape (..., 3)."""
+    """Angles [radians] between unit vectors, shape (...,)."""
     chords = norm(np.asarray(some, dtype=np.float64) - others, axis=-1)
     return 2.0 * np.arcsin(np.minimum(0.5 * chords, 1.0))
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_edges_have_normals_where_they_are_needed(scheme, monkeypatch):
-    """Those of split edges, or all if a criterion measures them, have the same bits."""
+    """Normals of edges are computed for split edges only, or for all if a criterion measures them.
+
+    Both ways give the same bits.
+    """
     found = []
 
     def counted(kernel, count, *arguments):
@@ -78,7 +81,10 @@ def test_edges_have_normals_where_they_are_needed(scheme, monkeypatch):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_does_not_depend_on_what_is_split(scheme):
-    """A vertex has the same normal to the last bit, and so has a middle once it has grown."""
+    """The normal of a vertex has the same bits for all splits.
+
+    So has a fully grown middle's normal.
+    """
     mesh = meshes.irregular(3)
     deformed = meshes.wrinkled(mesh, 4, 0.2)
     count = len(mesh.vertices)
@@ -106,7 +112,10 @@ def test_does_not_depend_on_what_is_split(scheme):
 
 
 def smooth_wave(mesh, height):
-    """A grid with one wave along each axis: every normal of an edge's ends within 50 degrees."""
+    """A grid with one wave along each axis.
+
+    Normals at the ends of an edge are within 50 degrees.
+    """
     x = mesh.vertices[:, 0]
     y = mesh.vertices[:, 1]
     heights = height * (np.sin(0.9 * x) + 0.6 * np.cos(0.8 * y + 0.3 * x))
@@ -118,8 +127,8 @@ def smooth_wave(mesh, height):
 def test_normals_do_not_pop(scheme):
     """In a smooth motion through all thresholds, shading turns in proportion to the motion.
 
-    Largest seen: 1.7 times the turn of the surface's own normals; without blending 54 to 62, and
-    twice that with steps of half the size.
+    The largest ratio seen is 1.7 times the turn of the surface's own normals. Without blending it
+    is 54 to 62, and twice that with steps of half the size.
     """
     mesh = meshes.open_grid(8, 6)
 
@@ -153,9 +162,9 @@ def test_normals_do_not_pop(scheme):
     at=st.sampled_from([0.0, 0.25, 1.0, 1.25]),
 )
 def test_geomorph_has_no_steps(seed, scheme, edge, at):
-    """For any splits around it, an edge at a threshold does not turn shading at once.
+    """For any splits around it, an edge that passes a threshold does not turn shading by a step.
 
-    The rest comes from interpolation between more points: 3 degrees for turns of 80.
+    The remaining change comes from interpolation between more points: 3 degrees for turns of 80.
     """
     mesh = meshes.open_grid(5, 4)
     positions = smooth_wave(mesh, 0.4)
@@ -184,7 +193,7 @@ def torus(around=16, across=10):
 
 
 def exact(name, points):
-    """Unit normals of the body through points near its surface, shape (..., 3)."""
+    """Unit normals of the exact surface at points near it, shape (..., 3)."""
     if name == "torus":
         ring = points * [1.0, 1.0, 0.0]
         directions = points - ring / norm(ring, axis=-1, keepdims=True)
@@ -196,7 +205,7 @@ def exact(name, points):
 @pytest.mark.parametrize("metric", [0.9, 2.0])
 @pytest.mark.parametrize("name", ["ellipsoid", "torus"])
 def test_nearer_to_the_exact_normals(name, metric):
-    """On bodies with known normals, refined ones are nearer to these than linear ones."""
+    """On surfaces with known normals, refined normals are nearer to these than linear ones."""
     ball = meshes.ball(2)
     ellipsoid = meshes.Mesh(ball.vertices * [1.0, 0.6, 1.5], ball.faces)
     mesh = torus() if name == "torus" else ellipsoid
@@ -211,7 +220,7 @@ def test_nearer_to_the_exact_normals(name, metric):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_points_stay(scheme):
-    """`normals` only changes normals: positions and triangles have the same bits."""
+    """The option `normals` only changes normals: positions and triangles have the same bits."""
     mesh = meshes.irregular(5)
     deformed = meshes.wrinkled(mesh, 6)
     frames = []
@@ -224,7 +233,7 @@ def test_points_stay(scheme):
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
 def test_symmetric_stays_symmetric(scheme):
-    """An opened slit that is symmetric in x and y has normals that are symmetric, too."""
+    """An opened slit that is symmetric in x and y has normals with the same symmetry."""
     mesh = meshes.slit()
     positions = meshes.opened(mesh, 0.8)
     x = positions[:, 0]
@@ -242,7 +251,7 @@ def test_symmetric_stays_symmetric(scheme):
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
 @pytest.mark.parametrize("blend", [False, True])
 def test_planar_is_exact(scheme, blend):
-    """No normal of a plane leans by any bit, with borders and holes."""
+    """All normals of a plane have the same bits, also with borders and holes."""
     mesh = meshes.irregular(2)
     flat = mesh.vertices * [1.0, 1.0, 0.0]
     criterion = GivenMetric(metrics(mesh, 3))
@@ -256,7 +265,10 @@ def test_planar_is_exact(scheme, blend):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_moves_with_the_mesh(scheme):
-    """A rigid motion turns all normals with it; a hundred thousand edges away they are the same."""
+    """A rigid motion turns all normals with it.
+
+    Also when the mesh moves by 100 000 edge lengths.
+    """
     mesh = meshes.irregular(8)
     deformed = meshes.wrinkled(mesh, 9, 0.2)
     turn = meshes.rotation(1)

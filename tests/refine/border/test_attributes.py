@@ -20,7 +20,7 @@ REFINERS = [
 
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 def test_attributes_are_linear(name, options):
-    """Every attribute has the value of its place in its triangle, on both sides of seams."""
+    """An attribute is linear in its triangle, on both sides of seams."""
     tube = meshes.tube(10, 6)
     assert tube.face_uv is not None
     deformed = meshes.wrinkled(tube, 3, 0.3)
@@ -53,7 +53,7 @@ def test_attributes_are_linear(name, options):
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic", "detail"])
 def test_any_type_and_order(scheme):
-    """float32 or float64, C or Fortran order, strides, int32 or int64 give the same frame."""
+    """float32 or float64, C or Fortran order, strides, int32 or int64 all give the same frame."""
     mesh = meshes.irregular(6)
     rest = mesh.vertices.astype(np.float32)
     deformed = meshes.wrinkled(mesh, 7).astype(np.float32)
@@ -80,7 +80,7 @@ def room(mesh):
 
 @pytest.mark.parametrize("blend", [False, True])
 def test_own_stream_grows(blend):
-    """A refiner's own stream has room for its frames, not for the worst case, and only grows."""
+    """A refiner's own stream has room for its frames, not for the worst case, and never shrinks."""
     mesh = meshes.irregular(8, 30, 30)
     edge_count = edge_count_of(mesh)
     needed = GivenMetric(np.full(edge_count, -1.0))
@@ -94,7 +94,7 @@ def test_own_stream_grows(blend):
     most = room(all_split)
     assert most > 5 * unsplit
     rows = all_split.positions.base
-    assert rows is not None and len(rows) == refiner.vertex_capacity  # no useless room
+    assert rows is not None and len(rows) == refiner.vertex_capacity  # no unused room
     needed.metric[:] = -1.0
     none_split = refiner.refine(mesh.vertices)
     refine.check(refiner, none_split, mesh.vertices)
@@ -103,7 +103,7 @@ def test_own_stream_grows(blend):
 
 @pytest.mark.parametrize("name", ["none", "loop", "kahler"])
 def test_values_of_corners_where_there_is_no_triangle(name):
-    """In a mesh of vertices alone no corners give them values: they get zeros."""
+    """Values given at corners are zero at all vertices of a mesh without triangles."""
     nothing = np.zeros((0, 3), int)
     refiner = refine.create(name, nothing, np.eye(3), uv=np.ones((4, 2)), face_uv=nothing)
     mesh = refiner.refine(np.eye(3))

@@ -1,4 +1,4 @@
-"""The base class of refiners, in an external subclass."""
+"""The base class of refiners, used by an external subclass."""
 
 from typing import Any, Unpack
 
@@ -12,7 +12,7 @@ from tests.refine.border.test_stream import stream_for
 
 
 class Middles(refine.BaseRefiner):
-    """Cuts every triangle into three, around a point in its middle."""
+    """A refiner that cuts every triangle into three, around a new point in its middle."""
 
     def __init__(
         self,
@@ -28,16 +28,16 @@ class Middles(refine.BaseRefiner):
 
     @property
     def vertex_capacity(self) -> int:
-        """Wedges, and one point for each triangle."""
+        """The number of wedges, and one point for each triangle."""
         return len(self.connectivity.wedge_vertices) + len(self.cut)
 
     @property
     def triangle_capacity(self) -> int:
-        """Three for each."""
+        """Three triangles for each triangle."""
         return 3 * len(self.connectivity.faces)
 
     def fill(self, stream: refine.Stream, view: refine.View | None) -> tuple[int, int]:
-        """Reserve for the worst case, and report the result."""
+        """Reserve room for the worst case, and report the number of written rows."""
         mesh = self.connectivity
         wedge_count = len(self.connectivity.wedge_vertices)
         out = self.reserve(stream, self.vertex_capacity, self.triangle_capacity)
@@ -63,14 +63,14 @@ class Middles(refine.BaseRefiner):
         return self.vertex_capacity, count
 
     def origins(self) -> refine.Origins:
-        """The middles come after the wedges."""
+        """The origins of wedges, and behind them those of middles."""
         corners = self.connectivity.faces[self.cut]
         return super().origins().followed_by(corners, np.full(corners.shape, 1 / 3))
 
 
 @pytest.mark.parametrize("name", meshes.NAMED)
 def test_named_meshes(name):
-    """On any mesh, the few lines of a subclass make a proper refinement."""
+    """On every test mesh, the subclass gives a refinement that passes the checker."""
     mesh = meshes.NAMED[name]()
     deformed = meshes.wrinkled(mesh, 3)
     refiner = Middles(mesh.faces, mesh.vertices, raised=0.1)
@@ -80,7 +80,7 @@ def test_named_meshes(name):
 
 
 def test_seams_and_attributes():
-    """Both sides of a seam and all attributes are there, in a stream lent by the caller."""
+    """Both sides of a seam and all attributes are written, into a stream lent by the caller."""
     tube = meshes.tube(8, 5)
     colours = np.random.default_rng(1).random((len(tube.vertices), 3))
     refiner = Middles(
@@ -99,7 +99,7 @@ def test_seams_and_attributes():
 
 
 def test_base_refiner_fills_nothing():
-    """Alone it is abstract, and names the needs of a subclass."""
+    """The base class alone is abstract, and its error names the methods a subclass needs."""
     mesh = meshes.octahedron()
     with pytest.raises(TypeError, match=r"abstract methods '?fill'?, '?triangle"):
         refine.BaseRefiner(mesh.faces, mesh.vertices)

@@ -1,4 +1,4 @@
-"""The checker must keep its promises: each test breaks one relation."""
+"""The checker of refined meshes: each test breaks one relation, which the checker must report."""
 
 import copy
 from types import SimpleNamespace
@@ -24,13 +24,13 @@ class Wrapped:
         return getattr(self.refiner, name)
 
     def origins(self):
-        """The false origins, if there are any."""
+        """The falsified origins, if there are any."""
         return self.false_origins or self.refiner.origins()
 
 
 @pytest.fixture
 def frame() -> tuple[Wrapped, refine.RefinedMesh, np.ndarray]:
-    """A refined frame in its own arrays, its refiner, and the deformed positions."""
+    """One frame: a refined mesh with its own arrays, its refiner, and the deformed positions."""
     mesh = meshes.irregular(11)
     deformed = meshes.wrinkled(mesh, 12, amplitude=0.3)
     refiner = kahler(mesh)
@@ -46,17 +46,17 @@ def without_triangles(mesh, lost):
 
 
 def of_a_split(mesh):
-    """A subtriangle of a split triangle."""
+    """The number of a subtriangle of a split triangle."""
     return int(np.flatnonzero(np.bincount(mesh.source)[mesh.source] > 1)[0])
 
 
 def write(array, place, value):
-    """Write a value at a place."""
+    """Write one value into an array."""
     array[place] = value
 
 
 def check_breaks(relation, refiner, refined, deformed):
-    """Check that the checker names this relation as the broken one of a frame."""
+    """Check that the checker reports this relation as broken for a frame."""
     with pytest.raises(refine.BrokenMeshError, match=relation):
         refine.check(refiner, refined, deformed)
 
@@ -92,13 +92,13 @@ def check_breaks(relation, refiner, refined, deformed):
     ],
 )
 def test_broken_output(frame, broken, relation):
-    """Each fault of the output is reported with the relation that it breaks."""
+    """Each fault of the output is reported with the relation it breaks."""
     refiner, refined, deformed = frame
     check_breaks(relation, refiner, broken(refined) or refined, deformed)
 
 
 def test_t_junction(frame):
-    """A triangle left whole beside a split edge covers its area, but is still found."""
+    """A whole triangle beside a split edge is reported, although all area is covered."""
     refiner, refined, deformed = frame
     counts = np.bincount(refined.source)
     source = int(np.flatnonzero(counts > 1)[0])
@@ -113,7 +113,7 @@ def test_t_junction(frame):
 
 
 def test_crack_inside(frame):
-    """Two subtriangles do not fit if only one is cut along the other diagonal."""
+    """Two subtriangles do not fit together if one of them is cut along the other diagonal."""
     refiner, refined, deformed = frame
     origins = refiner.origins()
     doubled = refine.Origins(
@@ -121,7 +121,7 @@ def test_crack_inside(frame):
         np.concatenate([origins.weights, origins.weights[:1]]),
     )
     refiner.false_origins = doubled
-    # A copy of vertex 0 in another place of space, used by one of the triangles around it.
+    # A copy of vertex 0 at another place in space, used by one of the triangles around it.
     moved = refined._replace(
         positions=np.concatenate([refined.positions, refined.positions[:1] + np.float32(0.01)]),
         normals=np.concatenate([refined.normals, refined.normals[:1]]),
@@ -132,11 +132,11 @@ def test_crack_inside(frame):
 
 
 def test_edge_flip_inside(frame):
-    """Subtriangles that overlap and miss the same area are found by their inner sub-edges."""
+    """Subtriangles that overlap and miss the same area are detected by their inner sub-edges."""
     mesh = meshes.triangle()
     refiner = Wrapped(kahler(mesh))
     refined = refine.create("none", mesh.faces, mesh.vertices).refine(mesh.vertices)
-    # Halves of the triangle on one side of its median, both times the same half.
+    # The triangle on one side of its median is covered twice by the same half.
     origins = refine.Origins(
         np.array([[0, 0, 0], [1, 1, 1], [2, 2, 2], [0, 1, 0]], dtype=np.int32),
         np.array([[1, 0, 0], [1, 0, 0], [1, 0, 0], [0.5, 0.5, 0]], dtype=np.float32),
@@ -154,7 +154,7 @@ def test_edge_flip_inside(frame):
 
 @pytest.mark.parametrize(("has", "says"), [(2, 1), (1, 2), (0, 1), (1, 0)])
 def test_wrong_split_count(frame, has, says):
-    """Splits that do not fit the sub-edges are found, whether too many or too few."""
+    """Splits that do not fit the sub-edges are reported, whether too many or too few."""
     refiner, refined, deformed = frame
     e = int(np.flatnonzero(refiner.splits == has)[0])
     refiner.splits[e] = says
@@ -162,7 +162,7 @@ def test_wrong_split_count(frame, has, says):
 
 
 def test_moved_vertex(frame):
-    """The smallest change of a vertex away from splits is found."""
+    """The smallest change of a vertex away from splits is reported."""
     refiner, refined, deformed = frame
     touched = np.unique(refiner.edges[refiner.splits > 0])
     v = int(np.setdiff1d(np.arange(len(deformed)), touched)[0])
@@ -171,7 +171,7 @@ def test_moved_vertex(frame):
 
 
 def test_lost_degenerate_triangle():
-    """A triangle that names a vertex twice may not come out twice."""
+    """A triangle that names a vertex twice must occur once in the output."""
     mesh = meshes.with_debris()
     refiner = refine.create("none", mesh.faces, mesh.vertices)
     check_breaks(
@@ -183,7 +183,7 @@ def test_lost_degenerate_triangle():
 
 
 def double_degenerate(mesh):
-    """Draw the first triangle that names a vertex twice once more."""
+    """Repeat the first triangle that names a vertex twice."""
     has_two = (mesh.triangles == np.roll(mesh.triangles, 1, axis=1)).any(axis=1)
     rows = np.append(np.arange(len(mesh.source)), np.flatnonzero(has_two)[:1])
     return mesh._replace(triangles=mesh.triangles[rows], source=mesh.source[rows])
@@ -211,7 +211,7 @@ def cut_at(places, inside):
     vertices += [[0, 2, 1], [2, 0, 3], [0, 1, 2]]
     weights += [[1 - one, one, 0.0], [other, 1 - other, 0.0], [*inside]]
     origins = refine.Origins(np.array(vertices, np.int32), np.array(weights, np.float32))
-    # Places within a tenth of a part count as one, so they have one position.
+    # Places nearer than a tenth of a part count as one place, so they have one position.
     cut = rest[2] * one
     points = np.vstack([rest, cut, cut, [0.7, 0.2, 0.0]])
     triangles = [[0, 1, 6], [1, 2, 6], [2, 4, 6], [4, 0, 6], [0, 5, 3], [5, 2, 3]]
@@ -236,39 +236,39 @@ INSIDE = [(1 / 3, 1 / 3, 1 / 3), (0.25, 0.5, 0.25), (1 / 13, 5 / 13, 7 / 13), (0
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("inside", INSIDE)
 def test_points_anywhere(place, inside):
-    """A refiner may cut edges anywhere, and triangles may have points inside."""
+    """A refiner may cut edges anywhere, and add points inside triangles."""
     refine.check(*cut_at((place, place), inside))
 
 
 @pytest.mark.parametrize("place", [1 / 2, 1 / 3, 3 / 8, 5 / 512, 3 / 7, 2 / 9])
 def test_single_precision_is_forgiven(place):
-    """Rounding of the weights of whole parts does not make another place."""
+    """Weights of whole parts with rounding errors still mean the same place."""
     assert (place * PARTS) % 1.0 == pytest.approx(0.0, abs=1e-9)
     refine.check(*cut_at((place, place + 2e-7), INSIDE[0]))
 
 
 @pytest.mark.parametrize("place", PLACES)
 def test_places_apart_are_cracks(place):
-    """An edge cut in two places, however near, is a crack."""
+    """An edge cut at two different places, however near, is a crack."""
     refiner, refined, rest = cut_at((place, place + 2.0 / PARTS), INSIDE[0])
     check_breaks("no crack, no T-junction", refiner, refined, rest)
 
 
 @pytest.mark.parametrize("weights", [(1.2, -0.1, -0.1), (0.5, 0.5, 0.001)])
 def test_weights_of_no_place(weights):
-    """Points outside a triangle, and weights with another sum, are refused."""
+    """Weights of a point outside its triangle, and weights whose sum is not one, are refused."""
     check_breaks(r"weights (below zero|that add up to one)", *cut_at((0.5, 0.5), weights))
 
 
 def test_thin_subtriangle_on_an_edge():
-    """Three points on one edge are a sliver, at any place on it."""
+    """Three points on one edge are a sliver, wherever they are."""
     refiner, refined, rest = cut_at((1 / 11, 1 / 11), INSIDE[0])
     refined.triangles[2] = [2, 4, 0]
     check_breaks("no sliver", refiner, refined, rest)
 
 
 def test_three_levels():
-    """Edges of eight parts pass; checked as edges of four, they fail."""
+    """Edges of eight parts pass as such; checked as edges of four parts, they fail."""
     mesh = meshes.irregular(3)
     refiner = Wrapped(refine.create("loop", mesh.faces, mesh.vertices, levels=3))
     refined = refiner.refiner.refine(mesh.vertices)

@@ -1,4 +1,4 @@
-"""Values that change with each frame go through splits like attributes."""
+"""Values given with each frame are refined like attributes."""
 
 import tracemalloc
 
@@ -33,7 +33,7 @@ def bound(name, options, mesh, heat, colours):
 
 
 class Seamed:
-    """A tube with a seam of texture coordinates, and another of colours."""
+    """A tube with one seam of texture coordinates, and another seam of colours."""
 
     def __init__(self):
         tube = meshes.tube(10, 6)
@@ -47,7 +47,10 @@ class Seamed:
 
 @pytest.mark.parametrize("look", REFINERS)
 def test_as_if_bound_anew(look):
-    """Each frame is that of a refiner bound with its values, to the bit, also after one without."""
+    """Each frame with values equals, to the bit, a frame of a new refiner bound with these values.
+
+    A frame without values uses the bound values again.
+    """
     mesh = Seamed()
     name, options = REFINERS[look]
     generator = np.random.default_rng(7)
@@ -63,7 +66,7 @@ def test_as_if_bound_anew(look):
         anew = bound(
             name, options, mesh, values.get("heat", heats[0]), values.get("colour", colours)
         ).refine(frame)
-        if not options.get("coherent"):  # its triangles depend on earlier frames
+        if not options.get("coherent"):  # coherent triangles depend on earlier frames
             assert refined.triangles.tobytes() == anew.triangles.tobytes()
         assert refined.positions.tobytes() == anew.positions.tobytes()
         assert refined.uv is not None and refined.uv.tobytes() == anew.uv.tobytes()
@@ -97,7 +100,7 @@ def test_linear_within_triangles(case, seed, look):
 
 
 def test_one_topology():
-    """With fixed splits, values change while vertices and triangles do not."""
+    """With fixed splits, vertices and triangles stay the same while values change."""
     mesh = Seamed()
     heat = np.zeros((len(mesh.vertices), 1))
     colours = np.zeros((5, 4))
@@ -114,9 +117,9 @@ def test_one_topology():
 
 @pytest.mark.parametrize("look", ["paper", "cubic", "none"])
 def test_nothing_is_kept_of_frames(look):
-    """A hundred frames with values keep no memory, and write into the same arrays.
+    """A hundred frames with values add no memory, and use the same arrays.
 
-    Other threads of a test worker take memory at times, but not each time.
+    Other threads of a test worker sometimes allocate, so the smallest of three growths counts.
     """
     mesh = Seamed()
     name, options = REFINERS[look]
@@ -144,7 +147,7 @@ def test_nothing_is_kept_of_frames(look):
 
 
 def test_mistakes_are_reported():
-    """They are an unbound name, another shape, and NaN; the next frame is correct."""
+    """An unbound name, another shape, and NaN are refused; the next frame is correct."""
     mesh = meshes.tube(6, 4)
     heat = np.zeros((len(mesh.vertices), 1), np.float32)
     plain = refine.create("kahler", mesh.faces, mesh.vertices)

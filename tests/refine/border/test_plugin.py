@@ -19,7 +19,7 @@ FINE = meshes.octahedron()
 
 
 class Outside:
-    """The smallest external refiner: written from the protocol, without our base class."""
+    """The smallest external refiner: it follows the protocol, without the project's base class."""
 
     vertex_columns = 6
 
@@ -42,7 +42,7 @@ class Outside:
         self.offset = offset
 
     def refine(self, positions: np.ndarray, out: refine.Stream | None = None) -> refine.RefinedMesh:
-        """Pass the mesh on without normals."""
+        """Return the mesh without normals."""
         points = (positions + self.offset).astype(np.float32)
         source = np.arange(len(self.faces), dtype=np.int32)
         return refine.RefinedMesh(points, np.zeros_like(points), self.faces, source, None)
@@ -79,7 +79,7 @@ def test_registered_refiner():
     ],
 )
 def test_bad_registration(name, factory, text):
-    """Names cannot be used twice, and factories must be callable."""
+    """Names cannot be registered twice, and factories must be callable."""
     with pytest.raises(ValueError, match=text):
         refine.refiners.register(name, factory)
 
@@ -147,7 +147,10 @@ NAN[4, 1] = np.nan
 )
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 def test_bad_binding(name, changes, text):
-    """Arrays that do not fit together are refused with fault, place, and the allowed values."""
+    """Arrays that do not fit together are refused.
+
+    The error has the fault, its place, and allowed values.
+    """
     arguments = {"faces": FINE.faces, "rest_positions": FINE.vertices}
     arguments |= changes
     with pytest.raises(ValueError, match=text):
@@ -156,7 +159,7 @@ def test_bad_binding(name, changes, text):
 
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 def test_binding_copies(name):
-    """Later changes of the bound arrays have no effect, and binding does not change them."""
+    """Later changes of the bound arrays have no effect, and binding changes no array."""
     faces = FINE.faces.copy()
     rest = FINE.vertices.copy()
     refiner = refine.create(name, faces, rest)
@@ -181,7 +184,10 @@ def test_splits_cannot_be_written(name):
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 @pytest.mark.parametrize("faces", [[], (), np.zeros((0, 3), dtype=int)])
 def test_no_triangles_in_none_out(name, faces):
-    """This includes an empty list, which has no second dimension."""
+    """A mesh without triangles gives none.
+
+    An empty list, which has no second dimension, is accepted.
+    """
     refiner = refine.create(name, faces, FINE.vertices)
     assert len(refiner.refine(FINE.vertices).triangles) == 0
 
@@ -189,7 +195,7 @@ def test_no_triangles_in_none_out(name, faces):
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
 @pytest.mark.parametrize("unit", [1e-6, 5e7])
 def test_units_of_length(unit, scheme):
-    """Any unit between the limits of binding gives the same triangles."""
+    """Any unit of length within the limits of binding gives the same triangles."""
     grid = meshes.irregular(3)
     deformed = meshes.wrinkled(grid, 4)
 
@@ -240,20 +246,23 @@ def test_frames_can_be_kept():
     ],
 )
 def test_bad_options(options, text):
-    """Values of another kind, unknown, or at odds are refused with the right ones."""
+    """Options of a wrong type, unknown or contradictory, are refused.
+
+    The error names right values.
+    """
     with pytest.raises(ValueError, match=text):
         kahler(FINE, **options)
 
 
 @pytest.mark.parametrize("name", ["criterion", "scheme"])
 def test_an_object_knows_one_mesh(name):
-    """A criterion or scheme in use by a refiner is refused for another, alone or in a list."""
+    """A criterion or scheme that one refiner uses is refused by another, alone or in a list."""
     thing = refine.Displacement() if name == "criterion" else LoopScheme()
     create = partial(refine.create, "kahler", FINE.faces, FINE.vertices, normals="refined")
     first = create(**{name: thing})
     for shared in (thing, [thing, "normal"])[: 2 if name == "criterion" else 1]:
         with pytest.raises(ValueError, match=r"serves another refiner already; make one for each"):
             create(**{name: shared})
-    first.refine(FINE.vertices)  # it has not learnt the other's scheme
+    first.refine(FINE.vertices)  # the refused call left it unchanged
     del first
     create(**{name: thing})

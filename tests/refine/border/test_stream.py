@@ -1,4 +1,4 @@
-"""The stream contract: lent arrays are filled in place, checked, and nothing is allocated."""
+"""Streams: lent arrays are filled in place and checked, and frames allocate nothing."""
 
 import copy
 import gc
@@ -17,7 +17,7 @@ REFINERS = [("none", {}), ("kahler", {}), ("loop", {"levels": 1}), ("loop", {"le
 
 
 def stream_for(refiner, spare=0):
-    """A lent stream of exactly the capacity, or some rows more."""
+    """A lent stream with exactly the required room, or with some more rows."""
     rows = refiner.triangle_capacity + spare
     shape = (refiner.vertex_capacity + spare, refiner.vertex_columns)
     return SimpleNamespace(
@@ -31,7 +31,7 @@ def stream_for(refiner, spare=0):
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 @pytest.mark.parametrize("textured", [False, True])
 def test_lent_stream(name, options, textured, spare):
-    """A lent stream gets the same values as the own stream, and the mesh views it."""
+    """A lent stream gets the same values as the refiner's own, and the mesh is a view of it."""
     tube = meshes.tube(10, 6)
     texture = {"uv": tube.uv, "face_uv": tube.face_uv} if textured else {}
     deformed = meshes.wrinkled(tube, 3)
@@ -69,7 +69,7 @@ def test_lent_stream(name, options, textured, spare):
     ],
 )
 def test_bad_stream(change, text):
-    """A stream too small for the worst case is refused before any write."""
+    """A stream too small for the worst case is refused, and nothing is written."""
     grid = meshes.open_grid(10, 6)
     refiner = kahler(grid)
     assert refiner.triangle_capacity == 1200
@@ -82,7 +82,7 @@ def test_bad_stream(change, text):
 
 @pytest.mark.parametrize("name", ["vertices", "triangles", "source"])
 def test_stream_that_becomes_read_only(name):
-    """Arrays made read-only between two frames are not written any more."""
+    """Arrays made read-only between two frames are not written."""
     mesh = meshes.irregular(2)
     refiner = kahler(mesh)
     stream = stream_for(refiner)
@@ -96,7 +96,7 @@ def test_stream_that_becomes_read_only(name):
 
 
 def test_any_row_of_streams():
-    """After any other stream, a frame goes into the right one, and nowhere else."""
+    """With streams in random order, each frame is written into its own stream only."""
     mesh = meshes.irregular(3)
     refiner = kahler(mesh)
     frames = [mesh.vertices + amount * (meshes.wrinkled(mesh, 4) - mesh.vertices)
@@ -122,7 +122,7 @@ def test_any_row_of_streams():
 
 
 def test_stream_may_be_the_input():
-    """Positions in the lent stream are read before they are overwritten."""
+    """Positions that lie in the lent stream are read before they are overwritten."""
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3).astype(np.float32)
     refiner = kahler(mesh)
@@ -136,9 +136,9 @@ def test_stream_may_be_the_input():
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 @pytest.mark.parametrize("textured", [False, True])
 def test_nothing_is_allocated(name, options, textured):
-    """After the first frames, only views and restarted passes take memory.
+    """After the first frames, only views and restarted passes allocate memory.
 
-    Other threads of a test worker take memory at times, but not each time.
+    Other threads of a test worker sometimes allocate, so the smallest of three measurements counts.
     """
     tube = meshes.tube(40, 30)
     texture = {"uv": tube.uv, "face_uv": tube.face_uv} if textured else {}
@@ -166,7 +166,10 @@ def test_nothing_is_allocated(name, options, textured):
     "positions", [np.zeros((5, 3)), np.zeros((6, 2)), np.zeros(18), np.zeros((6, 3), dtype=int)]
 )
 def test_bad_positions(positions):
-    """Positions of another mesh, or integers, are refused with the expected kind."""
+    """Positions of another mesh, and integers, are refused.
+
+    The error has the expected type and shape.
+    """
     mesh = meshes.octahedron()
     refiner = refine.create("none", mesh.faces, mesh.vertices)
     with pytest.raises(ValueError, match=r"positions must be floats of shape \(6, 3\) .*, got"):
@@ -174,7 +177,7 @@ def test_bad_positions(positions):
 
 
 def test_masked_positions():
-    """Masked values are unknown, and are not read from under the mask."""
+    """Positions with masked entries, or with uneven rows, are refused."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh)
     expected = refiner.refine(mesh.vertices).positions.copy()
@@ -189,7 +192,10 @@ def test_masked_positions():
 
 @pytest.mark.parametrize("copied", [pickle.dumps, copy.deepcopy])
 def test_refiners_stay_where_they_are(copied):
-    """A copy would share buffers with the original, or have invalid pointers in another process."""
+    """Copies and pickles of a refiner are refused.
+
+    A copy would share buffers with the original, or have invalid pointers in another process.
+    """
     mesh = meshes.octahedron()
     refiner = kahler(mesh)
     with pytest.raises(TypeError, match=r"make one there with refine\.create"):
@@ -199,7 +205,7 @@ def test_refiners_stay_where_they_are(copied):
 @pytest.mark.parametrize("number", [np.nan, np.inf, -1e15, 1e39])
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 def test_positions_that_are_no_numbers(name, number):
-    """Values that overflow in single precision are refused; the refiner's state is unchanged."""
+    """Positions that overflow in single precision are refused; the refiner's state is unchanged."""
     mesh = meshes.octahedron()
     refiner = refine.create(name, mesh.faces, mesh.vertices)
     deformed = mesh.vertices * [1.0, 1.0, 4.0]
@@ -213,7 +219,7 @@ def test_positions_that_are_no_numbers(name, number):
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic", "detail"])
 def test_anything_below_the_limit_is_finite(scheme):
-    """A mesh that has blown up gives finite numbers, so no later stage gets a NaN."""
+    """Positions as large as the limit give finite numbers, so that no later stage gets NaN."""
     mesh = meshes.double_cone(60)
     refiner = kahler(mesh, scheme=scheme_of(scheme, mesh.vertices, mesh.faces))
     blown = np.random.default_rng(5).uniform(-0.99e15, 0.99e15, mesh.vertices.shape)

@@ -28,7 +28,7 @@ EYE = refine.View([5.0, 6.0, 30.0])
 
 
 def with_strays(points, faces, place):
-    """The same mesh, and points at a place before the first, among the others and at the end."""
+    """The same mesh with unused points before the first point, among the others and at the end."""
     where = [0, 0, 3, len(points)]
     number = np.insert(np.arange(len(points)), where, -1)
     renamed = np.empty(len(points), dtype=np.int64)
@@ -39,7 +39,7 @@ def with_strays(points, faces, place):
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 @pytest.mark.parametrize("stray", STRAYS)
 def test_triangles_are_the_same(name, options, stray):
-    """They are equal to the last bit, at rest and in frames; all output is finite."""
+    """Triangles are equal to the last bit, at rest and in frames, and all output is finite."""
     mesh = meshes.irregular(4)
     bent = meshes.wrinkled(mesh, 5)
     faces = mesh.faces.astype(np.int64)
@@ -58,7 +58,7 @@ def test_triangles_are_the_same(name, options, stray):
 
 @pytest.mark.parametrize("stray", STRAYS)
 def test_welded_and_measured(stray):
-    """Neither welding, nor detail, nor strain reads them."""
+    """Welding, detail and strain ignore unused points."""
     mesh = meshes.irregular(4)
     faces = mesh.faces.astype(np.int64)
     rest, renamed = with_strays(mesh.vertices, faces, STRAYS[stray])
@@ -71,7 +71,7 @@ def test_welded_and_measured(stray):
 
 
 def test_points_of_triangles_are_still_looked_at():
-    """A point of a triangle must be a finite number; the error names it alone."""
+    """A used point must be a finite number; the error names only used points."""
     mesh = meshes.irregular(4)
     rest, renamed = with_strays(mesh.vertices, mesh.faces.astype(np.int64), STRAYS["not a number"])
     refiner = refine.create("kahler", renamed, rest)
@@ -84,7 +84,7 @@ def test_points_of_triangles_are_still_looked_at():
 
 
 def test_a_stray_twin_moves_nothing():
-    """A point at the place of a vertex, but in no triangle, is not welded with it."""
+    """An unused point at the place of a vertex is not welded with the vertex."""
     mesh = meshes.irregular(4)
     faces = mesh.faces.astype(np.int64)
     twin = np.concatenate([mesh.vertices[faces[:1, 0]], mesh.vertices])

@@ -27,7 +27,7 @@ def around(mesh, count=300, away=0.2):
 
 
 def turned(points):
-    """A rigid motion: more than half a turn about a slanted axis, and away."""
+    """Points after a rigid motion: more than half a turn about a slanted axis, and a shift."""
     axis = np.array([1.0, 2.0, -0.5]) / np.sqrt(5.25)
     angle = 3.3
     upright = np.outer(points @ axis, axis)
@@ -54,7 +54,7 @@ POINTS = around(SURFACES["ball"])
 
 
 class Flawed:
-    """An embedding with one flaw."""
+    """An embedding with one planted fault."""
 
     def __init__(self, embedding, flaw):
         self._embedding = embedding
@@ -67,7 +67,10 @@ class Flawed:
 
 @pytest.mark.parametrize("mesh", SURFACES.values(), ids=SURFACES)
 def test_the_checker_passes_embeddings(mesh):
-    """Of any surface, and of meshes far from the origin, with points that no triangle uses."""
+    """The checker passes embeddings of all test surfaces, also far from the origin.
+
+    Some points belong to no triangle.
+    """
     points = around(mesh)
     refine.check_embedding(
         refine.Embedding(mesh.faces, mesh.vertices, points), mesh.vertices, points
@@ -86,7 +89,7 @@ def test_the_checker_passes_embeddings(mesh):
     ],
 )
 def test_the_checker_names_what_is_broken(flaw, relation):
-    """They are points that are off at rest, that stay behind, and that do not turn."""
+    """The checker reports points that move at rest, that stay behind, or that do not turn."""
     ball = SURFACES["ball"]
     embedding = Flawed(refine.Embedding(ball.faces, ball.vertices, POINTS), flaw)
     with pytest.raises(refine.BrokenMeshError, match=relation):
@@ -95,7 +98,7 @@ def test_the_checker_names_what_is_broken(flaw, relation):
 
 @pytest.mark.parametrize("mesh", SURFACES.values(), ids=SURFACES)
 def test_rest_is_rest_and_rigid_motion_is_exact(mesh):
-    """A fine mesh is at rest if the coarse one is, and follows its rigid motion as one piece."""
+    """The fine mesh is at rest if the coarse mesh is, and follows its rigid motion exactly."""
     fine = around(mesh)
     embedding = refine.Embedding(mesh.faces, mesh.vertices, fine, normals=fine)
     rest = embedding.evaluate(mesh.vertices)
@@ -112,7 +115,7 @@ def test_rest_is_rest_and_rigid_motion_is_exact(mesh):
 
 @given(st.integers(0, 2**32 - 1))
 def test_any_soup_is_carried(seed):
-    """Soups of any triangles, also degenerate ones: rest is rest, motions are rigid, all finite."""
+    """For random triangles, also without area, rest and rigid motion are exact; all is finite."""
     rng = np.random.default_rng(seed)
     vertices = rng.normal(size=(8, 3))
     faces = rng.integers(6, size=(rng.integers(2, 12), 3)).astype(np.int32)
@@ -128,7 +131,7 @@ def test_any_soup_is_carried(seed):
 @settings(max_examples=20)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["ball", "double cone"]))
 def test_equal_to_its_twin_in_plain_numpy(seed, name):
-    """For any bend of a closed mesh, fine points are at the places found by plain numpy."""
+    """For any deformation of a closed mesh, fine points equal those of the twin in plain numpy."""
     mesh = meshes.ball(1) if name == "ball" else meshes.double_cone(7)
     rng = np.random.default_rng(seed)
     rest = mesh.vertices + 0.05 * rng.normal(size=mesh.vertices.shape)
@@ -143,7 +146,7 @@ def test_equal_to_its_twin_in_plain_numpy(seed, name):
 
 
 def test_continuous_over_coarse_edges():
-    """Neighbouring fine vertices stay neighbours, on any triangles."""
+    """Neighbouring fine points stay neighbours when the coarse mesh, of any triangles, moves."""
     mesh = meshes.ball(2)
     angle = np.linspace(0.0, 2.0 * np.pi, 20_001)
     ring = np.stack([np.cos(angle), np.sin(angle), 0.3 * np.cos(3 * angle)], axis=1)
@@ -157,9 +160,9 @@ def test_continuous_over_coarse_edges():
 
 
 def two_lips():
-    """Two sheets that nearly touch and face each other; fine points on the wrong side of both.
+    """Two sheets that nearly touch and face each other, and a fine point of each beyond the other.
 
-    The points are nearer to the other sheet than to their own, and face like their own.
+    Each point is nearer to the other sheet than to its own, and has its own sheet's normal.
     """
     sheet = meshes.fan()
     upper = sheet.vertices + np.array([0.0, 0.0, 0.01])
@@ -170,7 +173,7 @@ def two_lips():
 
 
 def test_normals_and_labels_keep_lips_apart():
-    """Normals, or labels, bind to the own surface even if another one is nearer."""
+    """Normals or labels bind a point to its own surface, even if another surface is nearer."""
     lips, fine, normals = two_lips()
     is_upper = np.arange(len(lips.faces)) >= len(lips.faces) // 2
     nearest = refine.Embedding(lips.faces, lips.vertices, fine)
@@ -184,7 +187,7 @@ def test_normals_and_labels_keep_lips_apart():
 
 
 def test_unused_points_and_triangles_without_area_do_no_harm():
-    """A point that no triangle uses may be NaN; no point is bound to a sliver."""
+    """A point that no triangle uses may be NaN, and no point is bound to a sliver."""
     mesh = meshes.fan()
     vertices = np.vstack([mesh.vertices, [[np.nan, 0.0, 0.0]], [[2.0, 0.0, 0.0]]])
     faces = np.vstack([mesh.faces, [[0, 1, 8], [0, 1, 1]]]).astype(np.int32)
@@ -196,7 +199,7 @@ def test_unused_points_and_triangles_without_area_do_no_harm():
 
 
 def test_offsets_keep_their_length_or_are_stretched():
-    """A larger surface keeps offsets, or on request stretches them by its own growth."""
+    """On a growing surface, offsets keep their length, or on request grow with the surface."""
     mesh = meshes.ball(2)
     fine = 1.3 * mesh.vertices
     larger = 2.0 * mesh.vertices
@@ -208,7 +211,7 @@ def test_offsets_keep_their_length_or_are_stretched():
 
 
 def hairs():
-    """A ball and its bent shape; points of hairs that lean on it, roots first, and their hairs."""
+    """A ball, its deformed shape, points of slanted hairs (roots first), and their hair numbers."""
     mesh = meshes.ball(2)
     rng = np.random.default_rng(3)
     roots = mesh.vertices[mesh.faces[::7]].mean(axis=1)
@@ -219,7 +222,7 @@ def hairs():
 
 
 def test_groups_keep_their_shape_and_go_with_their_root():
-    """A hair keeps its length and bend from rest; its root moves as if it were alone."""
+    """A hair keeps its length and bend from rest; its root moves like a single bound point."""
     mesh, bent, points, hair = hairs()
     embedding = refine.Embedding(mesh.faces, mesh.vertices, points, groups=10 * hair)
     assert_allclose(embedding.evaluate(mesh.vertices).positions, points, atol=1e-12)
@@ -233,7 +236,10 @@ def test_groups_keep_their_shape_and_go_with_their_root():
 
 
 def test_given_places_are_taken_as_they_are():
-    """Places of another embedding give its motion, one for each vertex or for each group."""
+    """Given places of another embedding result in its motion.
+
+    A place is per vertex or per group.
+    """
     mesh, bent, points, hair = hairs()
     searched = refine.Embedding(mesh.faces, mesh.vertices, points)
     places = searched.triangles, searched.weights
@@ -247,7 +253,10 @@ def test_given_places_are_taken_as_they_are():
 
 
 def test_inputs_stay_and_values_are_carried():
-    """No byte of the given arrays changes; values at coarse vertices are linear in triangles."""
+    """The given arrays stay unchanged.
+
+    Values at coarse vertices are interpolated linearly in triangles.
+    """
     mesh = meshes.ball(1)
     fine = around(mesh)
     before = [each.tobytes() for each in (mesh.vertices, mesh.faces, fine)]
@@ -293,7 +302,7 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
 
 @pytest.mark.parametrize(("changes", "message"), BAD.values(), ids=BAD)
 def test_errors_say_what_is_allowed(changes, message):
-    """Bad input gives one clear message, and nothing is bound."""
+    """Invalid input gives one clear message, and no embedding."""
     mesh = meshes.triangle()
     good = {"faces": mesh.faces, "rest_positions": mesh.vertices, "points": np.zeros((2, 3))}
     with pytest.raises(ValueError, match="^" + message.replace("(", r"\(").replace(")", r"\)")):
@@ -301,7 +310,7 @@ def test_errors_say_what_is_allowed(changes, message):
 
 
 def test_a_bad_frame_is_refused():
-    """Another number of vertices, and positions that are not finite, are refused."""
+    """A frame with another number of vertices, or with infinite positions or NaN, is refused."""
     mesh = meshes.triangle()
     embedding = refine.Embedding(mesh.faces, mesh.vertices, np.zeros((2, 3)))
     with pytest.raises(ValueError, match="positions must be floats of shape"):
@@ -313,7 +322,7 @@ def test_a_bad_frame_is_refused():
 
 
 def test_borders_beside_corners_are_those_of_cubic():
-    """The curves of the rim of a half disc, also at corners: points of `cubic` have no offset."""
+    """Points without offset follow the curves of the scheme `cubic`, also at corners of a rim."""
     angles = np.radians([0.0, 45.0, 90.0, 135.0, 180.0])
     rim = np.stack([np.cos(angles), np.sin(angles), np.zeros(5)], axis=1)
     rest = np.vstack([np.zeros((1, 3)), rim])

@@ -1,4 +1,4 @@
-"""A twin of `Embedding.evaluate` in plain numpy, for closed meshes: slow, and by the documentation.
+"""Recompute `Embedding.evaluate` for closed meshes in plain numpy, slowly, from its documentation.
 
 Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN triangles", with tangents and offsets that are
 carried along (refine/embedding/patches.py and frames.py).
@@ -16,7 +16,7 @@ MOST_CARRIED = 0.5  # largest error of a carried tangent, in lengths of the tang
 
 
 def unit(vector: Points) -> Points:
-    """A vector of length one."""
+    """The vector, scaled to length one."""
     return np.asarray(vector / norm(vector))
 
 
@@ -37,20 +37,20 @@ class Fan:
 
 
 def edges_of(points: Points, numbers: npt.NDArray[np.int64]) -> Points:
-    """Both edges of triangles from their first corner, in columns, shape (k, 3, 2)."""
+    """Both edges of triangles from their first corner, as columns, shape (k, 3, 2)."""
     corners = points[numbers]
     return np.asarray(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
 
 
 class Twin:
-    """A coarse closed mesh, and the surface over it."""
+    """A closed coarse mesh at rest, and the embedding's surface over it."""
 
     def __init__(self, faces: npt.NDArray[np.int32], rest: Points) -> None:
         self.faces = faces
         turns = np.concatenate([np.roll(faces, -corner, axis=1) for corner in range(3)])
         self.fans = [self._fan(turns[turns[:, 0] == v], rest) for v in range(len(rest))]
         self.rest_axes = [self._axes(fan, rest) for fan in self.fans]
-        self.slopes = {}  # shares of both directions in an edge's tangent at rest
+        self.slopes = {}  # each edge's tangent at rest: weights of both directions
         for a, b in np.concatenate([turns[:, [0, 1]], turns[:, [0, 2]]]):
             self.slopes[a, b] = self._slope(a, b, rest)
 
@@ -68,7 +68,7 @@ class Twin:
 
     @staticmethod
     def _axes(fan: Fan, points: Points) -> tuple[Points, Points]:
-        """The normal, and both directions as carried by the triangles, (3, 2)."""
+        """The normal, and both directions as the triangles move them, (3, 2)."""
         edges = edges_of(points, fan.numbers)
         normal = unit(fan.weights @ np.cross(edges[:, :, 0], edges[:, :, 1]))
         moves = edges @ np.linalg.pinv(fan.edges)  # linear maps of the triangles' planes
@@ -83,7 +83,7 @@ class Twin:
 
     @staticmethod
     def _frame(axes: tuple[Points, Points]) -> Points:
-        """A right-handed frame in columns: the polar decomposition has no favourite direction."""
+        """A right-handed frame in columns; polar decomposition prefers no direction."""
         normal, directions = axes
         along = unit(directions[:, 0] + np.cross(directions[:, 1], normal))
         return np.stack([normal, along, np.cross(normal, along)], axis=1)
@@ -95,7 +95,7 @@ class Twin:
         weights: Points,
         offsets: Points,
     ) -> Points:
-        """Positions at weights (N, 3) on `triangles`, (N,), with their offsets, (N, 3)."""
+        """Positions for weights (N, 3) in `triangles`, (N,), with offsets, (N, 3)."""
         axes = [self._axes(fan, points) for fan in self.fans]
         quaternions = [
             Rotation.from_matrix(self._frame(now) @ self._frame(rest).T).as_quat()
@@ -117,7 +117,7 @@ class Twin:
         corners: npt.NDArray[np.int32],
         shares: Points,
     ) -> Points:
-        """A place on the cubic patch over a triangle."""
+        """A point on the cubic patch over a triangle."""
         place = shares**3 @ points[corners]
         nears = np.zeros(3)
         for i in range(3):

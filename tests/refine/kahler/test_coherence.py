@@ -29,7 +29,7 @@ def inner_lines(state):
 
 
 def test_271_sequences():
-    """There are 271 sequences (section 4.4), counted in another way: by multinomials."""
+    """There are 271 sequences (section 4.4); the test counts them by multinomials."""
     factorial = np.array([1, 1, 2, 6, 24, 120, 720])
     expected = sum(
         factorial[sum(splits)] // np.prod(factorial[list(splits)]) for splits in ALL_SPLITS
@@ -41,7 +41,7 @@ def test_271_sequences():
 
 @pytest.mark.parametrize("length", range(7))
 def test_entries(length):
-    """Every entry is a valid tessellation with as many subtriangles as the 27-entry table has."""
+    """Every entry is a valid tessellation with as many subtriangles as in the 27-entry table."""
     for state in states_of(length):
         splits = coherence.splits_in(TABLES.sequences[state])
         triangles = TABLES.patterns.of(state)
@@ -55,7 +55,7 @@ def test_entries(length):
 
 @pytest.mark.parametrize("length", range(7))
 def test_splitting_turns_no_line(length):
-    """After any further split, every inner line stays; no removal is out of order."""
+    """After any further split, every inner line stays, and no removal out of order is counted."""
     for state in states_of(length):
         has = coherence.splits_in(TABLES.sequences[state])
         for splits in ALL_SPLITS:
@@ -70,7 +70,10 @@ def test_splitting_turns_no_line(length):
 
 @pytest.mark.parametrize("length", range(7))
 def test_taking_back_in_reverse(length):
-    """Splits removed from the end lead to the previous sequence, with no removal counted."""
+    """Removing the last splits of a sequence leads to its beginning.
+
+    No removal out of order is counted.
+    """
     for state in states_of(length):
         sequence = TABLES.sequences[state]
         for left in range(length):
@@ -94,7 +97,7 @@ def test_taking_back_in_reverse(length):
     ],
 )
 def test_transitions_by_hand(sequence, splits, following, removed):
-    """Removals in and out of order, and both at once with new splits."""
+    """Removals in order and out of order, alone and together with new splits."""
     state = NUMBER[sequence]
     configuration = configuration_of(splits)
     assert TABLES.sequences[TABLES.transitions[state, configuration]] == following
@@ -106,14 +109,14 @@ CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]])
 
 
 def length_of_lines(state):
-    """Length of all inner lines of a sequence."""
+    """Total length of the inner lines of a sequence."""
     places = table.POINTS / 4.0 @ CORNERS
     return sum(float(np.linalg.norm(places[a] - places[b])) for a, b in inner_lines(state))
 
 
 @pytest.mark.parametrize("length", range(4))
 def test_new_splits_make_the_shortest_lines(length):
-    """Of all orders for the splits of one frame, none has shorter lines."""
+    """New splits of one frame are ordered so that the inner lines are shortest."""
     lengths = [length_of_lines(state) for state in range(len(TABLES.sequences))]
     for state in states_of(length):
         begun = TABLES.sequences[state]
@@ -128,7 +131,7 @@ def test_new_splits_make_the_shortest_lines(length):
 
 
 def test_states_follow_the_tables():
-    """The kernel moves all triangles by the tables, counts, keeps its array, and forgets."""
+    """The kernel changes all states by the tables, counts removals, and keeps its array."""
     generator = np.random.default_rng(1)
     face_count = 500
     points = np.zeros((3, 3))

@@ -20,7 +20,7 @@ Line = tuple[int, Point, Point]
 
 
 def point_rows(refiner):
-    """A row of the last frame for each of its points on edges and corners."""
+    """The row of each point on edges and corners in the last frame."""
     origins = refiner.origins()
     rows = {}
     for row, (vertices, weights) in enumerate(zip(origins.vertices, origins.weights, strict=True)):
@@ -29,7 +29,7 @@ def point_rows(refiner):
         )
         first = parts[0][0]
         last = parts[-1][0]
-        if len(parts) == 3:  # a point in the middle of a triangle: blending makes them
+        if len(parts) == 3:  # blending adds points in the middle of triangles
             rows[first, parts[1][0], -1 - last] = row
         else:
             rows.setdefault((first, last, parts[-1][1] if last != first else 0), row)
@@ -48,19 +48,19 @@ def inner_lines(refiner, mesh):
 
 
 def turned(before, now, rows):
-    """Lines of the previous frame that are gone although `rows` still has both their ends."""
+    """Lines of the previous frame that are missing, although `rows` still has their ends."""
     return sorted(line for line in before - now if line[1] in rows and line[2] in rows)
 
 
 def history_of(refiner):
-    """The memory of the refiner."""
+    """The refiner's record of earlier splits."""
     assert isinstance(refiner, refine.Kahler)
     assert isinstance(refiner.cutting, refine.Coherent)
     return refiner.cutting
 
 
 def turned_per_frame(refiner, frames):
-    """Number of lines that turn in each of `frames`, without the first."""
+    """The number of turned lines in each of `frames`, except the first."""
     counts = []
     before = None
     for positions in frames:
@@ -72,13 +72,13 @@ def turned_per_frame(refiner, frames):
 
 
 def growing(mesh, seed):
-    """A deformation that grows from nothing."""
+    """Positions of a deformation that grows from zero."""
     full = meshes.wrinkled(mesh, seed, 0.5) - mesh.vertices
     return [mesh.vertices + share * full for share in np.linspace(0.0, 1.0, 25)]
 
 
 def splitting(mesh, seed):
-    """A criterion that splits more and more edges at random, and frames that call it."""
+    """A criterion that splits more and more edges at random, and the frames of this growth."""
     generator = np.random.default_rng(seed)
     edge_count = edge_count_of(mesh)
     criterion = Forced(np.zeros(edge_count))
@@ -86,7 +86,10 @@ def splitting(mesh, seed):
 
 
 def played(mesh, criterion, chances):
-    """The unmoved mesh, again and again, while a fifth of the edges is split further."""
+    """Yield the unmoved mesh for each frame.
+
+    Before each, a random fifth of the edges is split further.
+    """
     for chance in chances:
         criterion.wanted = np.minimum(2, criterion.wanted + (chance < 0.2)).astype(np.uint8)
         yield mesh.vertices
@@ -94,7 +97,7 @@ def played(mesh, criterion, chances):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_geomorph_turns_no_line(seed):
-    """While splits are only added no line turns; in tables without history, many do."""
+    """While splits are only added, no line turns; with tables without history, many lines turn."""
     mesh = meshes.irregular(seed)
     counts = {}
     for is_coherent in (False, True):
@@ -126,7 +129,10 @@ def test_any_history_is_crack_free(seed, history):
 
 
 def test_states_are_all_the_memory():
-    """One number per triangle, given to a new refiner, contains all the history."""
+    """The states, one number per triangle, contain the whole history.
+
+    A new refiner with these states makes the same frames.
+    """
     mesh = meshes.irregular(3)
     frames = [*growing(mesh, 8), *growing(mesh, 9)[::-1]]
     old = kahler(mesh, coherent=True)
@@ -140,7 +146,10 @@ def test_states_are_all_the_memory():
 
 
 def test_states_of_another_mesh_are_refused():
-    """Compiled code uses them to read tables: they must be numbers of sequences, one a triangle."""
+    """States of another mesh are refused, since compiled code indexes tables by them.
+
+    They must be numbers of sequences, one per triangle.
+    """
     history = history_of(kahler(meshes.irregular(3), coherent=True))
     count = len(history.states)
     for wrong in (np.zeros(count - 1, int), np.full(count, 271), np.full(count, -1), [0.5] * count):

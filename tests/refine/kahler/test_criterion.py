@@ -1,4 +1,4 @@
-"""Edges that must split, and edges that must not."""
+"""The paper's criterion: edges that must split, and edges that must not."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from tests.refine.plain_twin import edge_dots, edge_name
 
 @pytest.mark.parametrize("seed", range(5))
 def test_undeformed_equals_pass_through(seed):
-    """At threshold 0 the undeformed mesh equals that of `none`, to the last bit."""
+    """At threshold 0 the undeformed mesh equals that of the refiner `none`, to the last bit."""
     mesh = meshes.irregular(seed)
     refiner = kahler(mesh, threshold_once=0.0, threshold_twice=0.0)
     plain = refine.create("none", mesh.faces, mesh.vertices)
@@ -27,7 +27,7 @@ def test_undeformed_equals_pass_through(seed):
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("distance", [0.0, 30.0, 1e5])
 def test_rigid_motion(seed, distance):
-    """Turning and moving the undeformed mesh splits nothing, even at threshold 0 and far away."""
+    """A rigid motion splits nothing, even at threshold 0 and far from the origin."""
     mesh = meshes.irregular(seed)
     refiner = kahler(mesh, threshold_once=0.0, threshold_twice=0.0)
     moved = mesh.vertices @ meshes.rotation(seed).T + distance * np.array([1.0, -0.7, 0.4])
@@ -36,7 +36,7 @@ def test_rigid_motion(seed, distance):
 
 
 def test_rigid_motion_of_slivers():
-    """Triangles with collinear corners have no direction to lose, and never split."""
+    """Triangles with collinear corners have no normal that could turn, so they never split."""
     line = np.array([[0, 0, 0], [1, 1, 1], [2, 2, 2], [3, 3, 3.0]]) / 3.0
     faces = np.array([[0, 1, 2], [1, 3, 2]])
     refiner = refine.create("kahler", faces, line, threshold_once=0.0, threshold_twice=0.0)
@@ -47,7 +47,7 @@ def test_rigid_motion_of_slivers():
 
 @pytest.mark.parametrize("seed", range(8))
 def test_splits_follow_drops(seed):
-    """Each edge splits by the drop computed in plain arithmetic."""
+    """Each edge is split according to its drop of the dot product, computed in plain arithmetic."""
     mesh = meshes.irregular(seed)
     deformed = meshes.wrinkled(mesh, seed + 100, amplitude=0.5)
     faces = [tuple(int(v) for v in face) for face in mesh.faces]
@@ -65,7 +65,10 @@ def test_splits_follow_drops(seed):
 
 
 def test_only_bending_counts():
-    """Unbending never splits: a flattened cylinder has larger dot products than at rest."""
+    """Unbending never splits.
+
+    A flattened cylinder has larger dot products than the cylinder at rest.
+    """
     tube = meshes.tube()
     refiner = refine.create("kahler", tube.faces, tube.vertices, threshold_once=0.0)
     refiner.refine(tube.vertices * np.array([1.0, 1.0, 0.5]))
@@ -73,12 +76,13 @@ def test_only_bending_counts():
 
 
 def test_rounding_guard():
-    """A drop of the size of rounding does not count at threshold 0; a larger one does."""
+    """At threshold 0 a drop as small as rounding errors does not count; a larger drop does."""
     mesh = meshes.half_shut_book()
     flat = np.array([[0, 0, 0], [0, 1, 0], [1, 0.5, 0], [-1, 0.5, 0.0]])
     refiner = refine.create("kahler", mesh.faces, flat, threshold_once=0.0, threshold_twice=1.0)
     for drop, expected in ((0.1 * DROP_ROUNDING, 0), (10 * DROP_ROUNDING, 4)):
-        # Normals of the outer vertices are perpendicular to the slope, the inner ones upright.
+        # The outer vertices have normals perpendicular to the slope, the inner vertices upright
+        # ones.
         bent = flat.copy()
         bent[2:, 2] = np.tan(np.arccos(1.0 - drop))
         refiner.refine(bent)
@@ -86,7 +90,7 @@ def test_rounding_guard():
 
 
 def test_thresholds_between_frames():
-    """Thresholds that are set, or replaced as a whole, count from the next frame."""
+    """Changed thresholds, or a replaced pair of thresholds, take effect in the next frame."""
     mesh = meshes.irregular(3)
     deformed = meshes.wrinkled(mesh, 4)
     criterion = refine.NormalDrop(0.02, 0.08)
@@ -102,7 +106,7 @@ def test_thresholds_between_frames():
 
 
 def test_criterion_from_outside():
-    """Another criterion replaces the thresholds, but cannot ask for more than two splits."""
+    """A user's criterion replaces the thresholds; more than two splits of an edge are refused."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh, criterion=Forced([1] * 12))
     assert len(refiner.refine(mesh.vertices).triangles) == 4 * 8

@@ -1,4 +1,4 @@
-"""One connectivity for all frames: given splits, and the splits that a clip needs."""
+"""Fixed splits: given splits for all frames, and the splits that all frames of a clip need."""
 
 from typing import Any
 
@@ -30,7 +30,7 @@ def arrays_of(mesh):
 
 @st.composite
 def clips(draw):
-    """Any triangles, with or without seams, and three frames of them."""
+    """Random triangles, with or without seams, and three frames of positions."""
     positions, faces = draw(soups())
     generator = np.random.default_rng(draw(st.integers(0, 2**16)))
     frames = [positions + generator.uniform(-0.4, 0.4, positions.shape) for _ in range(3)]
@@ -45,7 +45,10 @@ def clips(draw):
 @settings(max_examples=25, deadline=None)
 @given(clip=clips())
 def test_a_clip_of_any_triangles(look, clip):
-    """No crack and no T-junction in any frame; one topology; never coarser than a frame."""
+    """With the splits of a clip no frame has a crack or T-junction, and all have one topology.
+
+    Each edge is split at least as often as any frame needs.
+    """
     mesh, frames = clip
     inputs = [mesh.faces, mesh.vertices, *frames]
     before = [array.tobytes() for array in inputs]
@@ -68,7 +71,10 @@ def test_a_clip_of_any_triangles(look, clip):
 
 @pytest.mark.parametrize("look", [name for name in LOOKS if name != "coherent"])
 def test_a_frame_has_the_bits_of_one_that_decides(look):
-    """A frame equals one of a refiner that decides on the same splits, with all attributes."""
+    """A frame with given splits equals a frame whose criterion makes the same splits, to the bit.
+
+    All attributes are equal, too.
+    """
     mesh = meshes.irregular(7)
     generator = np.random.default_rng(8)
     splits = generator.integers(0, 3, edge_count_of(mesh))
@@ -84,7 +90,7 @@ def test_a_frame_has_the_bits_of_one_that_decides(look):
 
 @pytest.mark.parametrize("splits", [1, 2])
 def test_bits_among_many_neighbours_and_on_a_folded_sheet(splits):
-    """They are equal for a vertex with twelve others around it, and for opposite normals."""
+    """Both ways have the same bits for a vertex with many neighbours, and for opposite normals."""
     cone = meshes.double_cone(12)
     sheet = meshes.open_grid(6, 5)
     flipped = sheet.vertices.copy()
@@ -100,7 +106,10 @@ def test_bits_among_many_neighbours_and_on_a_folded_sheet(splits):
 
 
 def test_a_matrix_moves_every_point_and_normal():
-    """The first level is the sum of 3/8, 3/8, 1/8, 1/8 of the frame's vertices, here by numpy."""
+    """Each first-level point is 3/8, 3/8, 1/8, 1/8 of the frame's vertices, compared with numpy.
+
+    Its normal is the mean of the normals at both ends.
+    """
     ball = meshes.ball(2)
     around = refine.connect(ball.faces, len(ball.vertices)).around
     fixed = kahler(ball, splits=np.ones(len(around.points), int))
@@ -116,7 +125,7 @@ def test_a_matrix_moves_every_point_and_normal():
 
 
 def test_capacities_are_those_of_a_frame():
-    """A stream of exactly a frame's size is enough, and every frame fills it."""
+    """A stream with exactly the size of a frame is enough, and every frame fills it."""
     mesh = meshes.irregular(7)
     frames = [meshes.wrinkled(mesh, seed) for seed in range(3)]
     fixed = kahler(mesh, splits=refine.splits_of_clip(kahler(mesh), frames))
@@ -137,7 +146,7 @@ def test_capacities_are_those_of_a_frame():
 
 
 def test_triangles_are_found_once():
-    """A criterion that never changes is called once, and its triangles cannot be changed."""
+    """A criterion that never changes is called once, and the triangles are read-only."""
 
     class Counting(Forced):
         is_constant = True
@@ -159,7 +168,7 @@ def test_triangles_are_found_once():
 
 
 def test_the_criterion_rest_keeps_its_triangles():
-    """The criterion `rest` decides once, so its triangles stay; with another they do not."""
+    """With the criterion `rest` triangles stay the same; combined with another they change."""
     ball = meshes.ball(3)
     frame = meshes.wrinkled(ball, 1)
     assert kahler(ball, criterion="rest").topology is not None
@@ -169,7 +178,7 @@ def test_the_criterion_rest_keeps_its_triangles():
 
 
 def test_a_view_decides_as_well():
-    """The splits of a clip follow the criterion's measures from the given eye."""
+    """The splits of a clip depend on the given view."""
     ball = meshes.ball()
     changing = kahler(ball, criterion="silhouette")
     view = refine.View((0.0, 0.0, 4.0))
@@ -191,12 +200,12 @@ def test_a_view_decides_as_well():
     ],
 )
 def test_mistakes_are_reported(splits, error):
-    """Splits of another mesh, shape, type or size are refused with the right ones."""
+    """Splits of another mesh, shape, type or size are refused; the error has the right ones."""
     with pytest.raises(ValueError, match=error):
         kahler(meshes.octahedron(), splits=splits)
 
 
 def test_splits_and_a_criterion_exclude_each_other():
-    """Both determine the splits of edges, so one of them would have no effect."""
+    """Splits and a criterion exclude each other, because both determine how edges are split."""
     with pytest.raises(ValueError, match=r"splits= and criterion= .*; pass one of the two"):
         kahler(meshes.octahedron(), splits=np.zeros(12, int), criterion="rest")

@@ -24,7 +24,7 @@ def refine_and_check(mesh, deformed, **options):
 
 
 def assert_is_twin(mesh, deformed, refiner, refined, *, normals_cancel=False):
-    """Compare with the simple twin for these splits."""
+    """Check that a frame equals the simple twin's for these splits."""
     ends = [edge_name(int(a), int(b)) for a, b in refiner.edges]
     splits = dict(zip(ends, refiner.splits.tolist(), strict=True))
     twin = refine_plainly(*as_lists(deformed, mesh.faces), splits)
@@ -34,7 +34,7 @@ def assert_is_twin(mesh, deformed, refiner, refined, *, normals_cancel=False):
 @pytest.mark.parametrize("name", meshes.NAMED)
 @pytest.mark.parametrize("amplitude", [0.2, 0.8])
 def test_named_meshes(name, amplitude):
-    """Every named mesh, deformed, is proper and equals the twin's."""
+    """Every test mesh, deformed, passes the checker and equals the twin's result."""
     mesh = meshes.NAMED[name]()
     for seed in range(6):
         deformed = meshes.wrinkled(mesh, seed, amplitude)
@@ -45,7 +45,10 @@ def test_named_meshes(name, amplitude):
 @settings(max_examples=200, deadline=None)
 @given(soup=soups(), data=st.data())
 def test_soups(soup, data):
-    """Any triangles with any splits are proper and equal the twin's; neighbours agree at edges."""
+    """Random triangles with random splits pass the checker and equal the twin's result.
+
+    Neighbouring triangles agree along edges.
+    """
     positions, faces = soup
     mesh = meshes.Mesh(positions, faces)
     edge_count = len(refine.connect(faces, len(positions)).edges)
@@ -55,7 +58,10 @@ def test_soups(soup, data):
 
 
 def test_capacity_is_reached():
-    """With every edge split twice the output fills its capacities: ten for each triangle."""
+    """With every edge split twice, the output has the full capacity.
+
+    Ten subtriangles per triangle.
+    """
     mesh = meshes.octahedron()
     refiner, refined = refine_and_check(mesh, mesh.vertices, criterion=Forced(np.full(12, 2)))
     assert len(refined.triangles) == refiner.triangle_capacity == 80
@@ -63,7 +69,7 @@ def test_capacity_is_reached():
 
 
 def test_frames_are_independent():
-    """A frame does not depend on earlier frames (section 3: no history)."""
+    """A frame does not depend on earlier frames (section 3)."""
     mesh = meshes.irregular(5)
     frames = [meshes.wrinkled(mesh, seed) for seed in range(4)]
     reused = kahler(mesh)

@@ -1,4 +1,4 @@
-"""The weights of Figs. 3 and 4, computed by hand."""
+"""The weights of Figs. 3 and 4, compared with values computed by hand."""
 
 import numpy as np
 
@@ -9,12 +9,12 @@ from tests.refine.cases import Forced, kahler
 
 
 def test_warren_weights():
-    """Valence three is special; six is Loop's regular case with 1/16."""
+    """Valence three has its own weight; valence six has Loop's regular weight of 1/16."""
     assert warren_weight(np.array([3, 4, 6])).tolist() == [3 / 16, 3 / 32, 1 / 16]
 
 
 def refined_points(splits, heights):
-    """Points of two triangles with a split inner edge and vertices at these heights."""
+    """Refined points of two triangles with vertices at these heights, whose inner edge is split."""
     mesh = meshes.two_triangles()
     is_interior = refine.connect(mesh.faces, 4).around.is_interior
     lifted = np.column_stack([mesh.vertices[:, :2], heights])
@@ -22,7 +22,7 @@ def refined_points(splits, heights):
 
 
 def test_first_level_by_hand():
-    """One inner edge split once: 3/8, 3/8, 1/8, 1/8, and its ends follow the border rule."""
+    """One inner edge is split once: weights 3/8, 3/8, 1/8, 1/8; its ends follow the border rule."""
     points = refined_points(1, [0, 8, 16, 32])
     assert points[4].tolist() == [0.5, 0.5, 3 + 6 + 4]
     assert points[1].tolist() == [0.75 + 0.125, 0.125, 6 + 4]
@@ -31,7 +31,7 @@ def test_first_level_by_hand():
 
 
 def test_second_level_by_hand():
-    """The same edge split twice: quarter points use midpoints of edges that are not split."""
+    """The same edge is split twice: quarter points use midpoints of edges that are not split."""
     height = refined_points(2, [0, 64, 128, 256])[:, 2]
     a = 64.0
     b = 128.0

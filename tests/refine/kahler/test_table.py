@@ -15,7 +15,7 @@ ALL_SPLITS = list(itertools.product(range(3), repeat=3))
 
 @pytest.mark.parametrize("splits", ALL_SPLITS)
 def test_rotation(splits):
-    """Renamed corners rename the subtriangles, and change nothing else."""
+    """A rotation of the corners' names rotates the subtriangles, and changes nothing else."""
     turned_splits = (splits[1], splits[2], splits[0])
     renamed = [
         tuple((p + 1) % 3 if p < 3 else 3 + (p - 3 + 3) % 9 for p in t)
@@ -30,7 +30,7 @@ def _as_set(triangles):
 
 @pytest.mark.parametrize("splits", ALL_SPLITS)
 def test_one_triangle(splits):
-    """A single triangle gives the pattern drawn by hand, through the whole refiner."""
+    """The refiner, given a single triangle, makes the pattern drawn by hand."""
     mesh = meshes.triangle()
     refiner = kahler(mesh, criterion=Forced(splits))
     refined = refiner.refine(mesh.vertices)
@@ -42,7 +42,7 @@ def test_one_triangle(splits):
 
 
 def test_verification_can_fail():
-    """The check at import finds a missing, a flipped and a wrong subtriangle."""
+    """The check at import detects a missing, a flipped and a wrong subtriangle."""
     good = table.subdivide((1, 1, 0))
     flipped = [(good[0][1], good[0][0], good[0][2]), *good[1:]]
     overlapping = [(0, 1, 2), *good[1:]]

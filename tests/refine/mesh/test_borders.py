@@ -15,7 +15,7 @@ from tests.refine.plain_twin import Surroundings
 @settings(max_examples=150, deadline=None)
 @given(soups())
 def test_soups(soup):
-    """For any triangles, borders continue as computed with plain dictionaries."""
+    """For random triangles, border neighbours equal those found with plain dictionaries."""
     positions, faces = soup
     found = border_neighbours(refine.connect(faces, len(positions)), positions)
     around = Surroundings([tuple(int(v) for v in face) for face in faces])
@@ -28,7 +28,7 @@ def test_soups(soup):
 
 @pytest.mark.parametrize(("sides", "is_round"), [(4, False), (5, False), (6, True), (7, True)])
 def test_corners(sides, is_round):
-    """A hexagon is round, a square has corners; so have shut lips at their ends."""
+    """The border of a hexagon is round, a square's has corners; a slit has corners at its ends."""
     fan = meshes.fan(sides)
     found = border_neighbours(refine.connect(fan.faces, sides + 1), fan.vertices)
     assert (found[0] == 0).all()

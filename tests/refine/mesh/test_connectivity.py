@@ -13,7 +13,7 @@ from tests.refine.plain_twin import Surroundings, edge_name
 @settings(max_examples=150, deadline=None)
 @given(soups())
 def test_soups(soup):
-    """For any triangles, edges and neighbourhoods equal those from plain dictionaries."""
+    """For random triangles, edges and neighbourhoods equal those found with plain dictionaries."""
     positions, faces = soup
     connectivity = refine.connect(faces, len(positions))
     around = Surroundings([tuple(int(v) for v in face) for face in faces])
@@ -38,7 +38,7 @@ def test_soups(soup):
 
 
 def test_wedges_of_tube():
-    """A seam of five vertices and four edges has copies of these, and of no others."""
+    """A seam of five vertices and four edges duplicates exactly these vertices and edges."""
     tube = meshes.tube(segments=8, rings=4)
     connectivity = refine.connect(tube.faces, len(tube.vertices), tube.face_uv)
     assert len(connectivity.wedge_vertices) == len(tube.vertices) + 5
@@ -49,7 +49,7 @@ def test_wedges_of_tube():
 
 
 def test_weld():
-    """A mesh doubled along its seam becomes closed, and its texture coordinates stay apart."""
+    """A mesh with doubled vertices along its seam becomes closed; its texture coordinates stay."""
     tube = meshes.tube(segments=6, rings=2)
     assert tube.uv is not None
     assert tube.face_uv is not None
@@ -93,6 +93,6 @@ def test_bad_triangles(arguments, text):
     ],
 )
 def test_bad_welds(positions, faces, text):
-    """Invalid welds are refused: an index of -1 is not the last vertex."""
+    """Invalid welds are refused; an index of -1 does not mean the last vertex."""
     with pytest.raises(ValueError, match=text):
         refine.weld(positions, faces)

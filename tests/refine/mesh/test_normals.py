@@ -26,7 +26,7 @@ def lengths(normals):
 
 @pytest.mark.parametrize("name", OPTIONS)
 def test_unit_or_zero(name):
-    """For tiny, huge and flattened meshes, no normal has another length, and none is infinite."""
+    """In tiny, huge and flattened meshes each normal has length one or zero, and all are finite."""
     mesh = meshes.irregular(3)
     options = dict(OPTIONS[name])
     if options.get("scheme") == "detail":
@@ -44,7 +44,7 @@ def test_unit_or_zero(name):
 
 @pytest.mark.parametrize("edge", [3e-10, 1e-6, 1.0, 5e9, 1e14])
 def test_small_and_large_triangles_have_normals(edge):
-    """A square keeps its direction for any length of edges."""
+    """A square's normals have the same direction for any length of edges."""
     square = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
     refiner = refine.create("kahler", [[0, 1, 2], [2, 1, 3]], square)
     normals = refiner.refine(edge * square).normals

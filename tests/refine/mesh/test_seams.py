@@ -1,4 +1,4 @@
-"""Texture seams: attributes separate, geometry does not."""
+"""Texture seams: attributes differ on both sides, positions do not."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def bent_tube():
 
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 def test_same_geometry_as_without(name, options):
-    """Texture coordinates change no position: the same soup of triangles results."""
+    """Texture coordinates change no position: the same unordered set of triangles results."""
     tube, deformed = bent_tube()
     with_uv = refine.create(
         name, tube.faces, tube.vertices, uv=tube.uv, face_uv=tube.face_uv, **options
@@ -34,7 +34,7 @@ def test_same_geometry_as_without(name, options):
 
 
 def test_every_corner_its_own_coordinate():
-    """In the extreme case all edges are seams, all vertices are doubled, and nothing cracks."""
+    """If every corner has its own texture coordinate, all edges are seams and nothing cracks."""
     mesh = meshes.irregular(13)
     deformed = meshes.wrinkled(mesh, 14)
     face_uv = np.arange(mesh.faces.size).reshape(-1, 3)
@@ -49,7 +49,7 @@ def test_every_corner_its_own_coordinate():
 
 
 def test_unused_vertices_have_zero_coordinates():
-    """Vertices without triangles have defined coordinates: zero."""
+    """Vertices without triangles have texture coordinates of zero."""
     mesh = meshes.with_debris()
     uv = np.ones((1, 2))
     for name, options in REFINERS:

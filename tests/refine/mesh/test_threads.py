@@ -1,4 +1,4 @@
-"""Loops shared among threads: the same bits, every item once, and none for small meshes."""
+"""Loops shared among threads: equal bits, every item once, and no thread for small meshes."""
 
 import os
 import subprocess
@@ -33,7 +33,7 @@ def force_threads(monkeypatch, count):
 @pytest.mark.parametrize("name", OPTIONS)
 @pytest.mark.parametrize("mesh", [meshes.irregular(4), meshes.tube(24, 12), meshes.with_debris()])
 def test_bits_do_not_depend_on_threads(mesh, name, monkeypatch):
-    """One, two and three threads make the same sound frames, also with seams and debris."""
+    """One, two and three threads make frames with the same bits, also with seams and debris."""
     refiner = "none" if name == "none" else "kahler"
     bound = [
         refine.create(refiner, mesh.faces, mesh.vertices, mesh.uv, mesh.face_uv, **OPTIONS[name])
@@ -54,7 +54,7 @@ def test_bits_do_not_depend_on_threads(mesh, name, monkeypatch):
 
 
 def test_every_item_once(monkeypatch):
-    """Parts cover the whole in any thread; an error in one is raised for the caller."""
+    """The parts cover all items once, in any thread; an error in a part is raised in the caller."""
     force_threads(monkeypatch, 3)
     for count in (0, 1, 31, 32, 1000):
         done = np.zeros(count, np.int64)
@@ -74,7 +74,7 @@ def test_every_item_once(monkeypatch):
 
 
 def test_small_meshes_start_no_thread(head, monkeypatch):
-    """A face is refined in the calling thread; so is every mesh if numba has one thread."""
+    """A face mesh is refined in the calling thread; with one numba thread every mesh is."""
 
     def refuse():
         raise AssertionError("a thread was started")
@@ -109,7 +109,7 @@ assert same and os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 def test_forked_processes_have_threads_of_their_own():
-    """A forked child refines like its parent, and does not wait for missing threads."""
+    """A forked child refines like its parent, although the parent's threads do not exist in it."""
     code = FORKED.replace("{LOOK}", repr(LOOK))
     done = subprocess.run(
         [sys.executable, "-W", "ignore::DeprecationWarning", "-c", code],
