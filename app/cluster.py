@@ -1,7 +1,7 @@
-"""Work on the workers of a Dask cluster; each worker has its own processes for it.
+"""Work on a Dask cluster; each Dask worker runs it in processes of its own.
 
-Threads of a Dask worker cannot draw, and a crash of one looks like a kill. So a Dask worker passes
-its work to a `WorkerPool`, as this computer does.
+Threads of a Dask worker cannot draw, and Dask reports a crash in a thread as a killed worker. So a
+Dask worker passes its work to a `WorkerPool`, as work on one computer does.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .text import in_one_line
 from .workers import ATTEMPTS, WorkerPool, share_of_cores
 
 PATIENCE = 10.0  # [s] for the scheduler to answer
-LOSSES = 10  # times that Dask may give up an item whose workers were lost
+LOSSES = 10  # an item fails when Dask has lost its workers so many times
 
 _pools: dict[str, WorkerPool] = {}
 """In a Dask worker: the processes of each run."""
@@ -30,9 +30,9 @@ _pools: dict[str, WorkerPool] = {}
 def run_on_cluster(
     work: Callable[[WorkerPool, Any], Any], items: Sequence[Any], scheduler: str
 ) -> Generator[tuple[Any, Any, str], None, None]:
-    """Yield each item when it ends, with its result, or with None and the reason.
+    """Yield each item when it ends: (item, result, ""), or (item, None, reason) if it fails.
 
-    An item whose workers are lost goes to others. The cluster forgets results that have been taken.
+    An item whose workers are lost goes to other workers. The cluster deletes each fetched result.
     Raises UserError if no scheduler answers.
     """
     distributed = needed("distributed", "--scheduler", "cluster")
@@ -53,7 +53,7 @@ def run_on_cluster(
 
 def _client(distributed: Any, scheduler: str) -> Any:
     """A connection to the scheduler at an address; raises UserError if none answers."""
-    try:  # a first test: a client takes half a minute to notice a missing scheduler
+    try:  # tested first: a client takes half a minute to notice a missing scheduler
         host_and_port = distributed.comm.get_address_host_port(scheduler)
         socket.create_connection(host_and_port, PATIENCE).close()
         return distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
@@ -68,7 +68,7 @@ def _client(distributed: Any, scheduler: str) -> Any:
 def _results(
     distributed: Any, client: Any, do: Callable[[Any], Any], items: Sequence[Any]
 ) -> Iterator[tuple[Any, Any, str]]:
-    """Results, as `run_on_cluster` yields them."""
+    """Yield results in the form of `run_on_cluster`."""
     losses = Counter[int]()
     futures = client.map(do, items, pure=False, retries=ATTEMPTS - 1)
     number_of = {future.key: number for number, future in enumerate(futures)}
@@ -93,10 +93,10 @@ def _results(
 
 
 def _do(run: str, work: Callable[[WorkerPool, Any], Any], item: Any) -> Any:
-    """In a Dask worker: work on an item."""
+    """Work on an item, inside a Dask worker."""
     return work(_pools.setdefault(run, WorkerPool(share_of_cores())), item)
 
 
 def _end(run: str) -> None:
-    """In a Dask worker: the run is over."""
+    """Stop the processes of a run, inside a Dask worker."""
     _pools.setdefault(run, WorkerPool()).stop()

@@ -1,4 +1,4 @@
-"""A line for the user when kernels are compiled, which takes long once."""
+"""A note for the user at the first compilation of kernels, which takes long."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import click
 
 
 class _CompilingNote(logging.Handler):
-    """Prints once that kernels are compiled, and once that they cannot be stored (jit.py)."""
+    """Prints one note on compilation, and one if compiled kernels cannot be stored (jit.py)."""
 
     _printed: frozenset[int] = frozenset()
 
@@ -23,7 +23,7 @@ class _CompilingNote(logging.Handler):
 
 
 def announce_compiling() -> None:
-    """From here on print a note when kernels are compiled, which takes long once."""
+    """Install the log handler that prints the notes on compilation."""
     log = logging.getLogger("risorius.jit")
     log.handlers = [_CompilingNote()]
     log.propagate = False

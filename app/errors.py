@@ -52,7 +52,7 @@ def report_user_errors() -> Iterator[None]:
     """Turn errors that the user can correct into one line on the error stream and exit code 2."""
     try:
         yield
-    except (BrokenPipeError, click.ClickException):  # the reader has gone; click reports its own
+    except (BrokenPipeError, click.ClickException):  # the reader is gone; click reports errors
         raise
     except Exception as error:
         line = line_for(error)

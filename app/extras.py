@@ -9,7 +9,7 @@ from .errors import UserError
 
 
 def needed(module: str, what: str, extra: str, *, package: str | None = None) -> Any:
-    """An optional library; raises UserError, with the remedy, if it is missing.
+    """Import an optional library; raise UserError, with the remedy, if it is missing.
 
     what: the feature that needs it ("--passes"). extra: this distribution's extra that installs it.
     package: the package of the module, if its name differs.

@@ -1,8 +1,8 @@
-"""Files: reading is complete or refused, and writing is complete or undone.
+"""Reading of plain files, and atomic writing of files and folders.
 
 Only plain files are read: a pipe without a writer would make the program wait forever, and a device
-like /dev/zero has no end. An output is written beside its place, and moved there when it is
-complete.
+like /dev/zero has no end. An output is written into a temporary folder, and moved to its place when
+it is complete.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class NoSuchFileError(UserError):
 
 
 def read_text(path: Path, *, what: str, longest: int) -> str:
-    """The text in a file, UTF-8 with or without a byte order mark, at most `longest` bytes.
+    """Read a UTF-8 file, with or without a byte order mark, of at most `longest` bytes.
 
     what: the kind of file, for error texts ("script"). Raises UserError for an unusable file, and
     its subclass NoSuchFileError for a missing one.
@@ -43,7 +43,7 @@ def read_text(path: Path, *, what: str, longest: int) -> str:
 
 
 def _similar(path: Path) -> str:
-    """The end of an error text: the most similar name beside a missing file, if there is one."""
+    """Return the end of an error text that suggests a similar file name, or ""."""
     try:
         names = [each.name for each in path.parent.iterdir() if each.is_file()]
     except (OSError, ValueError):
@@ -53,9 +53,9 @@ def _similar(path: Path) -> str:
 
 
 def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None) -> bytes:
-    """The content of a plain file, at most `longest` bytes, or only its `first` bytes.
+    """Read a plain file of at most `longest` bytes, or only its `first` bytes.
 
-    The errors are those of `read_text`.
+    Raises the same errors as `read_text`.
     """
     try:
         status = path.stat()
@@ -78,9 +78,9 @@ def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None)
 def written_atomically(target: Path) -> Iterator[Path]:
     """Yield a path beside `target`; it is renamed to `target` if the block has no error.
 
-    Files that the block puts beside this path move along, and then lie beside the target. If the
-    target is a symbolic link, the file replaces the link, as with `mv`: another user may have put
-    the link into a shared folder. Raises UserError if this fails, in the block or after it.
+    Other files that the block writes beside this path are moved too. If the target is a symbolic
+    link, the file replaces the link, as with `mv`: another user may have put the link into a
+    shared folder. Raises UserError if a file cannot be written, in the block or after it.
     """
     check_links(target)
     parent = Path(os.path.realpath(target.parent))
@@ -98,8 +98,8 @@ def written_atomically(target: Path) -> Iterator[Path]:
 def named_in_text(target: Path) -> Iterator[Path]:
     """Yield a path to write `target` to, for libraries that only take names in UTF-8.
 
-    It is `target` itself, unless its name or that of a folder is not UTF-8: then the file is
-    written in the system's folder for temporary files, and moved after the block.
+    The path is `target` itself if it is valid UTF-8. Otherwise the file is written into the
+    system's temporary folder, and moved after the block.
     """
     if as_text(target) == str(target):
         yield target
@@ -114,14 +114,14 @@ def named_in_text(target: Path) -> Iterator[Path]:
 def folder_atomically(target: Path, own: re.Pattern[str], *, overwrite: bool) -> Iterator[Path]:
     """Yield a folder; after the block all its files move into the folder `target` together.
 
-    own: pattern of names of our files. overwrite: whether older ones are replaced; other files
-    stay. Else UserError if the target is not empty.
+    own: pattern of the names of our files. overwrite: replace all older files with such names;
+    other files stay. Without it, raises UserError if the target is not empty.
     """
     check_folder(target, overwrite=overwrite)
     is_new = not target.exists()
 
     def give_up() -> None:
-        with contextlib.suppress(OSError):  # the target has its files
+        with contextlib.suppress(OSError):  # the target is not empty
             target.rmdir()
 
     with contextlib.ExitStack() as stack:
@@ -132,7 +132,7 @@ def folder_atomically(target: Path, own: re.Pattern[str], *, overwrite: bool) ->
                 target.mkdir(parents=True)
         temporary = stack.enter_context(temporary_folder(target, target))
         yield temporary
-        with done_whole(), cannot_be_written(target):  # no interruption may fall between the two
+        with done_whole(), cannot_be_written(target):  # no interruption between the two loops
             for old in target.iterdir():
                 if own.fullmatch(old.name):
                     old.unlink()
@@ -156,7 +156,7 @@ def check_folder(target: Path, *, overwrite: bool) -> None:
 
 @contextlib.contextmanager
 def temporary_folder(target: Path, parent: Path) -> Iterator[Path]:
-    """A folder in `parent`, removed after the block; errors are those of writing `target`."""
+    """Make a folder in `parent`, and remove it after the block; errors name `target`."""
     temporary = StagingFolder(parent)
     with cleaned_up_if_stopped(temporary.remove), contextlib.ExitStack() as stack:
         with cannot_be_written(target):
@@ -181,7 +181,7 @@ def check_links(target: Path) -> None:
 
 
 def entry_of(path: Path) -> str:
-    """The folder and name of a path; those of a link itself, unless it leads to a folder."""
+    """Return a path without links in it; only a last link to a file is kept as it is."""
     if path.is_dir():
         return os.path.realpath(path)
     return os.path.join(os.path.realpath(path.parent), path.name)

@@ -1,4 +1,4 @@
-"""A user's maps of light from all around: Radiance HDR and OpenEXR, equirectangular.
+"""Reading of a user's light maps: equirectangular pictures in Radiance HDR and OpenEXR.
 
 Source: Ward 1991, "Real pixels", Graphics Gems II, for the bytes of Radiance's files.
 """
@@ -27,7 +27,7 @@ Pixels = npt.NDArray[np.float32]
 
 
 def read_light_map(path: Path) -> render.LightMap:
-    """The light in a file, (128, 256) texels; raises UserError for an unusable one."""
+    """Read a light map, reduced to (128, 256) texels; raise UserError for an unusable file."""
     check_light_map(path)
     with _refused(path):
         pixels = _openexr(path) if _is_openexr(path) else _radiance(_content(path))
@@ -53,7 +53,7 @@ def check_light_map(path: Path) -> None:
             height, width = _openexr_size(path)
         else:
             height, width, _ = _radiance_size(header)
-    longest = 32767  # of a line in Radiance's files
+    longest = 32767  # [pixels] in a line of a Radiance file
     if not 0 < width <= longest or abs(width - 2 * height) > 0.02 * width:
         raise UserError(
             f"{path}: has {width} x {height} pixels; a map of light from all around "
@@ -66,7 +66,7 @@ def _is_openexr(path: Path) -> bool:
 
 
 def _content(path: Path, first: int | None = None) -> bytes:
-    """A file's bytes, or its `first` ones."""
+    """Return a file's bytes, or only its `first` bytes."""
     return read_bytes(path, what="map of light", longest=2**28, first=first)
 
 
@@ -80,9 +80,9 @@ def _refused(path: Path) -> Iterator[None]:
 
 
 def _radiance_size(content: bytes) -> tuple[int, int, int]:
-    """Height and width in a Radiance file's header [pixels], and the place of its pixels [bytes].
+    """Return height and width of a Radiance file [pixels], and the offset of its pixels [bytes].
 
-    ValueError if it is not a Radiance file.
+    Raises ValueError if it is not a Radiance file.
     """
     head, _, _ = content.partition(b"\n\n")
     found = re.match(rb"-Y (\d{1,5}) \+X (\d{1,5})\n", content[len(head) + 2 :])
@@ -105,8 +105,8 @@ def _radiance(content: bytes) -> Pixels:
 
 
 def _unpacked(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArray[np.uint8]:
-    """Lines of four run-length encoded channels, decoded, shape (H, W, 4)."""
-    most_alike = 127  # bytes in a run, which is coded in two
+    """Decode lines of four run-length encoded channels; shape (H, W, 4)."""
+    most_alike = 127  # equal bytes in a run, which takes two bytes
     if len(data) < height * (4 + 8 * math.ceil(width / most_alike)):
         raise ValueError("it is shorter than its size requires")
     values = data.tobytes()
@@ -135,7 +135,7 @@ def _unpacked(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArr
 
 @contextlib.contextmanager
 def _opened_openexr(path: Path, *, header_only: bool) -> Iterator[Any]:
-    """An OpenEXR file; raises ValueError for another file, or if it breaks in the block."""
+    """Open an OpenEXR file; raise ValueError if it cannot be read, here or inside the block."""
     module = needed("OpenEXR", "a light of .exr", "passes")
     try:
         with module.File(str(path), separate_channels=True, header_only=header_only) as file:

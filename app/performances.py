@@ -1,4 +1,4 @@
-"""Performances: a script, a recording made to fit the face, a pose, or the scene's own script."""
+"""Scripts to play: from a script file, a recording, a pose, or the built-in script of a scene."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ def script_for(
     playback: Playback | None = None,
     on_report: Callable[[Report], None] | None = None,
 ) -> Script:
-    """The script for the file at `path`, or for the pose of `settings`, or the scene's own.
+    """Return the script of the file `path`, of the pose `settings`, or else of the scene.
 
-    playback: how a recording is played. on_report: is called with the report of a recording.
+    playback: options for a recording. on_report: function that gets the report of a recording.
     """
     playback = playback or Playback()
     if settings and path is not None:
@@ -57,14 +57,14 @@ def script_for(
 
 
 def built_in_words() -> Script:
-    """The script of a few spoken words that is included."""
+    """Return the built-in script of a few spoken words."""
     return load_script(Path(str(files("risorius.assets") / "scripts" / "speech.toml")))
 
 
 def new_script(
     scene: str = "face", camera: str | None = None, values: Mapping[str, float] | None = None
 ) -> Script:
-    """A script of one pose, to which keys can be added; values: of the pose, by default neutral."""
+    """Return a script of one pose, to which keys can be added; without values it is neutral."""
     nonzero = {name: value for name, value in (values or {}).items() if value}
     duration = 4.0  # [s]
     poses = (Pose(0.0, nonzero),)
@@ -72,7 +72,7 @@ def new_script(
 
 
 def examples(scene: str) -> list[Path]:
-    """The scripts of a scene that are included."""
+    """Return the paths of the built-in scripts of a scene."""
     folder = Path(str(files("risorius.assets") / "scripts"))
     return [path for path in sorted(folder.glob("*.toml")) if load_script(path).scene == scene]
 
@@ -80,10 +80,10 @@ def examples(scene: str) -> list[Path]:
 def read_performance(
     path: Path, playback: Playback | None = None, limits: Limits | None = None
 ) -> tuple[Script, Report | None]:
-    """The script in a .toml file; or the script that plays a recording, with its report.
+    """Read a script, or convert a recording to a script; return it with the recording's report.
 
-    limits: of the face, where one is there already. Raises UserError for a file that is neither,
-    and for options of recordings that come with a script.
+    limits: limits of the face's controls; None takes those of the built-in face. Raises UserError
+    for a file that is neither, and if a script comes with options for recordings.
     """
     playback = playback or Playback()
     if path.suffix.lower() != ".toml":
@@ -99,7 +99,7 @@ def read_performance(
 
 
 def options_in(playback: Playback) -> str:
-    """The first option of a playback that is not as usual, as the command line has it."""
+    """Return the command-line name of the first option that differs from its default."""
     usual = Playback()
     first = next(
         f.name for f in fields(playback) if getattr(playback, f.name) != getattr(usual, f.name)
@@ -109,12 +109,12 @@ def options_in(playback: Playback) -> str:
 
 @functools.cache
 def limits_of(scene: str) -> Limits:
-    """The lowest and highest value of each control of the scene of this name."""
+    """Return the lowest and highest value of each control of a scene, by the scene's name."""
     return controls_of(scene).limits
 
 
 def held_pose(settings: Sequence[str]) -> Script:
-    """The script that `--set NAME=VALUE ...` stands for: one pose, held. A bare NAME is at 1."""
+    """Return the script of `--set NAME=VALUE ...`, which holds one pose; a bare NAME means 1."""
     values = {}
     for setting in settings:
         name, equals, text = setting.partition("=")

@@ -58,11 +58,11 @@ class Pipeline:
         self.set_tone(None)
 
     def bind(self, refinement: Refinement) -> DrawnMesh:
-        """Bind the refiner that is asked for to the scene's mesh; borrow render buffers for it."""
+        """Bind the chosen refiner to the scene's mesh, with buffers of the renderer."""
         return bind(self.scene, self.renderer, refinement)
 
     def set_tone(self, tone: float | None) -> None:
-        """Hand the scene's albedo to the renderer, in a tone [deg] where it has any."""
+        """Pass the scene's albedo to the renderer, in a skin tone [deg] if the scene has tones."""
         skin = self.scene.skin
         if skin.albedo is not None:
             albedo = skin.albedo if tone is None or skin.in_tone is None else skin.in_tone(tone)
@@ -73,7 +73,7 @@ class Pipeline:
             self.maps = replace(self.maps, texture=texture)
 
     def step(self, seconds: float) -> None:
-        """The upper half of the figure: time passes, and the triangle mesh follows."""
+        """Simulate some seconds, which moves the triangle mesh: the upper half of the figure."""
         self.scene.step(seconds)
 
     def refine(
@@ -82,8 +82,8 @@ class Pipeline:
         viewports: Sequence[Viewport],
         wrinkling: Wrinkling | None = None,
     ) -> None:
-        """Refine each mesh; a frame that nobody draws, too: the next one may remember it."""
-        self.renderer.surface.make_current()  # where streams of the graphics card are
+        """Refine each mesh; also needed for skipped frames, because a refiner may remember them."""
+        self.renderer.surface.make_current()  # streams on the graphics card belong to it
         for viewport in viewports:
             viewport.drawn.refine(self.scene.positions, camera, wrinkling)
 
@@ -95,7 +95,7 @@ class Pipeline:
         seen: Dissection | None = None,
         overlays: Sequence[render.Lines] = (),
     ) -> render.Frame:
-        """The picture of a mesh as it was uploaded; seen: None is skin that hides all in it."""
+        """Return the renderer's frame of an uploaded mesh; seen: None for opaque skin."""
         drawn, area, clip = viewport
         seen = self.anatomy.dissect(SKIN_ALONE) if seen is None else seen
         maps = self.maps if drawn.has_uv else render.NO_MAPS
@@ -124,9 +124,9 @@ class Pipeline:
         overlays: Sequence[render.Lines] = (),
         timer: Timer = nullcontext,
     ) -> None:
-        """The lower half: refine the mesh for each viewport, hand it over, and draw it there.
+        """Refine, upload and draw the mesh of each viewport: the lower half of the figure.
 
-        overlays: over every viewport. timer: measures "refinement", "upload" and "draw".
+        overlays: lines over every viewport. timer: measures "refinement", "upload" and "draw".
         """
         with timer("refinement"):
             compression = self._compression if style.shows_bumps else None
@@ -136,14 +136,14 @@ class Pipeline:
             for viewport in viewports:
                 viewport.drawn.upload()
         with timer("draw"):
-            seen = self.anatomy.dissect(anatomy, has_hair=style.textured)  # else form is seen
+            seen = self.anatomy.dissect(anatomy, has_hair=style.textured)  # plain skin shows form
             self.renderer.draw(
                 *(self.frame_of(camera, style, each, seen, overlays) for each in viewports)
             )
 
 
 def _around_fading(scene: Drawable) -> Integers64 | None:
-    """The vertices of triangles that fade; None: the skin of the scene does not."""
+    """Return the vertices of triangles that fade, or None if the scene's skin does not fade."""
     fade = scene.skin.fade
     if fade is None:
         return None

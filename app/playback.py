@@ -1,19 +1,19 @@
-"""How a recording is played: the options of `Playback`."""
+"""Options that decide how a recording is played."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-LEAD = 0.047  # [s] that muscles and the skin on them follow late
+LEAD = 0.047  # [s] by which simulated muscles and skin lag behind their controls
 
 
 @dataclass(frozen=True)
 class Playback:
-    """How a recording becomes a script; a field that is None is chosen by the kind of file.
+    """Options for the conversion of a recording; for None the kind of file decides.
 
-    neutral: "first:SECONDS", "percentile" or "none". gains: "NAME=x" each. mirror: left and right
-    change places. lead: how far muscles are asked ahead of the recording [s]; eyes and head in
-    proportion. face, rate: see `read_take`.
+    neutral: "first:SECONDS", "percentile" or "none". gains: factors of channels, as "NAME=x".
+    mirror: whether to swap left and right. lead: time by which muscles act before the recording
+    [s]; eyes and head in proportion. face, rate: see `read_take`.
     """
 
     neutral: str | None = None

@@ -44,7 +44,7 @@ def report(size: tuple[int, int], seconds: float) -> str:
             f"{driver}, {os.cpu_count()} cores of {processor()};",
             f"median of {rounds}; processor time with that of the encoder.",
             "",
-            f"{frame_count / wall:.1f} frames/s by {processes.worthwhile(options, frame_count)} "
+            f"{frame_count / wall:.1f} frames/s by {processes.process_count(options, frame_count)} "
             f"process(es): {wall:.1f} s, and {spent:.1f} s of processor time",
         ]
     )

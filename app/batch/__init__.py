@@ -1,1 +1,1 @@
-"""Many commands, done in parallel: a list of lines, its journal, their results."""
+"""Parallel runs of many commands: the list of lines, their logs and their results."""

@@ -1,4 +1,4 @@
-"""The lines of a list, each a command, and the conflicts between them."""
+"""A list of commands, one on each line, and the conflicts between its lines."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from ..files import entry_of, read_text
 
 @dataclass(frozen=True)
 class Job:
-    """A line to be done.
+    """A line of the list, which is a command to run.
 
-    command: its click command, "module:name". folder: the start of its relative paths.
+    command: its click command, "module:name". folder: the folder of its relative paths.
     inputs, outputs: the files that it reads and writes. log: the file for its output.
     """
 
@@ -30,7 +30,10 @@ class Job:
     log: Path
 
     def is_done(self) -> bool:
-        """Whether all outputs exist, and none is older than an input; files are complete."""
+        """Whether all files exist, and no output is older than an input.
+
+        An output that exists is complete, because commands write their files atomically.
+        """
         files = (*self.outputs, *self.inputs)
         if not all(path.exists() for path in files):
             return False
@@ -40,7 +43,7 @@ class Job:
 
 
 def lines_of(path: Path) -> Iterator[tuple[int, str]]:
-    """The numbers and texts of lines that hold a command; UserError for an unreadable file."""
+    """Yield number and text of each line with a command; UserError for an unreadable file."""
     text = read_text(path, what="list", longest=64 << 20)  # 64 MiB
     for number, line in enumerate(text.splitlines(), 1):
         stripped = line.strip()
@@ -49,7 +52,7 @@ def lines_of(path: Path) -> Iterator[tuple[int, str]]:
 
 
 def words_of(text: str) -> list[str]:
-    """The words of a line, as a shell reads it; UserError for an unclosed quotation, and NUL."""
+    """Split a line into words as a shell does; UserError for an open quotation mark, or NUL."""
     if "\0" in text:
         raise UserError("holds a NUL character, which no name of a file can have")
     try:
@@ -59,7 +62,7 @@ def words_of(text: str) -> list[str]:
 
 
 def clashes(jobs: Sequence[Job]) -> Iterator[tuple[int, str]]:
-    """Lines that cannot run together with others: their numbers, and the reasons."""
+    """Yield number and reason for each line whose files conflict with another line."""
     writer_of: dict[str, Job] = {}
     for job in jobs:
         for output in job.outputs:

@@ -1,4 +1,4 @@
-"""Execution of the lines of a list; their results in words and as a file."""
+"""Execution of the lines of a list, and their results as text and as a CSV file."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Result:
 def run_lines(
     jobs: Sequence[Job], *, processes: int, scheduler: str | None, resume: bool
 ) -> Iterator[Result]:
-    """Do the lines, and yield the result of each when it ends; `resume` skips those done."""
+    """Run all lines, and yield the result of each when it ends; `resume` skips finished lines."""
     done = {job for job in jobs if resume and job.is_done()}
     waiting = [job for job in jobs if job not in done]
     yield from (Result(job, SKIPPED) for job in done)
@@ -68,7 +68,7 @@ def _run_here(jobs: Sequence[Job], processes: int) -> Iterator[Result]:
 
 
 def do_line(pool: WorkerPool, job: Job) -> Result:
-    """Let a process do a line."""
+    """Run a line in a process of the pool."""
     begin = time.monotonic()
     frames = list[int]()
     try:
@@ -79,7 +79,7 @@ def do_line(pool: WorkerPool, job: Job) -> Result:
 
 
 def _do(job: Job, send: Send) -> None:
-    """In a process: do a line, and send the number of frames that it played."""
+    """Run a line in this process, and send the number of frames that it played."""
     print(f"risorius {job.text}", flush=True)
     try:
         os.chdir(job.folder)
@@ -98,7 +98,7 @@ def _do(job: Job, send: Send) -> None:
 
 
 def in_words(results: Sequence[Result], seconds: float) -> str:
-    """A summary of all lines. seconds: the duration of the whole batch."""
+    """Summarize all lines in one sentence. seconds: the duration of the whole batch."""
     counts = {name: sum(each.status == name for each in results) for name in (OK, FAILED, SKIPPED)}
     frames = sum(each.frames for each in results if each.status == OK)
     outcomes = ", ".join(f"{number} {name}" for name, number in counts.items())

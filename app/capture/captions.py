@@ -23,17 +23,17 @@ LANCZOS = PIL.Image.Resampling.LANCZOS
 
 @functools.cache
 def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
-    """Pillow's own typeface at a size [pixels]; read once, because reading is slow."""
+    """Return Pillow's built-in typeface at a size [pixels]; the cache avoids slow loading."""
     return ImageFont.load_default(size=size)
 
 
-# A picture on a picture: x, y of its lower left corner [pixels]; RGBA, premultiplied.
+# A small picture to draw on a frame: x, y of its lower left corner [pixels]; premultiplied RGBA.
 Label = tuple[int, int, Image]
 
 
 @functools.lru_cache(maxsize=64)
 def plate(text: str, size: float) -> Image:
-    """A line of text, and a smaller one below it, on a dark plate; see `Label`."""
+    """Draw a line of text, and a smaller second line, on a dark plate; premultiplied RGBA."""
     lines = [*zip(text.split("\n"), (font(size), font(0.82 * size)), (INK, FAINT), strict=False)]
     width = max(face.getlength(line) for line, face, _ in lines)
     page, draw = _page(width + 1.3 * size, (1.25 * len(lines) + 0.55) * size, size)
@@ -45,7 +45,7 @@ def plate(text: str, size: float) -> Image:
 
 @functools.lru_cache(maxsize=8)
 def colour_bar(size: float) -> Image:
-    """A legend of the colours of splits: an upright bar with numbers and a title, on a plate."""
+    """Draw the legend of split colours: an upright bar with numbers and a title, on a plate."""
     small = font(0.82 * size)
     count = len(render.SPLIT_PALETTE)
     pad = round(0.65 * size)
@@ -74,7 +74,7 @@ def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, Im
     page = PIL.Image.new("RGBA", (math.ceil(width), math.ceil(height)), (*SHADE, 0))
     draw = ImageDraw.Draw(page)
     corners = (0, 0, page.width - 1, page.height - 1)
-    # Of 255: a plate hides most of the picture behind a text.
+    # An opacity of 185 in 255 hides most of the picture behind a text.
     draw.rounded_rectangle(corners, 0.35 * size, fill=(*SHADE, 185))
     return page, draw
 
@@ -88,9 +88,10 @@ def labels(
 ) -> list[Label]:
     """Captions at the foot of viewports, and the colour bar at the upper right.
 
-    A caption stands at the left, the second of two at the right, away from the line and the face;
-    it is left out if there is no room. least: smallest size of letters [pixels]; a high picture has
-    larger ones.
+    A caption stands at the left of its viewport. The second of two captions stands at the right,
+    away from the dividing line and the face. A caption without enough room is left out.
+
+    least: smallest size of letters [pixels]; the size grows with the height of the picture.
     """
     size = max(least, viewports[0][3] / 36.0)
     pad = round(0.7 * size)

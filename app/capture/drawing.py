@@ -26,7 +26,7 @@ from .captions import captioned, labels
 DEFAULT_VIEW = "front"  # the face looks at the viewer
 
 
-MARGIN = 0.05  # of the frame, free on each side of a whole scene
+MARGIN = 0.05  # share of the frame that stays free on each side
 
 
 def whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
@@ -39,11 +39,11 @@ def whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
 
 
 def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
-    """The camera of a named view of the whole scene, or of "yaw,pitch[,zoom]" around its focus.
+    """Return the camera of a named view, or of "yaw,pitch[,zoom]" around the scene's focus.
 
-    Angles are degrees; at zoom 1 the whole scene fits, at 2 all is twice as large.
+    Angles are in degrees. Zoom 1 fits `Framing.framed` into the picture; zoom 2 doubles its size.
 
-    Raises UserError, which lists the views.
+    Raises UserError, which lists the views, for any other text.
     """
     view = view or DEFAULT_VIEW
     if view in render.VIEWS:
@@ -60,7 +60,7 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
 
 
 def check_camera(view: str | None, source: str = "") -> None:
-    """Raise UserError for a camera unknown to `camera_for`; source: the place that names it."""
+    """Raise UserError for a camera unknown to `camera_for`; source: the file that sets it."""
     if view and view not in render.VIEWS:
         try:
             _turn(view)
@@ -69,7 +69,7 @@ def check_camera(view: str | None, source: str = "") -> None:
 
 
 def _turn(view: str) -> tuple[float, float, float]:
-    """Yaw and pitch [degrees] and zoom of a camera; raises UserError for another text."""
+    """Parse yaw and pitch [degrees] and zoom; raise UserError for any other text."""
     try:
         yaw, pitch, zoom = [*map(float, view.split(",")), 1.0][:3]
         if view.count(",") > 2 or not np.isfinite([yaw, pitch, zoom]).all() or zoom <= 0.0:
@@ -102,10 +102,10 @@ class CaptureOptions:
     is_turntable: bool = False  # the camera goes round once, up to the last frame
     span: tuple[float, float] | None = None  # [s] of the visible part of the script; None: all
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
-    tone: float | None = None  # of the skin [deg]; None: the head's own
+    tone: float | None = None  # of the skin [deg]; None: the tone of the head
     anatomy: AnatomyView = SKIN_ALONE
     samples: int = 4
-    head: FittedHead | None = None  # None: the built-in one
+    head: FittedHead | None = None  # None: the built-in head
     is_alive: bool = False  # controls outside the script move by themselves
     passes: tuple[str, ...] = ()  # names of the passes to write beside pictures
 
@@ -166,18 +166,18 @@ class Capture:
         return straight(image) if self.options.is_transparent else image
 
     def refine(self) -> None:
-        """Refine a frame without drawing it: a refiner may depend on earlier frames."""
+        """Refine a frame without drawing it, because a refiner may depend on earlier frames."""
         self.pipeline.refine(self.camera, self.viewports)
 
     def is_still(self) -> bool:
-        """Whether nothing has moved visibly since this was last False.
+        """Whether nothing has moved visibly since the last call that returned False.
 
         Scenes are compared, not pictures, so all processes that play the script agree. Passes must
         be exact, so this is always False with passes.
         """
         scene = self.scene
         camera = self.camera
-        # A turn of a bone counts at the scene's width from its axis; a control counts as 1 mm.
+        # A turn of a bone counts as motion at the scene's radius; a control's full value as 1 mm.
         bones = [
             np.vstack([each[:3, :3] * camera.scene_radius, each[:3, 3]])
             for each in scene.bone_transforms().values()
@@ -195,7 +195,7 @@ class Capture:
         return False
 
     def next_frame(self) -> Frame:
-        """The frame of the present scene; the last one again, if the scene is still."""
+        """Return the frame of the present scene, or the last frame again if the scene is still."""
         if self.is_still() and self._frame is not None:
             self.refine()
         else:
@@ -218,7 +218,7 @@ class Capture:
     ) -> Iterator[float]:
         """Play a script, and yield the time [s] of each frame after the scene has moved to it.
 
-        Frames before the options' span are played, too: later ones depend on them.
+        Frames before the options' span are played too, because later frames depend on them.
         """
         options = self.options
         yaw = self.camera.yaw
@@ -241,7 +241,7 @@ class Capture:
 
 
 def straight(premultiplied: Image) -> Image:
-    """Convert premultiplied colours to those of files, (H, W, 4); empty pixels are black."""
+    """Convert premultiplied alpha to straight alpha, (H, W, 4); empty pixels become black."""
     image = premultiplied.copy()
     partly = (image[..., 3] > 0) & (image[..., 3] < 255)
     colours = image[partly].astype(np.float32)

@@ -44,20 +44,20 @@ from ..workers import share_of_cores
 AAC = "-acodec aac -b:a 192k"
 OPUS = "-acodec libopus -b:a 160k"
 # H.264 in 4:2:0, which every player reads and which needs even sides, at a quality without blocks.
-# The number of threads decides on bytes and memory. By itself x264 takes one and a half times the
-# cores: 1 GB on 64.
+# The number of threads changes the bytes of the file and the memory. By default x264 starts 1.5
+# threads for each core, which take 1 GB on 64 cores.
 H264 = (
     "-vf crop=trunc(iw/2)*2:trunc(ih/2)*2 -vcodec libx264 -threads 3 -pix_fmt yuv420p -crf 16 "
     "-preset veryfast -movflags +faststart"
 )
 VP9 = "-vcodec libvpx-vp9 -crf 18 -b:v 0 -deadline good -cpu-used 5 -row-mt 1 -pix_fmt yuv420p"
-# Each frame has its own colours: nothing is kept until the end of a long film.
+# Each frame has its own palette, so ffmpeg need not keep all frames of a long film.
 GIF = "-filter_complex split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1"
 WEBP = "-vcodec libwebp_anim -quality 88 -compression_level 4 -pix_fmt yuv420p"
 
 
 class FilmFormat(NamedTuple):
-    """One kind of film: ffmpeg's options for pictures and for sound; None: it is silent."""
+    """A film format: ffmpeg's options for pictures and for sound; None for a silent format."""
 
     coding: str
     sound: str | None = None
@@ -67,7 +67,7 @@ class FilmFormat(NamedTuple):
 FORMATS = {
     ".mp4": FilmFormat(H264, AAC),
     ".webm": FilmFormat(VP9, OPUS),
-    # Frames last whole hundredths of a second; players show shorter ones than two too slowly.
+    # A GIF frame lasts whole hundredths of a second; players slow down frames shorter than two.
     ".gif": FilmFormat(f"{GIF} -loop 0", fastest=50.0),
     ".webp": FilmFormat(f"{WEBP} -loop 0"),
 }
@@ -80,7 +80,7 @@ def format_of(target: Path) -> FilmFormat | None:
 
 
 def check_name(output: Path) -> None:
-    """Raise UserError for a name of neither a film, a picture nor a folder."""
+    """Raise UserError unless the name is that of a film, a picture or a folder."""
     suffix = output.suffix.lower()
     if suffix not in (*FORMATS, ".png", "") and not output.is_dir():
         raise UserError(
@@ -91,22 +91,22 @@ def check_name(output: Path) -> None:
 
 @dataclass(frozen=True)
 class Soundtrack:
-    """The sound of a film: a sound file from `begin` [s] on, for this many seconds at most."""
+    """The sound of a film: at most `seconds` [s] of a sound file, from `begin` [s] on."""
 
     file: Path
     seconds: float
     begin: float = 0.0
 
     def options(self, coding: str) -> list[str]:
-        """Options of ffmpeg, whose first input is the frames."""
+        """Return ffmpeg's options for the sound as its second input, after the frames."""
         source = sound_input(self.file, self.seconds, self.begin)
         return [*source, "-map", "0:v", "-map", "1:a:0", *coding.split(), *sound_form()]
 
 
 class Encoder:
-    """An ffmpeg that takes frames and writes the file `part`; errors call it `target`."""
+    """An ffmpeg process that encodes frames into the file `part`; errors name `target`."""
 
-    DYING = 1.0  # [s] for the end of a killed or failed process
+    DYING = 1.0  # [s] to wait for the end of a killed or failed process
 
     def __init__(
         self,
@@ -161,7 +161,7 @@ class Encoder:
         if sys.platform == "win32":
             self._process.kill()
         else:
-            with contextlib.suppress(OSError):  # all have ended
+            with contextlib.suppress(OSError):  # all processes have ended
                 os.killpg(self._process.pid, signal.SIGKILL)  # its session is its group
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(self.DYING)
@@ -172,11 +172,11 @@ class Encoder:
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(self.DYING)
         self._messages.seek(0)
-        said = self._messages.read().decode(errors="replace").strip().splitlines()
-        # ffmpeg's part that reports is left out: "[out#0/mp4 @ 0x55e9629d] ".
+        messages = self._messages.read().decode(errors="replace").strip().splitlines()
+        # ffmpeg's prefix is removed, as in "[out#0/mp4 @ 0x55e9629d] ".
         why = (
-            re.sub(r"^(\[[^]]*\] )+", "", said[-1])
-            if said
+            re.sub(r"^(\[[^]]*\] )+", "", messages[-1])
+            if messages
             else f"it ended with code {self._process.returncode}"
         )
         return UserError(f"{self._target}: cannot be written: ffmpeg: {why}")
@@ -192,10 +192,10 @@ def film(
     frames_per_second: float,
     soundtrack: Soundtrack | None = None,
 ) -> Iterator[FrameSink]:
-    """A film through ffmpeg, in the format of its suffix, with sound if the format allows it.
+    """Encode a film with ffmpeg, in the format of its suffix, with sound if the format allows it.
 
-    size: that of the frames; H.264 leaves out the last row or column of an odd side. Raises
-    UserError if no such film can be written.
+    size: width and height of the frames [pixels]; H.264 leaves out the last row or column of an
+    odd side. Raises UserError if the film cannot be written.
     """
     fastest = FORMATS[target.suffix.lower()].fastest
     if frames_per_second > fastest:
@@ -208,7 +208,7 @@ def film(
         encoder = Encoder(target, part, size, frames_per_second, soundtrack)
 
         def add(image: Image, _: Labelled | None = None) -> None:
-            """Pass a frame to ffmpeg; a film has no further files."""
+            """Pass a frame to ffmpeg; a film has no labels or passes."""
             encoder.add(image)
 
         with cleaned_up_if_stopped(encoder.stop):
@@ -221,9 +221,9 @@ def film(
 
 @contextlib.contextmanager
 def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
-    """Numbered PNG files in a folder. Raises UserError if the folder is not empty.
+    """Write frames as numbered PNG files into an empty folder; raise UserError for another.
 
-    overwrite: these frames replace those of an earlier film; other files stay.
+    overwrite: replace the frames of an earlier film in the folder; other files stay.
     """
     count = 0
     waiting: deque[Future[None]] = deque()

@@ -1,8 +1,8 @@
 """Processes that draw a film together; each draws its share of the frames.
 
 Software OpenGL uses only one core well. The simulation is cheap and gives the same bytes in every
-process, so each process plays the whole script and draws every n-th frame. Their pictures come
-through pipes, in order, while the processes go on with the next frames.
+process, so each process plays the whole script and draws every n-th frame. The pictures arrive
+through pipes, in order, while the processes draw the next frames.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from .drawing import Capture, CaptureOptions, Frame
 
 @dataclass(frozen=True)
 class Share:
-    """The frames that one process draws up to a time [s]: number `first`, and every n-th."""
+    """The frames of one process: number `first`, and then each `every`-th, up to `until` [s]."""
 
     script: Script
     options: CaptureOptions
@@ -33,12 +33,12 @@ class Share:
     every: int
 
 
-def worthwhile(options: CaptureOptions, frame_count: int) -> int:
-    """Number of processes to draw this many frames: 1 if a GPU draws, or there is one core."""
+def process_count(options: CaptureOptions, frame_count: int) -> int:
+    """Return the number of processes for a film: 1 if a GPU draws, or if there is one core."""
     width, height = options.size
     samples = width * height * max(options.samples, 1) * frame_count
-    least_samples = 1e8  # 27 frames of 1280 x 720: fewer do not pay for a start of three seconds
-    most_processes = 8  # more than one encoder can follow
+    least_samples = 1e8  # 27 frames of 1280 x 720, which justify a process's start of 3 s
+    most_processes = 8  # one encoder is too slow for more
     count = min(share_of_cores(), most_processes, int(samples / least_samples))
     if count < 2:
         return 1
@@ -51,18 +51,19 @@ def drawing(
 ) -> Generator[tuple[float, Callable[[], Frame]]]:
     """Let `count` processes play a script; yield the time [s] of each frame, and a getter.
 
-    The caller must call the getter for each frame of the span. It raises errors of a process.
+    The getter returns the frame, or raises the error of a process. The caller must call it for
+    each frame of the span.
     """
     drawers: list[Worker] = []
     shown: list[Frame] = []
 
     def stop() -> None:
-        """End them all; they have nothing to clean up."""
+        """End all processes, which have nothing to clean up."""
         for drawer in drawers:
             drawer.process.kill()
 
     def take(messages: Iterator[Frame | None]) -> Frame:
-        """The next frame: from this process, or the last one again."""
+        """Return the next frame of a process; for None return the last frame again."""
         try:
             frame = next(messages)
         except DiedError as why:
@@ -89,7 +90,7 @@ def drawing(
 
 
 def _draw(share: Share, send: Send) -> None:
-    """In a process: send its own frames, and None for a frame equal to the one before."""
+    """Send the frames of a share from its process, and None for a frame like the last one."""
     options = share.options
     if share.first == 0:
         announce_compiling()

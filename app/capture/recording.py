@@ -29,10 +29,10 @@ def capture(
     overwrite: bool = False,
     progress: bool = True,
 ) -> int:
-    """Play `script` into `output`, by its suffix, and its named poses into the picture `sheet`.
+    """Draw a script into `output`, in the format of its suffix, and its named poses into `sheet`.
 
-    time: that of a picture [s]; None: that of the first pose with a name, or the end. Returns the
-    largest number of triangles of a frame. Raises UserError for impossible outputs.
+    time: time of a picture [s]; None takes the first named pose, or else the end of the script.
+    Returns the largest number of triangles of a frame. Raises UserError for impossible outputs.
     """
     _check(script, options, output, sheet, time)
     _check_passes(script, output, options)
@@ -78,11 +78,11 @@ def _draw_picture(
 def _draw_film(
     script: Script, options: CaptureOptions, output: Path, overwrite: bool, progress: bool
 ) -> int:
-    """Draw a film or, by the name, a folder of frames; return the largest number of triangles."""
+    """Draw a film or a folder of frames; return the largest number of triangles of a frame."""
     rate = options.frames_per_second
     most = 0
     begin, end = options.span or (0.0, script.duration)
-    count = processes.worthwhile(options, round((end - begin) * rate + 0.5) + 1)
+    count = processes.process_count(options, round((end - begin) * rate + 0.5) + 1)
     if format_of(output):
         sink = outputs.film(output, options.size, rate, soundtrack_of(script, options.span))
     else:
@@ -100,7 +100,7 @@ def _draw_film(
 def _played(
     script: Script, options: CaptureOptions, until: float, progress: bool, count: int = 1
 ) -> Generator[tuple[float, Callable[[], Frame]]]:
-    """The time [s] of each frame, and a function that draws it, by `count` processes."""
+    """Play a script in `count` processes; yield each frame's time [s] and its drawing function."""
     if count > 1:
         yield from processes.drawing(script, options, until, count, progress=progress)
         return
@@ -180,6 +180,6 @@ def _check_passes(script: Script, output: Path | None, options: CaptureOptions) 
 
 
 def soundtrack_of(script: Script, span: tuple[float, float] | None = None) -> Soundtrack | None:
-    """The sound of a film of a script, or of a span of it [s]; it may end before the film."""
+    """Return the sound of a script or of its span [s]; the sound may end before the film."""
     begin, end = span or (0.0, script.duration)
     return None if script.sound is None else Soundtrack(script.sound, end - begin, begin)

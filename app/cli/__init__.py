@@ -18,7 +18,7 @@ from . import commands
 
 
 class OneLineGroup(click.Group):
-    """A command that reports each error that a user can correct in one line."""
+    """A command group that reports each error of the user in one line."""
 
     def main(
         self,

@@ -95,7 +95,7 @@ def batch(
 
 
 def jobs_in(listing: Path, logs: Path, *, resume: bool) -> list[Job]:
-    """The jobs of a list; wrong lines are reported, and end the program."""
+    """Return the jobs of a list; report wrong lines, and end the program if there are any."""
     jobs = []
     wrong = []
     for number, text in lines_of(listing):
@@ -131,7 +131,7 @@ def _job(number: int, text: str, logs: Path, *, resume: bool) -> Job:
     if given.get("overwrite") is False and (resume or not outputs[0].suffix):
         if not resume:
             check_folder(outputs[0], overwrite=False)
-        arguments.insert(0, "--overwrite")  # files there are from an earlier attempt
+        arguments.insert(0, "--overwrite")  # existing files are from an earlier attempt
     assert command.callback is not None
     return Job(
         number,
@@ -146,7 +146,7 @@ def _job(number: int, text: str, logs: Path, *, resume: bool) -> Job:
 
 
 def _listed(name: str) -> click.Command:
-    """The command of this name; UserError unless a line may hold it."""
+    """Return the command of this name; raise UserError if a list may not hold it."""
     if name not in LISTED:
         raise UserError(f"'{name}' is no command of a list; allowed are {', '.join(LISTED)}")
     parent = click.get_current_context().parent
@@ -155,7 +155,7 @@ def _listed(name: str) -> click.Command:
 
 
 def _parsed(command: click.Command, arguments: Sequence[str]) -> dict[str, Any]:
-    """The arguments as click parses them, by the names of parameters."""
+    """Parse arguments with click; return the values by the names of parameters."""
     with contextlib.redirect_stdout(io.StringIO()):  # output of --help
         try:
             return command.make_context(f"risorius {command.name}", list(arguments)).params
@@ -166,7 +166,7 @@ def _parsed(command: click.Command, arguments: Sequence[str]) -> dict[str, Any]:
 def _check_files(
     name: str, given: dict[str, Any], inputs: Sequence[Path], outputs: Sequence[Path]
 ) -> None:
-    """UserError for inputs that do not exist, and for outputs that cannot be written."""
+    """Raise UserError for inputs that do not exist, and for outputs that cannot be written."""
     if not outputs:
         raise UserError("the command writes no file; add -o OUTPUT")
     for path in inputs:

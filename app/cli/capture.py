@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Filming:
-    """Options of capture alone."""
+    """Options that only `capture` has."""
 
     size: tuple[int, int] = option(
         type=Size(), default=(1280, 720), help="Size of pictures [pixels]; by default 1280x720."
@@ -91,7 +91,7 @@ class Filming:
         return begin, end
 
     def view(self) -> tuple[str | None, bool]:
-        """The camera without the word turntable, and whether the word is there."""
+        """Split --camera into its view, and whether it ends with the word turntable."""
         if self.camera is None:
             return None, False
         words = self.camera.split(",")
@@ -101,7 +101,7 @@ class Filming:
         return ",".join(words) or None, is_turntable
 
     def _style(self, drawing: Drawing) -> render.Style:
-        """The style of pictures, with the light of a file if there is one."""
+        """Return the style of pictures, with the light of --light if it is set."""
         from risorius import render
 
         from ..light_maps import read_light_map
@@ -128,7 +128,7 @@ class Filming:
     def options(
         self, script: Script, drawing: Drawing, *, is_recorded: bool = False
     ) -> CaptureOptions:
-        """All options that decide on a script's frames; UserError for impossible options."""
+        """Return the options for a script's frames; raise UserError for impossible options."""
         from ..capture import CaptureOptions
         from ..refining.refiners import parse_comparison
 
@@ -195,7 +195,7 @@ def capture(
         )
     performance = played(script, scene, settings=settings, sound=sound, quiet=filming.quiet)
     is_recording = script is not None and script.suffix.lower() != ".toml"
-    is_still = output is not None and output.suffix.lower() == ".png"  # not during a blink
+    is_still = output is not None and output.suffix.lower() == ".png"  # could show a blink
     options = filming.options(performance, drawing, is_recorded=is_recording and not is_still)
     most = film_of(
         performance,

@@ -1,6 +1,6 @@
 """The sub-commands of `risorius`.
 
-Modules that need OpenGL or compiled code are imported inside the commands: --help comes at once.
+Modules that need OpenGL or compiled code are imported inside the commands, so that --help is fast.
 """
 
 from __future__ import annotations
@@ -62,9 +62,9 @@ class Live:
     )
 
     def listening(self, gains: tuple[str, ...], mirror: bool) -> Listening | None:
-        """The place to listen at, or None; raises UserError for options that need --live.
+        """Return where to listen, or None without --live; UserError for options that need --live.
 
-        gains: "NAME=x" each. mirror: whether left and right change places.
+        gains: factors of channels, as "NAME=x". mirror: whether to swap left and right.
         """
         if self.live is None:
             source = click.get_current_context().get_parameter_source
@@ -258,9 +258,9 @@ def open_window(
 
 
 def fitted_head_of(drawing: Drawing, *, may_be_marked: bool) -> tuple[FittedHead | None, str]:
-    """The head of the options, and a line if known landmarks do not fit it.
+    """Return the head of the options, and a message if its known landmarks do not fit.
 
-    The head is also None if its landmarks are missing and may be marked.
+    The head is None for the built-in head, and for a head whose landmarks may still be marked.
     """
     from risorius.assets.fitting.landmark_file import MisfitError, UnfinishedError
 

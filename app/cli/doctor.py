@@ -89,7 +89,7 @@ def _commands(works: Mapping[str, bool]) -> str:
 
 
 def _card(findings: list[render.Finding]) -> str:
-    """A line on the refiner `kahler-gl`, which is optional."""
+    """Return a line on the optional refiner `kahler-gl`, which needs a graphics card."""
     able = [each for each in findings if each.lends_gpu_streams]
     if not able:
         return "kahler-gl: no. It needs OpenGL 4.3; the refiner kahler does the same"
@@ -124,7 +124,7 @@ def _extras() -> str:
 
 
 def _is_there(module: str) -> bool:
-    """Whether it could be imported, without trying to."""
+    """Whether a module is installed; it is not imported."""
     with contextlib.suppress(ImportError):
         return find_spec(module) is not None
     return False

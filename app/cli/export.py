@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Exporting:
-    """Options of export alone."""
+    """Options that only `export` has."""
 
     name: str | None = option(
         "--as",

@@ -1,4 +1,4 @@
-"""Help in groups under headings, and the replacements of options that were removed."""
+"""Help with options in groups under headings, and the replacements of removed options."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ MOVED: Mapping[str, str] = {
     "--face": _CONVERT,
     "--rate": _CONVERT,
     "--skin": _STYLE,
-    "--light": _STYLE,  # another option in capture and dataset
+    "--light": _STYLE,  # capture and dataset have another option of this name
     "--wrinkles": _STYLE,
     "--wireframe": _WORD,
     "--splits": _WORD,
@@ -65,7 +65,7 @@ class RenewedCommand(click.Command):
 
 
 class GroupedCommand(RenewedCommand):
-    """The same, with options under headings."""
+    """A `RenewedCommand` whose help lists options under headings."""
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options, group by group."""

@@ -1,4 +1,4 @@
-"""Options that commands share, and the settings objects made of them."""
+"""Options that several commands share, and the dataclasses that hold their values."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ SCENE = click.option("--scene", type=SCENE_NAMES, help="The scene to animate.")
 
 
 def option(*names: str, **about: Any) -> Any:
-    """A field of settings that is an option of the command line, with its name unless `names`."""
+    """Declare a dataclass field as a command-line option; without `names` the field names it."""
     return field(metadata={"option": (names, about)})
 
 
 def options_of(settings: type[Any]) -> Iterator[Command]:
-    """The options of the command line that the fields of a dataclass declare."""
+    """Yield the command-line options that the fields of a dataclass declare."""
     for each in fields(settings):
         names, about = each.metadata["option"]
         names = names or (f"--{each.name.replace('_', '-')}",)
@@ -58,16 +58,17 @@ def options_of(settings: type[Any]) -> Iterator[Command]:
 
 
 def packed(settings: type[Any], options: Iterable[Command] = ()) -> Callable[[Command], Command]:
-    """Give a command the options of such a dataclass, packed into one argument with its name.
+    """Add the options of a dataclass to a command, which receives them as one object.
 
-    options: replace those that the fields declare.
+    The argument has the name of the dataclass in lower case. options: options in place of those
+    that the fields declare.
     """
     keys = [each.name for each in fields(settings)]
     name = settings.__name__.lower()
     decorators = list(options or options_of(settings))
 
     def decorate(command: Command) -> Command:
-        """Pack the values of these options, and call the command."""
+        """Wrap a command, so that it receives these options as one object."""
 
         @functools.wraps(command)
         def call(**given: Any) -> Any:
@@ -131,7 +132,7 @@ class Subject:
             )
 
     def fitted_head(self) -> FittedHead | None:
-        """The user's own head, fitted, or one with a name; None for the built-in head."""
+        """Return the user's fitted head, or a head by its name; None for the built-in head."""
         self.check_head()
         if self.head is None:
             return None
@@ -144,7 +145,7 @@ class Subject:
         return own_head(self.head, self.landmarks)
 
     def refinement(self) -> Refinement:
-        """How the mesh is refined; raises UserError if there is no such refiner."""
+        """Return how the mesh is refined; raise UserError for an unknown refiner."""
         from ..refining.refiners import help_of_options, parse_options
 
         if "help" in self.refiner_settings:
@@ -187,7 +188,7 @@ class Drawing(Subject):
         return any(source(name) is not ParameterSource.DEFAULT for name in names)
 
     def style(self) -> render.Style:
-        """The style that these options set; raises UserError for an unknown one."""
+        """Return the style that these options set; raise UserError for unknown words."""
         from risorius import render
 
         wanted = self.style_options
@@ -202,7 +203,7 @@ class Drawing(Subject):
         )
 
     def anatomy_view(self) -> AnatomyView:
-        """The structures that show through the skin; raises UserError for an unknown one."""
+        """Return the structures visible through the skin; raise UserError for unknown words."""
         from ..anatomy import OPACITY, SKIN_ALONE, AnatomyView
 
         if self.anatomy is None:
@@ -259,7 +260,7 @@ def played(
     sound: Path | None = None,
     quiet: bool,
 ) -> Script:
-    """The script to play, with its sound; a recording's report is printed unless `quiet`."""
+    """Return the script to play, with its sound; print a recording's report unless `quiet`."""
     from ..performances import script_for
     from ..sound.decoding import with_sound
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Rigging:
-    """Options of rig alone."""
+    """Options that only `rig` has."""
 
     landmarks: Path | None = option(
         type=PATH,
@@ -121,7 +121,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
 
 
 def _take_of(rigging: Rigging, kinds: tuple[str, ...]) -> Script | None:
-    """The take for a comparison of sums; None without output, or without ARKit's shapes."""
+    """Return the take on which sums of shapes are compared; None if there is no comparison."""
     from ..performances import built_in_words, read_performance
 
     if "arkit" not in kinds:
@@ -139,7 +139,7 @@ def _take_of(rigging: Rigging, kinds: tuple[str, ...]) -> Script | None:
 
 
 def _check_output(output: Path, inputs: tuple[Path | None, ...], *, is_folder: bool) -> None:
-    """UserError, before any work is done, if the output cannot be written."""
+    """Raise UserError, before any work is done, if the output cannot be written."""
     from ..files import check_apart, check_file, check_folder
 
     if not is_folder and output.suffix.lower() != ".glb":

@@ -1,4 +1,4 @@
-"""The options `--style` and `--anatomy`: words and NAME=VALUE, several with commas between them."""
+"""The options `--style` and `--anatomy`: words and NAME=VALUE, separated by commas."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 
 from ..errors import UserError
 
-STRUCTURES = ("muscles", "skull")  # anatomy.STRUCTURES, not imported yet
-# render.LIGHTS, not imported yet
+STRUCTURES = ("muscles", "skull")  # a copy of anatomy.STRUCTURES, which is imported later
+# A copy of the names in render.LIGHTS, which is imported later.
 LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard", "clouds", "room", "street")
 SKINS = ("textured", "plain", "clay")
 SIDES = ("both", "left", "right")
@@ -20,8 +20,8 @@ SIDES = ("both", "left", "right")
 class Words:
     """The words that an option may hold.
 
-    flags: single words. choices: NAME=WORD, and the words that each name takes. shares: NAME=x,
-    where x is a number from 0 to 1.
+    flags: single words. choices: the words that each name takes as NAME=WORD. shares: the names
+    that take a number from 0 to 1 as NAME=x.
     """
 
     option: str
@@ -30,7 +30,7 @@ class Words:
     shares: tuple[str, ...]
 
     def read(self, settings: Sequence[str]) -> dict[str, Any]:
-        """The value of each name that is set; True for a single word. UserError for others."""
+        """Return the value of each name that is set, True for a flag; UserError for other words."""
         values: dict[str, Any] = {}
         for word in ",".join(settings).split(",") if settings else ():
             name, equals, text = word.partition("=")
@@ -46,7 +46,7 @@ class Words:
 
     @property
     def allowed(self) -> str:
-        """All words, for messages."""
+        """All allowed words, for messages."""
         named = [f"{name}={'|'.join(words)}" for name, words in self.choices.items()]
         numbers = [f"{name}=0..1" for name in self.shares]
         return ", ".join([*self.flags, *named, *numbers])
@@ -90,7 +90,7 @@ def style_in(settings: Sequence[str]) -> dict[str, Any]:
 
 
 def anatomy_in(text: str) -> tuple[tuple[str, ...], float | None, str]:
-    """The structures that `--anatomy` shows, the skin's opacity if it is set, and its side."""
+    """Return the structures that `--anatomy` shows, the skin's opacity or None, and the side."""
     values = ANATOMY_WORDS.read([text])
     structures = tuple(name for name in STRUCTURES if name in values)
     return structures or STRUCTURES, values.get("opacity"), values.get("dissect", "both")

@@ -1,4 +1,4 @@
-"""Types of options: each turns a word of the command line into a value, or says what is allowed."""
+"""Types of options: each converts command-line text to a value, or reports the allowed forms."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 PATH = click.Path(path_type=Path)
 LEAST_SIDE = 16  # [pixels]
 LONGEST_SIDE = 8192  # [pixels]
-BACKGROUNDS = ("light", "dark", "white", "black")  # those of `render`
-HEAD_NAMES = ("ada", "kofi", "maria", "coarse")  # those of `assets`, which is not imported yet
+BACKGROUNDS = ("light", "dark", "white", "black")  # constants of `render`
+HEAD_NAMES = ("ada", "kofi", "maria", "coarse")  # heads in `assets`, which is imported later
 
 
 class Size(click.ParamType[tuple[int, int]]):
@@ -49,7 +49,7 @@ MAP_BACKGROUND = "map"
 class BackgroundName(click.ParamType["render.Background | str | None"]):
     """The background of the scene, by name or as a colour; None is transparent.
 
-    The word "map" stays a word: other options choose the map that lights the scene.
+    The word "map" is returned as it is, because other options choose the map of light.
     """
 
     name = "COLOUR"
@@ -88,7 +88,7 @@ class Times(click.ParamType[tuple[float, ...]]):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[float, ...]:
-        """Turn the text into one or two numbers of seconds, or fail with the allowed forms."""
+        """Turn the text into one or two times [s], or fail with the allowed forms."""
         if isinstance(value, tuple):
             return value
         try:
@@ -126,9 +126,9 @@ class HeadName(click.ParamType["Path | int | str"]):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> Path | int | str:
-        """A number is a person, HEAD_NAMES are heads; all else is a path.
+        """Return the number of a person, a name in HEAD_NAMES, or else a path.
 
-        A name without an ending that is no file is a misspelt head, and fails.
+        A name without a suffix fails as a misspelt head if there is no such file.
         """
         if value in HEAD_NAMES:
             return str(value)

@@ -1,7 +1,7 @@
-"""Names of controls: their names in a mirror, and their names in plain words.
+"""Names of controls: the names of mirrored controls, and names in plain words.
 
-A mirror exchanges sides and the signs of values, of controls and of recorded channels alike. Plain
-words, and other words that find a control, are in `words.toml` of assets.
+Mirroring exchanges left and right, and changes the sign of turns; it applies to controls and to
+recorded channels. The plain words, and synonyms for a search, are in `words.toml` of assets.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import Any
 from risorius.assets.loading import read_words
 
 SIDES = (("_left", "_right"), ("Left", "Right"))  # ends of names: ours, ARKit's
-TURNED = (  # to one side above 0, to the other below
+TURNED = (  # positive values turn to one side, negative values to the other
     "jaw_sideways", "gaze_horizontal", "gaze_horizontal_left", "gaze_horizontal_right",
     "eye_yaw_left", "eye_yaw_right", "head_yaw", "head_roll",
 )  # fmt: skip
-# Sides of a motion, not of the face: together they cancel.
+# Their sides are directions of one motion, so equal values cancel.
 OPPOSITE = ("AU30", "lips_sideways", "jaw", "mouth")
-KNOWN = 4096  # names whose parts are kept: panels need all of theirs in each frame
+KNOWN = 4096  # cached names; panels need the parts of all their names in each frame
 _TWINS = {  # action units that mirror each other by meaning: eyes turn left, right ...
     "AU61": "AU62", "AU62": "AU61", "AU51": "AU52", "AU52": "AU51", "AU55": "AU56", "AU56": "AU55",
     "wink": "wink_right", "wink_right": "wink", "contempt": "contempt_right",
@@ -30,7 +30,7 @@ _TWINS = {  # action units that mirror each other by meaning: eyes turn left, ri
 
 @functools.lru_cache(maxsize=KNOWN)
 def parted(name: str) -> tuple[str, str]:
-    """A name without its side, and the side as spelled; "" for the middle."""
+    """Split a name into its base and its side as spelled; the side is "" for the middle."""
     for side in (side for pair in SIDES for side in pair):
         if name.endswith(side):
             return name.removesuffix(side), side
@@ -39,7 +39,7 @@ def parted(name: str) -> tuple[str, str]:
 
 @functools.lru_cache(maxsize=KNOWN)
 def twin_of(name: str) -> str:
-    """The name on the other side; the same name for the middle."""
+    """Return the name of the mirrored control; the same name for the middle."""
     if name in _TWINS:
         return _TWINS[name]
     base, side = parted(name)
@@ -59,14 +59,14 @@ def mirrored(values: Mapping[str, float]) -> dict[str, float]:
 
 
 def copied(values: Mapping[str, float], source: str) -> dict[str, float]:
-    """Values with both sides equal to one ("left" or "right"); the middle and the gaze stay."""
+    """Copy the values of one side ("left" or "right") to the other; middle and gaze stay."""
     result = dict(values)
     sideways = ("gaze_horizontal", "eye_yaw", "eyeLookIn", "eyeLookOut")
     for name, value in values.items():
         base, side = parted(name)
         twin = twin_of(name)
-        is_whole = not side and parted(twin)[0] != name  # for both sides, or a direction
-        if is_whole or base in OPPOSITE or base.startswith(sideways) or twin not in values:
+        is_direction = not side and parted(twin)[0] != name  # as AU61 and AU62
+        if is_direction or base in OPPOSITE or base.startswith(sideways) or twin not in values:
             continue
         if (side.strip("_").lower() or "left") == source:
             result[twin] = value
@@ -80,14 +80,14 @@ def readable(name: str) -> str:
 
 
 def sentence(text: str) -> str:
-    """A text with a capital letter, unless it begins with a code or a file: "a.b: opened"."""
+    """Capitalize a text, unless it begins with a code or a file name, as "a.b: opened"."""
     name, colon, _ = text.partition(":")
     is_plain = text.partition(" ")[0].islower() and not (colon and "." in name)
     return text[:1].upper() + text[1:] if is_plain else text
 
 
 def called(name: str, *twin: str) -> str:
-    """The plain name of a control with its side, or with both sides for a control and its twin."""
+    """Return a control's plain name with its side, or with "both sides" if its twin is given."""
     plain = title_of(name)[1] or readable(parted(name)[0])
     side = "both sides" if twin else parted(name)[1].strip("_")
     return f"{plain}, {side}" if side else plain
@@ -109,9 +109,9 @@ def _synonyms() -> tuple[tuple[str, tuple[str, ...]], ...]:
 
 
 def title_of(name: str, action: str = "") -> tuple[str, str]:
-    """A control's code, or "", and its plain name, "" if there is only a code.
+    """Return the code and the plain name of a control; each is "" if there is none.
 
-    name: without its side, if both sides share a name. action: that of the control, in words.
+    name: without its side, if both sides share a name. action: effect of the control, in words.
     """
     stem = parted(name)[0]
     plain = str(_table("names").get(name) or _table("names").get(stem) or "")
@@ -129,14 +129,14 @@ def title_of(name: str, action: str = "") -> tuple[str, str]:
 
 
 def words_of_group(title: str) -> str:
-    """Other words that find a group of controls; "" for none."""
+    """Return further words by which a search finds a group of controls, or ""."""
     return str(_table("groups").get(title, ""))
 
 
 def is_found(words: str, text: str, names: Collection[str]) -> bool:
     """Whether each word is in the text, or begins a synonym of one of the names.
 
-    names: those of controls, with their sides.
+    words: as typed into a search. names: names of controls with their sides.
     """
     stems = {*names, *(parted(name)[0] for name in names)}
     return all(
@@ -153,14 +153,14 @@ def is_found(words: str, text: str, names: Collection[str]) -> bool:
 
 
 def meant_by(word: str, names: Collection[str]) -> list[str]:
-    """Those of the names that a word of everyday speech means, the nearest first."""
+    """Return the names of which an everyday word is a synonym, the best match first."""
     forms = _forms(word.lower())
     meant = [name for other, found in _synonyms() if other in forms for name in found]
     return [name for name in dict.fromkeys(meant) if name in names]
 
 
 def _forms(word: str) -> list[str]:
-    """A word as typed, and without its ending: chewing, chew."""
+    """Return a word as typed, and its forms without an ending: chewing, chew."""
     word_endings = ("ing", "ed", "s")  # endings of a searched word
     stems = [word.removesuffix(end) for end in word_endings if word.endswith(end)]
     return [word, *(stem for stem in stems if len(stem) >= 3)]  # letters

@@ -1,11 +1,12 @@
 """Limits of controls, and the only place where values are cut off at them.
 
-Tracks add to poses, gains multiply recorded values, trackers overshoot. Only their sum is cut off,
-when it becomes the value of a control: in a key from a recording, or in the `ControlValues` of a
-scene. `sim` refuses values beyond the limits. `Script.check` refuses absurd values in a file.
+Tracks add to poses, gains multiply recorded values, and trackers overshoot. Only the final sum is
+cut off, when it becomes the value of a control: in a key from a recording, or in the
+`ControlValues` of a scene. `sim` refuses values beyond the limits. `Script.check` refuses absurd
+values in a file.
 
-Names become numbers here, too: a script or a stream has the same names in each frame, so their
-places are found in the first.
+This module also converts names to indices. A script or a stream has the same names in each frame,
+so a cache keeps the indices.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from risorius.geometry.arrays import Floats64
 
 from ..errors import UserError
 
-Places = npt.NDArray[np.intp]  # of controls among all N of a scene
+Places = npt.NDArray[np.intp]  # indices of controls among all N of a scene
 
 
 class Limits(dict[str, tuple[float, float]]):
@@ -33,18 +34,18 @@ class Limits(dict[str, tuple[float, float]]):
         self.places = functools.lru_cache(256)(self._places)  # for this many sets of names
 
     def _places(self, names: tuple[str, ...]) -> Places:
-        """The places of controls, shape (n,). Raises UserError for an unknown one."""
+        """Return the indices of controls, shape (n,). Raises UserError for an unknown name."""
         for name in names:
             if name not in self:
                 raise UserError(f"there is no control called '{name}'")
         return np.array([self.place[name] for name in names], np.intp)
 
     def cut_off(self, sums: Floats64, places: Places) -> Floats64:
-        """Values of controls for these sums; both of shape (n,), or (T,) for one control."""
+        """Cut sums off at the limits of controls; shape (n,), or (T,) for one control."""
         return np.asarray(np.minimum(np.maximum(sums, self._low[places]), self._high[places]))
 
     def pose(self, sums: Mapping[str, float], over: ControlValues | None = None) -> ControlValues:
-        """Values of all controls, cut off; unnamed ones have those of `over`, else 0.
+        """Return cut-off values of all controls; unnamed controls have values of `over`, else 0.
 
         Raises UserError for an unknown name.
         """
@@ -53,7 +54,7 @@ class Limits(dict[str, tuple[float, float]]):
     def posed(
         self, places: Places, sums: Floats64, over: ControlValues | None = None
     ) -> ControlValues:
-        """Values as in `pose`, for controls by their places; both of shape (n,)."""
+        """Do the same as `pose` for controls by their indices; places and sums have shape (n,)."""
         numbers = np.zeros(len(self)) if over is None else over.numbers.copy()
         numbers[places] = self.cut_off(sums, places)
         return ControlValues(self, numbers)
@@ -63,7 +64,7 @@ class ControlValues(Mapping[str, float]):
     """A value for each control of a scene, within its limits: by name, or as `numbers` (N,)."""
 
     def __init__(self, limits: Limits, numbers: Floats64) -> None:
-        """`Limits` makes it, or other values within limits do; it never changes."""
+        """numbers: values within the limits, shape (N,); the array becomes read-only."""
         numbers.flags.writeable = False
         self.limits = limits
         self.numbers = numbers

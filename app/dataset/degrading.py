@@ -18,9 +18,9 @@ from ..pictures import Image
 class Degradation:
     """Amount of each effect; 0 and None change nothing.
 
-    blur: standard deviation of a Gaussian on linear light [pixels]. noise: standard deviation of
-    each channel by itself [grey levels of 255]. jpeg: Pillow's quality, 1 to 95. seed: that of the
-    noise.
+    blur: standard deviation of a Gaussian on linear light [pixels]. noise: standard deviation,
+    independent in each channel [grey levels of 255]. jpeg: Pillow's quality, 1 to 95. seed: seed
+    of the noise.
     """
 
     blur: float
@@ -30,7 +30,7 @@ class Degradation:
 
 
 def degraded(image: Image, degradation: Degradation) -> Image:
-    """A picture (H, W, 3), uint8, from such a camera."""
+    """Return a picture (H, W, 3), uint8, with these effects applied."""
     values = image.astype(np.float64)
     if degradation.blur > 0.0:
         light = to_linear(image / 255.0)

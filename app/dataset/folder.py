@@ -3,7 +3,7 @@
 The files of a sample are written in `.unfinished` and renamed, its .json last. So a file with its
 final name is complete, even if the process is killed at any time. The lengths in the .json reveal a
 full disk, a copy that was cut short, or a deleted file: a sample counts as made when all of its
-files exist with their written lengths.
+files exist with these lengths.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from ..staging import is_staging_folder, locked
 from .shards import PATTERN, read_shard
 
 UNFINISHED = ".unfinished"
-SEEN = "seen-"  # begins names of files that show workers the right folder
-LENGTHS = "files"  # label with the lengths of a sample's other files [bytes]
+SEEN = "seen-"  # prefix of files by which workers recognize the set's folder
+LENGTHS = "files"  # label that holds the lengths of a sample's other files [bytes]
 
 
 def name_of(index: int) -> str:
@@ -50,8 +50,8 @@ class SetFolder:
     def held(self, options: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
         """Begin a set in an empty folder, or resume one, and lock out other processes meanwhile.
 
-        options: all that decides on the samples, for JSON. Raises UserError if the folder holds
-        something else, or a set that was begun with other options.
+        options: all options that decide on the samples, as JSON values. Raises UserError if the
+        folder holds something else, or a set that was begun with other options.
         """
         check_links(self.path)
         if self.path.is_file():
@@ -60,7 +60,7 @@ class SetFolder:
             self.path.mkdir(parents=True, exist_ok=True)
             self._check(options, resume=resume)
             unfinished = self.path / UNFINISHED
-            if unfinished.is_symlink():  # the linked folder may hold files of others
+            if unfinished.is_symlink():  # the linked folder may hold foreign files
                 raise UserError(f"{unfinished}: is a link; remove it")
             unfinished.mkdir(exist_ok=True)
             lock = locked(unfinished / "lock")
@@ -80,7 +80,7 @@ class SetFolder:
             shutil.rmtree(unfinished)
 
     def _check(self, options: Mapping[str, Any], *, resume: bool) -> None:
-        """UserError unless this is an empty folder, or the set that is to be resumed.
+        """Raise UserError unless the folder is empty, or holds the set to be resumed.
 
         A set that ended before its first sample may begin again with other options.
         """
@@ -159,7 +159,7 @@ class SetFolder:
         return size
 
     def take_sample(self, index: int, files: Mapping[str, bytes]) -> int:
-        """Put the files of a sample, made elsewhere, in place; return their size [bytes]."""
+        """Write the files of a sample that another computer made; return their size [bytes]."""
 
         def write(picture: Path) -> None:
             for name, content in files.items():
@@ -188,7 +188,7 @@ def _add_lengths(file: Path) -> None:
 
 
 def _length(file: Path) -> int | None:
-    """Length of a plain file [bytes]; None if there is none."""
+    """Return the length of a plain file [bytes], or None if there is no such file."""
     try:
         return file.stat().st_size if file.is_file() else None
     except (OSError, ValueError):  # an impossible name is a ValueError

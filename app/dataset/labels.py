@@ -1,4 +1,4 @@
-"""Labels of a sample's face, besides those of `capture --passes` for any picture.
+"""Labels of a sample's face, in addition to the labels that `capture --passes` writes.
 
 Unit and convention of every field are in docs/dataset.md.
 """
@@ -27,14 +27,15 @@ def labels_of_face(
     depth: Any,
     covered: Any = None,
 ) -> dict[str, Any]:
-    """All labels of a face in its present state; `depth`: the depth map of its picture, (H, W).
+    """Return all labels of a face in its present state.
 
-    covered: pixels where a mask hides all landmarks behind it, (H, W); None: no pixels.
+    depth: depth map of its picture, (H, W). covered: flags of pixels where a mask hides all
+    landmarks behind it, (H, W); None: no pixels.
     """
     arkit = solved(scene, ARKIT_SHAPES, _in_one_frame(scene.simulation.controls.sums))
     labels = labels_of(scene, camera, size, depth, covered)
     pixels = np.array(labels["landmarks"]["pixels"])[:68]
-    positions = scene.positions @ scene.bone_transforms()["cranium"][:3, :3]  # without its turn
+    positions = scene.positions @ scene.bone_transforms()["cranium"][:3, :3]  # turned back
     low, high = (np.clip(each, 0.0, size) for each in (pixels.min(axis=0), pixels.max(axis=0)))
     return {
         "action_units": action_units(scene),
@@ -46,11 +47,11 @@ def labels_of_face(
 
 
 def action_units(scene: FaceScene) -> dict[str, float]:
-    """All action units of FACS that the face has, 0..1: AU12_left, AU12_right, and AU12.
+    """Return the values of all action units of the face, 0..1: AU12_left, AU12_right, and AU12.
 
-    Set units have the set value. Other controls of muscles (visemes, head and gaze) count as far as
-    units can express them. A unit without side is the stronger of its sides, because FACS scores it
-    without regard to sides.
+    A unit that is set has the set value. Other controls of muscles (visemes, head and gaze) count
+    as far as units can express them. A unit without a side has the value of its stronger side,
+    because FACS scores it without regard to sides.
     """
     sums = _in_one_frame(scene.simulation.controls.sums)
     found = solved(scene, ACTION_UNITS, sums, _in_one_frame(scene.values))

@@ -1,4 +1,4 @@
-"""Making a set: samples in processes, person by person, then index and card of the set."""
+"""Production of a data set: samples in parallel processes, then the index and the card."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .summary import card_of, write_index
 
 @dataclass(frozen=True)
 class Made:
-    """A made set: the number of its samples, that of new ones, and their bytes."""
+    """A finished set: number of samples, number of new samples, size of new samples [bytes]."""
 
     samples: int
     new: int
@@ -39,10 +39,11 @@ def make_set(
     resume: bool = False,
     progress: bool = True,
 ) -> Made:
-    """Make the missing and incomplete ones among `count` samples from number `first` on.
+    """Make all missing and incomplete samples among `count` samples from number `first` on.
 
-    jobs: processes here. scheduler: address of a Dask cluster that makes them instead. Raises
-    UserError if the set cannot be made, or was begun with other options; finished samples stay.
+    jobs: number of local processes. scheduler: address of a Dask cluster that makes the samples
+    instead. Raises UserError if the set cannot be made, or was begun with other options; finished
+    samples stay.
     """
     folder = SetFolder(request.output)
     numbers = range(first, first + count)
@@ -58,7 +59,7 @@ def make_set(
             shares = _shares(request, missing, -(-len(missing) // jobs))
             arriving = run_all(make_samples, shares, log=folder.log)
         else:
-            # A lost share costs its samples; the start of its process costs two seconds.
+            # A lost share loses all its samples, but each share costs two seconds to start.
             each = min(max(len(missing) // 64, 8), 64)
             arriving = made_on_cluster(folder, _shares(request, missing, each), scheduler)
         size = 0
@@ -90,10 +91,10 @@ def _check(folder: SetFolder, numbers: range) -> None:
 
 
 def _shares(request: SetRequest, missing: Sequence[int], each: int) -> list[Share]:
-    """Divide missing samples into shares of `each`.
+    """Divide missing samples into shares of `each` samples.
 
-    Samples of one person stay together, because a head takes long to build; so do those of one
-    shard.
+    Samples of one person stay together, because a head takes long to build. Samples of one shard
+    stay together too.
     """
 
     def place(number: int) -> tuple[int, int]:
@@ -121,7 +122,7 @@ def _put_in_place(
 
 
 def _with_advice(made: Iterator[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """The same; an error adds how to continue the set."""
+    """Pass on the samples; add a hint on --resume to errors."""
     try:
         yield from made
     except UserError as error:

@@ -1,6 +1,6 @@
 """Visible opening of mouth and eyes: the height of the gap between lips or lids.
 
-Distances between landmarks do not show it: pressed lips roll inward, and shut lids lie on each
+Distances between landmarks do not measure it: pressed lips roll inward, and shut lids lie on each
 other, but the landmarks of their edges stay millimetres apart.
 """
 
@@ -23,25 +23,25 @@ LOWER_EDGES = {  # landmarks of a lower lip's inner edge and of lower lids, from
 def apertures(positions: Array, triangles: npt.NDArray[Any], landmarks: Array) -> dict[str, float]:
     """Openings of mouth and eyes [mm], seen from the front of the head, along z.
 
-    landmarks: the present 68 (68, 3).
+    landmarks: present positions [mm], shape (68, 3).
     """
     found = {}
     for name, numbers in LOWER_EDGES.items():
         edge = landmarks[list(numbers)]
-        # Skin at this distance [mm] may cover an opening.
+        # Only skin within this distance [mm] can cover an opening.
         near = around(positions[triangles], (edge[0] + edge[-1]) / 2.0, 60.0)
         found[name] = round(opening(near, edge), 3)
     return found
 
 
 def opening(near: Array, edge: Array) -> float:
-    """Greatest height [mm] of the gap above a lower lip or lid (n, 3), seen along z.
+    """Return the greatest height [mm] of the gap above a lower lip or lid, seen along z.
 
-    near: triangles (m, 3, 3) of the skin around.
+    near: triangles of the skin nearby, (m, 3, 3). edge: points of the lower edge, (n, 3).
     """
     near = near[to_viewer(near)]  # triangles seen from inside cover nothing
     left, right = sorted(edge[[0, -1], 0])
-    end_width = 1.0  # mm beside a corner that do not count: lips and lids are joined there
+    end_width = 1.0  # [mm] left out beside a corner, where lips or lids are joined
     # Vertical planes across the opening, in which lines of sight lie.
     columns = np.linspace(left + end_width, right - end_width, 40)
     from_left = edge[np.argsort(edge[:, 0])]
@@ -61,7 +61,7 @@ def opening(near: Array, edge: Array) -> float:
 
 
 def around(triangles: Array, middle: Array, reach: float) -> Array:
-    """The triangles, of (n, 3, 3), that lie within `reach` mm of a point."""
+    """Return those triangles (n, 3, 3) whose centres lie within `reach` [mm] of a point."""
     near: Array = triangles[np.linalg.norm(triangles.mean(axis=1) - middle, axis=1) < reach]
     return near
 
@@ -69,17 +69,17 @@ def around(triangles: Array, middle: Array, reach: float) -> Array:
 def _widest_gap(low: Array, high: Array, middle: float) -> float:
     """Greatest height [mm] of a gap between the triangles that one plane cuts.
 
-    It begins within a window of the height `middle`. low, high: the ends of each cut, shape (n,).
+    The gap begins near the height `middle`. low, high: ends of each triangle's cut, shape (n,).
     """
     order = np.argsort(low)
     reached = np.maximum.accumulate(high[order])[:-1]
     open_above = low[order][1:] - reached
-    window = 5.0  # mm from the lower edge in which the opening must begin
+    window = 5.0  # [mm] from the lower edge within which the opening must begin
     return float(open_above[np.abs(reached - middle) < window].max(initial=0.0))
 
 
 def to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
-    """Flags of triangles (n, 3, 3) that show their outside to the viewer, shape (n,)."""
+    """Return which triangles (n, 3, 3) turn their outside to the viewer, shape (n,)."""
     one = triangles[:, 1] - triangles[:, 0]
     other = triangles[:, 2] - triangles[:, 0]
     facing: npt.NDArray[np.bool_] = one[:, 0] * other[:, 1] > one[:, 1] * other[:, 0]
@@ -87,9 +87,10 @@ def to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
 
 
 def cut_by(triangles: Array, x: float | Array) -> tuple[Array, npt.NDArray[np.bool_]]:
-    """Points where the plane at x meets the sides of triangles (n, 3, 3), (n, 3, 3), and flags.
+    """Cut the sides of triangles (n, 3, 3) with planes of constant x.
 
-    x: one for all, or one for each, shape (n, 1).
+    x: one plane for all triangles, or one for each, shape (n, 1). Returns the points, shape
+    (n, 3, 3), and flags of the sides that are really cut, shape (n, 3).
     """
     end = np.roll(triangles, -1, axis=1)
     start_x = triangles[:, :, 0]

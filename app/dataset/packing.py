@@ -1,4 +1,4 @@
-"""Packing: samples of a folder go into shards; a shard is written when all of its samples exist."""
+"""Packing of samples into shards; a shard is written when all of its samples exist."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Packing:
     def begin(self) -> None:
         """Keep complete shards, and unpack the others as far as they are readable.
 
-        A shard of a formerly shorter set is unpacked, too.
+        The last shard of a set that becomes longer is unpacked too.
         """
         with cannot_be_written(self._folder.path):
             for path in sorted(self._folder.path.glob(PATTERN)):
@@ -46,7 +46,7 @@ class Packing:
         return number // self._size in self._packed
 
     def expect(self, missing: Iterable[int]) -> None:
-        """Note the samples that will be made; pack the shards without missing samples."""
+        """Note the samples that will be made; pack shards of which none is missing."""
         places = {number // self._size for number in self._numbers}
         self._waiting = {place: set() for place in places - self._packed.keys()}
         for number in missing:
@@ -82,7 +82,7 @@ class Packing:
                 _remove(each)
 
     def _remove_leftovers(self) -> None:
-        """Remove files of samples that are in a shard: the process ended before it removed them."""
+        """Remove files of packed samples, which an interrupted process has left."""
         with os.scandir(self._folder.path) as items:
             found = [re.fullmatch(r"(\d{6})[._].+", item.name) for item in items]
         packed = [each[0] for each in found if each and self.has(int(each[1]))]

@@ -1,4 +1,4 @@
-"""The request for a data set: all that decides on its samples, except their number."""
+"""The request for a data set: all options that decide on its samples, except their number."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from .table import SampleTable, load_table
 class SetRequest:
     """A requested data set; it can be pickled.
 
-    output: the folder of the set. size: that of the pictures [pixels]. passes: some of the images
-    of app/passes/passes.py. refiner: None for the look's. degrade: whether pictures have blur,
-    noise and JPEG. shards: number of samples in each; None for no shards. arguments: the same
-    request as options of the command line.
+    output: the folder of the set. size: width and height of pictures [pixels]. passes: names of
+    passes, see app/passes/passes.py. refiner: None for the default refiner. degrade: whether
+    pictures have blur, noise and JPEG. shards: number of samples in each shard; None for no
+    shards. arguments: the same request as command-line options.
     """
 
     output: Path
@@ -42,7 +42,7 @@ class SetRequest:
     version: str = version("risorius")
 
     def options(self) -> dict[str, Any]:
-        """All that decides on the samples, for JSON; a resumed set must have the same."""
+        """Return the options that decide on samples, as JSON values; a resumed set repeats them."""
         table = asdict(self.table) | {"excluded": sorted(map(sorted, self.table.excluded.pairs))}
         table["expressions"] = {name: row.row for name, row in self.table.expressions.items()}
         options = {
@@ -73,7 +73,7 @@ def request_of(
     degrade: bool = False,
     shards: int | None = None,
 ) -> SetRequest:
-    """The request of a command line; raises UserError for options that do not fit together."""
+    """Return the request of command-line options; raise UserError if they do not fit together."""
     check_wanted(passes, "face")
     parse_options(refiner, ())
     passes = tuple(name for name in IMAGES if name in passes)

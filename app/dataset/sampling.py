@@ -1,12 +1,12 @@
-"""Sampling: sample number n of a seed in plain numbers, before any building or drawing.
+"""Random sampling: the numbers that describe sample n of a seed, before anything is drawn.
 
     table, seed, n  ->  Sample: expression, head, eyes, camera, person, looks
 
-Everything of a sample comes from numpy's SeedSequence([seed, n]) alone, and each part of it from
-its own stream: another camera does not change the faces.
+All random numbers of a sample come from numpy's SeedSequence([seed, n]), and each part of a sample
+has its own stream: other ranges of the camera do not change the faces.
 
-Sources: aus.toml names those of the table. Letters of intensity are equal fifths of 0..1 here, as
-OpenFace and DISFA number them 1 to 5; FACS makes C and D wider than the others.
+Sources: aus.toml names the sources of the table. Letters of intensity are equal fifths of 0..1
+here, as OpenFace and DISFA number them 1 to 5; FACS makes C and D wider than the others.
 """
 
 from __future__ import annotations
@@ -25,7 +25,11 @@ MOST_UNITS = 7  # of a mixture
 
 @dataclass(frozen=True)
 class SampleCamera:
-    """A camera round the head: degrees, at zoom 1 the head fits, shift in shares of the picture."""
+    """A camera around the head.
+
+    yaw, pitch, field_of_view: [degrees]. zoom: 1 fits the head into the picture. shift: of the
+    head in the picture, as shares of its height.
+    """
 
     yaw: float
     pitch: float
@@ -38,7 +42,7 @@ class SampleCamera:
 class Sample:
     """One sample.
 
-    kind, name: kind of face, and its name: "expression", "happiness".
+    kind, name: kind of face, and its name, as "expression" and "happiness".
     controls: all values of the face except its gaze.
     gaze: direction within the head, to its left and up [degrees]; None: into the camera.
     person: number of the person, see `assets.identities.sample_identity`.
@@ -95,7 +99,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
 
 
 def chosen(random: np.random.Generator, shares: Shares) -> str:
-    """A random name, with its share as probability."""
+    """Return a random name; the probability of a name is its share."""
     weights = np.array(list(shares.values()))
     return list(shares)[int(random.choice(len(weights), p=weights / weights.sum()))]
 
@@ -123,7 +127,7 @@ class _Face:
         self._table = table
         self._random = random
         self.controls: dict[str, float] = {}
-        self.one_sided = table.sides.one_sided  # the chance of each unit
+        self.one_sided = table.sides.one_sided  # probability for each unit
 
     def fill(self, kind: str) -> str:
         """Make a face of this kind; return its name."""
@@ -147,7 +151,7 @@ class _Face:
         return self._speak() if kind == "speech" else ""
 
     def _mix(self, units: Shares) -> None:
-        """Add a unit, units that join it, units that join these; half of the time also another."""
+        """Add one random unit, or two in half of the cases, and units that often accompany them."""
         random = self._random
         waiting = [chosen(random, units) for _ in range(1 + int(random.random() < 0.5))]
         while waiting and len(self.controls) < MOST_UNITS:
@@ -159,7 +163,7 @@ class _Face:
                     waiting.append(other)
 
     def _speak(self) -> str:
-        """Add a viseme, or one on its way to another; half of the time with brows and eyes."""
+        """Add a viseme or a blend of two; in half of the cases also units of brows and eyes."""
         random = self._random
         names = [chosen(random, self._table.speech) for _ in range(2)]
         share = random.uniform(0.2, 0.8) if random.random() < 0.5 else 1.0
@@ -176,14 +180,14 @@ class _Face:
         return "+".join(dict.fromkeys(spoken))
 
     def _add(self, unit: str, value: float) -> bool:
-        """Add a unit, unless a set unit excludes it."""
+        """Add a unit, unless a set unit excludes it; return whether it was added."""
         is_possible = self._table.goes_with(unit, self.controls)
         if is_possible:
             self.controls[unit] = min(value, 1.0)
         return is_possible
 
     def _intensity(self) -> float:
-        """A random value in a letter's fifth of 0..1."""
+        """Return a random intensity: choose a letter, then a value in its fifth of 0..1."""
         place = LETTERS.index(chosen(self._random, self._table.letters))
         # Nothing is visible below a quarter of the lowest fifth.
         within = self._random.uniform(0.0 if place else 0.25, 1.0)
@@ -193,7 +197,7 @@ class _Face:
 def _blink(
     table: SampleTable, random: np.random.Generator, controls: Mapping[str, float]
 ) -> dict[str, float]:
-    """Add lids that are half or fully shut, unless something else moves them."""
+    """Return a blink that shuts the lids partly or fully; {} if other units move the lids."""
     is_blinking = random.random() < table.eyes.blink
     closed = random.uniform(0.25, 1.0)
     if not is_blinking or not {"AU5", "AU43", "AU46_left", "AU46_right"}.isdisjoint(controls):
@@ -207,7 +211,7 @@ def _two_sided(
     controls: Mapping[str, float],
     one_sided: float,
 ) -> dict[str, float]:
-    """Divide units by side in an asymmetric face; all units lean to the same side."""
+    """Split units of an asymmetric face into sides; the same side is stronger in all of them."""
     is_asymmetric = random.random() < table.sides.asymmetric
     side = int(random.integers(2))  # the stronger or only side
     result: dict[str, float] = {}
@@ -227,7 +231,7 @@ def _two_sided(
 
 
 def _bounded_normal(random: np.random.Generator) -> float:
-    """A normal number with mean 0 and a deviation of about 1, within 2."""
+    """Return a number of the standard normal distribution, truncated at -2 and 2."""
     while abs(value := float(random.standard_normal())) > 2.0:
         pass
     return value

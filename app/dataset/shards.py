@@ -50,7 +50,7 @@ class Shard:
 
 
 def files_in(path: Path) -> Iterator[tuple[str, bytes]]:
-    """All readable files of samples in a tar file, by their names outside of it."""
+    """Yield name and content of each readable sample file in a tar file, named as in the folder."""
     with contextlib.suppress(OSError, tarfile.TarError), path.open("rb") as file:
         yield from _files_in(file)
 
@@ -72,7 +72,7 @@ def write_shard(path: Path, samples: Iterable[tuple[int, Sequence[Path]]]) -> Sh
 
 
 def read_shard(path: Path) -> Shard | None:
-    """The shard of a tar file; None unless it has the length in its listing."""
+    """Return the shard of a tar file; None if its length is not the length in its listing."""
     try:
         content = json.loads(listing_of(path).read_bytes())
         if content["bytes"] != path.stat().st_size:
@@ -90,12 +90,12 @@ def remove_shard(path: Path) -> None:
 
 
 def listing_of(path: Path) -> Path:
-    """The file with the places in a tar file."""
+    """Return the path of a tar file's listing."""
     return path.with_suffix(".json")
 
 
 def _add(tar: tarfile.TarFile, path: Path) -> int:
-    """Add a file, without time and owner, so that bytes are the same; return its size [bytes]."""
+    """Add a file without time and owner, for reproducible bytes; return its size in the tar."""
     content = path.read_bytes()
     member = tarfile.TarInfo(path.name.replace("_", ".", 1))
     member.size = len(content)
@@ -105,7 +105,7 @@ def _add(tar: tarfile.TarFile, path: Path) -> int:
 
 
 def _files_in(file: IO[bytes]) -> Iterator[tuple[str, bytes]]:
-    """The files of samples in a tar file, from its present position."""
+    """Yield name and content of sample files in a tar file, from its present position."""
     with tarfile.open(fileobj=file, mode="r:") as tar:
         for member in tar:
             content = tar.extractfile(member)

@@ -1,7 +1,7 @@
-"""Shares of a set: samples that one process makes, here or on a worker of a Dask cluster.
+"""Shares of a set: samples that one process makes, on this computer or on a Dask worker.
 
-A worker that sees the folder of the set writes into it. Others make samples in their own folder,
-and send the bytes back.
+A worker that can reach the folder of the set writes into it. Other workers make samples in a
+folder of their own, and send the bytes back.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from .studio import Studio
 
 @dataclass(frozen=True)
 class Share:
-    """The samples that one process makes, by their numbers, person after person.
+    """The samples that one process makes, by their numbers, sorted by person.
 
-    token: a file in the folder of unfinished samples, which shows a process on another computer
-    that it sees the set's folder; "" on the same computer.
+    token: name of a file in the folder of unfinished samples. A process on another computer that
+    finds this file can reach the set's folder; "" on the same computer.
     """
 
     request: SetRequest
@@ -41,7 +41,7 @@ class Share:
 class Brought:
     """A finished sample, and its size [bytes].
 
-    files: name -> content, if they are sent back.
+    files: name -> content of the files, if they are sent back; else empty.
     """
 
     number: int
@@ -50,7 +50,7 @@ class Brought:
 
 
 def make_samples(share: Share, send: Send) -> None:
-    """Make the missing samples of a share; after each one, `send` gets a `Brought`."""
+    """Make the missing samples of a share, and pass a `Brought` to `send` after each sample."""
     request = share.request
     here = version("risorius")
     if request.version != here:
@@ -68,13 +68,13 @@ def make_samples(share: Share, send: Send) -> None:
         studio = Studio(request)
         for number in share.numbers:
             size = 0
-            if not folder.has(number):  # a former process may have died after it
+            if not folder.has(number):  # an earlier process may have made it and died
                 size = folder.write_sample(number, studio.shoot(number).save)
             send(Brought(number, size, {} if is_seen else _taken(folder, number)))
 
 
 def _taken(folder: SetFolder, number: int) -> dict[str, bytes]:
-    """The contents of a sample's files, which are then removed."""
+    """Read and remove a sample's files; return name -> content."""
     files = {path: path.read_bytes() for path in folder.files_of(number)}
     for path in files:
         path.unlink()
@@ -84,7 +84,7 @@ def _taken(folder: SetFolder, number: int) -> dict[str, bytes]:
 def made_on_cluster(
     folder: SetFolder, shares: Sequence[Share], scheduler: str
 ) -> Iterator[Brought]:
-    """Yield samples as a Dask cluster makes them; UserError for the first failure."""
+    """Let a Dask cluster make samples, and yield them; raise UserError at the first failure."""
     if not shares:
         return
     token = f"{SEEN}{secrets.token_hex(8)}"
@@ -100,8 +100,8 @@ def made_on_cluster(
 
 
 def _make_on_worker(pool: WorkerPool, share: Share) -> list[Brought] | str:
-    """On a Dask worker: let a process make a share; return the samples, and the error, if any."""
-    made: dict[int, Brought] = {}  # a process that died may have sent some of them before
+    """Make a share in a process of a Dask worker; return the samples, or the text of an error."""
+    made: dict[int, Brought] = {}  # a process that died may have sent some of them already
 
     def keep(sample: Brought) -> None:
         made[sample.number] = sample

@@ -1,8 +1,8 @@
-"""The studio: takes picture and labels of one sample after another, in one process.
+"""The studio draws the picture and labels of one sample after another, in one process.
 
-No state of one sample reaches the next: the scene is reset, and the objects that stay (the context,
-the heads of some persons) do not depend on earlier samples. So a sample has the same bytes from any
-process, in any order.
+No state passes from one sample to the next: the scene is reset, and reused objects (the OpenGL
+context, the heads of some persons) do not depend on earlier samples. So a sample has the same
+bytes from any process, in any order.
 """
 
 from __future__ import annotations
@@ -52,14 +52,14 @@ class Shot:
 
     def save(self, picture: Path) -> None:
         """Write the picture and the files beside it; raises OSError if this fails."""
-        # zlib's level: a third of the time of the usual level 6, and 6 % more bytes.
+        # zlib's level 4 takes a third of the time of the default 6, and 6 % more bytes.
         PIL.Image.fromarray(self.image).save(picture, compress_level=4)
         self.known.save(picture)
 
 
 @dataclass(frozen=True)
 class _Model:
-    """A person in front of the camera."""
+    """The scene of a person, with all that draws and labels it."""
 
     scene: FaceScene
     pipeline: Pipeline
@@ -68,24 +68,23 @@ class _Model:
 
 
 class Studio:
-    """A frame without a window, and the heads of some persons."""
+    """An offscreen surface, and the heads of the last few persons."""
 
     def __init__(self, request: SetRequest) -> None:
         self._request = request
-        # Samples of each pixel.
         self._surface = render.open_offscreen(request.size, samples=8)
         self._renderer = render.Renderer(self._surface)
-        # The last persons are kept.
+        # The last four persons are cached.
         self._person = lru_cache(4)(self._person_of)
 
     def shoot(self, index: int) -> Shot:
-        """Take sample number `index` of the request's seed."""
+        """Draw sample number `index` of the request's seed, and label it."""
         request = self._request
         sample = draw(request.table, request.seed, index)
         model = self._person(sample.person)
         scene = model.scene
         camera = _posed(scene, sample, request.size)
-        image, surroundings = self._taken(model, camera, sample)
+        image, surroundings = self._picture(model, camera, sample)
         style = render.Style()  # light and background do not matter for passes
         is_masked = model.labels["mask"] != BARE
         needed = {"depth", "segmentation"} if is_masked else {"depth"}
@@ -108,10 +107,10 @@ class Studio:
         wanted = {name: images[name] for name in images if name in request.passes}
         return Shot(image, Labelled(wanted, labels))
 
-    def _taken(
+    def _picture(
         self, model: _Model, camera: render.OrbitCamera, sample: Sample
     ) -> tuple[Image, dict[str, Any]]:
-        """The picture of the present scene, and the labels of its light and background."""
+        """Draw the present scene; return the picture, and labels of its light and background."""
         request = self._request
         random = np.random.default_rng(sample.surroundings)
         lit = light_of(sample.light, request.lights, random)
@@ -134,11 +133,11 @@ class Studio:
         return image, {"light": lit.labels, "background": label}
 
     def _person_of(self, number: int) -> _Model:
-        """The model of person `number`, drawn from the table's population."""
+        """Build person `number` of the table's population."""
         population = self._request.table.population
         person = make_person(sample_identity(number, population=population))
         colours = own_colours(person.identity, number, population=population)
-        random = np.random.default_rng([number, 19])  # 18 is that of colours
+        random = np.random.default_rng([number, 19])  # 18 is the stream of colours
         shirt = chosen(random, self._request.table.shirts)
         glasses = chosen(random, self._request.table.glasses)
         mask = chosen(random, self._request.table.masks)
@@ -167,9 +166,9 @@ class Studio:
 
 
 def _shrink_for(size: tuple[int, int]) -> int:
-    """Number of texels of the skin, each way, that become one for pictures of a size [pixels].
+    """Return the factor by which skin textures shrink each way for a picture size [pixels].
 
-    A face at zoom 1 has two thirds of the skin's texels, and the picture's height in pixels.
+    A face at zoom 1 covers two thirds of the skin's texels, and the height of the picture.
     """
     texels = 1280
     shrink = 1
@@ -179,7 +178,7 @@ def _shrink_for(size: tuple[int, int]) -> int:
 
 
 def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.OrbitCamera:
-    """Let a face come to rest in its pose, and then its eyes; return the camera."""
+    """Move a face into its pose, place the camera, and turn the eyes; return the camera."""
     scene.reset()
     scene.pose(sample.controls)
     scene.step(SETTLING)
@@ -195,9 +194,9 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
 
 
 def _camera_of(scene: FaceScene, view: SampleCamera, size: tuple[int, int]) -> render.OrbitCamera:
-    """A camera with the present head of the scene in the middle, except for the shift.
+    """Return a camera that centres the scene's present head, moved by the view's shift.
 
-    It moves further if landmarks would lie outside the picture of `size` pixels.
+    The camera moves again if landmarks would lie outside the picture of `size` pixels.
     """
     rest = scene.rest_positions
     chin = 8  # a landmark
@@ -207,7 +206,7 @@ def _camera_of(scene: FaceScene, view: SampleCamera, size: tuple[int, int]) -> r
         np.vstack([scene.positions, rest]), view="front", field_of_view=view.field_of_view
     )
     camera.orbit(view.yaw, view.pitch)
-    margin = 0.03  # of the picture, free on each side of the head at zoom 1: the neck ends outside
+    margin = 0.03  # of the picture, free on each side at zoom 1; the neck's end lies outside
     camera.fit(scene.positions[head], margin)
     camera.zoom(view.zoom)
     camera.pan(*view.shift)

@@ -13,7 +13,7 @@ from typing import Any
 from .labels import by_number
 from .request import SetRequest
 
-THERE = 0.05  # value from which a unit counts as present: a quarter of A
+THERE = 0.05  # least value of a unit that counts as present: a quarter of intensity A
 
 
 @dataclass
@@ -28,9 +28,9 @@ class Counts:
 def write_index(
     path: Path, samples: Iterable[tuple[dict[str, Any], Mapping[str, str | int]]]
 ) -> Counts:
-    """A CSV file with one row for each sample: its kind, the head's pose, every action unit.
+    """Write a CSV file with a row for each sample: kind, head pose and all action units.
 
-    samples: labels and additional columns of each.
+    samples: labels and additional columns of each sample. Returns the counts for the card.
     """
     counts = Counts()
     with path.open("w", encoding="utf-8", newline="") as file:

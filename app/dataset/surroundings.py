@@ -1,4 +1,4 @@
-"""The surroundings of a sample's face: its light, and colours or a part of a picture behind it."""
+"""Light and background of a sample; the background is made of colours, a picture or a light map."""
 
 from __future__ import annotations
 
@@ -27,27 +27,27 @@ from ..text import as_text
 
 
 def _digest(paths: tuple[Path, ...]) -> str:
-    """A digest that differs for other files."""
+    """Return a digest of the names and sizes of files, 16 hexadecimal digits."""
     listed = "".join(f"{path.name} {path.stat().st_size}\n" for path in paths)
     return hashlib.sha256(os.fsencode(listed)).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
 class Backgrounds:
-    """Colours (sRGB 0..1) of all samples, or pictures to choose from, or else soft colours."""
+    """One colour for all samples (sRGB, 0..1), pictures to choose from, or random soft colours."""
 
     colour: tuple[float, float, float] | None = None
     pictures: tuple[Path, ...] = ()
 
     @property
     def options(self) -> Any:
-        """All that decides on backgrounds, for JSON."""
+        """The options that decide on backgrounds, as JSON values."""
         if not self.pictures:
             return self.colour if self.colour is None else list(self.colour)
         return {"pictures": len(self.pictures), "content": _digest(self.pictures)}
 
     def colours(self, random: np.random.Generator) -> Background:
-        """Random colours of one sample: near grey, the edge a little darker or lighter."""
+        """Return colours near grey for one sample; the edge is a little darker or lighter."""
         if self.colour is not None:
             return Background(self.colour, self.colour)
         hue, saturation, value = random.uniform([0.0, 0.0, 0.15], [1.0, 0.35, 0.95])
@@ -57,7 +57,7 @@ class Backgrounds:
         return Background(centre, edge)
 
     def picture(self, random: np.random.Generator, size: tuple[int, int]) -> tuple[str, Image]:
-        """The name of a random picture, and a part of it of `size`, sRGB, shape (H, W, 3).
+        """Return the name of a random picture, and a random part of it, sRGB, shape (H, W, 3).
 
         Raises UserError for a file that is not a picture.
         """
@@ -78,9 +78,10 @@ class Backgrounds:
 
 @dataclass(frozen=True)
 class SampleLight:
-    """The light of a sample: its name, and its map, turned by an angle [deg].
+    """The light of a sample: a lamp or a light map.
 
-    exposure: factor on the map's radiance.
+    map: None for a lamp. turn: angle by which the map is turned [deg]. exposure: factor on the
+    map's radiance.
     """
 
     name: str
@@ -91,32 +92,32 @@ class SampleLight:
 
     @property
     def labels(self) -> dict[str, Any]:
-        """The values for JSON."""
+        """The labels of the light, as JSON values."""
         turned = {} if self.map is None else {"turn": self.turn}
         return {"name": self.name, **turned, **asdict(self.light)}
 
 
 @dataclass(frozen=True)
 class LightFiles:
-    """Maps of light, one of which lights each sample; without maps, the table's lights do."""
+    """The user's light maps; a random map lights each sample, or a light of the table if none."""
 
     paths: tuple[Path, ...] = ()
 
     @property
     def options(self) -> Any:
-        """All that decides on lights, for JSON."""
+        """The options that decide on lights, as JSON values."""
         return _digest(self.paths) if self.paths else None
 
 
-@lru_cache(256)  # of 0.8 MB each
+@lru_cache(256)  # maps of 0.8 MB
 def _light_map(path: Path) -> LightMap:
     return read_light_map(path)
 
 
 def light_of(name: str, files: LightFiles, random: np.random.Generator) -> SampleLight:
-    """A varied light: brighter or darker, warmer or cooler, a lamp's key moved, a map turned.
+    """Vary a light at random: its brightness and colour, and its direction or the map's turn.
 
-    name: one of the renderer's lights, unless there are files.
+    name: a light of the renderer; without effect if there are files.
     """
     if not files.paths and name in LAMPS:
         return SampleLight(name, _lamp(name, random))
@@ -126,7 +127,7 @@ def light_of(name: str, files: LightFiles, random: np.random.Generator) -> Sampl
         name = as_text(path.name)
         light_map = _light_map(path)
         turn = round(float(random.uniform(-180.0, 180.0)), 2)
-    else:  # ours have their windows and lamps in front of the face
+    else:  # built-in maps have their windows and lamps in front of the face
         turn = round(float(np.clip(25.0 * random.standard_normal(), -60.0, 60.0)), 2)
     light, exposure = light_map.exposed(turn)
     tint = _tint(random)
@@ -137,7 +138,7 @@ def light_of(name: str, files: LightFiles, random: np.random.Generator) -> Sampl
 
 def _tint(random: np.random.Generator) -> Floats64:
     """Random factors on red, green and blue light."""
-    # Standard deviation of the ratio of red to blue light.
+    # Standard deviation of red and blue light, which change in opposite ways.
     warmth = 0.08 * np.clip(random.standard_normal(), -2.0, 2.0)
     return np.asarray(random.uniform(0.75, 1.15) * np.array([1.0 + warmth, 1.0, 1.0 - warmth]))
 
@@ -147,9 +148,9 @@ def _tinted(tint: Floats64, light: tuple[float, float, float]) -> tuple[float, .
 
 
 def _lamp(name: str, random: np.random.Generator) -> Light:
-    """One of the renderer's lamps, with its key moved, and brighter or darker, warmer or cooler."""
+    """Vary one of the renderer's lamps: the direction of its key light, brightness and colour."""
     light = LAMPS[name]
-    # Standard deviation of the key light's motion [degrees].
+    # The key light moves by 18 degrees along each axis (standard deviation).
     to_key = np.array(light.to_key) + np.radians(18.0) * random.standard_normal(3)
     to_key[2] = max(to_key[2], 0.1)  # not behind the head
     tint = _tint(random)
@@ -161,7 +162,7 @@ def _lamp(name: str, random: np.random.Generator) -> Light:
 
 
 def laid_over(picture: Image, premultiplied: Image) -> Image:
-    """A picture (H, W, 3) behind another with alpha (H, W, 4), as OpenGL would blend them."""
+    """Blend a premultiplied picture (H, W, 4) over another (H, W, 3), as OpenGL does."""
     through = 1.0 - premultiplied[..., 3:] / 255.0
     blended: Image = (
         np.rint(premultiplied[..., :3] + through * picture).clip(0, 255).astype(np.uint8)
@@ -170,7 +171,7 @@ def laid_over(picture: Image, premultiplied: Image) -> Image:
 
 
 def light_files_of(path: Path | None) -> LightFiles:
-    """The value of `--light`: a map of light, a folder of them, or None; UserError else."""
+    """Read the value of `--light`: a light map, a folder of them, or None; UserError otherwise."""
     if path is None:
         return LightFiles()
     if not os.path.exists(path):
@@ -184,12 +185,12 @@ def light_files_of(path: Path | None) -> LightFiles:
             raise UserError(f"--light {path}: no map of light in it, {', '.join(LIGHT_SUFFIXES)}")
         for each in paths:
             check_light_map(each)
-    _light_map(paths[0])  # the others are read when drawn: many would take minutes
+    _light_map(paths[0])  # other maps are read when they are drawn: many would take minutes
     return LightFiles(paths)
 
 
 def backgrounds_of(text: str | None) -> Backgrounds:
-    """The value of `--background`: a colour, a folder of pictures, or None; UserError else."""
+    """Read the value of `--background`: a colour, a folder, or None; UserError otherwise."""
     if text is None:
         return Backgrounds()
     folder = Path(text)
@@ -199,7 +200,7 @@ def backgrounds_of(text: str | None) -> Backgrounds:
         if not pictures:
             raise UserError(f"--background {text}: no picture in it, {', '.join(suffixes)}")
         for path in pictures:
-            with _readable(path):  # only its header: thousands of whole ones would take minutes
+            with _readable(path):  # only reads the header: thousands of pictures would take minutes
                 pass
         return Backgrounds(pictures=pictures)
     try:
@@ -213,7 +214,7 @@ def backgrounds_of(text: str | None) -> Backgrounds:
 
 @contextlib.contextmanager
 def _readable(path: Path) -> Iterator[PIL.Image.Image]:
-    """An opened picture; raises UserError if it is not a picture, or breaks in the block."""
+    """Open a picture; raise UserError if it cannot be read, here or inside the block."""
     try:
         with PIL.Image.open(path) as opened:
             yield opened

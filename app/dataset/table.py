@@ -1,4 +1,4 @@
-"""The table that samples are drawn from: aus.toml, or one that a user copied and edited.
+"""The table from which samples are drawn: aus.toml, or a user's edited copy.
 
 The table names its own sources. This module reads and checks it.
 """
@@ -32,8 +32,8 @@ from ..files import NoSuchFileError, read_text
 
 LETTERS = ("A", "B", "C", "D", "E")
 BLINK = "AU45"
-BARE = "none"  # in the table: neither glasses nor a mask
-PERSONS = 1_000_000  # persons of each seed, which no other seed has
+BARE = "none"  # in the table: no glasses, or no mask
+PERSONS = 1_000_000  # persons of each seed; other seeds have other persons
 Shares = Mapping[str, float]
 Range = tuple[float, float]
 
@@ -49,7 +49,7 @@ def _units() -> list[str]:
 
 
 def _drawn(shares: dict[str, float]) -> Shares:
-    """Shares for a random name; raises ValueError if no name is possible."""
+    """Return shares for a random choice; raise ValueError if all are 0."""
     if not any(shares.values()):
         raise ValueError("all shares are 0; at least one must be above 0")
     return shares
@@ -62,12 +62,12 @@ def _ordered(ends: Range) -> Range:
 
 
 def _between(low: float, high: float) -> MadeFrom:
-    """Check of a range: both of its ends lie within these limits."""
+    """Return the type of a range whose ends lie within these limits."""
     return MadeFrom(Annotated[Range, Within(low, high)], _ordered)
 
 
 def _drawn_from(names: Iterable[str] | Callable[[], Iterable[str]]) -> MadeFrom:
-    """Type of a table of shares: these names and weights."""
+    """Return the type of a table that maps some of these names to weights."""
     return MadeFrom(dict[Annotated[str, OneOf(names)], Weight], _drawn)
 
 
@@ -79,7 +79,7 @@ Unit = Annotated[str, OneOf(_units)]
 
 @dataclass(frozen=True)
 class Expression(Record):
-    """Frequency of an expression, of one side alone, and of each unit in it."""
+    """An expression: its frequency, that of one-sided ones, and the probability of each unit."""
 
     units: Annotated[dict[Unit, Share], called(REST)]
     share: Weight = 0.0
@@ -122,7 +122,7 @@ class Sides(Record):
 
 @dataclass(frozen=True)
 class Eyes(Record):
-    """Gaze of eyes, and their frequency of being shut."""
+    """Frequency of blinks and of looks into the camera; other directions of gaze [degrees]."""
 
     blink: Share
     at_camera: Share
@@ -141,7 +141,7 @@ class HeadTurn(Record):
 
 @dataclass(frozen=True)
 class Camera(Record):
-    """Places of the camera."""
+    """Ranges of the camera's position, field of view and shift."""
 
     yaw: Annotated[Range, _between(-90.0, 90.0)]
     pitch: Annotated[Range, _between(-60.0, 60.0)]
@@ -174,7 +174,7 @@ class Degradations(Record):
 
 @dataclass(frozen=True)
 class SampleTable(Record):
-    """The content of aus.toml, section by section; its comments are the documentation."""
+    """The sections of aus.toml, whose comments are their documentation."""
 
     kinds: Annotated[Shares, _drawn_from(("neutral", "expression", "mixture", "speech", "unit"))]
     letters: Annotated[Shares, _drawn_from(LETTERS)]
@@ -212,18 +212,18 @@ class SampleTable(Record):
         )
 
     def goes_with(self, unit: str, others: Container[str]) -> bool:
-        """Whether a unit may join others."""
+        """Whether a unit may be combined with other units."""
         excluded = (pair - {unit} for pair in self.excluded.pairs if unit in pair)
         return not any(other in others for pair in excluded for other in pair)
 
 
 def table_text() -> str:
-    """The included table, to be copied and edited."""
+    """Return the text of the built-in table, which users copy and edit."""
     return (files(__package__) / "aus.toml").read_text("utf-8")
 
 
 def load_table(path: Path | None) -> SampleTable:
-    """The table in a file, completed by the included one; None: the included one.
+    """Load a table, and complete it from the built-in table; None loads the built-in table.
 
     Raises UserError with file, section and row.
     """
@@ -238,7 +238,7 @@ def load_table(path: Path | None) -> SampleTable:
             ) from None
         except ValueError as error:
             raise UserError(f"{path}: {error}") from None
-        # Rows that a table leaves out of these sections are taken from ours.
+        # Missing rows of these sections come from the built-in table.
         filled_up = ("sides", "eyes", "head", "camera", "persons", "degradations")
         for name, rows in own.items():
             is_added = name in filled_up and isinstance(rows, dict)

@@ -1,1 +1,1 @@
-"""Live faces: sockets, packets, and a face that fades in and out."""
+"""Live faces: sockets, formats of packets, and the fading in and out of a received face."""

@@ -1,4 +1,4 @@
-"""The content of one packet in the vocabulary of recordings, and checks of its numbers.
+"""The content of one packet, with the channels of recordings, and checks of its numbers.
 
 A parser is a pure function of a packet: it returns a `LiveFrame`, or None for a packet of another
 kind. It never raises, because packets come from a network.

@@ -1,10 +1,10 @@
-"""A live face: from packets to the controls of our face, and the strength of the override.
+"""A live face: from packets to controls of the simulated face, and the weight of these controls.
 
     packets -> channels -> calibration -> mapping -> controls, with a presence of 0 to 1
 
-The newest frame counts. While frames come, the presence grows to 1. When they stop, or when the
-sender sees no face, it falls to 0, and our face returns smoothly to its values without them. Other
-motion, such as idle life, has the weight 1 - presence.
+Only the newest frame is used. While frames arrive, the presence grows to 1. When they stop, or when
+the sender sees no face, the presence falls to 0, and the simulated face returns smoothly to its
+other values. Other motion, such as idle life, has the weight 1 - presence.
 """
 
 from __future__ import annotations
@@ -24,29 +24,29 @@ from .frame import LiveFrame
 from .protocols import Listening
 from .receiver import Receiver
 
-LOST_AFTER = 0.4  # [s] without a frame; at 30 a second a network may lose ten
+LOST_AFTER = 0.4  # [s] without a frame, so a network may lose ten frames at 30 a second
 EASING_IN = 0.25  # [s]
 EASING_OUT = 0.6
 CALIBRATING = 0.5  # [s] of a neutral face
-CHANNELS = (*ARKIT, *HEAD_ANGLES, *EYE_ANGLES, *VISEMES)  # channels that may come
+CHANNELS = (*ARKIT, *HEAD_ANGLES, *EYE_ANGLES, *VISEMES)  # channels that a sender may use
 
 
 class State(enum.Enum):
     """The state of the sender."""
 
-    WAITING = "waiting"  # nothing has come yet
+    WAITING = "waiting"  # no frame has come yet
     RECEIVING = "receiving"
     NO_FACE = "no face"  # the sender sees nobody
     LOST = "lost"  # frames came, and have stopped
 
 
 class LiveFace(Receiver):
-    """The received frames as a face.
+    """A receiver that converts frames to controls.
 
-    calibration: that of the channels; it may be replaced at any time.
+    calibration: calibration of the channels; a caller may replace it at any time.
     channels: the newest value of each channel, before calibration.
     subject: the name of the person, or "".
-    presence: strength of the override of our face, 0 to 1.
+    presence: weight of the live face against other motion, 0 to 1.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class LiveFace(Receiver):
         self._neutral: list[dict[str, float]] = []
         self._neutral_until: float | None = None
 
-    # Its state
+    # State
 
     @property
     def silence(self) -> float:
@@ -98,7 +98,7 @@ class LiveFace(Receiver):
 
     @property
     def presence(self) -> float:
-        """Strength of the override of our face, 0 to 1, smooth in both directions."""
+        """Weight of the live face, 0 to 1, which changes smoothly in both directions."""
         return self._share * self._share * (3.0 - 2.0 * self._share)
 
     @property
@@ -111,7 +111,7 @@ class LiveFace(Receiver):
         """Whether the neutral face is being learned."""
         return self._neutral_until is not None
 
-    # Its commands
+    # Commands
 
     def advance(self, seconds: float) -> None:
         """Take the frames that have come; `seconds` have passed since the last call."""
@@ -140,7 +140,7 @@ class LiveFace(Receiver):
             self._neutral.append(dict(self.channels))
 
     def controls(self) -> dict[str, float]:
-        """Values of our controls from the live face, not yet cut off at their limits."""
+        """Return values of controls from the live face, not yet cut off at their limits."""
         return controls_of(self.calibration.apply(self.channels))
 
     def calibrate(self) -> None:
@@ -148,7 +148,7 @@ class LiveFace(Receiver):
         self._neutral, self._neutral_until = [], self._clock() + CALIBRATING
 
     def _end_calibration(self) -> None:
-        """Take the median of each channel, which a blink does not change."""
+        """Take the median of each channel as neutral; a blink does not change a median."""
         if self._neutral:
             median = {
                 name: float(np.median([each[name] for each in self._neutral if name in each]))

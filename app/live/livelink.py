@@ -5,9 +5,9 @@
     i32 frame, f32 part of a frame, i32 frames a second, i32 denominator of these
     u8 count of values, 61             f32 values: 52 shapes, 3 angles each of head and both eyes
 
-A packet that ends before the values, or counts none, means that no face was seen. The order of
-shapes is ARKit's; the app's files have another. Angles are in radians: the pitch of an eye is 0.61
-where it looks down fully. They grow to the subject's right, down and to the right shoulder.
+A packet without values, or with a count of 0, means that no face was seen. The order of shapes is
+ARKit's; the app's files have another order. Angles are in radians: an eye that looks fully down has
+a pitch of 0.61. Angles grow to the subject's right, downward, and to the right shoulder.
 
 Source: packets of the app; Epic Games, "Live Link Face", and its table of blend shapes.
 """
@@ -33,7 +33,7 @@ ANGLES = (
 
 
 def parse(packet: bytes) -> LiveFrame | None:
-    """The frame in a packet, or None for another packet; see the head of this file."""
+    """Parse a packet in the format above; return None for any other packet."""
     if packet[:1] != bytes([VERSION]):
         return None
     try:
@@ -60,7 +60,7 @@ def parse(packet: bytes) -> LiveFrame | None:
 
 
 def _text(packet: bytes, at: int) -> tuple[bytes, int]:
-    """A text after its length, and the place after it; ValueError for another content."""
+    """Read a text after its length; return it and the offset of its end. Raises ValueError."""
     (length,) = struct.unpack_from(">i", packet, at)
     end = at + 4 + length
     if not 0 <= length <= LONGEST_TEXT or end > len(packet):

@@ -1,4 +1,4 @@
-"""Protocols of live faces, by their names on the command line; addresses."""
+"""Protocols of live faces, by their names on the command line, and addresses of computers."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ ANYWHERE = "0.0.0.0"
 class Protocol:
     """A way to send faces in packets.
 
-    title: its usual name. port: the usual port of receivers. module: the module of this room with
-    the parser. library: an optional library that the parser needs, "" for none.
+    title: its usual name. port: the usual port of receivers. module: the module of this package
+    that holds the parser. library: an optional library that the parser needs, "" for none.
     """
 
     title: str
@@ -55,8 +55,8 @@ PROTOCOLS: Mapping[str, Protocol] = {
 class Listening:
     """Address and protocol of expected packets, and their first calibration.
 
-    kind: a key of PROTOCOLS. address: the one to listen on. port: None for the protocol's own.
-    gains: "NAME=x" each. mirror: whether left and right change places.
+    kind: a key of PROTOCOLS. address: address to listen on. port: None for the usual port of the
+    protocol. gains: factors of channels, as "NAME=x". mirror: whether to swap left and right.
     """
 
     kind: str
@@ -77,7 +77,7 @@ class Listening:
 
 
 def resolved(address: str) -> str:
-    """The IPv4 address of a computer, from its name or address; UserError without one."""
+    """Return the IPv4 address of a computer's name or address; raise UserError if it has none."""
     try:
         if not address or address.startswith("<"):  # the system takes these for all networks
             raise OSError("this is not a name")
@@ -92,7 +92,7 @@ def resolved(address: str) -> str:
 
 
 def own_address() -> str:
-    """The address of this computer in the network; "" without a network. Nothing is sent."""
+    """Return this computer's address in the network, or "" without one; nothing is sent."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
         try:
             documentation_address = "192.0.2.1"  # unused: reserved for documents (RFC 5737)

@@ -1,7 +1,7 @@
 """Incoming frames: a thread reads packets from the socket, and wakes waiting threads.
 
-A window sleeps until an event, and a frame must be such an event: periodic checks would delay it. A
-part of a frame, a frame without a face, and an unusable packet wake no thread.
+A window sleeps until an event. A frame must be such an event, because periodic checks would delay
+it. A part of a frame, a frame without a face, and an unusable packet wake no thread.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from .protocols import ANYWHERE, LOOPBACK, Listening, resolved
 class Receiver:
     """A socket and its thread; `close` ends both.
 
-    listening: its address and protocol. received, unusable: numbers of packets so far, and of those
-        outside the protocol.
+    listening: address and protocol. received: number of packets so far. unusable: number of
+        packets outside the protocol.
     has_frame: whether a frame is waiting.
     """
 
-    LOOK_AROUND = 0.1  # [s] after which the thread checks whether to end
+    LOOK_AROUND = 0.1  # [s] between checks of the thread whether to end
 
     def __init__(
         self,
@@ -33,9 +33,9 @@ class Receiver:
         wake: Callable[[], None] = lambda: None,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        """Listen at once. wake: the thread calls it when a first frame is waiting.
+        """Start to listen. wake: function that the thread calls when a first frame is waiting.
 
-        Raises UserError if this fails.
+        Raises UserError if the system refuses the address or port.
         """
         self.listening = listening
         self._wake = wake
@@ -97,7 +97,7 @@ class Receiver:
 
 
 def _bound_socket(listening: Listening) -> socket.socket:
-    """A socket that listens; raises UserError if the system refuses."""
+    """Open a socket that listens; raise UserError if the system refuses."""
     address = resolved(listening.address)
     port = listening.chosen_port
     opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)

@@ -1,4 +1,4 @@
-"""A recording as packets of Live Link Face, as a phone sends them."""
+"""Sending of a recording in packets of Live Link Face, as a phone sends them."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Sender:
         clock: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        """Send a take in its own time, once or forever; UserError if no packet has its channels."""
+        """Send a take at its own speed, once or forever; UserError if no channel can be sent."""
         channels = {name: values for name, values in take.channels.items() if name in CARRIED}
         if not channels:
             raise UserError(

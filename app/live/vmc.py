@@ -1,18 +1,17 @@
-"""VMC, the Virtual Motion Capture protocol: OSC messages, several to a frame.
+"""VMC, the Virtual Motion Capture protocol: several OSC messages for each frame.
 
     /VMC/Ext/Blend/Val   name, value        a shape
     /VMC/Ext/Blend/Apply                    applies all shapes before it
     /VMC/Ext/Bone/Pos    name, x, y, z, and a quaternion x, y, z, w
 
-52 shapes take more room than one packet has, so they may come in several before Apply. Senders
-spell names with small and with capital letters. One channel that is named more than once gets the
-last value.
+52 shapes do not fit into one packet, so several packets may come before Apply. Senders spell names
+in lower or upper case. A channel that is named more than once gets the last value.
 
-Bones turn in Unity's axes: x to the avatar's right, y up, z ahead, left-handed. Of these we take
-the head (with the neck, if it is in the same packet) and the eyes.
+Bones turn in Unity's axes: x to the avatar's right, y up, z ahead, left-handed. Only the head (with
+the neck, if it is in the same packet) and the eyes are read.
 
-Bundles are split here and not by the library, because a negative length in a bundle makes the
-library loop for ever.
+This module splits bundles without the library, because a negative length in a bundle makes the
+library loop forever.
 
 Source: protocol.vmc.info.
 """
@@ -34,8 +33,8 @@ with contextlib.suppress(ImportError):  # see Protocol.check
 from .frame import LiveFrame, put_angle, put_shape, shape_named
 
 _BUNDLE = b"#bundle\0"
-_HEAD = len(_BUNDLE) + 8  # and a time, which nobody waits for
-# The messages that we read, as their bytes begin: of others the library might complain in the log.
+_HEAD = len(_BUNDLE) + 8  # the mark and a time, which is ignored
+# First bytes of the messages that are read; the library might log errors for other messages.
 _KNOWN = re.compile(
     rb"/VMC/Ext/(Blend/Val\0\0,s[fdi]\0|Blend/Apply\0{4}(,\0{3})?\Z|Bone/Pos\0{3},sf{7}\0{3})"
 )
@@ -50,7 +49,7 @@ def parse(packet: bytes) -> LiveFrame | None:
     try:
         value_address = "/VMC/Ext/Blend/Val"
         apply_address = "/VMC/Ext/Blend/Apply"
-        most_depth = 4  # bundles in one another
+        most_depth = 4  # of nested bundles
         read_bones = ("Neck", "Head", "LeftEye", "RightEye")
         for message in _messages(packet, most_depth):
             if not _KNOWN.match(message):
@@ -75,7 +74,7 @@ def parse(packet: bytes) -> LiveFrame | None:
 
 
 def _messages(packet: bytes, depth: int) -> Iterator[bytes]:
-    """The messages of a packet, each as bytes; raises ValueError for a bundle that is torn."""
+    """Yield the messages of a packet as bytes; raise ValueError for a truncated bundle."""
     if not packet.startswith(_BUNDLE):
         yield packet
         return
@@ -102,9 +101,9 @@ def _put_bones(channels: dict[str, float], bones: Mapping[str, Quaternion]) -> N
 
 
 def _angles(*turns: Quaternion) -> tuple[float, float, float]:
-    """Yaw, pitch and roll [degrees] as names.py counts them, of turns one upon the other.
+    """Return yaw, pitch and roll [degrees] of a chain of rotations, with the signs of names.py.
 
-    NaN where a quaternion is too near to 0, or too large, to be a turn.
+    The angles are NaN if a quaternion is too near to 0, or too large, to be a rotation.
     """
     if not all(1e-6 < math.hypot(*turn) < 1e6 for turn in turns):
         return math.nan, math.nan, math.nan

@@ -1,4 +1,4 @@
-"""Scenes in motion: a script's frames one by one, for every output; idle life is in life.py."""
+"""Playback of a script in a scene, frame by frame, for every output; idle life is in life.py."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SETTLING = 1.0  # [s] after which the face rests in a pose
 
 
 def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
-    """The scene that a script is written for; UserError if the script does not fit it."""
+    """Build the scene of a script; raise UserError if the script does not fit the scene."""
     scene = build_scene(script.scene, head)
     script.check(scene.limits)
     return scene
@@ -45,20 +45,20 @@ def play(
     step: Callable[[float], None] | None = None,
     progress: bool = True,
 ) -> Iterator[float]:
-    """Play a script and yield the time [s] of each frame, the scene moved to it.
+    """Play a script: move the scene to each frame, and yield the frame's time [s].
 
-    It begins in the script's first pose, as if that had been held for a while.
+    The scene begins at rest in the script's first pose.
 
-    until: the last frame's time [s]; None: the script's end. viewer: the place [mm], shape (3,), of
-    somebody at whom the face looks, while controls that the script does not name live; None:
-    nothing moves by itself. step: lets this many seconds pass; None: the scene's own.
+    until: time of the last frame [s]; None takes the script's end. viewer: position of a viewer
+    [mm], shape (3,); the face looks there, and idle life moves controls that the script does not
+    name. None: no idle life. step: function that simulates some seconds; None takes the scene's.
     """
     step = scene.step if step is None else step
     idle = None if viewer is None else Idle(scene)
     moved = frozenset[str]().union(*map(scene.moved_by, script.names))
 
     def pose(time: float) -> None:
-        """Set the values of the script and of the life beneath it at this time."""
+        """Set the values of the script at a time [s], and of idle life for other controls."""
         values = script.values(time, scene.limits)
         if idle is not None and viewer is not None:
             opening = _opening_of_jaw(scene, values)
@@ -79,7 +79,7 @@ def play(
 
 
 def _opening_of_jaw(scene: Scene, values: ControlValues) -> float:
-    """How far a pose opens the jaw, 0 to 1; 0 in a scene without one."""
+    """Return how far a pose opens the jaw, 0 to 1; 0 in a scene without a face."""
     if scene.face is None:
         return 0.0
     controls = scene.face.simulation.controls
@@ -88,7 +88,7 @@ def _opening_of_jaw(scene: Scene, values: ControlValues) -> float:
 
 
 def counted_frames(until: float, frames_per_second: float, *, progress: bool) -> Iterator[int]:
-    """The numbers of the frames up to a time [s], with a progress bar."""
+    """Count the frames up to a time [s], with a progress bar."""
     frames = range(round(until * frames_per_second) + 1)
     bar = tqdm(frames, unit="frame", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):

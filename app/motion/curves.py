@@ -1,4 +1,4 @@
-"""From activations of muscles to the controls of a layer: action units, ARKit's shapes.
+"""Conversion of muscle activations to the controls of a layer: action units, ARKit's shapes.
 
 `solved(scene, ACTION_UNITS, activations)` is the inverse of the tables of sim/layers.py. A
 layer's controls add up, so it is a bounded least squares problem in each frame:
@@ -33,13 +33,13 @@ def solved(
     activations: Mapping[str, Floats64],
     controls: Mapping[str, Floats64] | None = None,
 ) -> dict[str, Floats64]:
-    """The values of a layer's controls that come nearest to these activations, by name.
+    """Solve for the values of a layer's controls that fit these activations best, by name.
 
-    layer: its title. activations: the sum of each of the lowest controls in N frames, shape (N,),
-    as in `Controls.sums` and `Clip.activations`. controls: the values that were set, shape (N,)
-    each; this layer's own count as they are, and only the rest is solved for.
+    layer: title of the layer. activations: sum of each lowest control in N frames, shape (N,), as
+    in `Controls.sums` and `Clip.activations`. controls: values that were set, shape (N,) each. Set
+    values of this layer are kept, and the solution explains only the remaining activations.
 
-    A control that has sides (AU12) is given by these alone (AU12_left, AU12_right). Raises
+    A control with sides (AU12) is returned as its sides alone (AU12_left, AU12_right). Raises
     UserError for a scene without muscles, or without the layer.
     """
     names = sided(scene, layer)
@@ -57,7 +57,7 @@ def solved(
 
 
 def sided(scene: Scene, layer: str) -> tuple[str, ...]:
-    """The controls of a layer, without those that have sides; UserError if there is no such."""
+    """Return a layer's controls, with sides in place of AU12; UserError without the layer."""
     names = _muscles_of(scene, layer).layers.get(layer, ())
     if not names:
         raise UserError(f"{layer}: this head has no such controls; take the built-in head")
@@ -65,7 +65,7 @@ def sided(scene: Scene, layer: str) -> tuple[str, ...]:
 
 
 def _muscles_of(scene: Scene, layer: str) -> Controls:
-    """The controls of a scene's muscles; UserError, which names the layer, if it has none."""
+    """Return the controls of a scene's muscles; raise UserError if the scene has no muscles."""
     if scene.face is None:
         raise UserError(f"{layer}: the scene '{scene.name}' has no muscles; take the scene face")
     return scene.face.simulation.controls
@@ -78,7 +78,7 @@ def _known(
     count: int,
     highest: Floats64,
 ) -> Floats64:
-    """The set values of the layer's own controls, as they count, shape (N, L)."""
+    """Return the effective amounts of a layer's controls that were set, shape (N, L)."""
     set_to = {
         name: controls.get(name, np.zeros(count)) + controls.get(_without_side(name), 0.0)
         for name in names
@@ -91,7 +91,7 @@ def _known(
 
 
 def _without_side(name: str) -> str:
-    """AU12 of AU12_left; "" for a name without a side."""
+    """Return AU12 for AU12_left, and "" for a name without a side."""
     return name.removesuffix(SIDES[0]).removesuffix(SIDES[1]) if name.endswith(SIDES) else ""
 
 
@@ -105,12 +105,12 @@ def _sums(values: Floats64, shares: Floats64, floors: Floats64) -> Floats64:
 
 
 def _fitted(shares: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
-    """Values (N, L) whose sums are nearest to the frames (N, C)."""
+    """Return the values (N, L) whose sums are nearest to the frames (N, C)."""
     rays = _rays(shares)
     strengths = np.linalg.norm(shares, axis=1)
     reach = np.array([(strengths[ray] * highest[ray]).sum() for ray in rays])
     directions = unit_vectors(np.stack([shares[ray].sum(axis=0) for ray in rays]))
-    # Values count a little beside the fit: of all that fit alike, those in between are taken.
+    # A small penalty on values chooses a middle one among solutions that fit equally well.
     matrix = np.vstack([directions.T, 1e-3 * np.eye(len(rays))])
     values = np.zeros((len(frames), len(shares)))
     for row, frame in zip(values, frames, strict=True):
@@ -124,10 +124,10 @@ def _fitted(shares: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
 
 
 def _rays(shares: Floats64) -> list[list[int]]:
-    """The controls (L, C) in groups of those that do the same, from weak to strong in each."""
+    """Group controls with parallel shares (L, C), each group in order from weak to strong."""
     strengths = np.linalg.norm(shares, axis=1)
     lengths = np.maximum(np.outer(strengths, strengths), 1e-30)
-    does_the_same = shares @ shares.T / lengths > 1.0 - 1e-9  # but one more of it
+    does_the_same = shares @ shares.T / lengths > 1.0 - 1e-9  # with different strength
     rays: list[list[int]] = []
     for control in np.argsort(strengths, kind="stable").tolist():
         for ray in rays:
@@ -141,7 +141,7 @@ def _rays(shares: Floats64) -> list[list[int]]:
 
 
 def _as_set(name: str, counted: Mapping[str, Floats64], tables: Layers) -> Floats64:
-    """A value as it is set; of a share of another control's (mouthClose) only so much of that."""
+    """Return the value to set; mouthClose, a share of jawOpen, is at most the value of jawOpen."""
     whole = tables.share_of.get(name)
     if whole is None:
         return counted[name]

@@ -1,24 +1,25 @@
-"""Idle life of a face that nobody moves: it blinks, glances about, and its head is never still.
+"""Idle life of a face: blinks, glances and small motions of the head.
 
-`Idle` lays this life beneath the values of a scene, and looks at the viewer: the eyes turn first,
-each on its own, so that they meet there; beyond some degrees the head turns, too. A viewer further
-aside is not followed. Idle life leaves controls alone that a script or a user moves, together with
-related ones: a set gaze in one direction keeps both eyes, a lowered lid keeps both lids.
+`Idle` adds this motion to a scene, and makes the face look at the viewer: each eye turns to the
+viewer, and beyond 10 degrees the head turns too. A viewer far to the side is not followed. Idle
+life does not touch controls that a script or a user moves, nor related controls: a set gaze in one
+direction stops the idle motion of both eyes, and a lowered lid stops that of both lids.
 
-Plain functions of time: the same seed and the same time give the same values, in any order of
-calls, and no clock is read. Time is cut into spans. In each span one blink and one glance begin at
-a random moment; slow motion is a sum of sines.
+All values are functions of seed and time: they depend neither on the order of calls nor on a clock.
+Time is divided into spans, and in each span one blink or one glance begins at a random moment. Slow
+motion is a sum of sines.
 
-Sources (a head takes part in shifts of gaze of more than some 15 or 20 degrees: Freedman and Sparks
-1997; Stahl 1999), for people at rest who look at somebody:
+Sources for people at rest who look at somebody:
+    Freedman and Sparks 1997; Stahl 1999: the head takes part in shifts of gaze of more than 15 to
+        20 degrees.
     Bentivoglio et al. 1997, "Analysis of blink rate patterns in normal subjects": 17 blinks a
         minute at rest, 26 in conversation.
     Trutoiu et al. 2011, "Modeling and animating eye blinks": lids shut fast and open slowly; blinks
         alike in both directions look unnatural.
     Munhall et al. 2004, "Visual prosody and speech intelligibility": a speaker's head moves with
         the loudness of speech.
-    Lee, Badler, Badler 2002, "Eyes alive": how large saccades are, how long eyes stay with somebody
-        and away from them, how long a saccade takes.
+    Lee, Badler, Badler 2002, "Eyes alive": size and duration of saccades, and the time for which
+        eyes look at a person and away.
 """
 
 from __future__ import annotations
@@ -35,14 +36,13 @@ Values = dict[str, float]
 Place = tuple[float, float]  # to the left and up [degrees]
 
 
-# Glances [degrees]
-EYE_RANGE = 30.0  # that gaze = 1 stands for
+EYE_RANGE = 30.0  # [degrees] at gaze = 1
 
-# The head at rest: most that it strays [degrees], and the angle of its controls at 1.
+# Greatest idle motion of the head, and the angle of its controls at 1 [degrees].
 HEAD_STRAYS = {"head_yaw": 1.2, "head_pitch": 0.7, "head_roll": 0.6}
 HEAD_RANGES = {"head_yaw": 45.0, "head_pitch": 30.0, "head_roll": 30.0}
-NOD = 4.0  # [degrees] of the head downward for a jaw that is open
-HEAD_PERIODS = np.array([4.7, 7.9, 13.3])  # [s] of the sines, which never meet
+NOD = 4.0  # [degrees] that the head turns down for a fully open jaw
+HEAD_PERIODS = np.array([4.7, 7.9, 13.3])  # [s] of the sines, without a common period
 
 LID = "orbicularis_oculi_palpebral_upper"
 BLINKS, GLANCES, PLACES, STRAYS = range(4)  # separate streams of random numbers
@@ -52,17 +52,17 @@ class Life:
     """The idle life of one face."""
 
     def __init__(self, seed: int = 0) -> None:
-        """seed: faces of different seeds do the same things at different times."""
+        """seed: faces with different seeds blink and glance at different times."""
         self._seed = seed
 
     def parts(self, time: float) -> dict[str, Values]:
-        """Amounts to add to controls at `time` [s] from the start; 0 for controls not named.
+        """Return amounts to add to controls at `time` [s], grouped into lids, eyes and head.
 
-        By the part of the face that moves as one: lids, eyes, head.
+        Controls that are not named get 0.
         """
         across, along = self._glance(time)
         strays = zip(HEAD_STRAYS.items(), self._drifts(time), strict=True)
-        blink_span = 3.5  # [s] in which there is one
+        blink_span = 3.5  # [s] for each blink
         return {
             "lids": _both(LID, lid(time - self._latest(BLINKS, blink_span, time)[1])),
             "eyes": {
@@ -72,27 +72,27 @@ class Life:
             "head": {name: most * share / HEAD_RANGES[name] for (name, most), share in strays},
         }
 
-    def _chance(self, what: int, number: int) -> np.random.Generator:
-        """The chance of one span."""
+    def _random(self, what: int, number: int) -> np.random.Generator:
+        """Return the random generator of one span."""
         return np.random.default_rng([self._seed, what, number])
 
     def _latest(self, what: int, span: float, time: float) -> tuple[int, float]:
-        """The number of the last moment before `time` [s], 1 for the first span's, and when."""
+        """Return number and time [s] of the last event before `time` [s]; the first is number 1."""
         number = int(time // span) + 1
-        latest_start = 0.8  # share of a span in which it begins, so that there is time between two
+        latest_start = 0.8  # share of a span in which an event begins, so that two are apart
         for each in (number, number - 1):
-            start = span * (each - 1 + latest_start * self._chance(what, each).random())
+            start = span * (each - 1 + latest_start * self._random(what, each).random())
             if start <= time and each > 0:
                 return each, start
         return 0, -math.inf
 
     def _glance(self, time: float) -> Place:
-        """Where the eyes look; a saccade leads from one place to the next."""
-        glance_span = 1.6  # [s] in which there is one
+        """Return the direction of gaze; a saccade leads from one place to the next."""
+        glance_span = 1.6  # [s] for each glance
         number, start = self._latest(GLANCES, glance_span, time)
         before = self._place(number - 1)
         there = self._place(number)
-        # A saccade takes 21 ms and 2.2 ms more for each degree. The eye's own lag is the former.
+        # A saccade takes 21 ms, and 2.2 ms more for each degree. The eye's own lag makes the 21 ms.
         seconds_per_degree = 0.0022
         duration = seconds_per_degree * math.dist(before, there)
         share = min((time - start) / duration, 1.0) if duration else 1.0
@@ -102,24 +102,24 @@ class Life:
         )
 
     def _place(self, number: int) -> Place:
-        """A place of the viewer's face: an eye, the mouth; or one beside him. At first straight."""
+        """Return the target of a glance, on the viewer's face or beside; the first is straight."""
         if number < 2:
             return 0.0, 0.0
-        chance = self._chance(PLACES, number)
+        random = self._random(PLACES, number)
         away_share = 0.1  # of glances that leave the viewer
-        if chance.random() >= away_share:
+        if random.random() >= away_share:
             face_spread = 1.1, 0.7  # of glances over the viewer's face, across and along
-            across, along = np.clip(chance.normal(0.0, face_spread), -2.0, 2.0)
+            across, along = np.clip(random.normal(0.0, face_spread), -2.0, 2.0)
             return float(across), float(along)
         least_away = 4.0
         most_away = 12.0
-        size = chance.uniform(least_away, most_away)
-        angle = chance.uniform(0.0, 2.0 * math.pi)
+        size = random.uniform(least_away, most_away)
+        angle = random.uniform(0.0, 2.0 * math.pi)
         return size * math.cos(angle), 0.5 * size * math.sin(angle)
 
     def _drifts(self, time: float) -> list[float]:
-        """Slow motions of the head, each between -1 and 1: sines of other phases."""
-        phases = self._chance(STRAYS, 0).uniform(0.0, 7.0, (len(HEAD_STRAYS), len(HEAD_PERIODS)))
+        """Return slow motions of the head, each between -1 and 1: sines with random phases."""
+        phases = self._random(STRAYS, 0).uniform(0.0, 7.0, (len(HEAD_STRAYS), len(HEAD_PERIODS)))
         drifts = np.sin(2.0 * math.pi * time / HEAD_PERIODS + phases).mean(axis=1)
         return [float(each) for each in drifts]
 
@@ -130,11 +130,11 @@ def _both(name: str, value: float) -> Values:
 
 
 def lid(age: float) -> float:
-    """How far the lids' muscle is drawn `age` [s] after a blink began: at once, then less."""
-    # The lid's muscle follows late, and a short pulse would not shut the eye. With these the lid of
-    # the simulation is down by 95 % after 0.12 s, stays so for 0.09 s (99 % at most), comes up in
+    """Return the activation of the lids' muscle `age` [s] after a blink began."""
+    # The simulated lid lags behind its muscle, so a short pulse would not shut the eye. With these
+    # times the lid is 95 % shut after 0.12 s, stays shut for 0.09 s (99 % at most), and opens in
     # 0.13 s.
-    shut_time = 0.14  # [s] that the muscle is drawn
+    shut_time = 0.14  # [s] of full activation
     opening_time = 0.18  # [s] in which it relaxes
     if not 0.0 <= age < shut_time + opening_time:
         return 0.0
@@ -145,7 +145,7 @@ EYES_MOST = 25.0  # [degrees] that eyes turn without strain
 
 
 class Idle:
-    """The life of a scene's face; a scene without one is left as it is."""
+    """The idle life of a scene's face; it does nothing in a scene without a face."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
@@ -160,11 +160,11 @@ class Idle:
         is_still: bool = False,
         opening: float = 0.0,
     ) -> Values:
-        """Amounts to add to the scene's controls at `time` [s] of its life.
+        """Return amounts to add to the scene's controls at `time` [s].
 
-        moved: lowest controls that are left alone. viewer: place of the viewer [mm], shape (3,).
-        is_still: the face looks at the viewer, and does nothing else. opening: of the jaw, 0 to 1:
-        a speaking head nods with it, and so on the stressed syllables.
+        moved: lowest controls that something else moves. viewer: position of the viewer [mm],
+        shape (3,). is_still: whether the face only looks at the viewer. opening: opening of the
+        jaw, 0 to 1; the head nods with it, and so on stressed syllables.
         """
         face = self.scene.face
         if face is None:
@@ -187,23 +187,23 @@ class Idle:
 
 
 def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
-    """The gaze and the pose of the head with which a face looks at a point [mm], shape (3,).
+    """Return values of gaze and head with which a face looks at a point [mm], shape (3,).
 
-    The eyes make up for how the head is turned now. By parts, as `Life.parts`.
+    The eyes compensate for the present turn of the head. Values are grouped as in `Life.parts`.
     """
     centres = {eye.name: np.asarray(eye.centre) for eye in face.head.eyes}
     if not centres:
         return {}
     aside = _angles(viewer - np.mean(list(centres.values()), axis=0))
-    # [degrees] aside, and above or below: as far the viewer is looked at; and not at all.
+    # Horizontal and vertical angles up to which a viewer is followed, and from which not [degrees].
     followed_angles = (45.0, 32.0)
     lost_angles = (65.0, 45.0)
     share = math.prod(map(_followed, aside, followed_angles, lost_angles))
-    eye_angle = 10.0  # [degrees] off straight ahead that are left to the eyes
-    head_share = 0.5  # of the angle beyond
+    eye_angle = 10.0  # [degrees] from straight ahead that the eyes turn alone
+    head_share = 0.5  # share of the angle beyond it that the head turns
     turn, rise = (share * head_share * _beyond(angle, eye_angle) for angle in aside)
     to_rest = np.linalg.inv(face.bone_transforms()["cranium"])
-    seen = (to_rest @ [*viewer, 1.0])[:3]  # the viewer, as the turned head has him
+    seen = (to_rest @ [*viewer, 1.0])[:3]  # the viewer in coordinates of the turned head
     eyes = {}
     for side, centre in centres.items():
         for way, angle in zip(("horizontal", "vertical"), _angles(seen - centre), strict=True):
@@ -217,7 +217,7 @@ def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
 
 
 def _angles(way: Floats64) -> tuple[float, float]:
-    """To the left and up from straight ahead [degrees]."""
+    """Return the angles of a direction to the left and up from straight ahead [degrees]."""
     x, y, z = way
     return math.degrees(math.atan2(x, z)), math.degrees(math.atan2(y, math.hypot(x, z)))
 
@@ -227,6 +227,6 @@ def _beyond(angle: float, least: float) -> float:
 
 
 def _followed(angle: float, whole: float, none: float) -> float:
-    """1 as far as `whole`, 0 from `none` on, and smooth between."""
+    """Return 1 up to the angle `whole`, 0 from the angle `none` on, and smooth values between."""
     left = min(max((none - abs(angle)) / (none - whole), 0.0), 1.0)
     return left * left * (3.0 - 2.0 * left)

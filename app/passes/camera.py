@@ -1,4 +1,4 @@
-"""A camera as plain numbers, those of OpenCV."""
+"""The parameters of a camera in OpenCV's convention."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from risorius.geometry.arrays import Floats64
 
 @dataclass(frozen=True)
 class CameraLabels:
-    """A camera as OpenCV describes one.
+    """A camera in OpenCV's convention.
 
-    size: of the picture [pixels]. intrinsics: K, (3, 3). rotation, translation: R, (3, 3), and t,
-    (3,) [mm].
+    size: width and height of the picture [pixels]. intrinsics: K, (3, 3). rotation: R, (3, 3).
+    translation: t, (3,) [mm].
     """
 
     size: tuple[float, float]
@@ -25,7 +25,7 @@ class CameraLabels:
 
     @classmethod
     def of(cls, camera: render.OrbitCamera, size: tuple[float, float]) -> CameraLabels:
-        """The labels of `camera` for a picture of `size`."""
+        """Return the parameters of `camera` for a picture of `size` [pixels]."""
         width, height = size
         focal = camera.focal(width / height, height)
         right, up, back = camera.axes()
@@ -34,12 +34,12 @@ class CameraLabels:
         return cls(size, intrinsics, rotation, -rotation @ camera.eye)
 
     def to_camera(self, points: Floats64) -> Floats64:
-        """Points of the scene, (n, 3), in the camera's coordinates [mm]."""
+        """Convert points of the scene, (n, 3), to the camera's coordinates [mm]."""
         seen: Floats64 = points @ self.rotation.T + self.translation
         return seen
 
     def project(self, points: Floats64) -> Floats64:
-        """Where points of the scene, (n, 3), are in the picture [pixels], (n, 2)."""
+        """Project points of the scene, (n, 3), into the picture [pixels], (n, 2)."""
         seen = self.to_camera(points) @ self.intrinsics.T
         pixels: Floats64 = seen[:, :2] / seen[:, 2:]
         return pixels

@@ -5,9 +5,9 @@ frame_00000_seg.png     segmentation: 8 bits, one class number a pixel
 frame_00000_ldmks.txt   landmarks: x and y of each in a row [pixels]
 frame_00000.json        camera, head, gaze, landmarks, controls: plain numbers
 
-`docs/passes.md` describes the keys, visible landmarks, axes and angles. The camera's axes are
-OpenCV's, the head's are its own. A head's controls turn it about axes that landmarks give, some 2
-degrees off these.
+`docs/passes.md` describes the keys, visible landmarks, axes and angles. The camera has OpenCV's
+axes, and the head has its own axes. Controls turn the head about axes from landmarks, which differ
+from the head's axes by some 2 degrees.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from .camera import CameraLabels
 from .landmarks import SIDES, Landmarks, jaw_on_bone, landmarks_in
 from .passes import NAMES, OF_FACES, Passes
 
-DIGITS = 8  # behind the point: points projected anew are off by less than 1e-4 pixels
+DIGITS = 8  # decimals, with which projected points are exact to 1e-4 pixels
 
 
 def labels_of(
@@ -45,11 +45,11 @@ def labels_of(
     depth: Floats32 | None = None,
     covered: Flags | None = None,
 ) -> dict[str, Any]:
-    """The labels of the picture that `camera` takes of `scene` now, `size` pixels large.
+    """Return the labels of a picture of the present scene, `size` pixels large.
 
-    depth: its depth map, for the landmarks; None leaves them out. covered: where a mask hides
-    landmarks, (H, W); None: nowhere. `docs/passes.md` describes the keys. A scene without a face
-    has its camera and controls alone.
+    depth: depth map of the picture, (H, W), for landmarks; None leaves landmarks out. covered:
+    flags of pixels where a mask hides landmarks, (H, W); None: no mask. `docs/passes.md` describes
+    the keys. A scene without a face has labels for camera and controls alone.
     """
     placed = CameraLabels.of(camera, size)
     labels: dict[str, Any] = {
@@ -68,7 +68,7 @@ def labels_of(
     cranium = face.bone_transforms()["cranium"]
     rotation = placed.rotation @ cranium[:3, :3]
     to_head = cranium[:3, :3].T
-    # Against a head that faces the camera: its y and z are opposite to the camera's.
+    # Relative to a head that faces the camera, whose y and z are opposite to the camera's.
     turned = np.diag([1.0, -1.0, -1.0]) @ rotation
     turns = {
         "yaw": math.atan2(turned[0, 2], turned[2, 2]),
@@ -110,7 +110,7 @@ def _plain(numbers: Floats64) -> Any:
 
 
 def gaze(face: Face, side: str) -> Floats64:
-    """Where the eye of that side looks: a unit vector in the scene, shape (3,)."""
+    """Return the direction of gaze of an eye, a unit vector in the scene, shape (3,)."""
     forward = np.array([0.0, 0.0, 1.0])  # of a head and of an eye at rest
     way: Floats64 = face.bone_transforms()[f"eye_{side}"][:3, :3] @ forward
     return way
@@ -122,18 +122,18 @@ CHANNELS = {
     "triangle": ("triangle.ID",),
     "splits": ("splits",),
 }
-NOTHING = 0xFFFFFFFF  # of triangles, where integers have no sign: -1 when read as signed
+NOTHING = 0xFFFFFFFF  # no triangle, as an unsigned integer; -1 if it is read as signed
 ENDS = (".exr", "_seg.png", "_ldmks.txt", ".json")
 
 
 def beside(picture: Path) -> list[Path]:
-    """The files that may come to lie beside a picture, in the order of ENDS."""
+    """Return the paths of files that may be written beside a picture, in the order of ENDS."""
     return [picture.with_name(picture.stem + end) for end in ENDS]
 
 
 @dataclass(frozen=True)
 class Labelled:
-    """All that is known of one picture.
+    """Passes and labels of one picture.
 
     images: passes by their names (passes.py). labels: the content of its JSON file (`labels_of`).
     """
@@ -165,7 +165,7 @@ def save_labelled(picture: Path, image: Image, known: Labelled | None) -> None:
 
 
 def check_wanted(wanted: Sequence[str], scene: str) -> None:
-    """Raise UserError for names of no pass, and passes that this scene or the files lack."""
+    """Raise UserError for unknown passes, and for passes that the scene or a library lacks."""
     for name in wanted:
         if name not in NAMES:
             raise UserError(f"--passes: '{name}' is no pass; allowed are {', '.join(NAMES)}")
@@ -199,7 +199,7 @@ def openexr() -> Any:
 
 
 def write_exr(path: Path, passes: Mapping[str, npt.NDArray[Any]]) -> None:
-    """Write passes by their names, those of CHANNELS; raises OSError if that fails."""
+    """Write passes, by names in CHANNELS, into an OpenEXR file; raise OSError if that fails."""
     module = openexr()
     channels = {}
     for name, images in passes.items():

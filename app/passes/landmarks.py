@@ -1,7 +1,7 @@
-"""The landmarks of one picture, where annotators of photographs put them.
+"""The landmarks of one picture, at the places where annotators of photographs put them.
 
-The points of the jaw lie on the outline of the face for this camera (`assets.annotation` has the
-lines for its search). Their places on the bone, known from the rig, are kept as well.
+The points of the jaw lie on the outline of the face that this camera sees; `assets.annotation` has
+the lines for its search. The points of the jaw on the bone come from the rig.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .camera import CameraLabels
 
 SIDES = ("right", "left")  # the subject's, in the order of landmarks
 JAW_COUNT = 17  # landmarks, the first ones
-MOST_BEHIND = 2.0  # [mm] that the refined skin may pass a landmark by, along the camera's axis
+MOST_BEHIND = 2.0  # [mm] of depth between the refined skin and a visible landmark
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,8 @@ class Landmarks:
     """The points of one picture: 68 landmarks, the right pupil, the left pupil.
 
     points: in the scene [mm], (70, 3). pixels: x to the right and y down; the middle of the first
-    pixel is (0.5, 0.5), (70, 2). visible: neither hidden nor beside the picture, (70,). Those of
-    the jaw alone are 17.
+    pixel is (0.5, 0.5), (70, 2). visible: flags of points in the picture that nothing hides, (70,).
+    `jaw_on_bone` returns 17 points instead of 70.
     """
 
     points: Floats64
@@ -39,16 +39,16 @@ class Landmarks:
 def landmarks_in(
     face: Face, camera: CameraLabels, depth: Floats32, covered: Flags | None = None
 ) -> Landmarks:
-    """The landmarks of a face in the picture of which `depth`, (H, W), is the depth map.
+    """Return the landmarks of a face in a picture with the depth map `depth`, (H, W).
 
-    covered: where a mask lies on the face, however near, (H, W); None: nowhere.
+    covered: flags of pixels where a mask hides the face, (H, W); None: no mask.
     """
     positions = face.positions
     jaw = outline(face, camera)
     inner = face.annotation.inner_points(positions)
     points = np.vstack([jaw, inner, _pupils(face)])
     pixels = camera.project(points)
-    pupil_tolerance = 0.6  # [mm]: over a pupil a lid of a millimetre may close
+    pupil_tolerance = 0.6  # [mm]; a shut lid lies one millimetre in front of the pupil
     tolerance = np.full(len(points) - JAW_COUNT, MOST_BEHIND)
     tolerance[-len(SIDES) :] = pupil_tolerance
     visible = np.concatenate(
@@ -63,7 +63,7 @@ def landmarks_in(
 def jaw_on_bone(
     face: Face, camera: CameraLabels, depth: Floats32, covered: Flags | None = None
 ) -> Landmarks:
-    """The rig's landmarks of the jaw, which keep to the bone however the head turns."""
+    """Return the rig's landmarks of the jaw, which stay on the bone when the head turns."""
     points = face.marked[:JAW_COUNT]
     tolerance = np.full(JAW_COUNT, MOST_BEHIND)
     visible = _is_on_surface(points, tolerance, camera, depth)
@@ -72,12 +72,13 @@ def jaw_on_bone(
 
 
 def outline(face: Face, camera: CameraLabels) -> Floats64:
-    """The outline of a face as a camera sees it [mm], shape (17, 3), from the right eye's height.
+    """Return the outline of a face as a camera sees it [mm], shape (17, 3), from right to left.
 
-    Of each way over the skin it has the place that lies farthest out: at first to the side at the
-    eyes and down at the chin, then across the line that was found. As annotators do, points are
-    set evenly from the height of one eye's outer corner to that of the other's. Heights are those
-    on the head: of a face that looks down, the outline begins above the eyes in the picture.
+    The outline takes the outermost point of each line over the skin. Outward means to the side at
+    the eyes and down at the chin; further rounds use the normals of the outline found before. As
+    annotators do, points are spaced evenly from the height of one eye's outer corner to the height
+    of the other's. Heights are measured on the head: if a face looks down, the outline begins above
+    the eyes in the picture.
     """
     positions = face.positions
     ways = face.annotation.ways(positions)
@@ -113,7 +114,7 @@ def _normals(pixels: Floats64, outward: Floats64) -> Floats64:
 
 
 def _smoothed(points: Floats64) -> Floats64:
-    """Points of a line, (n, 3), without the steps of an ear's root; the ends stay."""
+    """Smooth the points of a line, (n, 3), against steps at the root of an ear; the ends stay."""
     line = points
     for _ in range(3):
         line = line.copy()
@@ -122,7 +123,7 @@ def _smoothed(points: Floats64) -> Floats64:
 
 
 def _below(points: Floats64, heights: Floats64, top: float) -> Floats64:
-    """The part of a line, (n, 3), that lies below a height; all of it where it begins below."""
+    """Return the part of a line, (n, 3), below a height; all of it if it begins below."""
     first = int((heights < top).argmax())
     if first == 0:
         return points
@@ -132,12 +133,12 @@ def _below(points: Floats64, heights: Floats64, top: float) -> Floats64:
 
 
 def _spread(points: Floats64, pixels: Floats64, count: int) -> Floats64:
-    """Points of a line, (n, 3), as far from each other in the picture, shape (count, 3)."""
+    """Return points of a line, (n, 3), evenly spaced in the picture, shape (count, 3)."""
     return evenly_spaced(points, arc_lengths(pixels), count)
 
 
 def _pupils(face: Face) -> Floats64:
-    """Where the pupils are, shape (2, 3)."""
+    """Return the positions of the pupils [mm], shape (2, 3)."""
     bones = face.bone_transforms()
     pupils = []
     for side in SIDES:
@@ -151,25 +152,26 @@ def _pupils(face: Face) -> Floats64:
 def _is_on_surface(
     points: Floats64, tolerance: Floats64, camera: CameraLabels, depth: Floats32
 ) -> Flags:
-    """Whether points (n, 3) lie on the nearest surface to within `tolerance` [mm], (n,)."""
+    """Return which points (n, 3) are within `tolerance` [mm] of the nearest surface, (n,)."""
     seen, is_inside = _values_at(camera.project(points), depth)
     depths = camera.to_camera(points)[:, 2]
-    # The surface may be steep within a pixel.
+    # The depth may change by a pixel's width within a pixel.
     tolerance = np.maximum(tolerance, depths / camera.intrinsics[0, 0])
     # Background has the depth 0.
     return np.asarray(is_inside & (seen > 0.0) & (np.abs(seen - depths) <= tolerance))
 
 
 def _is_uncovered(points: Floats64, camera: CameraLabels, depth: Floats32) -> Flags:
-    """Whether nothing lies over points of an outline, (n, 3): hair, a nose, the frame's edge.
+    """Return which points of an outline, (n, 3), are in the picture and not hidden, as by hair.
 
-    The skin may be much nearer a pixel inside; 3 mm outside begins the surface behind.
+    A point is free if the depth is large enough at the point, or 3 mm outside of the outline: a
+    pixel inside the outline may show skin that is much nearer.
     """
     pixels = camera.project(points)
     depths = camera.to_camera(points)[:, 2]
     outward = _normals(pixels, pixels - pixels.mean(axis=0))
     beside = 3.0 * camera.intrinsics[0, 0] / depths[:, None]  # [pixels] of 3 mm
-    steep = 6.0  # [mm] along the camera's axis, by which an outline bends away within a pixel
+    steep = 6.0  # [mm] of depth by which the skin may bend away within a pixel
     is_free = np.zeros(len(points), dtype=np.bool_)
     for places in (pixels, pixels + np.maximum(beside, 1.0) * outward):
         seen, is_inside = _values_at(places, depth)
@@ -178,7 +180,7 @@ def _is_uncovered(points: Floats64, camera: CameraLabels, depth: Floats32) -> Fl
 
 
 def _values_at(pixels: Floats64, image: Floats32 | Flags) -> tuple[Floats64, Flags]:
-    """Values of an image (H, W) at pixels (n, 2), and which of them are in the picture."""
+    """Return the values of an image (H, W) at pixels (n, 2), and which pixels lie in it."""
     height, width = image.shape
     columns, rows = np.floor(pixels).astype(int).T
     is_inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
@@ -187,7 +189,7 @@ def _values_at(pixels: Floats64, image: Floats32 | Flags) -> tuple[Floats64, Fla
 
 
 def _is_covered(pixels: Floats64, covered: Flags | None) -> Flags:
-    """Which of pixels (n, 2) are among those that are covered, (H, W)."""
+    """Return which pixels (n, 2) are covered; covered: flags of all pixels, (H, W)."""
     if covered is None:
         return np.zeros(len(pixels), dtype=np.bool_)
     return _values_at(pixels, covered)[0] > 0.0

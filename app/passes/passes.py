@@ -1,13 +1,13 @@
 """The passes of a picture: arrays that describe each pixel.
 
-    depth         how far away along the camera's axis [mm], 0 = nothing        (H, W) float32
+    depth         distance along the camera's axis [mm], 0 = nothing            (H, W) float32
     normal        unit normal, x right, y down, z away from the camera          (H, W, 3) float32
-    triangle      of the simulated mesh, -1 = nothing or an eye, a tooth, ...   (H, W) int32
-    splits        how many splits the edges of that triangle have               (H, W) uint8
+    triangle      number in the simulated mesh, -1 = nothing, an eye, ...       (H, W) int32
+    splits        number of splits of that triangle's edges                     (H, W) uint8
     segmentation  class, by the numbers of FaceSynthetics (assets.Segment)      (H, W) uint8
 
-The top row comes first. Where nothing is drawn all are 0, but `triangle` is -1.
-Source of the numbers: Wood et al. 2021, "Fake it till you make it".
+The top row comes first. Where nothing is drawn, `triangle` is -1 and all other passes are 0.
+Source of the classes: Wood et al. 2021, "Fake it till you make it".
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ Bytes = npt.NDArray[np.uint8]
 
 
 class Passes:
-    """Draws the passes of a mesh as a pipeline drew it last."""
+    """Draws the passes of a mesh, as it was in the last picture of a pipeline."""
 
     def __init__(self, pipeline: Pipeline, drawn: DrawnMesh) -> None:
         self.scene = scene = pipeline.scene
         self._pipeline = pipeline
         self.drawn = drawn
-        # Thin hairs get the class of the surface behind them, as in pictures that people label.
+        # Thin hairs get the class of the surface behind them, as in pictures labelled by hand.
         self._parts = [part for part in scene.parts if not part.strand_radius]
         self._part_classes = np.concatenate([np.zeros(0, np.uint8), *map(_classes, self._parts)])
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height of the passes: those of the surface [pixels]."""
+        """Width and height of the passes and of the surface [pixels]."""
         return self._pipeline.renderer.surface.size
 
     def draw(
@@ -53,17 +53,17 @@ class Passes:
         style: render.Style,
         wanted: Collection[str] = IMAGES,
     ) -> dict[str, npt.NDArray[Any]]:
-        """The passes of these names, for the mesh as `Pipeline.draw` drew it last.
+        """Draw the passes of these names, for the last picture of `Pipeline.draw`.
 
-        The camera, the style and the scene must be as they were then. Raises ValueError before the
-        first picture, and for the segmentation of a scene that has none.
+        The camera, the style and the scene must be the same as in that picture. Raises ValueError
+        before the first picture, and for the segmentation of a scene that has none.
         """
         drawn = self.drawn
         if drawn.mesh is None:
             raise ValueError("nothing was drawn yet; call Pipeline.draw first")
         frame = self._pipeline.frame_of(camera, style, Viewport(drawn, (0, 0, *self.size)))
         geometry = self._pipeline.renderer.read(frame)
-        # Entry -1, the last one, is that of pixels where nothing is drawn.
+        # Pixels where nothing is drawn have the index -1, and take the last entry.
         parts = len(self._part_classes)
         found: dict[str, npt.NDArray[Any]] = {
             "depth": geometry.depth,
@@ -80,7 +80,7 @@ class Passes:
         return {name: found[name] for name in IMAGES if name in wanted}
 
     def _segmentation(self, geometry: render.Geometry, skin_count: int) -> Bytes:
-        """Classes of parts by their triangles, of skin by the map over its texture."""
+        """Return the classes of pixels: parts by their triangles, skin by a map of its texture."""
         face = self.scene.face
         if face is None:
             raise ValueError(f"the scene {self.scene.name} has no segmentation; a face has one")
@@ -91,7 +91,7 @@ class Passes:
         size = len(map_)
         columns, rows = (geometry.uv[is_skin] * [size, -size] + [0.0, size]).T.astype(np.int64)
         classes[is_skin] = map_[np.clip(rows, 0, size - 1), np.clip(columns, 0, size - 1)]
-        classes[is_skin & geometry.is_inside] = Segment.IGNORE  # into the head, through the neck
+        classes[is_skin & geometry.is_inside] = Segment.IGNORE  # seen through the neck
         return classes
 
 

@@ -1,7 +1,7 @@
-"""Recordings of a face by other programs: files and packets of their kinds, as one `Take`.
+"""Recordings of a face by other programs, read into one common form, the `Take`.
 
-`read_take` reads one, a `Calibration` takes the face at rest away, and `controls_of` says which
-controls of a face its channels move.
+`read_take` reads a file, a `Calibration` subtracts the neutral face, and `controls_of` converts
+channels to controls of the simulated face.
 """
 
 from .calibration import Calibration, calibration_for

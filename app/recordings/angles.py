@@ -1,4 +1,4 @@
-"""Units and signs of angles of the head and the eyes, as tables and JSON write them."""
+"""Conversion of angles of head and eyes from the units and signs in tables and JSON."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from .names import measured
 def in_degrees(
     angles: Mapping[str, Floats64], outward: Mapping[str, float], notes: list[str]
 ) -> dict[str, Floats64]:
-    """Angles in degrees, + to the subject's left, up, to the left shoulder.
+    """Convert angles to degrees, positive to the subject's left, up, and to the left shoulder.
 
-    angles: name of ours -> as the file has it, shape (T,), NaN where nothing is known. outward: by
-    how much the axes of eyeballs are off [degrees].
+    angles: our name -> values of the file, shape (T,), NaN where unknown. outward: name -> offset
+    of an eyeball's axis [degrees]. notes: list to which remarks for the report are added.
     """
     moving = {}
     for name, values in angles.items():
@@ -31,7 +31,7 @@ def in_degrees(
     if not moving:
         return {}
     size = max(float(np.nanpercentile(np.abs(values), 99)) for values in moving.values())
-    largest_radians = 1.6  # no head that is seen turns further, nor an eye
+    largest_radians = 1.6  # no visible head and no eye turns further
     is_radians = size <= largest_radians
     unit = "radians" if is_radians else "degrees"
     notes.append(f"Angles reach {size:.2g} and were taken for {unit}.")

@@ -1,12 +1,13 @@
 """Calibration: the neutral face of a recorded person, and gains of the channels.
 
-No face is at 0 while it rests: a phone reads a quarter of a frown in most. Calibration takes the
-neutral face away and keeps the greatest value where it is:
+Trackers do not read 0 from a face at rest: in most faces a phone reads a quarter of a frown.
+Calibration subtracts the neutral value n of a channel v, and leaves the greatest value, 1, as it
+is:
 
     v -> (v - n) / (1 - n),  then times the gain
 
-and of angles, which have no greatest value, only subtracts. A mirror comes last. The same object
-serves whole takes, whose values are arrays, and single frames, whose values are numbers.
+Angles have no greatest value, so n is only subtracted. Mirroring comes last. The same object serves
+whole takes, whose values are arrays, and single frames, whose values are numbers.
 """
 
 from __future__ import annotations
@@ -31,17 +32,17 @@ Value = TypeVar("Value", float, Floats64)
 HIGHEST_GAIN = 10.0
 FIRST_SECONDS = 1.0  # [s] of a take in which the head is held straight
 BLINK_GAIN = 1.15  # blinks are recorded with peaks of 0.86 to 0.94
-OPENFACE_GAIN = 1.4  # intensity E, 5 of 5, is next to never given
+OPENFACE_GAIN = 1.4  # OpenFace hardly ever reports intensity E, 5 of 5
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """Changes of one face's channels before they move another face.
+    """Changes of a recorded face's channels, before they move the simulated face.
 
     neutral: channel -> its value in the neutral face, in its own unit; 0 for others.
     gains: channel -> its factor.
-    default_gain: of all other channels but angles.
-    mirror: whether left and right change places.
+    default_gain: factor of all other channels except angles.
+    mirror: whether to swap left and right.
     """
 
     neutral: Mapping[str, float] = field(default_factory=dict)
@@ -50,7 +51,7 @@ class Calibration:
     mirror: bool = False
 
     def apply(self, channels: Mapping[str, Value]) -> dict[str, Value]:
-        """The calibrated channels: arrays of shape (T,) or numbers, as they were given."""
+        """Return the calibrated channels, arrays of shape (T,) or numbers like the input."""
         calibrated = {name: self._value(name, value) for name, value in channels.items()}
         if not self.mirror:
             return calibrated
@@ -63,7 +64,7 @@ class Calibration:
         neutral = self.neutral.get(name, 0.0)
         if name in ANGLES:
             return (value - neutral) * self.gains.get(name, 1.0)
-        # The least that a neutral face leaves of a channel; less would stretch noise to a motion.
+        # Least range of a channel above the neutral value; less would amplify noise to motion.
         least_range = 0.2
         scale = self.gains.get(name, self.default_gain) / max(1.0 - neutral, least_range)
         return (value - neutral) * scale
@@ -76,22 +77,22 @@ def calibration_for(
     gains: Iterable[str] = (),
     mirror: bool = False,
 ) -> Calibration:
-    """The calibration of a take: as asked for, and otherwise as suits what wrote it.
+    """Return the calibration of a take, with the defaults of its kind for all that is not set.
 
-    neutral: "first:SECONDS", "percentile" or "none"; gains: "NAME=x" each, where NAME may be a
-    pattern as mouth*. Raises UserError for anything else.
+    neutral: "first:SECONDS", "percentile" or "none". gains: factors as "NAME=x", where NAME may be
+    a pattern as mouth*. Raises UserError for any other value.
     """
     own, default = gains_of(gains, take.channels, kind=take.kind)
     return Calibration(neutral_of(take, neutral), own, default, mirror)
 
 
 def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
-    """The neutral face of a take: channel -> value.
+    """Return the neutral face of a take: channel -> value.
 
-    method: "first:SECONDS", the median of this much of its beginning; "percentile", the 5th of each
-    channel, but the first second of the head's turn; "none". None: "percentile" for takes that are
-    not calibrated and long enough, without channels that rest at 0. Raises UserError for another
-    method.
+    method: "first:SECONDS", the median of the first seconds; "percentile", the median of the first
+    second for angles of the head, and the 5th percentile for channels that do not rest at 0; or
+    "none". None is "percentile", but none for takes under two seconds, and only angles of the head
+    for calibrated takes. Raises UserError for another method.
     """
     if method == "none":
         return {}
@@ -100,14 +101,14 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
         return _median_of_first(take, names, _seconds_in(method))
     if method not in (None, "percentile"):
         raise UserError(f"--neutral {method}: allowed are first:SECONDS, percentile and none")
-    shortest_take = 2.0  # [s]: a shorter one shows no neutral face apart from the others
+    shortest_take = 2.0  # [s]; a shorter take may show no neutral face
     if method is None and take.duration < shortest_take:
         return {}
     neutral = _median_of_first(take, [n for n in names if n in HEAD_ANGLES], FIRST_SECONDS)
     if method is None and take.is_calibrated:
         return neutral
     low_percentile = 5.0  # that counts as neutral
-    # Channels that rest at 0 by themselves, or are a share of another channel.
+    # Channels that are 0 in a face at rest, or are a share of another channel.
     never_neutral = ("eyeLook*", "eyeBlink*", "jawOpen", "mouthClose", "AU43*", "AU45*", "AU46*")
     for name in names:
         if name not in ANGLES and not any(_fitting([name], each) for each in never_neutral):
@@ -116,7 +117,7 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
 
 
 def neutral_now(channels: Mapping[str, float]) -> dict[str, float]:
-    """The neutral face, from a frame in which the person holds it."""
+    """Return the neutral face of a person who is neutral in this frame."""
     return {name: value for name, value in channels.items() if name not in VISEMES}
 
 
@@ -126,7 +127,7 @@ def _median_of_first(take: Take, names: Iterable[str], seconds: float) -> dict[s
 
 
 def _seconds_in(method: str) -> float:
-    """The number in first:SECONDS."""
+    """Return the number in first:SECONDS."""
     text = method.removeprefix("first").removeprefix(":")
     try:
         seconds = float(text) if text else FIRST_SECONDS
@@ -140,10 +141,11 @@ def _seconds_in(method: str) -> float:
 def gains_of(
     settings: Iterable[str], channels: Iterable[str], *, kind: str = ""
 ) -> tuple[dict[str, float], float]:
-    """The gains of `--gain NAME=x ...`: of each named channel, and of all others.
+    """Return the gains of `--gain NAME=x ...` by channel, and the gain of all other channels.
 
-    NAME is a channel, a pattern (mouth*, *Left), or all; later ones win. kind: of the recording,
-    which has default gains. Raises UserError for a name that fits no channel.
+    NAME is a channel, a pattern (mouth*, *Left), or all; later settings replace earlier ones. kind:
+    kind of recording, which decides on default gains. Raises UserError for a name that fits no
+    channel.
     """
     names = list(channels)
     is_openface = kind.startswith("OpenFace")

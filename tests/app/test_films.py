@@ -141,7 +141,7 @@ def test_backgrounds_by_name(tmp_path, word, corner):
 
 def several(count, monkeypatch):
     """Let this number of processes draw, even for little work."""
-    monkeypatch.setattr(processes, "worthwhile", lambda *_: count)
+    monkeypatch.setattr(processes, "process_count", lambda *_: count)
 
 
 @pytest.mark.slow
@@ -153,7 +153,7 @@ def test_a_range_is_a_part_of_the_film_whoever_draws(tmp_path, monkeypatch):
     part = replace(whole, span=(0.2, 0.5))
     capture(script, whole, output=tmp_path / "whole", progress=False)
     capture(script, part, output=tmp_path / "alone", progress=False)
-    monkeypatch.setattr(processes, "worthwhile", lambda *_: 2)
+    monkeypatch.setattr(processes, "process_count", lambda *_: 2)
     capture(script, part, output=tmp_path / "two", progress=False)
     films = [sorted((tmp_path / name).iterdir()) for name in ("whole", "alone", "two")]
     read = [[np.asarray(PIL.Image.open(file)) for file in film] for film in films]

@@ -278,7 +278,7 @@ def test_one_in_other_processes(tmp_path, monkeypatch):
     result = risorius("batch", listing, "--jobs", "1", "--quiet")
     assert result.exit_code == 1
     assert "(broken_for_a_test:Moody) raised RuntimeError" in result.output
-    monkeypatch.setattr(processes, "worthwhile", lambda *_: 2)
+    monkeypatch.setattr(processes, "process_count", lambda *_: 2)
     monkeypatch.setenv("RISORIUS_DEBUG", "1")
     result = risorius("capture", "-o", tmp_path / "face.mp4", "--fps", "5", *still)
     assert result.exit_code == 2
