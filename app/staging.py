@@ -1,8 +1,8 @@
-"""A folder beside a file, in which the file is made before it moves to its place.
+"""Temporary folders beside an output, in which files are made before they move to their place.
 
 The folder is removed when the work ends. If the process is killed, the folder stays. A later
-process that works in the same place removes it when nothing in it has changed for a day; a running
-process changes something every few minutes.
+process that works in the same place removes it, if no file in it has changed for a day; a running
+process changes a file every few minutes.
 """
 
 import contextlib
@@ -19,7 +19,7 @@ if sys.platform != "win32":
     import fcntl
 
 OLD = 86_400.0  # [s] since the last change in a folder before its removal
-_swept: set[Path] = set()  # folders that this process has swept
+_swept: set[Path] = set()  # parent folders that this process has cleaned
 
 
 class StagingFolder:
@@ -33,7 +33,7 @@ class StagingFolder:
         self._folder: Path | None = None
 
     def __enter__(self) -> Path:
-        if self._parent not in _swept:  # to look through 100 000 files takes a second
+        if self._parent not in _swept:  # once only: a search in 100 000 files takes a second
             _swept.add(self._parent)
             sweep(self._parent)
         folder = self._parent / f".risorius-{secrets.token_hex(6)}"
@@ -45,13 +45,13 @@ class StagingFolder:
         self.remove()
 
     def remove(self) -> None:
-        """Remove it with its content; a second call does nothing."""
+        """Remove the folder with its content; a second call does nothing."""
         if self._folder is not None:
             shutil.rmtree(self._folder, ignore_errors=True)
 
 
 def is_staging_folder(path: Path) -> bool:
-    """Whether a path is such a folder, and not a link to one."""
+    """Whether a path is a staging folder, and not a link to one."""
     name_pattern = re.compile(r"\.risorius-[0-9a-f]{12}")
     return bool(name_pattern.fullmatch(path.name)) and path.is_dir() and not path.is_symlink()
 
@@ -67,9 +67,9 @@ def sweep(parent: Path) -> None:
 
 
 def locked(path: Path) -> IO[Any] | None:
-    """The file, made if missing; no other process can lock it until it is closed.
+    """Open and lock a file, which is made if missing; closing it releases the lock.
 
-    None if another process has locked it. Raises OSError if it cannot be opened.
+    Returns None if another process has locked it. Raises OSError if it cannot be opened.
     """
     file = open(path, "ab", opener=_without_waiting)
     try:
@@ -88,5 +88,5 @@ def locked(path: Path) -> IO[Any] | None:
 
 
 def _without_waiting(path: str, flags: int) -> int:
-    """Open a file; a pipe, which might block, is an OSError, and so is a link."""
+    """Open a file without blocking; raise OSError for a pipe or a link."""
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0), 0o666)

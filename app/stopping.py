@@ -1,8 +1,7 @@
-"""Ctrl-C, a closed terminal, `kill`: half-written files are removed, and the process ends.
+"""Signals of Ctrl-C, a closed terminal or `kill`: clean up half-written files, and end the process.
 
-The handlers raise no exception. An exception at an arbitrary moment is lost where C code calls
-Python and drops its errors, so the signal would have no effect; and it crashes moderngl during a
-compilation.
+The handlers raise no exception. If C code calls Python and ignores its errors, an exception would
+be lost, and the signal would have no effect. During a compilation an exception crashes moderngl.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ def cleaned_up_if_stopped(clean_up: Callable[[], object]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def done_whole() -> Iterator[None]:
-    """A signal inside this block ends the process after the block; keep it short."""
+    """Delay signals inside this block until its end; the block must be short."""
     global _is_postponing
     _is_postponing = True
     try:
@@ -42,8 +41,8 @@ def done_whole() -> Iterator[None]:
 
 
 def handle_signals() -> None:
-    """Let signals end this process as described above; ignored signals stay ignored."""
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # Windows lacks the last
+    """Install the handlers of this module; signals that are ignored stay ignored."""
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # Windows lacks SIGHUP
         number = getattr(signal, name, None)
         usual = (signal.SIG_DFL, signal.default_int_handler)
         if number is not None and signal.getsignal(number) in usual:
@@ -54,9 +53,9 @@ def _stop(number: int, _: object) -> None:
     if _is_postponing:
         _postponed.append(number)
         return
-    signal.signal(number, signal.SIG_DFL)  # once more: at once
+    signal.signal(number, signal.SIG_DFL)  # a second signal ends the process at once
     for clean_up in reversed(_cleanups):
-        with contextlib.suppress(Exception):  # the others still run
+        with contextlib.suppress(Exception):  # other functions still run
             clean_up()
     with contextlib.suppress(Exception):  # streams may be closed, or in use
         if number == signal.SIGINT:
@@ -64,6 +63,6 @@ def _stop(number: int, _: object) -> None:
         sys.stderr.flush()
     with contextlib.suppress(Exception):
         sys.stdout.flush()
-    # End as without a handler: a shell that runs us in a loop then also ends the loop.
+    # The process ends as without a handler, so that a shell also ends a loop around it.
     signal.raise_signal(number)
     os._exit(128 + number)  # for systems that do not end a process this way

@@ -6,7 +6,7 @@ import re
 
 
 def in_one_line(message: object) -> str:
-    """A message, with all codes escaped that a terminal does not show as characters.
+    """Return a message on one line, in which all unprintable characters are escaped.
 
     Names come from files and command lines: a line end in a name must not begin a new line, and no
     code may control the terminal.
@@ -19,10 +19,10 @@ def in_one_line(message: object) -> str:
 
 
 def as_text(name: object) -> str:
-    """A name that can be printed, and written into a file in UTF-8.
+    """Return a name that can be printed, and written into a file in UTF-8.
 
-    Names of files are bytes: Python reads one that is not UTF-8, for example from an old archive,
-    as characters without an encoding. Such bytes become \\xe4.
+    Names of files are bytes. If they are not UTF-8, for example from an old archive, Python reads
+    them as characters that cannot be encoded. Such a byte becomes a text such as \\xe4.
     """
     raw_byte = re.compile("[\udc80-\udcff]")  # in names that are not UTF-8
     text = raw_byte.sub(lambda found: f"\\x{ord(found[0]) - 0xDC00:02x}", str(name))
@@ -30,5 +30,5 @@ def as_text(name: object) -> str:
 
 
 def counted(number: int, noun: str) -> str:
-    """A number of things in words: 1 key, 2 keys."""
+    """Return a number with its noun: 1 key, 2 keys."""
     return f"1 {noun}" if number == 1 else f"{number} {noun}s"

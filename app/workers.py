@@ -1,9 +1,9 @@
-"""Work in separate processes, here or on a Dask cluster; a death costs one attempt.
+"""Work in separate processes, which are started again if they die.
 
-A new process is started for each piece of work and never forked: a process forked after OpenGL was
-opened hangs. It has its own session, so that only its parent gets Ctrl-C. Work is a function at the
-top of a module; its arguments and messages are pickled. When the parent ends, for any reason, the
-process also ends, and half-written files are removed.
+A new process is started for each piece of work. It is not forked, because a process that is forked
+after OpenGL was opened hangs. It has its own session, so that only its parent gets Ctrl-C. Work is
+a function at the top of a module; its arguments and messages are pickled. When the parent ends, for
+any reason, the process also ends, and removes half-written files.
 """
 
 from __future__ import annotations
@@ -30,13 +30,12 @@ from .stopping import cleaned_up_if_stopped, handle_signals
 from .text import as_text, in_one_line
 
 Send = Callable[[object], None]  # sends a message to the process that started the work
-"""Each takes as many threads as there are cores, in each process: OpenGL, BLAS and refinement."""
-ATTEMPTS = 3  # attempts at work whose process dies
+ATTEMPTS = 3  # at a piece of work, if its process dies
 GRACE = 5.0  # [s] for a process to clean up before it is killed
 
 
 class Kind(Enum):
-    """Kinds of answers of a process: messages of its work, then the end of the work."""
+    """Kinds of answers from a process: messages of its work, then success or failure."""
 
     MESSAGE = 1
     FAILED = 2
@@ -44,11 +43,11 @@ class Kind(Enum):
 
 
 class DiedError(Exception):
-    """The process died; the text names the cause."""
+    """A process died; the text names the cause."""
 
 
 class Worker:
-    """A process that does one piece of work, in the view of its parent."""
+    """A process that does one piece of work, as its parent sees it."""
 
     def __init__(
         self,
@@ -59,7 +58,8 @@ class Worker:
     ) -> None:
         """Begin `work(*arguments, send)`.
 
-        threads: number for each of LIBRARIES. log: the file for its output; None: the error stream.
+        threads: number of threads for OpenGL, BLAS and refinement, which else take one for each
+        core. log: the file for the output of the process; None: the error stream.
         """
         code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve()"
         with contextlib.ExitStack() as stack:
@@ -81,7 +81,7 @@ class Worker:
             self.process.stdin.flush()
 
     def messages(self) -> Iterator[Any]:
-        """Messages of the work; UserError for an error in it, DiedError if the process died."""
+        """Yield messages of the work; UserError for an error, DiedError if the process died."""
         while True:
             try:
                 kind, content = pickle.load(self._answers)
@@ -99,7 +99,7 @@ class Worker:
             return
 
     def close(self) -> None:
-        """Wait for its end, and force it if necessary."""
+        """Wait until the process ends, and kill it if necessary."""
         try:
             self.process.wait(GRACE)
         except subprocess.TimeoutExpired:
@@ -108,7 +108,7 @@ class Worker:
 
 
 def serve() -> None:
-    """In a worker's process: read the work from the standard input, and do it."""
+    """Read the work from the standard input, and do it; this runs in a worker's process."""
     requests = os.fdopen(os.dup(0), "rb")
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
@@ -127,7 +127,7 @@ def serve() -> None:
     waiting: queue.Queue[bytes] = queue.Queue(4)  # messages not yet sent
 
     def hand_over() -> None:
-        """Write waiting messages while the next is made; end the process if nobody reads them."""
+        """Send messages while the work goes on; end the process if the parent does not read."""
         try:
             while content := waiting.get():
                 answers.write(content)
@@ -147,7 +147,7 @@ def serve() -> None:
 def _done(
     work: Callable[..., object], arguments: Sequence[Any], *, send: Send
 ) -> tuple[Kind, tuple[str, str]]:
-    """Do the work, and return its end: a failure's reason in a line, and the traceback."""
+    """Do the work; return DONE, or FAILED with the reason in one line and the traceback."""
     try:
         work(*arguments, send)
     except Exception as error:
@@ -160,7 +160,7 @@ def _done(
 
 
 class WorkerPool:
-    """The processes of one run; they end with it, and threads of this process wait for them."""
+    """The processes of one run, for which threads of this process wait; `stop` ends them all."""
 
     def __init__(self, jobs: int = 1) -> None:
         """jobs: number of simultaneous processes, which share the cores."""
@@ -176,9 +176,10 @@ class WorkerPool:
         log: Path | None = None,
         attempts: int = ATTEMPTS,
     ) -> None:
-        """Do work in a process, again if the process dies; on_message: takes each message.
+        """Do work in a process, and again if the process dies.
 
-        Raises UserError for an error in the work, for its last death, and after `stop`.
+        on_message: function that gets each message. Raises UserError for an error in the work, if
+        the process dies in the last attempt, and after `stop`.
         """
         why = ""
         for attempt in range(attempts):
@@ -226,10 +227,10 @@ def _note(log: Path | None, text: str) -> None:
 def run_all(
     work: Callable[..., object], shares: Sequence[Any], *, log: Path | None = None
 ) -> Iterator[Any]:
-    """Do `work(share, send)` for all shares at once; yield their messages as they come.
+    """Do `work(share, send)` for all shares in parallel; yield their messages as they come.
 
-    A share whose process died begins again. If the caller stops early, or is stopped, all end.
-    Raises UserError for the first failure.
+    A share whose process died begins again. If the caller stops early, or is stopped, all processes
+    end. Raises UserError for the first failure.
     """
     pool = WorkerPool(max(len(shares), 1))
     messages = queue.SimpleQueue[Any]()
@@ -262,10 +263,10 @@ class Task:
     """Work that plays frames in a process, while the calling process stays free."""
 
     def __init__(self, work: Callable[[], object], frame_count: int, wake: Callable[[], None]):
-        """Begin; wake: a thread calls it when the work has ended."""
+        """Start the work; wake: function that a thread calls when the work has ended."""
         self._frame_count = frame_count
         self._frames = 0
-        self._pool = WorkerPool(share_of_cores())  # one of them; the window keeps the others
+        self._pool = WorkerPool(share_of_cores())  # one is for the work, others for the window
         thread = ThreadPoolExecutor(1)
         self._end = thread.submit(
             self._pool.run, count_frames, work, on_message=self._count, attempts=1
@@ -284,7 +285,7 @@ class Task:
 
     @property
     def is_done(self) -> bool:
-        """Whether it has ended."""
+        """Whether the work has ended."""
         return self._end.done()
 
     @property
@@ -293,7 +294,7 @@ class Task:
         return self._stopping is not None
 
     def check(self) -> None:
-        """Raise UserError if it failed; call this once it has ended."""
+        """Raise UserError if the work failed; call this after the end of the work."""
         self._end.result()
 
     def stop(self, *, waits: bool) -> None:
@@ -306,7 +307,7 @@ class Task:
 
 
 def count_frames(work: Callable[[], object], send: Send) -> None:
-    """In the process: do the work, and repeatedly send the number of played frames."""
+    """Do the work in this process, and repeatedly send the number of played frames."""
     is_done = threading.Event()
     give_way(5)
 
@@ -324,17 +325,17 @@ def count_frames(work: Callable[[], object], send: Send) -> None:
 
 
 def give_way(niceness: int) -> None:
-    """In a process: lower its priority below its parent's, by 1 to 19."""
+    """Lower the priority of this process below its parent's priority, by 1 to 19."""
     if hasattr(os, "nice"):
         os.nice(niceness)
-    # Where Linux shares time between sessions, niceness only counts within one, and each process
-    # has its own session.
+    # If Linux shares time between sessions, niceness only works within one, and each process has
+    # its own session.
     with contextlib.suppress(OSError):
         Path("/proc/self/autogroup").write_text(str(niceness))
 
 
 def share_of_cores() -> int:
-    """Number of cores for one command: `LP_NUM_THREADS`, which limits OpenGL, limits all."""
+    """Return the number of cores for one command; `LP_NUM_THREADS` limits it, as it does OpenGL."""
     limit = os.environ.get("LP_NUM_THREADS", "")
     if limit.isdecimal():
         return max(int(limit), 1)

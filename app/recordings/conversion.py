@@ -1,7 +1,7 @@
-"""A take -> a script that plays it: calibrated, mapped, read ahead, thinned.
+"""Conversion of a take to a script: channels are calibrated, mapped, shifted in time and thinned.
 
-Muscles, eyes and head follow their controls late, each in its own time. So a script that is made of
-a recording sets everything earlier by this delay: face and sound are then on time.
+Simulated muscles, eyes and head lag behind their controls by different delays. A converted script
+sets each control earlier by its delay, so that the face is in time with the sound.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from .take import Take
 
 
 def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, Report]:
-    """The script that plays a take on a face with these controls, and its report.
+    """Return the script that plays a take on a face with these controls, and the report.
 
-    Raises UserError for a neutral or a gain that cannot be.
+    Raises UserError for an impossible neutral or gain.
     """
     calibration = calibration_for(
         take, neutral=playback.neutral, gains=playback.gains, mirror=playback.mirror
@@ -43,11 +43,11 @@ def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, R
 
 
 def _script(take: Take, curves: Mapping[str, Floats64], lead: float) -> Script:
-    """Tracks of what moves; of a single frame a pose."""
+    """Return a script with a track for each moving control, or with a pose for a single frame."""
     title = Path(take.source).stem
     preface = f"# Made of {in_one_line(Path(take.source).name)}, {take.kind}.\n"
     moved = {name: values for name, values in curves.items() if np.abs(values).max() > TOLERANCE}
-    # from where recorded faces were seen
+    # The camera stands where the camera of the recording stood.
     script = Script(
         title,
         duration=rounded(take.duration),
@@ -68,15 +68,15 @@ def _script(take: Take, curves: Mapping[str, Floats64], lead: float) -> Script:
 
 
 def lead_of(control: str, lead: float) -> float:
-    """How much earlier a control is set [s], if muscles are earlier by `lead`."""
-    # How late eyes and head follow [s], where muscles and skin do by LEAD; all measured at 60 Hz.
+    """Return how much earlier a control is set [s], if muscles are set earlier by `lead`."""
+    # Lag of eyes and head [s]; that of muscles and skin is LEAD. All were measured at 60 Hz.
     lateness = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.063}
     late = next((each for start, each in lateness.items() if control.startswith(start)), LEAD)
     return lead * late / LEAD
 
 
 def _track(times: Floats64, values: Floats64, lead: float) -> Channel:
-    """The keys of one control, so much earlier [s]; what comes before the beginning is left out."""
+    """Return the keys of one control, earlier by `lead` [s]; keys before time 0 are left out."""
     at_beginning = np.interp(lead, times, values)
     least_step = 1e-3  # [s] between the first two keys
     later = times > lead + least_step

@@ -1,8 +1,8 @@
-"""Channels without holes over times that rise: what every reader ends with.
+"""The last step of every reader: channels without gaps, over rising times.
 
-A face that is out of sight keeps the last pose that was seen, and goes over to the next one in the
-last 0.3 s before it is seen again. A shorter gap is one straight way. So nothing is invented, and
-nothing jumps. Rows that are missing are such a gap, too.
+While a face is out of sight, the last visible pose is held; in the last 0.3 s before the face is
+seen again, a straight line leads to the next pose. A shorter gap is one straight line. So no motion
+is invented, and no value jumps. Missing rows are filled in the same way.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ def whole_take(
     is_calibrated: bool = False,
     has_keys: bool = False,
 ) -> Take:
-    """The Take of rows that may be out of order, and of channels that may be NaN.
+    """Make a Take from rows that may be out of order, and channels that may have NaN.
 
     times: [s], shape (T,). channels: name -> shape (T,). has_keys: whether rows are keys, which may
-    be far apart. UserError if no face is in it.
+    be far apart. Raises UserError if no row has a face and a time.
     """
     all_notes = list(notes)
     channels = {name: measured(name, values) for name, values in channels.items()}
@@ -77,13 +77,13 @@ def whole_take(
 
 
 def _left_out(count: int) -> str:
-    """The sentence on rows without a time."""
+    """Return the report's sentence on rows without a time."""
     were = "was" if count == 1 else "were"
     return f"{counted(count, 'row')} without a time of their own {were} left out."
 
 
 def _missing(gaps: Floats64) -> str:
-    """The sentence on holes that last this long [s]."""
+    """Return the report's sentence on missing rows; gaps: their durations [s]."""
     return (
         f"Rows are missing in {counted(len(gaps), 'place')}, {float(gaps.max()):.3g} s at most: "
         "the last pose is held there."
@@ -91,24 +91,24 @@ def _missing(gaps: Floats64) -> str:
 
 
 def _holes(times: Floats64) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
-    """The rows after which others are missing."""
+    """Return the numbers of rows after which other rows are missing."""
     steps = np.diff(times)
     if len(steps) < 3:
         return np.empty(0, dtype=np.intp)
-    most_steps = 4.0  # usual ones: a longer gap that is not short is a hole in the recording
+    most_steps = 4.0  # a gap of more usual steps, longer than SHORT_GAP, has missing rows
     longest = max(SHORT_GAP, most_steps * float(np.median(steps)))
     return np.flatnonzero(steps > longest)
 
 
 def _filled(times: Floats64, values: Floats64) -> Floats64:
-    """A channel without NaN: held over gaps, with a straight line at their end."""
+    """Fill NaN in a channel: hold the value over a gap, with a straight line at the gap's end."""
     known = np.isfinite(values)
     if known.all():
         return values
     at = times[known]
     there = values[known]
     is_long = np.diff(at) > SHORT_GAP
-    # Before each frame that ends a long gap: the old value once more, 0.3 s earlier.
+    # The old value is repeated 0.3 s before each frame that ends a long gap.
     at = np.concatenate([at, at[1:][is_long] - SHORT_GAP])
     there = np.concatenate([there, there[:-1][is_long]])
     order = np.argsort(at, kind="stable")

@@ -1,7 +1,7 @@
-"""The head's turn beside shapes in JSON: angles, quaternions and matrices, where they are clear.
+"""The turn of the head in JSON with shapes: named angles, quaternions and matrices.
 
-Three numbers without names are not: programs disagree about their order. Axes of quaternions and
-matrices are MediaPipe's: x to the subject's left, y up, z ahead.
+Three numbers without names are not read, because programs disagree about their order. Axes of
+quaternions and matrices are MediaPipe's: x to the subject's left, y up, z ahead.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def is_pose(key: str) -> bool:
 def head_of(
     frames: Sequence[Mapping[str, Any]], notes: list[str]
 ) -> tuple[dict[str, Floats64], set[str]]:
-    """Angles of head and eyes [degrees], each of shape (frames,), and the keys that hold them.
+    """Return angles of head and eyes [degrees], each of shape (frames,), and their keys.
 
     frames: keys without capitals and underscores -> values.
     """
@@ -59,7 +59,7 @@ def head_of(
 def _named_angles(
     frames: Sequence[Mapping[str, Any]],
 ) -> tuple[dict[str, Floats64], set[str]] | None:
-    """Angles as the file has them, beside shapes or in a table of their own; and their keys."""
+    """Return named angles in the file's units, beside shapes or in a table, and their keys."""
     found: dict[str, Floats64] = {}
     used: set[str] = set()
     for row, frame in enumerate(frames):
@@ -83,13 +83,13 @@ def _named_angles(
 
 
 def _turned(values: Sequence[Any], key: str, notes: list[str]) -> list[Floats64 | None]:
-    """The matrices of quaternions, None if there is none."""
+    """Convert quaternions to rotation matrices; None for a value that is not a quaternion."""
     quaternions = [_quaternion(value) for value in values]
     known = np.array([each for each in quaternions if each is not None])
     if not len(known):
         return [None] * len(values)
     has_names = any(isinstance(value, dict) for value in values)
-    # A head is never upside down, so that the scalar is the largest number.
+    # A head is never upside down, so the scalar is the largest number.
     is_scalar_first = not has_names and bool(
         np.median(np.abs(known[:, 0])) > np.median(np.abs(known[:, 3]))
     )
@@ -105,7 +105,7 @@ def _turned(values: Sequence[Any], key: str, notes: list[str]) -> list[Floats64 
 
 
 def _quaternion(value: Any) -> Floats64 | None:
-    """The four numbers of a quaternion in their order, None for another value."""
+    """Return the four numbers of a quaternion in their written order, or None."""
     if isinstance(value, dict):
         parts = {letters_of(each).removeprefix("q"): number for each, number in value.items()}
         value = [parts.get(each) for each in "xyzw"]
@@ -128,7 +128,7 @@ def _angles_of(matrix: Floats64 | None) -> tuple[float, float, float]:
 
 
 def _matrix(value: Any) -> Floats64 | None:
-    """The rotation, shape (3, 3), in 3 or 4 rows, or in 16 numbers by columns, as pages have it."""
+    """Read a rotation, shape (3, 3), from 3 or 4 rows, or from 16 numbers by columns; or None."""
     while isinstance(value, list) and len(value) == 1:
         value = value[0]
     if isinstance(value, dict):

@@ -1,7 +1,7 @@
-"""Mapping: from the channels of a recording to the controls of the face.
+"""Mapping of a recording's channels to the controls of the face.
 
-Shapes, action units and visemes move the control of their own name; angles move head and eyes.
-Where a recording measures the same motion twice, only one of the two moves the face, see `chosen`.
+Shapes, action units and visemes move the control of the same name; angles move head and eyes. If
+two channels measure the same motion, only one of them moves the face, see `chosen`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .names import ARKIT
 Value = TypeVar("Value", float, Floats64)
 
 _ACTION_UNIT = re.compile(r"(AU[0-9]{1,2})(_left|_right)?")
-_SHAPE_OF_UNIT = {  # action unit -> beginning of the names of shapes that measure it, too
+_SHAPE_OF_UNIT = {  # action unit -> beginning of the names of shapes that also measure it
     "AU1": "browInnerUp", "AU2": "browOuterUp", "AU4": "browDown", "AU5": "eyeWide",
     "AU6": "cheekSquint", "AU7": "eyeSquint", "AU9": "noseSneer", "AU10": "mouthUpperUp",
     "AU12": "mouthSmile", "AU14": "mouthDimple", "AU15": "mouthFrown", "AU16": "mouthLowerDown",
@@ -37,12 +37,12 @@ _LOOKS_OF_ANGLE = {
 
 
 def controls_of(channels: Mapping[str, Value]) -> dict[str, Value]:
-    """The values of the controls that the channels move: arrays or numbers, as given.
+    """Convert channels to values of controls, arrays or numbers like the input.
 
-    Nothing is cut off: controls have limits, measurements have none.
+    Values are not cut off at the limits of controls.
     """
     controls: dict[str, Value] = {}
-    controls_of_angles = {  # and how much of them is a degree: as far as necks go without shoulders
+    controls_of_angles = {  # name, and value for a degree; 1 is a neck's whole range
         "head_yaw": ("head_yaw", 0.022222),
         "head_pitch": ("head_pitch", 0.033333),
         "head_roll": ("head_roll", 0.033333),
@@ -58,11 +58,11 @@ def controls_of(channels: Mapping[str, Value]) -> dict[str, Value]:
 
 
 def chosen(channels: Mapping[str, Any]) -> tuple[str, ...]:
-    """The channels that move the face, where two measure the same motion.
+    """Choose the channels that move the face, if two channels measure the same motion.
 
-    Eyes by their angles: these have a sign and know no limit, and eyeLook shapes are made of them.
-    A tracker that measures no angle leaves it at 0; then the shapes count. An action unit only
-    where no shape of ARKit measures the same: shapes separate left and right.
+    Angles of eyes replace eyeLook shapes, which are derived from the angles and are limited. If an
+    angle is always 0, the tracker does not measure it, and the shapes are used. Shapes of ARKit
+    replace the action units that measure the same motion, because shapes separate left and right.
     """
     left_out: set[str] = set()
     for angle, looks in _LOOKS_OF_ANGLE.items():

@@ -1,11 +1,11 @@
-"""Shapes in JSON: what MediaPipe's face landmarker answers, and what Audio2Face exports.
+"""Shapes in JSON: results of MediaPipe's face landmarker, and exports of Audio2Face.
 
 A face is a list of `{"category_name": "jawOpen", "score": 0.2}` (`categoryName` on web pages; a
 score may be a text), or simply `{"jawOpen": 0.2}`. A frame holds one or several of them, under
 `faceBlendshapes` or `blendshapes`, perhaps beside a time stamp and the head's matrix. A recording
 is a list of frames, under `frames` or not. Other documents name shapes once, above rows of numbers:
-NVIDIA's Audio2Face has `facsNames` and `weightMat`, tables have `columns` and `data`. Or each shape
-has a list over time: `{"time": [0.0, 0.1], "jawOpen": [0.2, 0.3]}`.
+NVIDIA's Audio2Face has `facsNames` and `weightMat`, tables have `columns` and `data`. In a third
+kind, each shape has a list over time: `{"time": [0.0, 0.1], "jawOpen": [0.2, 0.3]}`.
 """
 
 from __future__ import annotations
@@ -26,33 +26,33 @@ from .take import Take, TakeRequest
 from .timing import find_times, is_frame, stamp_of
 from .values import is_calibrated, is_flag, rows_without_face, shares, without_rows
 
-# All without capitals and underscores, see `_plain`.
+# Keys without capitals and underscores, see `_plain`.
 FACES = ("faceblendshapes", "blendshapes", "categories")
 FRAMES = ("frames", "results", "data", "recording", "samples", "records", "weights")
 RATES = ("fps", "exportfps", "framerate")
-DEEPEST = 4  # tables in one another, in which a face is looked for
+DEEPEST = 4  # nested tables that are searched for a face
 
 
 def recognises(document: Any) -> bool:
-    """Whether there are shapes in the first frames of the document."""
+    """Whether the first frames of the document have shapes."""
     return any(_faces(frame) for frame in _frames(document)[:1000])
 
 
 def read(document: Any, source: str, request: TakeRequest) -> Take:
-    """The take in the document."""
+    """Return the take in the document."""
     request.refuse_face(source)
     return _take_of(_frames(document), "MediaPipe JSON", document, source, request)
 
 
 def recognises_weights(document: Any) -> bool:
-    """Whether the document names shapes once, for rows of weights, as Audio2Face's exports do."""
+    """Whether the document names shapes once, above rows of weights, like Audio2Face's exports."""
     return bool(_named_rows(document))
 
 
 def read_weights(document: Any, source: str, request: TakeRequest) -> Take:
     """The take in `{"facsNames": ["jawOpen", ...], "weightMat": [[0.2, ...], ...]}`.
 
-    Frames may have times and more beside their weights: `{"weights": [0.2, ...], "time": 0.0}`.
+    Frames may have a time and other values beside the weights: `{"weights": [0.2], "time": 0.0}`.
     """
     request.refuse_face(source)
     kind = "Audio2Face" if "facsnames" in _plain(document) else "JSON of weights"
@@ -62,7 +62,7 @@ def read_weights(document: Any, source: str, request: TakeRequest) -> Take:
 def _take_of(
     frames: Sequence[Any], kind: str, document: Any, source: str, request: TakeRequest
 ) -> Take:
-    """The take in frames, each a table with a face, or a list of faces."""
+    """Return the take in frames; each frame is a table with a face, or a list of faces."""
     notes: list[str] = []
     shapes, unknown = _shapes([_faces(frame) for frame in frames], notes)
     keyed = [_flat(frame) for frame in frames]
@@ -83,7 +83,7 @@ def _take_of(
 
 
 def _named_rows(document: Any) -> list[Any]:
-    """Frames of a document that names its shapes once; none of another."""
+    """Return the frames of a document that names its shapes once; [] for another document."""
     tables = _tables(document)
     listed_names = (
         "facsnames", "names", "blendshapenames", "shapenames", "keys", "channels", "columns",
@@ -108,21 +108,21 @@ def _named_rows(document: Any) -> list[Any]:
 
 
 def _tables(document: Any) -> list[dict[str, Any]]:
-    """The document and the tables in it, such as a head, under plain keys."""
+    """Return the document and the tables in it, such as a header, with plain keys."""
     keys = _plain(document)
     return [keys, *(_plain(item) for item in keys.values() if isinstance(item, dict))]
 
 
 def _are_names(item: Any) -> bool:
-    """Whether this is a list of texts, of which one names a shape at least."""
+    """Whether this is a list of texts, and at least one of them names a shape."""
     is_text = isinstance(item, list) and all(isinstance(each, str) for each in item)
     return is_text and any(map(shape_of, item))
 
 
 def _columns(document: Any, depth: int = DEEPEST) -> dict[str, list[Any]]:
-    """Name -> list over time, in a document and the tables in it.
+    """Return name -> list over time, from a document and the tables in it.
 
-    pandas' `to_json` writes such a list as a table under the numbers of rows.
+    pandas' `to_json` writes such a list as a table whose keys are row numbers.
     """
     found: dict[str, list[Any]] = {}
     for key, item in document.items() if isinstance(document, dict) and depth else ():
@@ -138,7 +138,7 @@ def _columns(document: Any, depth: int = DEEPEST) -> dict[str, list[Any]]:
 
 
 def _frames_over_time(columns: Mapping[str, list[Any]]) -> list[Any]:
-    """Frames of lists over time, as long as the longest of a shape; none without a shape's."""
+    """Convert lists over time to frames, as many as the longest list of a shape has values."""
     count = max((len(values) for name, values in columns.items() if shape_of(name)), default=0)
     whole = {
         name: values for name, values in columns.items() if shape_of(name) or len(values) == count
@@ -150,7 +150,7 @@ def _frames_over_time(columns: Mapping[str, list[Any]]) -> list[Any]:
 
 
 def _named_row(names: Sequence[str], row: Any) -> dict[str, Any]:
-    """The frame of weights that are a row, or stand in a table with other keys."""
+    """Return the frame of a row of weights, or of a table with weights and other keys."""
     if not isinstance(row, dict):
         cells = dict(zip(names, row if isinstance(row, list) else [], strict=False))
         shapes = {name: cell for name, cell in cells.items() if shape_of(name)}
@@ -167,7 +167,7 @@ def _named_row(names: Sequence[str], row: Any) -> dict[str, Any]:
 
 
 def _frames(document: Any) -> list[Any]:
-    """The frames of a document; one with a face of its own is a frame itself."""
+    """Return the frames of a document; a document with a face of its own is one frame."""
     if isinstance(document, list):
         return [document] if document and all(map(_category, document)) else document
     if not isinstance(document, dict):
@@ -184,7 +184,7 @@ def _frames(document: Any) -> list[Any]:
 
 
 def _faces(frame: Any, depth: int = DEEPEST) -> list[dict[str, float]]:
-    """Name as it is written -> score of each face in a frame; depth: tables to look into."""
+    """Return the faces in a frame, each as written name -> score; depth: levels of tables."""
     if isinstance(frame, dict):
         plain = {key: item for key, item in frame.items() if not isinstance(item, dict | list)}
         found = {key: _number(item) for key, item in plain.items() if shape_of(key)}
@@ -205,7 +205,7 @@ def _faces(frame: Any, depth: int = DEEPEST) -> list[dict[str, float]]:
 
 
 def _flat(frame: Any, depth: int = DEEPEST) -> dict[str, Any]:
-    """The keys of a frame, and of the tables in it that hold faces; without the faces."""
+    """Return the values of a frame, and of its tables with faces, but without the faces."""
     if isinstance(frame, list):
         frame = frame[0] if len(frame) == 1 else {}
     keys = _plain(frame)
@@ -221,14 +221,14 @@ def _flat(frame: Any, depth: int = DEEPEST) -> dict[str, Any]:
 
 
 def _is_left_out(key: str) -> bool:
-    """Whether a key of frames says something that nothing here knows."""
+    """Whether a key of frames has an unknown meaning, which the report mentions."""
     is_known = is_flag(key) or is_frame(key) or stamp_of(key) is not None
     useless_names = ("index", "id", "version", "displayname", "facelandmarks", "landmarks")
     return not (is_known or key in useless_names or key in RATES)
 
 
 def _category(item: Any) -> tuple[str, float] | None:
-    """Name and score, where the item is one category; the name is as written."""
+    """Return name, as written, and score of a category; None for another item."""
     keys = _plain(item)
     name_keys = ("categoryname", "name", "shape", "blendshape", "key", "label")  # of a category
     name = _first(keys, name_keys)
@@ -241,7 +241,7 @@ def _category(item: Any) -> tuple[str, float] | None:
 def _shapes(
     frames: Sequence[list[dict[str, float]]], notes: list[str]
 ) -> tuple[dict[str, Floats64], list[str]]:
-    """Shape -> values, shape (frames,), NaN where there is no face; and names that none has."""
+    """Return shape -> values, (frames,), NaN for frames without a face; and unknown names."""
     if (most := max(map(len, frames), default=0)) > 1:
         notes.append(f"Up to {most} faces are in a frame; the first was taken.")
     values: dict[str, Floats64] = {}
@@ -268,7 +268,7 @@ def _times(
     frames: Sequence[Mapping[str, Any]], rate: float | None, written_rate: float | None,
     notes: list[str],
 ) -> Floats64:  # fmt: skip
-    """Times of the frames, by their keys, else by the rate that the document has."""
+    """Return the times of frames [s], from their keys, or else from the document's rate."""
 
     def numbers(name: str) -> Floats64:
         return np.array([_number(frame.get(name)) for frame in frames])
@@ -280,12 +280,12 @@ def _times(
 
 
 def _keys(frames: Sequence[Mapping[str, Any]]) -> list[str]:
-    """All keys of frames, each once."""
+    """Return all keys of frames, each key once."""
     return [*dict.fromkeys(key for frame in frames for key in frame)]
 
 
 def _texts(frames: Sequence[Mapping[str, Any]], name: str) -> list[str]:
-    """What frames have under a key, as a table has it; "" for lists and tables."""
+    """Return the value of each frame under a key as text; "" for lists and tables."""
     values = [frame.get(name) for frame in frames]
     is_cell = [isinstance(value, bool | int | float | str) for value in values]
     return [
@@ -295,13 +295,13 @@ def _texts(frames: Sequence[Mapping[str, Any]], name: str) -> list[str]:
 
 
 def _rate(document: Any) -> float | None:
-    """The frames a second that the document, or the head in it, has."""
+    """Return the frames per second in the document or its header; None if there are none."""
     rates = [_number(_first(table, RATES)) for table in _tables(document)]
     return next((rate for rate in rates if 1.0 <= rate <= 1000.0), None)
 
 
 def _plain(item: Any) -> dict[str, Any]:
-    """A table under keys without capitals and underscores; an empty one where the item is none."""
+    """Return a table with keys without capitals and underscores; {} for any other item."""
     if not isinstance(item, dict):
         return {}
     return {_plain_name(key): value for key, value in item.items()}
@@ -312,12 +312,12 @@ def _plain_name(key: str) -> str:
 
 
 def _first(keys: Mapping[str, Any], names: Sequence[str]) -> Any:
-    """The value under the first of the names that is there; None if none is."""
+    """Return the value of the first name that exists, or None if no name exists."""
     return next((keys[name] for name in names if name in keys), None)
 
 
 def _number(value: Any) -> float:
-    """A number, also one in quotes or with a percent sign; NaN for any other value."""
+    """Read a number, also in quotes or with a percent sign; NaN for any other value."""
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         return math.nan
     try:

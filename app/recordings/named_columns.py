@@ -1,7 +1,8 @@
-"""Any table whose columns are shapes, action units, visemes or angles by name, in any spelling.
+"""Tables with columns named as shapes, action units, visemes or angles, in any spelling.
 
-Live Link Face writes such a table, and so do scripts that read a phone or a tracker. Its angles
-are in radians, those of others perhaps in degrees; they count down and to the subject's right.
+Live Link Face writes such a table, and so do scripts that read a phone or a tracker. Angles of Live
+Link Face are in radians, angles of others may be in degrees. Angles grow downward and to the
+subject's right.
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ from .values import (
     without_rows,
 )
 
-# [degrees] by which the axes of eyeballs stand outwards where eyes look ahead, in the app's files
-# and packets, as those of real eyes do.
+# [degrees] by which eyeballs turn outward while eyes look ahead, in the app's files and packets, as
+# the axes of real eyes do.
 OUTWARD = {"eye_yaw_left": 4.0, "eye_yaw_right": -4.0}
 
 
@@ -43,7 +44,7 @@ class Columns:
 
     @classmethod
     def of(cls, names: tuple[str, ...]) -> Columns:
-        """Sort out the names of columns; the first of a channel counts."""
+        """Assign columns to channels by name; the first column of a channel is used."""
         found = cls()
         units = [unit_of(name) for name in names]
         has_sides = any(unit is not None and unit.side == "_left" for unit in units)
@@ -89,26 +90,26 @@ class Columns:
 
     @property
     def are_known(self) -> bool:
-        """Whether there is anything that can be played."""
+        """Whether any column can be played."""
         return bool(self.shapes or self.units or self.detections or self.visemes)
 
 
 def recognises(names: tuple[str, ...]) -> bool:
-    """Whether any column has a name that we know."""
+    """Whether any column has a known name."""
     return Columns.of(names).are_known
 
 
 def is_live_link(names: tuple[str, ...]) -> bool:
-    """Whether these are the columns of Live Link Face, whose angles have but one way to count.
+    """Whether these are the columns of Live Link Face, whose angles have known signs.
 
-    Columns are found by name: writers disagree about their order, and one adds seven of emotions.
+    Columns are found by name: writers disagree about the order, and one adds seven emotions.
     """
     folded = {name.casefold() for name in names}
     return bool(folded & {"timecode", "blendshapecount"}) and recognises(names)
 
 
 def read(table: Table, request: TakeRequest) -> Take:
-    """The take in the table."""
+    """Return the take in the table."""
     table = one_face(table, request)
     notes: list[str] = []
     columns = Columns.of(table.names)

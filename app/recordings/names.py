@@ -1,4 +1,4 @@
-"""The channels of a take: the names that every reader of recordings uses, and their units.
+"""The channels of a take: names and units that all readers of recordings use.
 
     mouthSmileLeft ...      the 52 shapes of Apple's ARKit, 0 to 1, and a little beyond by noise
     AU12, AU12_left ...     action units, 0 to 1 (intensity E is 1)
@@ -9,8 +9,8 @@
 Left and right are the subject's own. Angles grow to the subject's left, up, and (roll) to the left
 shoulder, like the controls. Only readers convert the signs and units of a format.
 
-Programs spell them in many ways: `mouthSmile_L`, `MouthSmileLeft`, `blendShapes.mouthSmileLeft` and
-`mouth_smile_left` are one name; the functions below find it.
+Programs spell these names in many ways, which the functions below recognise: `mouthSmile_L`,
+`MouthSmileLeft`, `blendShapes.mouthSmileLeft` and `mouth_smile_left` are one name.
 
 Source: Apple, ARFaceAnchor.BlendShapeLocation (the names).
 """
@@ -58,7 +58,7 @@ _SOUND = {name.removeprefix("viseme_").casefold(): name for name in VISEMES}
 
 
 def measured(name: str, values: Floats64) -> Floats64:
-    """The values of a channel, NaN where they are too large for a measurement."""
+    """Return the values of a channel, with NaN for values too large for a measurement."""
     largest = LARGEST_ANGLE if name in ANGLES else NONSENSE
     return np.where(np.abs(values) > largest, np.nan, values)
 
@@ -69,7 +69,7 @@ def letters_of(name: str) -> str:
 
 
 def _spellings() -> dict[str, str]:
-    """Letters -> shape; sides also as L and R, before or after the name."""
+    """Return letters -> shape; sides are spelled out or L and R at the end of the name."""
     found = {}
     for name in ARKIT:
         found[letters_of(name)] = name
@@ -80,7 +80,7 @@ def _spellings() -> dict[str, str]:
 
 
 def _angle_spellings() -> dict[str, str]:
-    """Letters -> angle, in the order of words that packets and files use."""
+    """Return letters -> angle, for all orders of words in packets and files."""
     found = {letters_of(name): name for name in (*HEAD_ANGLES, *EYE_ANGLES)}
     for name in EYE_ANGLES:
         _, axis, side = name.split("_")

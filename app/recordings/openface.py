@@ -37,7 +37,7 @@ def recognises(names: tuple[str, ...]) -> bool:
 
 
 def read(table: Table, request: TakeRequest) -> Take:
-    """The take in the table."""
+    """Return the take in the table."""
     table = one_face(table, request)
     notes: list[str] = []
     times, _ = times_of(table, request.rate, notes)
@@ -84,9 +84,9 @@ def read(table: Table, request: TakeRequest) -> Take:
 def _eyes(
     numbers: dict[str, Floats64], head: dict[str, Floats64], notes: list[str]
 ) -> dict[str, Floats64]:
-    """Both eyes' angles in the head: the gaze in the camera's axes minus the head's turn.
+    """Return the eyes' angles in the head: gaze in the camera's axes, minus the head's turn.
 
-    A camera stands above the screen that people look at, so their gaze is never 0.
+    The median is subtracted: people look at a screen below the camera, so the gaze is never 0.
     """
     if set(GAZE) <= numbers.keys():
         across = numbers[GAZE[0]]

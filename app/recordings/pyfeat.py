@@ -6,7 +6,7 @@ version 2 to the right one. A comparison of angles with landmarks in files of py
 for version 2 it covered yaw and roll alone. No version gives times, only numbers of frames.
 
 Version 2 measures most of the face twice. Its shapes have a side and a strength, its units only a
-probability. So the shapes count, and also the units that MediaPipe never sees: AU6, AU9.
+probability. So the shapes are used, and AU6 and AU9 in place of shapes that MediaPipe never sees.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def recognises(names: tuple[str, ...]) -> bool:
 
 
 def read(table: Table, request: TakeRequest) -> Take:
-    """The take in the table."""
+    """Return the take in the table."""
     table = one_face(table, request)
     notes: list[str] = []
     times, _ = times_of(table, request.rate, notes)

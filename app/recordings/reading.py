@@ -1,7 +1,7 @@
-"""A file -> a Take: its format is recognised from its content, never from its name.
+"""Reading of a file into a Take; its content decides on the format, never its name.
 
-`TABLES` and `DOCUMENTS` list the formats, the most special first. A new format needs two functions,
-to recognise and to read it, and a row here.
+`TABLES` and `DOCUMENTS` list the formats, the most special first. A new format needs a row here,
+with a function that recognises it and a function that reads it.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ SPEAKS_OF_FACES = re.compile(
 
 
 def read_take(path: Path, *, face: str | None = None, rate: float | None = None) -> Take:
-    """The take in a file that another program wrote.
+    """Read the take in a file of another program.
 
-    face: its name, if a file holds several; the default is the face in most frames.
+    face: name of the face, if a file holds several; by default the face in most frames.
     rate: frames a second, if the file's own times are wrong or missing.
 
     Raises UserError with the file, the fault, its place, and the allowed values.
@@ -64,7 +64,7 @@ def read_take(path: Path, *, face: str | None = None, rate: float | None = None)
 
 
 def _take_in(text: str, path: Path, request: TakeRequest) -> Take:
-    """The take in a text; UserError as in `read_take`."""
+    """Read the take in a text; raise UserError as in `read_take`."""
     known_kinds = (
         "Live Link Face, OpenFace and py-feat tables, tables with ARKit or AU names above columns, "
         "MediaPipe JSON, OpenFaceFX and Rhubarb tracks"
@@ -106,9 +106,9 @@ def _strange(names: tuple[str, ...]) -> str:
 
 
 def read_recording(path: Path) -> tuple[str, str]:
-    """The whole text of a file, and its encoding.
+    """Read the whole text of a file; return the text and its encoding.
 
-    UserError for a missing file, a file that is too long, and a file without text.
+    Raises UserError for a missing file, a file that is too long, and a file without text.
     """
     content = read_bytes(path, what="recording", longest=LONGEST_FILE)
     if not content.strip():
@@ -123,7 +123,7 @@ def read_recording(path: Path) -> tuple[str, str]:
 
 
 def read_beginning(path: Path) -> str:
-    """The first lines of a file; '' for a missing file, and for one without text."""
+    """Read the first lines of a file; return "" for a missing file, or a file without text."""
     try:
         content = read_bytes(path, what="recording", longest=LONGEST_FILE, first=BEGINNING)
     except UserError:
@@ -132,9 +132,9 @@ def read_beginning(path: Path) -> str:
 
 
 def _decoded(content: bytes) -> tuple[str | None, str]:
-    """The text in these bytes, with line ends of one kind, and its encoding.
+    """Decode bytes to a text with "\\n" as line ends; return the text and its encoding.
 
-    None if they are not text. The end of the bytes may be cut inside a character.
+    The text is None if the bytes are not text. The bytes may end inside a character.
     """
     codec, encoding = _encoding_of(content)
     text = content.decode(codec, errors="replace")
@@ -144,12 +144,12 @@ def _decoded(content: bytes) -> tuple[str | None, str]:
 
 
 def _encoding_of(content: bytes) -> tuple[str, str]:
-    """Python's codec of a text, and the encoding's name, from its mark or its bytes."""
+    """Detect the encoding of a text from its mark or bytes; return Python's codec and a name."""
     if content.startswith((codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE)):
         return "utf-32", "UTF-32"
     if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return "utf-16", "UTF-16"
-    # Without a mark: every other byte of Western text is 0.
+    # In UTF-16 without a mark, every second byte of Western text is 0.
     for codec, first in (("utf-16-be", 0), ("utf-16-le", 1)):
         beginning = content[first:BEGINNING:2]
         if 2 * beginning.count(0) > len(beginning):

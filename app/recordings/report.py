@@ -1,6 +1,6 @@
 """The report on a played take: its kind, and the channels that move the face.
 
-The first line has its kind. Below it stand a few short lines, aligned; one screen at most.
+The first line has the kind. A few short, aligned lines follow, one screen at most.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .take import Take
 
 @dataclass(frozen=True)
 class Report:
-    """recognised: the first line, without the file. rows: heading and text, in order."""
+    """A report. recognised: first line without the file name. rows: headings and texts."""
 
     source: str
     recognised: str
@@ -29,7 +29,7 @@ class Report:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Values that were guessed, skipped or left out, each a sentence."""
+        """Sentences on values that were guessed, skipped or left out."""
         return tuple(text for heading, text in self.rows if heading == "note")
 
     @property
@@ -61,7 +61,7 @@ class Report:
 
 
 def report_of(take: Take, calibration: Calibration) -> Report:
-    """The report on a take."""
+    """Return the report on a take."""
     channels = take.channels
     still = _still(take)
     shapes = [name for name in ARKIT if name in channels]
@@ -108,7 +108,7 @@ def _used(names: set[str]) -> str:
 
 
 def _neutral(calibration: Calibration) -> str:
-    """Distance of the resting face from 0, and its largest channels."""
+    """Return a text on how far the neutral face is from 0, and in which channels."""
     slight_value = 0.02  # of a neutral channel, too small for the report
     neutral = {
         name: abs(value)
@@ -124,7 +124,7 @@ def _neutral(calibration: Calibration) -> str:
 
 
 def _listed(names: Iterable[str]) -> str:
-    """Names one after another, pairs in one word."""
+    """Join names to a text, with the two sides of a name in one word."""
     listed = sorted(names)
     words: list[str] = []
     for name in listed:

@@ -1,4 +1,4 @@
-"""Times of rows by their numbers: counted frames, and rows that share a time."""
+"""Times of rows from frame numbers, and separate times for rows that share one."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ def frame_times(
     *,
     has_stamps: bool = False,
 ) -> Floats64:
-    """Times of frames by their numbers; if they have none, each row is the next frame.
+    """Return times of frames [s] from their numbers; without numbers each row is the next frame.
 
-    has_stamps: whether there are unusable time stamps, which an earlier note reports.
+    has_stamps: whether the file has unusable time stamps, which an earlier note reports.
     """
     if rate is None:
         default_rate = 30.0  # of most cameras
@@ -36,10 +36,10 @@ def frame_times(
 
 
 def spread(values: Floats64, notes: list[str]) -> Floats64:
-    """Values that repeat over several rows, spread evenly, so that each row has its own value.
+    """Spread values that repeat over several rows evenly, so that each row has its own value.
 
-    A clock that counts seconds, or timecode of 30 for rows of 60 a second, gives one time to a
-    group of rows.
+    Rows share a time if a clock counts whole seconds, or if timecode counts 30 frames a second for
+    60 rows.
     """
     known = np.isfinite(values)
     there = values[known]

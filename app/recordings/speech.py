@@ -1,9 +1,9 @@
 """Speech in JSON: visemes of OpenFaceFX, and mouth shapes of Rhubarb Lip Sync.
 
-OpenFaceFX shares each moment among fifteen visemes, so that the lips' weight is about 0.4 where
-they meet: far too little to shut them. Its peaks of PP and FF are raised until lips touch, and
-silence to 1, at the cost of all others. Rhubarb has one of nine mouth shapes for each stretch of
-time (its manual, "Mouth shapes").
+OpenFaceFX divides each moment among fifteen visemes, so PP has a weight of about 0.4 where lips
+meet, which does not shut them. This module raises the peaks of PP and FF until lips touch, and of
+silence to 1, which lowers all other visemes. Rhubarb has one of nine mouth shapes for each interval
+of time (its manual, "Mouth shapes").
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .names import viseme_of
 from .take import Take, TakeRequest
 
 SILENCE = "viseme_sil"
-MOUTHS = {  # of Rhubarb -> viseme and value
+MOUTHS = {  # mouth shape of Rhubarb -> viseme and value
     "A": ("viseme_PP", 1.0),  # shut: p, b, m
     "B": ("viseme_SS", 0.7),  # teeth together: k, s, t, ee
     "C": ("viseme_E", 0.8),  # open: e, a
@@ -87,7 +87,7 @@ def recognises_tracks(document: Any) -> bool:
 
 
 def read_tracks(document: Any, source: str, request: TakeRequest) -> Take:
-    """The take in `{"channels": [{"name": "PP", "keys": [[time, weight], ...]}, ...]}`."""
+    """Read the take in `{"channels": [{"name": "PP", "keys": [[time, weight], ...]}, ...]}`."""
     request.refuse_face(source)
     tracks: dict[str, Floats64] = {}
     unknown = []
@@ -110,7 +110,7 @@ def read_tracks(document: Any, source: str, request: TakeRequest) -> Take:
 
 
 def _made_clear(channels: dict[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
-    """Weights raised so that lips meet where they must, and the mouth rests in silence."""
+    """Raise low weights, so that lips meet at P and F, and the mouth rests in silence."""
     clear_peak = 0.8  # tracks with higher peaks are clear enough
     if max(float(values.max()) for values in channels.values()) > clear_peak:
         return channels
@@ -141,9 +141,9 @@ def recognises_cues(document: Any) -> bool:
 
 
 def read_cues(document: Any, source: str, request: TakeRequest) -> Take:
-    """The take in `{"mouthCues": [{"start": 0.0, "end": 0.2, "value": "A"}]}`.
+    """Read the take in `{"mouthCues": [{"start": 0.0, "end": 0.2, "value": "A"}]}`.
 
-    Mouth shapes hold, and blend into each other around the moments of change.
+    Each mouth shape is held, and blends into the next one around the moment of change.
     """
     request.refuse_face(source)
     written = read_table(_Cues, document, source, error=UserError)
@@ -155,9 +155,7 @@ def read_cues(document: Any, source: str, request: TakeRequest) -> Take:
     starts = np.array([start for start, _ in cues])
     ends = np.append(starts[1:], max(end, starts[-1]))
     transition = 0.08  # [s] in which one mouth shape changes into the next
-    half = np.minimum(
-        (ends - starts) / 2.0, transition / 2.0
-    )  # of its way out, and of the next one's in
+    half = np.minimum((ends - starts) / 2.0, transition / 2.0)  # of a transition, for each cue
     points: dict[float, str] = {float(starts[0]): cues[0][1]}
     for number, ((_, mouth), (start, following)) in enumerate(itertools.pairwise(cues)):
         turn = min(half[number], half[number + 1]) if number + 2 < len(cues) else half[number]
@@ -179,7 +177,7 @@ def read_cues(document: Any, source: str, request: TakeRequest) -> Take:
 
 
 def _sound_of(metadata: Any, source: str, notes: list[str]) -> Path | None:
-    """The sound file that Rhubarb used: at its old place, or beside the recording."""
+    """Find the sound file that Rhubarb used, at its old place or beside the recording."""
     name = metadata.get("soundFile") if isinstance(metadata, dict) else None
     if not isinstance(name, str) or not name:
         return None

@@ -1,7 +1,7 @@
-"""A table in a text: names above columns, with commas, tabs, blanks and the like between cells.
+"""Reading of a table from a text: names above columns, with commas, tabs or blanks between cells.
 
-Plain lines stay as they are. The csv module divides lines with blanks between cells, quoted cells
-or decimal commas, and they are joined again with `CLEAN` between cells.
+Plain lines stay as they are. The csv module divides other lines, with blanks between cells, quoted
+cells or decimal commas; their cells are joined again with `CLEAN` between them.
 
 Numbers are read by `numpy.loadtxt`, whose parser is compiled: ten minutes of 60 frames a second (36
 000 rows of 63 columns) take about 0.7 s. pandas and polars need 0.2 s, but are 80 MB or more for
@@ -38,9 +38,9 @@ DECIMAL_COMMA = re.compile(r"[-+]?(\d*|\d{1,3}(\.\d{3})+),\d+(e[-+]?\d+)?", re.I
 class Layout:
     """How the cells of a table are written.
 
-    delimiter: the character between cells. quote: around cells that may hold the delimiter.
-    is_quoted: whether any cell is. has_decimal_commas: whether 0,5 is a half. has_percents: whether
-    50% is a half.
+    delimiter: the character between cells. quote: the character around cells that may hold the
+    delimiter. is_quoted: whether any cell has quotes. has_decimal_commas: whether 0,5 is a half.
+    has_percents: whether 50% is a half.
     """
 
     delimiter: str = ","
@@ -51,13 +51,13 @@ class Layout:
 
     @property
     def is_plain(self) -> bool:
-        """Whether a line can simply be split at its delimiters."""
+        """Whether lines can be split at their delimiters without the csv module."""
         is_written_oddly = self.is_quoted or self.has_decimal_commas or self.has_percents
         return not is_written_oddly and self.delimiter != " "
 
     @property
     def notes(self) -> list[str]:
-        """The guess in one sentence; none for plain cells between commas."""
+        """A sentence on the layout for the report; [] for plain cells between commas."""
         if self.is_plain and self.delimiter == ",":
             return []
         guessed = [f"{DELIMITERS[self.delimiter]} between cells"]
@@ -70,9 +70,9 @@ class Layout:
         return [f"The table was read with {', '.join(guessed)}."]
 
     def rows_of(self, numbered: Sequence[tuple[int, str]]) -> Iterator[tuple[int, list[str]]]:
-        """The number of its first line, and the cells, of each row that has any."""
+        """Yield the number of the first line, and the cells, of each row that is not empty."""
         lines = (line for _, line in numbered)
-        if self.delimiter == " ":  # a run of blanks, or a tab, parts two cells like one blank
+        if self.delimiter == " ":  # several blanks or a tab separate cells like one blank
             lines = (line.replace("\t", " ").strip() for line in lines)
         reader = csv.reader(
             (f"{line}\n" for line in lines),
@@ -87,7 +87,7 @@ class Layout:
             begun = reader.line_num
 
     def clean(self, cell: str) -> str:
-        """A cell without a decimal comma, without line ends and blanks around."""
+        """Return a cell with a decimal point, without line ends and without blanks at its ends."""
         cell = " ".join(cell.replace(CLEAN, " ").split())
         if self.has_decimal_commas and DECIMAL_COMMA.fullmatch(cell.rstrip(" %")):
             cell = cell.replace(".", "").replace(",", ".")
@@ -95,7 +95,7 @@ class Layout:
 
 
 def without_percent(cell: str) -> str:
-    """`12%` as `0.12`; any other cell unchanged."""
+    """Return `0.12` for `12%`, and any other cell unchanged."""
     if not cell.endswith("%"):
         return cell
     try:
@@ -106,14 +106,14 @@ def without_percent(cell: str) -> str:
 
 @dataclass
 class Table:
-    """Rows of cells under names.
+    """A table with named columns.
 
     source: the file, for error messages.
-    names: those of the columns in the file's spelling, without surrounding blanks.
+    names: names of the columns in the file's spelling, without surrounding blanks.
     lines: the text of each row; all have as many cells as there are names.
     line_numbers: number of each row in the file, counted from 1.
     delimiter: the character between the cells of `lines`.
-    notes: oddities of the file, each one sentence.
+    notes: sentences on oddities of the file.
     """
 
     source: str
@@ -129,19 +129,19 @@ class Table:
         return {name.casefold(): number for number, name in reversed([*enumerate(self.names)])}
 
     def cells(self, column: int) -> list[str]:
-        """The text in one column."""
+        """Return the text of each row in one column."""
         return [line.split(self.delimiter, column + 1)[column].strip() for line in self.lines]
 
     def cells_of(self, name: str) -> list[str]:
-        """The text in the first column with this name, in capitals or not."""
+        """Return the text of each row in the first column of this name; case is ignored."""
         return self.cells(self.places[name.casefold()])
 
     def numbers_of(self, places: Mapping[str, int]) -> dict[str, Floats64]:
-        """Name -> the numbers in its column, shape (rows,); NaN where there is none."""
+        """Return name -> numbers in its column, shape (rows,); NaN for cells without a number."""
         return dict(zip(places, self.numbers([*places.values()]).T, strict=True))
 
     def numbers(self, columns: Sequence[int]) -> Floats64:
-        """The numbers in some columns, shape (rows, columns); NaN where there is none."""
+        """Return the numbers in some columns, (rows, columns); NaN for cells without a number."""
         if not columns or not self.lines:
             return np.empty((len(self.lines), len(columns)))
         form: dict[str, Any] = {
@@ -162,13 +162,13 @@ class Table:
 
 
 def header_of(text: str) -> tuple[str, ...]:
-    """The names in the first line that is a header; none if there is no table."""
+    """Return the names in the header of a table; () if the text is not a table."""
     first = next((line for _, line in _lines_of(text) if not _is_empty(line)), "")
     return _names_in(first, _layout_of(text, first))
 
 
 def _names_in(header: str, layout: Layout) -> tuple[str, ...]:
-    """The names in the first row; none if it is not a header."""
+    """Return the names in the first row; () if it is not a header."""
     names = tuple(cell.strip() for cell in _cells_of(header, layout))
     longest_name = 80  # [characters] of a column's name; a longer one is no header
     is_header = all(len(name) <= longest_name for name in names) and any(
@@ -178,7 +178,7 @@ def _names_in(header: str, layout: Layout) -> tuple[str, ...]:
 
 
 def table_in(text: str, *, source: str) -> Table:
-    """The table in a text, without a torn row at its end. UserError for other wrong rows."""
+    """Read the table in a text; leave out an incomplete last row, and refuse other wrong rows."""
     numbered = [(number, line) for number, line in _lines_of(text) if not _is_empty(line)]
     layout = _layout_of(text, numbered[0][1])
     names = _names_in(numbered[0][1], layout)
@@ -211,7 +211,7 @@ def table_in(text: str, *, source: str) -> Table:
 
 
 def repeated_columns(names: Sequence[str]) -> list[str]:
-    """A sentence if columns have the same name; OpenFace's `x_0` and `X_0` differ."""
+    """Return a sentence on columns with equal names; OpenFace's `x_0` and `X_0` differ."""
     counts = Counter(name for name in names if name)
     repeated = [name for name, count in counts.items() if count > 1]
     if not repeated:
@@ -222,19 +222,19 @@ def repeated_columns(names: Sequence[str]) -> list[str]:
 
 
 def _lines_of(text: str) -> Iterator[tuple[int, str]]:
-    """The lines and their numbers, without comments and a spreadsheet's `sep=;`."""
+    """Yield numbers and texts of lines, without comments and without a spreadsheet's `sep=;`."""
     for number, line in enumerate(text.split("\n"), 1):
         if not line.startswith("#") and not re.fullmatch(r"\s*\"?sep=.\"?\s*", line, re.IGNORECASE):
             yield number, line
 
 
 def _is_empty(line: str) -> bool:
-    """Whether a line has no cells but empty ones."""
+    """Whether all cells of a line are empty."""
     return not line.strip(" ,;\t|\"'")
 
 
 def _layout_of(text: str, header: str) -> Layout:
-    """The layout: its delimiter gives the header most cells, none of which is a number."""
+    """Detect the layout of a table from its header and the beginning of its text."""
     quote = "'" if header.lstrip().startswith("'") else '"'
     decimals_sought = 2**16  # characters of the text that are searched for a decimal comma
     sample = [*_lines_of(text[:decimals_sought])]
@@ -254,11 +254,11 @@ def _layout_of(text: str, header: str) -> Layout:
 
 
 def _with_delimiter(header: str, sample: Sequence[tuple[int, str]], quote: str) -> Layout:
-    """The layout whose delimiter parts the header, and the row below it, into most cells.
+    """Return the layout whose delimiter divides the header and the row below into most cells.
 
-    A row may have one cell more or less than the header: its own name, or nothing after the last
-    delimiter. Blanks also separate words: they only count if no other delimiter fits, and the row
-    has numbers but the header has none.
+    A row may have one cell more or less than the header: a name of the row, or no cell after the
+    last delimiter. Blanks also separate words, so blanks are delimiters only if no other delimiter
+    fits, and the row has numbers but the header has none.
     """
     rows = [line for _, line in sample if not _is_empty(line)]
     row = rows[1] if len(rows) > 1 else header
@@ -290,7 +290,7 @@ def _is_number(cell: str) -> bool:
 
 
 def _cells_of(line: str, layout: Layout) -> list[str]:
-    """The cells in one line; none if one is too long for a cell."""
+    """Return the cells in one line; [] if a cell is too long for the csv module."""
     try:
         return next((cells for _, cells in layout.rows_of([(1, line)])), [])
     except csv.Error:
@@ -300,9 +300,9 @@ def _cells_of(line: str, layout: Layout) -> list[str]:
 def _cleaned(
     numbered: Sequence[tuple[int, str]], layout: Layout, notes: list[str]
 ) -> list[tuple[int, int, str]]:
-    """Number, count of cells and text of each row, with `CLEAN` between cells.
+    """Return line number, count of cells and text of each row, with `CLEAN` between cells.
 
-    A line with an unclosed quote is left out, with a note; no other row is lost.
+    A line with an unclosed quote is left out and noted; no other row is lost.
     """
     rows = _rows_in(numbered, layout)
     if rows is not None and len({count for _, count, _ in rows[:-1]}) <= 1:
@@ -323,7 +323,7 @@ def _cleaned(
 def _rows_in(
     numbered: Sequence[tuple[int, str]], layout: Layout
 ) -> list[tuple[int, int, str]] | None:
-    """The rows of `_cleaned`; None if a quote is not closed, or only by another row."""
+    """Return the rows for `_cleaned`; None if a quote is not closed within its row."""
     rows: list[tuple[int, int, str]] = []
     is_closed = True
     try:
@@ -338,9 +338,9 @@ def _rows_in(
 
 
 def one_face(table: Table, request: TakeRequest) -> Table:
-    """The rows of the named face, or of the face that most rows show.
+    """Return the rows of the requested face, or of the face in most rows.
 
-    UserError for a missing face. Faces have the file's names.
+    Faces have the names of the file. Raises UserError for a missing face.
     """
     places = table.places
     column = next((places[name] for name in FACE_COLUMNS if name in places), None)

@@ -13,7 +13,7 @@ from ..errors import UserError
 
 @dataclass(frozen=True)
 class TakeRequest:
-    """face: the name of a face, if the file has several. rate: replaces the file's [1 / s]."""
+    """face: name of the face, if a file has several. rate: replaces the file's rate [1 / s]."""
 
     face: str | None = None
     rate: float | None = None
@@ -35,7 +35,7 @@ class Take:
     is_calibrated: whether the neutral face was already subtracted.
     notes: values that were guessed, skipped or left out, each one sentence.
     unknown: unknown columns in the file's spelling.
-    has_keys: whether times are those of keys with straight lines between them, not of frames.
+    has_keys: whether rows are keys with straight lines between them, and not frames.
     sound: the sound file that the recording names, if it exists.
     """
 

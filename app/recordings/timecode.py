@@ -1,4 +1,4 @@
-"""Timecode: it counts frames after the seconds, `10:32:09:07.867`; drop-frame has `;`.
+"""Timecode, which counts frames after the seconds: `10:32:09:07.867`; drop-frame has `;`.
 
 Source: SMPTE 12M.
 """
@@ -18,9 +18,9 @@ TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})([:;])(\d{1,6}(?:\.\d+)?)$"
 
 
 def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> Floats64:
-    """Times [s] of timecode, HH:MM:SS:FF.fraction; NaN where a cell has none.
+    """Convert timecode, HH:MM:SS:FF.fraction, to times [s]; NaN for a cell without timecode.
 
-    rate: frames a second from the user; it counts if the timecode agrees.
+    rate: frames a second from the user; it is used if the timecode agrees.
     """
     parts = np.full((len(cells), 4), np.nan)  # hours, minutes, seconds, frames with their fraction
     has_semicolon = False
@@ -66,10 +66,10 @@ def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -
 
 
 def _base_of(seconds: Floats64, numbers: Floats64) -> tuple[float, bool]:
-    """The frames that timecode counts in a second, and whether enough seconds show this.
+    """Return how many frames timecode counts in a second, and whether the data show it surely.
 
-    seconds: whole, shape (T,). numbers: those of frames in their second, shape (T,). Where one
-    second ends and the next begins, the number falls short of the usual step by this count.
+    seconds: whole seconds, shape (T,). numbers: frame numbers within the second, shape (T,). From
+    one second to the next, the number falls by this count minus the usual step.
     """
     highest = float(numbers.max())
     rates = (  # [frames / s], as timecode counts them
@@ -92,7 +92,7 @@ def _base_of(seconds: Floats64, numbers: Floats64) -> tuple[float, bool]:
 
 
 def _dropped(parts: Floats64, base: float) -> int:
-    """Numbers that drop-frame timecode leaves out at minutes; 0 if the file has them.
+    """Return how many frame numbers timecode leaves out at a minute; 0 if the file has them.
 
     parts: hours, minutes, seconds, frames, shape (T, 4). Every tenth minute has all numbers.
     """
@@ -107,7 +107,7 @@ def _dropped(parts: Floats64, base: float) -> int:
 def _jumps_at_minutes(seconds: Floats64, numbers: Floats64, base: float) -> bool:
     """Whether most minutes lack the frame numbers that drop-frame timecode leaves out.
 
-    seconds: whole, shape (T,). numbers: those of frames in their second, shape (T,).
+    seconds: whole seconds, shape (T,). numbers: frame numbers within the second, shape (T,).
     """
     steps = np.diff(seconds * base + numbers)
     minutes = seconds // 60.0
@@ -119,10 +119,10 @@ def _jumps_at_minutes(seconds: Floats64, numbers: Floats64, base: float) -> bool
 
 
 def with_colons(cells: list[str]) -> list[str]:
-    """Timecode with a colon before its frames, even if the file has a point there.
+    """Return timecode with a colon before the frames, even if the file has a point there.
 
-    Two digits after the point are hundredths of a second. If they never reach 60, they count frames
-    instead, at least 24 a second.
+    Two digits after the point are usually hundredths of a second. If there are at least 24 numbers,
+    and none reaches 60, they count frames.
     """
     if not cells or not all(re.fullmatch(r"\d+:\d+:\d+\.\d\d", cell) for cell in cells if cell):
         return cells

@@ -1,8 +1,8 @@
 """The time of each row of a recording: from timecode, a clock, a time stamp or frame numbers.
 
 Timecode counts frames after its seconds (SMPTE 12M): `10:32:09:07.867`, drop-frame with `;`. A
-clock has a fraction of the second there: `10:32:09.129`, perhaps after a date or a number of days.
-A time stamp is one number; its name or its steps show the unit.
+clock has a fraction of the second instead: `10:32:09.129`, perhaps after a date or a number of
+days. A time stamp is one number; its name or its steps show the unit.
 """
 
 from __future__ import annotations
@@ -59,10 +59,10 @@ SPELLED_UNITS = {
 
 @dataclass(frozen=True)
 class Stamp:
-    """A column name that stands for time.
+    """The name of a column of times.
 
-    place: place in STAMPS; the first of several columns counts. unit: the unit in the name [s], or
-    None.
+    place: rank among the known names; of several columns the lowest rank is used. unit: the unit
+    in the name [s], or None.
     """
 
     place: int
@@ -70,9 +70,9 @@ class Stamp:
 
 
 def stamp_of(name: str) -> Stamp | None:
-    """The time stamp that a column or key has by its name; None for another name."""
+    """Return the time stamp that a column or key is by its name; None for any other name."""
     letters = letters_of(name)
-    stamp_names = (  # without the unit behind them; the first that a file has and that rises counts
+    stamp_names = (
         "timestamp",
         "time",
         "t",
@@ -96,7 +96,7 @@ def stamp_of(name: str) -> Stamp | None:
         "unixtimestamp",
         "epoch",
         "pts",
-    )  # without the unit behind them; the first that a file has and that rises counts
+    )  # without a unit at the end; the first one that a file has and that rises is used
     if letters in stamp_names:
         return Stamp(stamp_names.index(letters))
     for spelled, unit in SPELLED_UNITS.items():
@@ -116,7 +116,7 @@ def stamp_of(name: str) -> Stamp | None:
 
 
 def is_frame(name: str) -> bool:
-    """Whether a name is that of frame numbers."""
+    """Whether this is a name of a column of frame numbers."""
     frame_names = (
         "frame",
         "framenumber",
@@ -132,9 +132,9 @@ def is_frame(name: str) -> bool:
 
 
 def times_of(table: Table, rate: float | None, notes: list[str]) -> tuple[Floats64, set[str]]:
-    """Seconds of each row, shape (rows,), NaN where none is known; and the columns of times.
+    """Return the time of each row [s], (rows,), NaN where unknown; and the columns of times.
 
-    rate: frames a second from the user, who overrides the file.
+    rate: frames a second from the user, which override the file.
     """
     places = table.places
 
@@ -158,10 +158,10 @@ def find_times(
     notes: list[str],
     written_rate: float | None = None,
 ) -> Floats64:
-    """Seconds of each of `count` rows, shape (count,), NaN where none is known.
+    """Return the times of `count` rows [s], shape (count,), NaN where unknown.
 
-    names: those of columns or keys. texts, numbers: their cells as text and as numbers, NaN for no
-        number.
+    names: names of columns or keys. texts, numbers: functions that return the cells of a name as
+        text and as numbers, NaN for no number.
     rate: frames a second from the user. written_rate: frames a second from the file.
     """
     stamps = {name: stamp for name in names if (stamp := stamp_of(name))}
@@ -197,7 +197,7 @@ def _is_clock(cell: str) -> bool:
 
 
 def _measured(cell: str) -> float | None:
-    """The seconds in `33 ms`, `0.033 s` or ISO 8601's `PT0.033S`; None for another cell."""
+    """Return the seconds in `33 ms`, `0.033 s` or ISO 8601's `PT0.033S`; None for other cells."""
     if found := MEASURED.match(cell):
         spelled = found["unit"].casefold().replace("µ", "u").replace("μ", "u")
         unit = SPELLED_UNITS.get(spelled) or SPELLED_UNITS.get(f"{spelled}s")
@@ -217,7 +217,7 @@ def _measured(cell: str) -> float | None:
 
 
 def _seconds_in(cell: str) -> float:
-    """The seconds in a cell, with or without a unit; NaN for another cell."""
+    """Return the seconds in a cell, with or without a unit; NaN for other cells."""
     seconds = _measured(cell)
     if seconds is not None:
         return seconds
@@ -230,9 +230,9 @@ def _seconds_in(cell: str) -> float:
 def stamp_times(
     stamps: Floats64, notes: list[str], unit_of_name: float | None = None
 ) -> Floats64 | None:
-    """Time stamps of any unit in seconds; None if no unit fits.
+    """Convert time stamps of any unit to seconds; return None if no unit fits.
 
-    unit_of_name: the unit in the column's name [s]. It counts if frames are then 0.5 ms to 10 s
+    unit_of_name: the unit in the column's name [s]. It is used if frames are then 0.5 ms to 10 s
     apart.
     """
     if len(stamps) == 1:
@@ -260,17 +260,19 @@ def stamp_times(
 
 
 def _in_seconds(stamps: Floats64, unit: float, name: str, notes: list[str]) -> Floats64:
-    """The stamps from 0, with a note about their unit."""
+    """Return the stamps in seconds from 0, and note their unit."""
     if unit != 1.0:
         notes.append(f"Time stamps were read as {name}.")
     return (stamps - np.nanmin(stamps)) * unit
 
 
 def clock_times(cells: Sequence[str], name: str, notes: list[str]) -> Floats64 | None:
-    """Times [s] of `2024-05-01T12:00:00.033Z`, `0 days 00:00:00.033`, `00:00:00,033`, `0:00.03`.
+    """Convert clock times to seconds from the first.
 
-    NaN for a cell without a time; None if no cell has one, or if times stand still. Zones are
-    ignored, and so are dates other than year, month and day: hours show midnight.
+    Cells are such as `2024-05-01T12:00:00.033Z`, `0 days 00:00:00.033`, `00:00:00,033`, `0:00.03`.
+    A cell without a time is NaN. Returns None if no cell has a time, or if times do not rise. Zones
+    are ignored. Dates in another order than year, month, day are ignored too; the hours then show
+    midnight.
     """
     seconds = np.full(len(cells), np.nan)
     days = np.zeros(len(cells))
@@ -298,7 +300,7 @@ def clock_times(cells: Sequence[str], name: str, notes: list[str]) -> Floats64 |
 
 
 def _seconds_of_day(found: re.Match[str]) -> float:
-    """The seconds since midnight, or since the beginning, of a match of CLOCK."""
+    """Return the seconds since midnight, or since the beginning, from a match of CLOCK."""
     hours = int(found["hours"] or 0)
     if found["half"]:
         hours = hours % 12 + (12 if found["half"][0] in "pP" else 0)
@@ -307,7 +309,7 @@ def _seconds_of_day(found: re.Match[str]) -> float:
 
 
 def _day_of(found: re.Match[str]) -> int:
-    """The day of a match of CLOCK, counted from any day; 0 if it is unknown."""
+    """Return the number of the day in a match of CLOCK; 0 if the day is unknown."""
     if found["days"]:
         return int(found["days"])
     parts = re.split("[-/.]", found["date"] or "")

@@ -1,8 +1,8 @@
-"""Units of values, and flags of rows without a face: the same for tables and JSON of all programs.
+"""Units of values, and flags of rows without a face, for tables and JSON of all programs.
 
 Shapes are 0 to 1, or 0 to 100 in programs for animation. Action units are 0 to 1, 0 to 5 (FACS' A
-to E), or 0 to 100. Trackers write zeros, or the last values, while they see no face, and many have
-a flag for this.
+to E), or 0 to 100. While trackers see no face, they write zeros or the last values; many have a
+flag for this.
 """
 
 from __future__ import annotations
@@ -56,8 +56,8 @@ def rows_without_face(
 ) -> Rows:
     """The rows in which a flag reports no visible face, shape (count,).
 
-    names: those of columns or keys. texts: the cells of one of them, "" without any. A confidence
-    counts if there is no other flag.
+    names: names of columns or keys. texts: function that returns the cells of a name, "" for empty
+    cells. A confidence is used if there is no other flag.
     """
     lost = np.zeros(count, dtype=bool)
     flags = [name for name in names if is_flag(name)]
@@ -77,9 +77,9 @@ def rows_without_face(
 
 
 def shares(shapes: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
-    """ARKit's shapes, 0 to 1; NaN for invalid values. Trackers overshoot a little.
+    """Return ARKit's shapes, 0 to 1 or a little beyond; NaN for invalid values.
 
-    Rows of zeros in a take whose face is never at 0 are rows without a face, NaN throughout.
+    If the face of a take is never at 0, rows of zeros are rows without a face, and become NaN.
     """
     found = of_percent(shapes, NONSENSE, "Shapes", notes)
     far = 0
@@ -107,7 +107,7 @@ def shares(shapes: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats
 
 
 def intensities(units: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
-    """Action units as intensities 0 to 1; FACS' 0 to 5 (A to E) and percent are divided."""
+    """Return action units from 0 to 1; values of FACS, 0 to 5 (A to E), and percent are scaled."""
     highest_unit = 6.0  # a value of 0 to 5 cannot be larger
     found = of_percent(units, highest_unit, "Action units", notes)
     found = {name: np.where(np.abs(v) > highest_unit, np.nan, v) for name, v in found.items()}
@@ -120,14 +120,14 @@ def intensities(units: Mapping[str, Floats64], notes: list[str]) -> dict[str, Fl
 
 
 def without_rows(channels: Mapping[str, Floats64], lost: Rows) -> dict[str, Floats64]:
-    """The channels with NaN in rows without a face."""
+    """Return the channels with NaN in rows without a face."""
     return {name: np.where(lost, np.nan, values) for name, values in channels.items()}
 
 
 def is_calibrated(shapes: Mapping[str, Floats64], notes: list[str]) -> bool:
-    """Whether the neutral face was subtracted: restless shapes are then often at 0.
+    """Whether the neutral face was subtracted: shapes of NEVER_AT_REST are then often 0.
 
-    Rows without a face, which are NaN, do not count.
+    Rows without a face, which are NaN, are ignored.
     """
     resting = [shapes[name] for name in NEVER_AT_REST if name in shapes]
     at_zero = [values[np.isfinite(values)] <= ZERO for values in resting]
@@ -140,9 +140,9 @@ def is_calibrated(shapes: Mapping[str, Floats64], notes: list[str]) -> bool:
 def of_percent(
     channels: Mapping[str, Floats64], most: float, kind: str, notes: list[str]
 ) -> dict[str, Floats64]:
-    """The channels, divided by 100 if their values can only be percent.
+    """Return the channels, divided by 100 if their values can only be percent.
 
-    most: the highest value in another unit.
+    most: the highest value that is possible in the other unit.
     """
     if not channels:
         return {}
@@ -150,7 +150,7 @@ def of_percent(
     most_percent = 300.0  # of a shape; programs for animation allow more than 100
     is_large = (values > most) & (values <= most_percent)
     moving = np.any(np.nan_to_num(values) != 0.0, axis=0)
-    share_of_percent = 0.05  # of rows with large values: these are percent, not errors
+    share_of_percent = 0.05  # if more rows have large values, these are percent, not errors
     if not is_large.any() or is_large.any(axis=0).sum() <= share_of_percent * moving.sum():
         return dict(channels)
     notes.append(f"{kind} go from 0 to 100 and were divided by 100.")
@@ -158,7 +158,7 @@ def of_percent(
 
 
 def _rows_of_zeros(shapes: Mapping[str, Floats64]) -> Rows:
-    """The rows without a face: all shapes are 0, even shapes that are above 0 in other rows."""
+    """Return the rows without a face: all shapes are 0, and in other rows some are never 0."""
     if not shapes:
         return np.zeros(0, dtype=bool)
     table = np.stack([*shapes.values()])
@@ -177,7 +177,7 @@ def _rows_of_zeros(shapes: Mapping[str, Floats64]) -> Rows:
 
 
 def _flag_in(cell: str) -> float:
-    """The number that a flag is, NaN for none."""
+    """Return a flag as a number; NaN for any other text."""
     word = cell.strip().casefold()
     words = {"true": 1.0, "yes": 1.0, "false": 0.0, "no": 0.0}
     if word in words:

@@ -1,1 +1,1 @@
-"""Refinement of scenes: presets by name, refiners bound with their options, and wrinkles."""
+"""Refinement of scenes: named presets, refiners with their options, and wrinkles."""

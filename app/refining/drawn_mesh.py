@@ -1,8 +1,8 @@
-"""A scene's mesh from one refiner, in buffers that a renderer lent.
+"""A scene's mesh, refined by one refiner into buffers of the renderer.
 
-The refiner reads the mesh and writes only into those buffers. The refined mesh is forgotten with
-the frame (Kähler, Haber, Seidel 2003, section 3). If buffers and refiner are on the graphics card,
-no other module depends on it.
+The refiner reads the mesh and writes only into these buffers. The refined mesh is forgotten with
+the frame (Kähler, Haber, Seidel 2003, section 3). Buffers and refiner may be on the graphics card;
+other modules need not know that.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ from .refiners import refiner_for
 from .wrinkling import GRADIENTS, WRINKLES, Wrinkling
 
 FADE = "fade"  # an attribute of refined meshes
-LARGE_MESH = 20_000  # triangles from which the graphics card refines by default
+LARGE_MESH = 20_000  # triangles; by default the graphics card refines meshes of this size
 
 
 @dataclass
 class DrawnMesh:
-    """The scene's mesh from one refiner; two of them make a comparison."""
+    """The scene's mesh with one refiner; two objects make a comparison."""
 
     label: str  # its name under the picture
     refiner: refine.Refiner
     stream: render.Stream | render.GpuStream
-    mesh: refine.RefinedMesh | None = None  # the last result, refined from:
-    positions: Floats64 | None = None
-    plug_ins: tuple[PlugIn, ...] = ()  # code of other packages that refines it
-    wrinkles: bool = False  # whether the last frame has any
-    resting: Callable[[], refine.Refiner] | None = None  # makes its twin, refined at rest
+    mesh: refine.RefinedMesh | None = None  # the last result
+    positions: Floats64 | None = None  # the positions from which it was refined
+    plug_ins: tuple[PlugIn, ...] = ()  # code of other packages in the refiner
+    wrinkles: bool = False  # whether the last frame has wrinkles
+    resting: Callable[[], refine.Refiner] | None = None  # makes an equal refiner, refined at rest
     _splits_at_rest: Unsigned8 | None = None  # of each edge, (E,)
 
     def refine(
@@ -48,7 +48,7 @@ class DrawnMesh:
     ) -> None:
         """Fill the lent buffers with refined triangles for a camera.
 
-        `wrinkling`: that of the scene's skin. Raises PlugInError if code of another package fails.
+        `wrinkling`: wrinkles of the skin. Raises PlugInError if code of another package fails.
         """
         view = refine.View(camera.eye)
         self.positions = positions
@@ -56,7 +56,7 @@ class DrawnMesh:
         if self.can_wrinkle and wrinkling is not None:
             more["values"] = {WRINKLES: wrinkling.amounts, GRADIENTS: wrinkling.gradients}
         self.wrinkles = bool(more)
-        refiner: Any = self.refiner  # one without attributes may lack `values`
+        refiner: Any = self.refiner  # a refiner without attributes may lack `values`
         with reported(self.plug_ins):
             if isinstance(self.stream, render.GpuStream):
                 self.mesh = refiner.refine_on_card(positions, self.stream, view, **more)
@@ -75,13 +75,13 @@ class DrawnMesh:
                 self.stream.upload(*counts, has_bumps=self.wrinkles)
 
     def splits(self) -> Unsigned8:
-        """For each drawn triangle, the number of splits of its source triangle's edges."""
+        """Return for each drawn triangle the number of splits of its source triangle's edges."""
         assert self.mesh is not None
         with reported(self.plug_ins):
             return splits_of_source(self.refiner, self.mesh)
 
     def splits_beyond_rest(self) -> Unsigned8:
-        """The same, without the splits that these edges have at rest."""
+        """Return the same as `splits`, minus the splits that these edges have at rest."""
         assert self.mesh is not None and self.resting is not None
         with reported(self.plug_ins):
             if self._splits_at_rest is None:
@@ -103,7 +103,7 @@ class DrawnMesh:
 
     @property
     def can_fade(self) -> bool:
-        """Whether rows carry how the skin fades, too."""
+        """Whether rows also have the fading of the skin."""
         return self.refiner.vertex_columns == 18
 
     @property
@@ -113,14 +113,14 @@ class DrawnMesh:
 
     @property
     def caption(self) -> str:
-        """The text under its picture: its name and its number of triangles."""
+        """The text under the picture: the name and the number of triangles."""
         return f"{self.label}\n{self.triangle_count} triangles"
 
 
 def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> DrawnMesh:
-    """Bind the requested refiner to the scene's mesh; borrow render buffers for it.
+    """Bind the requested refiner to the scene's mesh, with buffers of the renderer.
 
-    For an unchanged look of a large mesh, a graphics card refines, with the same result.
+    A large mesh with an unchanged look is refined on the graphics card, with the same result.
     """
     has_card = renderer.lends_gpu_streams and not renderer.surface.is_software
     is_open = refinement.refiner is None and not refinement.options
@@ -132,7 +132,7 @@ def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> 
         stream = _stream_for(scene, renderer, refiner)
 
     def resting() -> refine.Refiner:
-        """A separate refiner: some refiners depend on the frame before."""
+        """Make a separate refiner, because some refiners depend on the frame before."""
         twin = refiner_for(scene, asked)
         twin.refine(scene.rest_positions)
         return twin
@@ -141,7 +141,7 @@ def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> 
 
 
 def _attributes_of(scene: Drawable) -> dict[str, Any]:
-    """What rows carry beside texture coordinates: wrinkles, where the scene has any, and a fade."""
+    """Return further attributes of vertices: wrinkles and fading, if the scene has wrinkles."""
     skin = scene.skin
     if skin.wrinkles is None or skin.uv is None:
         return {}
@@ -157,7 +157,7 @@ def _attributes_of(scene: Drawable) -> dict[str, Any]:
 def _stream_for(
     scene: Drawable, renderer: render.Renderer, refiner: refine.Refiner
 ) -> render.Stream | render.GpuStream:
-    """Buffers for a refiner's largest output, on its side of the bus."""
+    """Return buffers for a refiner's largest output, in main memory or on the graphics card."""
     room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
     if not (renderer.lends_gpu_streams and isinstance(refiner, refine.GpuRefiner)):
         return renderer.lend_stream(*room)
@@ -167,6 +167,6 @@ def _stream_for(
 
 
 def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> Unsigned8:
-    """For each drawn triangle, the number of splits of its source triangle's edges."""
+    """Return for each drawn triangle the number of splits of its source triangle's edges."""
     splits: Unsigned8 = refiner.splits[refiner.triangle_edges].sum(axis=1, dtype=np.uint8)
     return np.take(splits, mesh.source)

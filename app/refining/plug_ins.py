@@ -1,7 +1,7 @@
-"""Refinement by code of other packages: the plug-ins in use, and the source of errors.
+"""Plug-ins of other packages in a refinement, and the attribution of their errors.
 
 A criterion, a scheme or a refiner may come from any package, or be registered by a program. An
-error in its code is reported in one line, with the name of the plug-in.
+error in the code of a plug-in is reported in one line, with the name of the plug-in.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class PlugIn(NamedTuple):
     name: str
     """The name by which it was chosen."""
     factory: Any
-    """Its class, or the function that makes it; for a given object its class."""
+    """The class or function that makes it."""
 
     @property
     def module(self) -> str:
@@ -43,10 +43,10 @@ class PlugInError(UserError):
 
 
 def plug_ins_of(refiner: str, options: Mapping[str, Any]) -> tuple[PlugIn, ...]:
-    """The plug-ins behind a refiner with these options of `refine.create`.
+    """Return the plug-ins that a refiner with these options of `refine.create` uses.
 
-    Unknown names are left out: `refine.create` reports them. Raises PlugInError for a module that
-    ends the program during its import.
+    Unknown names are left out, because `refine.create` reports them. Raises PlugInError for a
+    module that ends the program during its import.
     """
     wanted: list[tuple[str, Any, refine.Registry[Any]]] = [("refiner", refiner, refine.refiners)]
     chosen = options.get("criterion", ())
@@ -72,8 +72,8 @@ def plug_ins_of(refiner: str, options: Mapping[str, Any]) -> tuple[PlugIn, ...]:
 def reported(plug_ins: Sequence[PlugIn]) -> Iterator[None]:
     """Turn an error that one of the plug-ins raises, or causes, into a PlugInError.
 
-    An error outside their code counts as an error in their results (for example an array of another
-    size), unless it can be reported directly.
+    An error in other code is blamed on the results of the plug-ins (for example an array of a wrong
+    size), unless it is an error that the user can correct.
     """
     try:
         yield
@@ -92,7 +92,7 @@ def reported(plug_ins: Sequence[PlugIn]) -> Iterator[None]:
 
 
 def culprit_of(error: BaseException, plug_ins: Sequence[PlugIn]) -> PlugIn | None:
-    """The plug-in whose code raised an error; None for errors in other code."""
+    """Return the plug-in whose code raised an error, or None for errors in other code."""
     for frame in _frames(error):
         package = _package(frame.f_globals.get("__name__", ""))
         there = [each for each in plug_ins if _package(each.module) == package]
@@ -105,7 +105,7 @@ def culprit_of(error: BaseException, plug_ins: Sequence[PlugIn]) -> PlugIn | Non
 
 
 def error_in(plug_in: PlugIn, error: BaseException) -> PlugInError:
-    """An error whose text names the plug-in, its error, and the place."""
+    """Return a PlugInError whose text names the plug-in, the error, and the line of code."""
     package = _package(plug_in.module)
     where = ""
     for frame in _frames(error):
@@ -116,7 +116,7 @@ def error_in(plug_in: PlugIn, error: BaseException) -> PlugInError:
 
 
 def _factory(kind: str, name: str, registry: refine.Registry[Any]) -> Any:
-    """The factory of a plug-in; None for an unknown name."""
+    """Return the factory of a plug-in, or None for an unknown name."""
     try:
         return registry.find(name)
     except ValueError:
@@ -134,7 +134,7 @@ def _words(error: BaseException) -> str:
 
 
 def _frames(error: BaseException) -> list[FrameType]:
-    """The functions that were running when an error was raised, the innermost first."""
+    """Return the stack frames of an error, the innermost first."""
     return [frame for frame, _ in traceback.walk_tb(error.__traceback__)][::-1]
 
 

@@ -1,7 +1,7 @@
 """Refinement presets for each scene, by names that users choose as looks.
 
-`smooth` looks best: films and the window show it by default. `paper` is the rule of Kähler, Haber,
-Seidel 2003 alone. All drawing code gets a scene's refiner, with its options, here.
+`smooth` looks best; films and the window show it by default. `paper` is only the rule of Kähler,
+Haber, Seidel 2003. All drawing code takes a scene's refiner and its options from this module.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 from ..errors import UserError
 
 STATIC = "none"  # the refiner that does not change the mesh
-CHANGED = ", changed"  # after the name of a preset or refiner whose options a user has changed
+CHANGED = ", changed"  # suffix of the name of a preset or refiner with options of a user
 FIRST_PRESET = "smooth"  # the default
 PAPERS_PRESET = "paper"
 PAPERS_CRITERION = "normal"
@@ -29,7 +29,7 @@ class Preset:
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by refiner
 
     def options_for(self, refiner: str) -> Mapping[str, Any]:
-        """Options of a refiner that this look sets; empty if it sets none."""
+        """Return the options that this preset sets for a refiner; empty if it sets none."""
         return self.options.get(refiner, {})
 
 
@@ -37,20 +37,20 @@ ON_CARD = "kahler-gl"  # `kahler` on the graphics card, with fewer options
 
 
 def _for_both(options: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
-    """The same options for `kahler` and for its twin on the graphics card."""
+    """Return the same options for `kahler` and for `kahler-gl`."""
     return {"kahler": options, ON_CARD: options}
 
 
-# A flat mesh needs no tolerance, because it is not bent at rest. A search found the values: with
-# them the wave's largest number of triangles is about that of Table 1 (1328).
+# A flat mesh needs no tolerance, because it is not bent at rest. A search found these values, with
+# which the wave has at most about the 1328 triangles of Table 1.
 PLANE_THRESHOLDS = {"threshold_once": 0.001, "threshold_twice": 0.005}
 
 PRESETS: Mapping[str, Mapping[str, Preset]] = MappingProxyType(  # by name, then by scene
     {
         FIRST_PRESET: {
-            # With `displacement` alone the outlines of crown and chin would stay polygons: edges
-            # there are long and turn little. `border` would make an open mouth rounder, but lids
-            # and pursed lips uneven.
+            # With `displacement` alone the outlines of crown and chin would stay polygons, because
+            # edges there are long and turn little. `border` would make an open mouth rounder, but
+            # would make lids and pursed lips uneven.
             "face": Preset(
                 options=_for_both({"scheme": "cubic", "criterion": "displacement+rest"})
             ),
@@ -70,7 +70,7 @@ PRESETS: Mapping[str, Mapping[str, Preset]] = MappingProxyType(  # by name, then
 
 
 def words_of_presets(option: str) -> list[str]:
-    """All words that presets have for this option, for any refiner."""
+    """Return all values of an option in the presets, for any refiner."""
     presets = [preset for by_scene in PRESETS.values() for preset in by_scene.values()]
     every = [options for preset in presets for options in preset.options.values()]
     return [options[option] for options in every if option in options]
@@ -81,21 +81,21 @@ class Refinement:
     """A user's choice: a preset, perhaps another refiner, and options that replace the preset's."""
 
     preset: str = FIRST_PRESET
-    refiner: str | None = None  # None: the preset's own
+    refiner: str | None = None  # None: the preset's refiner
     options: Mapping[str, Any] = field(default_factory=dict)  # replace the preset's
 
     def on(self, scene: str) -> tuple[str, dict[str, Any]]:
-        """The refiner's name and all its options, for the scene of this name."""
+        """Return the refiner's name and all its options for a scene, given the scene's name."""
         preset = PRESETS[self.preset][scene]
         name = preset.refiner if self.refiner is None else self.refiner
         return name, {**preset.options_for(name), **self.options}
 
     def has_thresholds(self, scene: str) -> bool:
-        """Whether the criterion is or contains PAPERS_CRITERION; then THRESHOLDS count."""
+        """Whether the criterion is or contains PAPERS_CRITERION, which uses THRESHOLDS."""
         return PAPERS_CRITERION in self.criterion_on(scene).split("+")
 
     def check(self, scene: str) -> None:
-        """Raise UserError for options without an effect on the scene of this name."""
+        """Raise UserError for options that have no effect on a scene, given the scene's name."""
         unused = [name for name in THRESHOLDS if name in self.options]
         if unused and not self.has_thresholds(scene):
             raise UserError(
@@ -105,7 +105,7 @@ class Refinement:
             )
 
     def criterion_on(self, scene: str) -> str:
-        """The names of the criteria for the scene of this name, joined by +."""
+        """Return the names of the criteria for a scene, joined by +."""
         return str(self.on(scene)[1].get("criterion", PAPERS_CRITERION))
 
     @property
@@ -116,5 +116,5 @@ class Refinement:
 
 
 def named(name: str, preset: str) -> Refinement:
-    """The preset of this name; or the refiner of this name, with the options of `preset`."""
+    """Return the preset of this name, or the refiner of this name with options of `preset`."""
     return Refinement(name) if name in PRESETS else Refinement(preset, name)

@@ -1,4 +1,4 @@
-"""Refiners for scenes, bound with a preset's options; options as words of the command line."""
+"""Construction of refiners for scenes, and parsing of their command-line options."""
 
 from __future__ import annotations
 
@@ -34,9 +34,10 @@ def refiner_for(
 ) -> refine.Refiner:
     """Bind the refiner of a refinement to the scene's mesh.
 
-    `splits`: those of each edge in all frames, shape (E,); they replace a criterion. `attributes`:
-    values of vertices at rest by name, left out for a refiner without attributes. Raises UserError
-    if it refuses an option, and PlugInError if code of another package fails.
+    `splits`: fixed number of splits of each edge, shape (E,), in place of a criterion.
+    `attributes`: name -> values of vertices at rest; ignored by a refiner without attributes.
+    Raises UserError if the refiner refuses an option, and PlugInError if code of another package
+    fails.
     """
     name, options = refinement.on(scene.name)
     plug_ins = plug_ins_of(name, options)
@@ -70,7 +71,7 @@ def refiner_for(
 
 
 def _presets_share(refinement: Refinement, options: Mapping[str, Any]) -> str:
-    """Words about options that come from the preset: a user may not know them."""
+    """Return a hint on options that come from the preset, which a user may not know."""
     settings = [
         f"{name}={('off', 'on')[value] if isinstance(value, bool) else value}"
         for name, value in options.items()
@@ -81,10 +82,11 @@ def _presets_share(refinement: Refinement, options: Mapping[str, Any]) -> str:
 
 
 def options_of(refiner: str, criterion: str) -> dict[str, refine.Option]:
-    """The options for words and sliders: those of a refiner, then those of its criterion.
+    """Return the options of a refiner, then of its criterion, that a word or slider can set.
 
-    A criterion's options have its name, such as `rest.levels`. Options that the refiner also has
-    count as the refiner's. Raises ValueError for a refiner that cannot be loaded.
+    An option of a criterion has the criterion's name, as in `rest.levels`. If the refiner has the
+    same option, only the refiner's is returned. Raises ValueError for a refiner that cannot be
+    loaded.
     """
     found = {option.name: option for option in refine.parameters(refiner)}
     if "criterion" in found:
@@ -106,7 +108,7 @@ def _check(refiner: str, options: Mapping[str, Any], criterion: str) -> None:
 
 
 def with_criteria(options: Mapping[str, Any]) -> dict[str, Any]:
-    """The options for `refine.create`: criteria with options become objects.
+    """Return the options for `refine.create`, in which criteria with options become objects.
 
     Raises ValueError for a value that a criterion refuses.
     """
@@ -127,7 +129,7 @@ def with_criteria(options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def help_of_options(refiner: str) -> str:
-    """All options of a refiner and of all its possible criteria, a line each."""
+    """List the options of a refiner and of all its possible criteria, one on each line."""
     every = "+".join(refine.criteria.available())
     lines = [
         f"  {name:<24}{option.wanted:<34}{_in_words(option):<14}{option.help}".rstrip()
@@ -137,7 +139,7 @@ def help_of_options(refiner: str) -> str:
 
 
 def _in_words(option: refine.Option) -> str:
-    """The default of an option, as users write it."""
+    """Return the default of an option as a user writes it."""
     if option.kind == "choice":
         same = (word for word, value in option.choices.items() if value == option.default)
         return next(same, "")
@@ -147,7 +149,7 @@ def _in_words(option: refine.Option) -> str:
 
 
 def _takes_own_schemes(refiner: str) -> bool:
-    """Whether the option `scheme` of a refiner takes any name or object, not a fixed choice."""
+    """Whether the option `scheme` of a refiner takes any name or object."""
     return any(each.name == "scheme" and each.kind == "word" for each in refine.parameters(refiner))
 
 
@@ -157,7 +159,7 @@ def can_detail(scene: Drawable) -> bool:
 
 
 def finer_mesh(scene: Drawable) -> tuple[Floats64, Integers32] | None:
-    """Vertices and triangles of the scene's head with four times its triangles, if it has them."""
+    """Return vertices and triangles of the scene's head at four times its triangles, or None."""
     face = scene.face
     if face is None or not isinstance(face.head, assets.Head):
         return None
@@ -166,10 +168,10 @@ def finer_mesh(scene: Drawable) -> tuple[Floats64, Integers32] | None:
 
 
 def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any]:
-    """The options that `--option NAME=VALUE ...` sets for a refiner (None: the preset's).
+    """Parse `--option NAME=VALUE ...` for a refiner; refiner: None for the preset's.
 
-    Values are numbers, on and off, or words. Raises UserError for an unknown refiner, and if the
-    mesh is drawn unrefined.
+    Values are numbers, on and off, or words. Raises UserError for an unknown refiner, and for
+    options of the refiner `none`.
     """
     if refiner is not None and refiner not in refine.refiners.available():
         there_are = ", ".join(refine.refiners.available())
@@ -194,9 +196,9 @@ def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any
 
 
 def parse_comparison(names: str | None, refinement: Refinement) -> tuple[Refinement, ...]:
-    """The looks and refiners that `--compare NAME,...` sets beside a refinement, left to right.
+    """Parse `--compare NAME,...`, the looks and refiners to show beside a refinement.
 
-    None means no comparison. Raises UserError for an unknown name, and for two equal ones.
+    names: None for no comparison. Raises UserError for unknown names, and for equal refinements.
     """
     beside: list[Refinement] = []
     for name in [] if names is None else names.split(","):

@@ -1,9 +1,10 @@
-"""Wrinkles from the physics: the simulated skin folds as far as it is shortened.
+"""Wrinkles from the physics: the more the simulated skin is shortened, the deeper are its folds.
 
     simulated mesh ─> refine.Shortening ─> amount at each vertex ─> refine: rows ┐
     assets: map of furrows over the texture ─────────────────────────────────────┴> render
 
-The furrows stick to the skin, because their map does; only the amounts change from frame to frame.
+The furrows keep their places on the skin, because their map lies over the texture; only the amounts
+change from frame to frame.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ Points = npt.NDArray[np.float64]
 class Wrinkling(NamedTuple):
     """Wrinkles of the skin in one frame: amounts, and directions of furrows.
 
-    amounts: those of each vertex in either slot, 0 to 1, shape (V, 2).
-    gradients: those of texture coordinates u and v along the skin [1/mm], shape (U, 6).
+    amounts: of each vertex in its two slots for furrows, 0 to 1, shape (V, 2).
+    gradients: of texture coordinates u and v along the skin [1/mm], shape (U, 6).
     """
 
     amounts: Amounts
@@ -49,25 +50,25 @@ class Compression:
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
 
     def measure(self, positions: Points) -> Wrinkling | None:
-        """Wrinkles of the skin with these vertices, shape (V, 3); None without wrinkles."""
+        """Return the wrinkles of the skin at these positions, (V, 3); None if there are none."""
         amounts = self.amounts(positions)
         if not amounts.any():
             return None
         return Wrinkling(amounts, self._gradients.measure(positions))
 
     def amounts(self, positions: Points) -> Amounts:
-        """Wrinkling of each vertex in either slot, 0 (none) to 1, shape (V, 2).
+        """Return the amount of each vertex in its two slots for furrows, 0 to 1, shape (V, 2).
 
-        The amount begins and ends smoothly, so nothing pops.
+        The amount begins and ends smoothly, so furrows do not pop up.
         """
         lost = self._shortening.measure(positions)
-        # Chosen by eye. Skin yields a little before it folds, and a fold does not deepen without
-        # limit.
+        # The numbers were chosen by eye. Skin yields a little before it folds, and the depth of a
+        # fold has a limit.
         onset = 0.015  # loss of length at which furrows begin
         beyond = np.square(np.maximum(self._readiness * lost - onset, 0.0))
-        half_depth_loss = 0.09  # loss of length at which they have half of their greatest depth
+        half_depth_loss = 0.09  # loss of length at which furrows have half of their greatest depth
         amounts = beyond / (beyond + (half_depth_loss - onset) ** 2)
-        # Gain of length at which furrows of age are half as deep: taut skin has none.
+        # Gain of length at which furrows of age are half as deep, because stretched skin is smooth.
         half_depth_gain = 0.1
         resting = self._resting / (1.0 + np.square(np.minimum(lost, 0.0) / half_depth_gain))
         shown: Amounts = np.maximum(amounts, resting).astype(np.float32)

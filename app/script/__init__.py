@@ -1,9 +1,9 @@
 """Animation scripts: keyframes of controls over time, in a TOML file.
 
-A script is a list of poses, with tracks of single controls that are added to the poses: for a
-blink, a glance, or a whole recording. `docs/scripts.md` describes the file. A channel keeps the
-value of its first key before it, and of its last key after it. This module holds poses, tracks of
-keys, and their values at any time.
+A script is a list of poses, and of tracks: a track moves a single control, and its values are added
+to the poses, for a blink, a glance, or a whole recording. `docs/scripts.md` describes the file.
+Before its first key and after its last key a channel is constant. This module holds poses, tracks
+of keys, and their values at any time.
 """
 
 from __future__ import annotations
@@ -54,8 +54,8 @@ class Channel:
 
     A recorded take has half a million keys, so they are kept in read-only arrays.
 
-    times: those of the keys [s], shape (K,). values: those at these times, shape (K,). easings: the
-    way to each key, a row of `Easing` each, shape (K, 3), or the name of one easing for all.
+    times: times of the keys [s], shape (K,). values: values of the keys, shape (K,). easings: the
+    easing towards each key, a row of `Easing`, shape (K, 3), or the name of one easing for all.
     """
 
     times: Floats64
@@ -73,14 +73,14 @@ class Channel:
             ("easings", easings, np.uint8),
         ):
             own = np.asarray(part, kind)
-            if own.flags.writeable:  # its owner might write it
+            if own.flags.writeable:  # its owner might change it
                 own = own.copy()
                 own.flags.writeable = False
             object.__setattr__(self, name, own)
 
     @classmethod
     def of(cls, keys: Iterable[Key]) -> Channel:
-        """The channel with these keys, which are in the order of time."""
+        """Make a channel of keys, which must be in the order of time."""
         keys = tuple(keys)
         return cls(
             [key.time for key in keys],
@@ -90,7 +90,7 @@ class Channel:
 
     @property
     def keys(self) -> tuple[Key, ...]:
-        """The keys one by one, made at each call: use it for few keys or channels."""
+        """The keys as objects, which each call makes anew: for few keys or channels."""
         parts = zip(self.times.tolist(), self.values.tolist(), self.easing_rows(), strict=True)
         return tuple(Key(time, value, easing.name) for time, value, easing in parts)
 
@@ -117,13 +117,13 @@ class Channel:
 
     @functools.cached_property
     def _parts(self) -> tuple[array[float], array[float], bytes]:
-        """The same numbers in Python sequences, which are faster to read."""
+        """Times, values and easings in Python sequences, which are faster for single reads."""
         times = array("d", self.times.tobytes())
         values = array("d", self.values.tobytes())
         return times, values, self.easings.tobytes()
 
     def value(self, time: float) -> float:
-        """The eased value at `time` [s]; constant before the first and after the last key."""
+        """Return the eased value at `time` [s]; it is constant before and after all keys."""
         times, values, easings = self._parts
         previous, following, share = _between(times, time)
         start = values[previous]
@@ -133,16 +133,16 @@ class Channel:
 
     @functools.cached_property
     def ends(self) -> tuple[float, float]:
-        """The lowest and the highest value of all."""
+        """The lowest and the highest value of a key."""
         return float(self.values.min()), float(self.values.max())
 
     def raised(self, chosen: Flags, amount: float, low: float, high: float) -> Channel:
-        """The channel with the values of chosen keys raised, within the limits; shape (K,)."""
+        """Return the channel with chosen keys raised, within limits; chosen: flags, shape (K,)."""
         higher = within(self.values, amount, low, high)
         return Channel(self.times, np.where(chosen, higher, self.values), self.easings)
 
     def values_at(self, times: Floats64) -> Floats64:
-        """The values at many times [s]; both of shape (N,)."""
+        """Return the values at many times [s]; times and values have shape (N,)."""
         after = np.searchsorted(self.times, times, "right")
         before = np.maximum(after - 1, 0)
         following = np.minimum(after, len(self) - 1)
@@ -154,17 +154,17 @@ class Channel:
         return values
 
     def outline(self, start: float, end: float, count: int) -> tuple[Floats64, Floats64]:
-        """Times [s] and values of points that draw the curve between two times.
+        """Return times [s] and values of points that draw the curve between two times, (N,) each.
 
-        It is as exact as `count` columns can show: with every key and jump if these are fewer than
-        the columns, else with the lowest and the highest key of each column. Shape (N,).
+        The curve is as exact as `count` columns can show. With at most `count` keys it has all keys
+        and jumps; with more keys it has the lowest and the highest key of each column.
         """
         edges = np.linspace(start, end, count + 1)
         first, last = np.searchsorted(self.times, (start, end))
         keys = self.times[first:last]
         values = self.values[first:last]
         if len(keys) <= count:
-            # "hold" jumps at a key: it needs a point just before as well.
+            # A key with "hold" is a jump, which also needs a point just before it.
             just_before = np.nextafter(keys, -np.inf)
             times = np.unique(np.concatenate([edges, keys, just_before]))
             return times, self.values_at(times)
@@ -178,7 +178,7 @@ class Channel:
 
 @dataclass(frozen=True)
 class Pose(Record):
-    """A whole pose at `time` [s], approached by `easing`; controls that it does not name are 0."""
+    """A pose of all controls at `time` [s], approached by `easing`; unnamed controls are 0."""
 
     time: Moment
     values: Annotated[Mapping[str, Number], called(REST)] = field(default_factory=dict)
@@ -186,7 +186,7 @@ class Pose(Record):
     name: str | None = None  # a named pose gets a picture on a contact sheet
 
     def raised(self, names: Iterable[str], amount: float, limits: Limits) -> Pose:
-        """The pose with some values raised, within their limits."""
+        """Return the pose with some values raised, within their limits."""
         higher = {
             name: float(within(self.values.get(name, 0.0), amount, *limits[name])) for name in names
         }
@@ -203,7 +203,7 @@ class Script:
     source: str = field(compare=False)  # its file, for error texts
     scene: str = "face"
     camera: str | None = None
-    sound: Path | None = None  # the whole path of its sound file
+    sound: Path | None = None  # the absolute path of its sound file
     poses: tuple[Pose, ...] = ()  # in the order of time
     tracks: dict[str, Channel] = field(default_factory=dict)
     preface: str = ""  # the comments at the beginning of the file
@@ -216,7 +216,7 @@ class Script:
 
     @functools.cached_property
     def names(self) -> tuple[str, ...]:
-        """All controls that it moves: those of poses, then those of tracks alone."""
+        """All controls that the script moves: first of poses, then of tracks alone."""
         return tuple(dict.fromkeys((*self.posed_names, *self.tracks)))
 
     @functools.cached_property
@@ -234,11 +234,11 @@ class Script:
         return tuple((self.names.index(name), track) for name, track in self.tracks.items())
 
     def posed(self, time: float) -> dict[str, float]:
-        """The value by poses alone of each control that they name, at `time` [s]."""
+        """Return the values of the poses alone at `time` [s], by name."""
         return dict(zip(self.posed_names, self._posed(time).tolist(), strict=True))
 
     def _posed(self, time: float) -> Floats64:
-        """The same in the order of the `posed_names`."""
+        """Return the values of the poses at `time` [s], in the order of `posed_names`."""
         if not self.posed_names:
             return np.zeros(0)
         before, after, share = _between(self._pose_times, time)
@@ -248,7 +248,7 @@ class Script:
         return posed
 
     def posed_channel(self, name: str) -> Channel:
-        """The channel by which the poses alone move a control."""
+        """Return the motion of a control by the poses alone, as a channel."""
         keys = (Key(each.time, each.values.get(name, 0.0), each.easing) for each in self.poses)
         return Channel.of(keys)
 
@@ -258,15 +258,15 @@ class Script:
         return tuple(pose for pose in self.poses if pose.name is not None)
 
     def at(self, time: float) -> dict[str, float]:
-        """The value of every channel that the script names, at `time` [s]."""
+        """Return the value of every control that the script names, at `time` [s]."""
         return dict(zip(self.names, self._sums(time).tolist(), strict=True))
 
     def values(self, time: float, limits: Limits) -> ControlValues:
-        """The values of all controls of a scene at `time` [s], within their limits."""
+        """Return the values of all controls of a scene at `time` [s], within their limits."""
         return limits.posed(limits.places(self.names), self._sums(time))
 
     def _sums(self, time: float) -> Floats64:
-        """The sums of poses and tracks, in the order of the `names`."""
+        """Return the sums of poses and tracks at `time` [s], in the order of `names`."""
         sums = np.zeros(len(self.names))
         sums[: len(self.posed_names)] = self._posed(time)
         for place, track in self._placed_tracks:
@@ -276,8 +276,8 @@ class Script:
     def check(self, limits: Limits) -> None:
         """Raise UserError for controls that the scene lacks, and for values beyond any use.
 
-        Values of tracks may be negative, because they are cut off only after they are added to
-        poses. But no single key may be further from 0 than an effect can be.
+        Values of tracks may be negative, because only the sum with the poses is cut off. But no key
+        of a track may be further from 0 than the whole range of the control.
         """
         for name in (*self.posed_names, *self.tracks):
             if name not in limits:
@@ -302,9 +302,9 @@ class Script:
 
 
 def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
-    """The times before and after `time` [s], as numbers, and the share of the way between them.
+    """Return the indices of the times before and after `time` [s], and the share between them.
 
-    Before the first and after the last, both are this one.
+    Before the first time both indices are the first, after the last time both are the last.
     """
     after = bisect.bisect_right(times, time)
     if after in (0, len(times)):
@@ -316,19 +316,19 @@ def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
 
 
 def within(values: npt.ArrayLike, amount: float, low: float, high: float) -> Floats64:
-    """Values raised by an amount within limits; values already beyond them may stay."""
+    """Raise values by an amount within limits; values beyond the limits may stay there."""
     now = np.asarray(values, np.float64)
     higher = np.clip(now + amount, np.minimum(now, low), np.maximum(now, high))
     return np.round(higher, DECIMALS)
 
 
 def rounded(number: float) -> float:
-    """A time or a value rounded for a script: without meaningless digits."""
+    """Round a time or a value for a script, to remove meaningless digits."""
     return round(float(number), DECIMALS)
 
 
 def suggestion(name: str, allowed: Iterable[str], scene: str) -> str:
-    """The end of an error message: similar names, names of this meaning, or where names are."""
+    """Return the end of an error message: similar names, synonyms, or how to list all names."""
     known = list(allowed)
     near = difflib.get_close_matches(name, known, n=3) or meant_by(name, known)[:3]
     if near:

@@ -1,7 +1,7 @@
-"""Easings: the way of a value from one key to the next, by its slopes at both ends.
+"""Easings: the curve of a value from one key to the next, given by the slopes at both ends.
 
-The way is the cubic Hermite curve from 0 to 1 with these slopes. No slope is above 3 mean speeds,
-so no curve turns back. A way may also hold: the value stays at the previous key, then jumps.
+The curve is the cubic Hermite curve from 0 to 1 with these slopes. No slope is above 3 mean speeds,
+so no curve turns back. An easing may also hold: the value stays at the previous key, then jumps.
 
 Source: Fritsch and Carlson, "Monotone piecewise cubic interpolation", 1980.
 """
@@ -18,11 +18,11 @@ from risorius.geometry.arrays import Floats64, Unsigned8
 
 Value = TypeVar("Value", float, Floats64)
 
-STEEPEST_TENTHS = 30  # of a slope
+STEEPEST_TENTHS = 30  # largest slope, in tenths of the mean speed
 
 
 class Easing(NamedTuple):
-    """The slopes at the previous key and this one, in tenths of the mean speed; or a held way."""
+    """The slopes at the previous and the present key, in tenths of the mean speed; or a hold."""
 
     start: int
     end: int
@@ -35,11 +35,11 @@ class Easing(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The word for it, or its slopes as "0.5,2"."""
+        """The word for the easing, or its slopes as "0.5,2"."""
         return _WORDS.get(self) or free_easing(*self.slopes)
 
     def of(self, fraction: float) -> float:
-        """The share of the way, 0 to 1, at a fraction of the time, 0 to 1."""
+        """Return the share of the value's change at a fraction of the time; both are 0 to 1."""
         if self.is_held:
             return fraction // 1.0
         return hermite(fraction, *self.slopes)
@@ -57,7 +57,7 @@ _WORDS = {easing: name for name, easing in EASINGS.items()}
 
 
 def hermite(fraction: Value, start: Value, end: Value) -> Value:
-    """The cubic Hermite curve from 0 to 1 with these slopes, at fractions of the time."""
+    """Evaluate the cubic Hermite curve from 0 to 1 with these slopes at fractions of the time."""
     rest = 1.0 - fraction
     return fraction * fraction * (3.0 - 2.0 * fraction) + fraction * rest * (
         start * rest - end * fraction
@@ -65,21 +65,21 @@ def hermite(fraction: Value, start: Value, end: Value) -> Value:
 
 
 def shares_of(fractions: Floats64, rows: Unsigned8) -> Floats64:
-    """Shares of the way between keys at fractions of the time, (N,); rows: easings, (N, 3)."""
+    """Return shares of changes at fractions of the time, both (N,); rows: easings, (N, 3)."""
     start = rows[:, 0] / 10
     end = rows[:, 1] / 10
     return np.where(rows[:, 2], fractions // 1.0, hermite(fractions, start, end))
 
 
 def free_easing(start: float, end: float) -> str:
-    """The slopes nearest to these [mean speeds] that an easing may have, as "0.5,2"."""
+    """Return the possible slopes that are nearest to these [mean speeds], as "0.5,2"."""
     most = STEEPEST_TENTHS / 10
     return ",".join(f"{min(max(0.0, round(slope, 1)), most):g}" for slope in (start, end))
 
 
 @functools.lru_cache(maxsize=1024)
 def easing_named(name: str) -> Easing:
-    """The easing of a word or of two slopes; raises ValueError for another text."""
+    """Return the easing of a word or of two slopes; raise ValueError for another text."""
     if name in EASINGS:
         return EASINGS[name]
     start, end = map(float, name.split(","))

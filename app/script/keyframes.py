@@ -1,8 +1,8 @@
-"""Changes of a script's keys: set, move, copy, delete, rename. Each gives a new script.
+"""Changes of a script's keys: set, move, copy, delete, rename. Each function returns a new script.
 
-A key is known by its track and its time. The whole poses count as one track. No track has two keys
-at one time, so a key that arrives at another replaces it. Tracks that are not changed are shared by
-both scripts.
+Track and time identify a key. All whole poses together are one track. No track has two keys at the
+same time, so a key that is moved to the time of another key replaces it. The new script shares
+unchanged tracks with the old one.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from . import DECIMALS, LARGEST, Channel, Key, Pose, Script, rounded
 from .easings import easing_named
 from .places import Places, among
 
-POSES = ""  # the track of whole poses; any other has its control's name
-FRAME = 1.0 / 30.0  # [s] to which times are rounded, like frames of the window's films
-SAME = 1e-6  # of a value or a time [s]: no difference
+POSES = ""  # the track of whole poses; any other track has its control's name
+FRAME = 1.0 / 30.0  # [s] to which times are rounded; films of the window have such frames
+SAME = 1e-6  # values, or times [s], that differ by less are equal
 
 # The keys of a track as arrays: times [s], then values and easings, or the poses.
 Columns = tuple[npt.NDArray[Any], ...]
@@ -31,24 +31,24 @@ Placed = tuple[Script, Places]  # a script, and places of some of its keys
 
 
 def places_of(script: Script) -> Places:
-    """The places of all keys of a script; the poses come first."""
+    """Return the places of all keys of a script, the poses first."""
     poses = {POSES: np.array([pose.time for pose in script.poses])}
     return Places(poses | {name: track.times for name, track in script.tracks.items()})
 
 
 def on_frame(time: float) -> float:
-    """The time of the nearest frame [s]."""
+    """Return the time of the nearest frame [s]."""
     return rounded(round(time / FRAME) * FRAME)
 
 
 def key_time(script: Script, time: float) -> float:
-    """The time for a key set at `time`: that of a key within half a frame, or of a frame."""
+    """Return the time [s] for a new key: of an old key within half a frame, or of a frame."""
     near = places_of(script).near(time, 0.5 * FRAME)
     return near.first if near else on_frame(time)
 
 
 def time_beyond(script: Script, time: float, direction: int) -> float:
-    """The next time with a key, or with -1 the previous one; else `time` [s]."""
+    """Return the time of the next key, or for direction -1 of the previous; else `time` [s]."""
     all_times = places_of(script).times.values()
     if direction > 0:
         later = (times[np.searchsorted(times, time + SAME, "right") :][:1] for times in all_times)
@@ -58,7 +58,7 @@ def time_beyond(script: Script, time: float, direction: int) -> float:
 
 
 def pose_at(script: Script, time: float) -> Pose | None:
-    """The pose at just this time, if there is one."""
+    """Return the pose at exactly this time [s], or None."""
     return next((pose for pose in script.poses if abs(pose.time - time) < SAME), None)
 
 
@@ -66,7 +66,7 @@ def pose_at(script: Script, time: float) -> Pose | None:
 
 
 def moved(script: Script, places: Places, seconds: float, source: Script | None = None) -> Placed:
-    """The script with keys later by `seconds` (none before 0), and their new places.
+    """Move keys later by `seconds`, none before 0; return the script and the new places.
 
     source: the script whose keys are copied; None: the keys are moved.
     """
@@ -86,7 +86,7 @@ def moved(script: Script, places: Places, seconds: float, source: Script | None 
 
 
 def without(script: Script, places: Places) -> Script:
-    """The script without these keys; raises UserError if none would be left."""
+    """Delete keys; raise UserError if no key would be left."""
     columns = _columns(script, places)
     left = _with(
         script,
@@ -101,11 +101,11 @@ def without(script: Script, places: Places) -> Script:
 
 
 def eased(script: Script, places: Places, easing: str) -> Script:
-    """The script with another easing for these keys."""
+    """Give keys another easing."""
     changed = {}
     for name, columns in _columns(script, places).items():
         is_chosen = among(columns[0], places.times[name])
-        last = columns[-1].copy()  # the easings, or the poses with theirs
+        last = columns[-1].copy()  # the easings, or the poses, which hold their easings
         if name == POSES:
             last[is_chosen] = [replace(pose, easing=easing) for pose in last[is_chosen]]
         else:
@@ -117,7 +117,7 @@ def eased(script: Script, places: Places, easing: str) -> Script:
 def raised(
     script: Script, places: Places, amount: float, limits: Limits, posed: Iterable[str]
 ) -> Script:
-    """The script with these keys raised within limits; poses only in the controls `posed`."""
+    """Raise the values of keys within limits; in poses only those of the controls `posed`."""
     poses = script.poses
     tracks = dict(script.tracks)
     for name, times in places.times.items():
@@ -126,7 +126,7 @@ def raised(
             poses = tuple(p.raised(posed, amount, limits) if p.time in at else p for p in poses)
         else:
             low, high = limits[name]
-            if name in script.posed_names:  # a track may add anything to these
+            if name in script.posed_names:  # a track may then add up to the whole range
                 low, high = low - high, high - low
             track = tracks[name]
             tracks[name] = track.raised(among(track.times, times), amount, low, high)
@@ -134,23 +134,23 @@ def raised(
 
 
 def lasting(script: Script, seconds: float) -> Script:
-    """The script with another duration, which still includes all named poses."""
+    """Change the duration [s] of a script, which still includes all named poses."""
     ends = [pose.time for pose in script.key_poses]
     return replace(script, duration=min(max(on_frame(seconds), FRAME, *ends), LARGEST))
 
 
 def differing(script: Script, time: float, values: ControlValues) -> list[str]:
-    """The controls whose values differ from the script's at `time` [s]."""
+    """Return the controls whose values differ from the script's values at `time` [s]."""
     is_away = np.abs(values.numbers - script.values(time, values.limits).numbers) > SAME
     return [name for name, differs in zip(values, is_away.tolist(), strict=True) if differs]
 
 
 def keyed(script: Script, time: float, values: ControlValues) -> Script:
-    """The script with a key that shows these values at `time` [s].
+    """Add a key, so that the script has these values at `time` [s].
 
-    The key is a pose: the values minus those of the tracks. If a pose cannot reach a value (a track
-    closes the eye, but it shall be open), the track also gets a key. In a script of tracks alone,
-    such as a recording, tracks that differ get keys, or all tracks if none differs.
+    The key is a pose: the values minus the values of the tracks. If a pose cannot reach a value
+    (a track closes an eye that shall be open), the track also gets a key. In a script of tracks
+    alone, such as a recording, the tracks that differ get keys, or all tracks if none differs.
     """
     time = rounded(time)
     plain = script.posed(time)
@@ -176,11 +176,11 @@ def keyed(script: Script, time: float, values: ControlValues) -> Script:
 
 
 def keyed_alone(script: Script, time: float, values: ControlValues, names: Iterable[str]) -> Script:
-    """The script with keys of these controls alone, which show their values at `time` [s].
+    """Add keys for some controls alone, so that the script has their values at `time` [s].
 
-    A pose at this time takes the controls that no track moves. The others get a key in a track,
-    which is added to the poses. A new track is 0 at the poses before and after, so that the motion
-    beyond them does not change.
+    If there is a pose at this time, it takes the controls that have no track. Other controls get a
+    key in a track, which is added to the poses. A new track is 0 at the poses before and after, so
+    that earlier and later motion does not change.
     """
     time = rounded(time)
     posed = script.posed(time)
@@ -206,7 +206,7 @@ def keyed_alone(script: Script, time: float, values: ControlValues, names: Itera
 
 
 def _with_track_keys(script: Script, time: float, values: Values) -> Script:
-    """The script with a key in each of these tracks; missing ones are made."""
+    """Add a key at `time` [s] to each of these tracks; make missing tracks."""
     changed = {}
     for name, value in values.items():
         track = script.tracks.get(name, Channel([], []))
@@ -221,7 +221,7 @@ def _with_track_keys(script: Script, time: float, values: Values) -> Script:
 
 
 def _easing_at(poses: Iterable[Pose], time: float) -> str:
-    """The easing of a new pose: that of the pose after it."""
+    """Return the easing of a new pose: the easing of the pose after it."""
     return next((pose.easing for pose in poses if pose.time > time), "smooth")
 
 
@@ -229,7 +229,7 @@ def _easing_at(poses: Iterable[Pose], time: float) -> str:
 
 
 def _columns(script: Script, places: Places) -> dict[str, Columns]:
-    """All keys of the tracks with any of these places."""
+    """Return all keys of each track that has one of these places."""
     columns = {POSES: _pose_columns(script.poses)} if POSES in places.times else {}
     return columns | {
         name: _channel_columns(track)
@@ -249,12 +249,12 @@ def _pose_columns(poses: Sequence[Pose]) -> Columns:
 
 
 def _picked(columns: Columns, which: npt.NDArray[Any]) -> Columns:
-    """Some keys; which: a mask, or their numbers."""
+    """Select keys; which: flags or indices."""
     return tuple(column[which] for column in columns)
 
 
 def _joined(there: Columns, arriving: Columns) -> Columns:
-    """Both in the order of time; an arriving key replaces one at the same time."""
+    """Merge keys in the order of time; an arriving key replaces an old key at the same time."""
     left = _picked(there, ~among(there[0], arriving[0], SAME))
     if not len(left[0]):
         return arriving
@@ -263,7 +263,7 @@ def _joined(there: Columns, arriving: Columns) -> Columns:
 
 
 def _with(script: Script, changed: Mapping[str, Columns]) -> Script:
-    """The script with other keys in some tracks; a track without keys is removed."""
+    """Replace the keys of some tracks; remove a track without keys."""
     poses = script.poses
     tracks = dict(script.tracks)
     for name, columns in changed.items():
@@ -278,5 +278,5 @@ def _with(script: Script, changed: Mapping[str, Columns]) -> Script:
 
 
 def _reaching(script: Script, *times: float) -> Script:
-    """The script, extended if it ends before one of its keys."""
+    """Extend a script that ends before one of these times [s]."""
     return replace(script, duration=max([script.duration, *times]))

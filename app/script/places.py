@@ -1,4 +1,4 @@
-"""Sets of places of keys in a script, fast even for a take of half a million keys."""
+"""Sets of places of keys in a script, which are fast even for half a million keys."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ class KeyPlace(NamedTuple):
 
 
 class Places(Set[KeyPlace]):
-    """A constant set of places: for each of its tracks, the times of its keys."""
+    """An immutable set of places: the times of keys in each track."""
 
     def __init__(self, times: Mapping[str, Times]) -> None:
-        """times: name of the track -> its times, rising, each once."""
+        """times: name of the track -> times [s], strictly rising."""
         self.times = {name: each for name, each in times.items() if len(each)}
 
     @classmethod
     def of(cls, *places: KeyPlace) -> Places:
-        """The set of a few places."""
+        """Make the set of a few places."""
         times: dict[str, set[float]] = {}
         for track, time in places:
             times.setdefault(track, set()).add(time)
@@ -51,11 +51,11 @@ class Places(Set[KeyPlace]):
 
     @property
     def first(self) -> float:
-        """The earliest time [s]; of a set that is not empty."""
+        """The earliest time [s]; the set must not be empty."""
         return min(float(each[0]) for each in self.times.values())
 
     def latest_in(self, edges: Times, names: Iterable[str]) -> Times:
-        """The latest time of a key in these tracks between each two of the times `edges` [s]."""
+        """Return the last key time of these tracks in each interval of `edges` [s] with keys."""
         latest = np.full(len(edges) - 1, -np.inf)
         for times in (self.times[name] for name in names if name in self.times):
             after = np.searchsorted(times, edges)
@@ -65,7 +65,7 @@ class Places(Set[KeyPlace]):
         return found
 
     def near(self, time: float, reach: float) -> Places:
-        """The keys at the time nearest to this one; none if it is further than `reach` [s]."""
+        """Return the keys at the key time nearest to `time`, if it is within `reach` [s]."""
         around = self.between(time - reach, time + reach).times
         nearest = min(
             (float(each[np.abs(each - time).argmin()]) for each in around.values()),
@@ -75,7 +75,7 @@ class Places(Set[KeyPlace]):
         return self.between(nearest, nearest)
 
     def between(self, first: float, last: float) -> Places:
-        """The keys from one time to another [s]."""
+        """Return the keys from one time to another [s]."""
         return Places(
             {
                 name: each[np.searchsorted(each, first) : np.searchsorted(each, last, "right")]
@@ -114,7 +114,7 @@ NOWHERE = Places({})
 
 
 def among(times: Times, others: Times, reach: float = 0.0) -> Flags:
-    """Flags of times that are within `reach` [s] of one of the others."""
+    """Return which times are within `reach` [s] of one of the others."""
     if not len(others):
         return np.zeros(len(times), np.bool_)
     after = np.minimum(np.searchsorted(others, times - reach), len(others) - 1)

@@ -1,7 +1,7 @@
-"""Recorded movements of controls, added to the script that played meanwhile.
+"""Recording of controls that a user moves while a script plays; the result is a new script.
 
-A control is recorded from the moment when it leaves the script until the recording ends. Controls
-that were not moved, and all keys before and after, do not change.
+A control is recorded from the moment when it differs from the script until the recording ends.
+Other controls, and all keys before and after the recording, do not change.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ RELEASE = 0.1  # [s] at the recording's end in which a control returns to the sc
 
 
 class Recorder:
-    """Records the value of every control at every step, from a time of a script on.
+    """Records the values of all controls at each step, from a time of a script on.
 
-    held: values that the user holds against the script; the caller sets them.
+    held: values that the user holds in place of the script's; the caller sets them.
     """
 
     def __init__(
         self, played: Script, start: float, held: Mapping[str, float] | None = None
     ) -> None:
-        """played: moves the controls that the user does not. start: [s]. held: values before it."""
+        """played: the script that plays meanwhile. start: [s]. held: values held at the start."""
         self._played = played
         self.held = dict(held or {})
-        self._kept = dict[str, float]()  # recorded ones of the held values
+        self._kept = dict[str, float]()  # held values that are recorded
         self.start = self.time = rounded(start)
         # For each moved control: times [s] and values of its track, from the last key on.
         self.samples: dict[str, tuple[array[float], array[float]]] = {}
         thinned([0.0, 1.0], [0.0, 1.0])  # compiled now, before anything moves
 
     def add(self, time: float, values: ControlValues) -> None:
-        """The controls are at `values` at a time [s], unless that is recorded already."""
+        """Record the values of all controls at a time [s], unless the time is recorded already."""
         if time <= self.time:
             return
         before, self.time = self.time, time
@@ -64,11 +64,11 @@ class Recorder:
 
     @property
     def missed(self) -> dict[str, float]:
-        """The held values that changed since the last recorded time."""
+        """The held values that have changed since the last recorded time."""
         return {name: each for name, each in self.held.items() if self._kept.get(name) != each}
 
     def script(self) -> Script | None:
-        """The script with the recording so far, or None if nothing was recorded."""
+        """Return the script with the recording so far, or None if nothing was recorded."""
         if not self.samples:
             return None
         tracks = {
@@ -79,12 +79,12 @@ class Recorder:
         return replace(self._played, duration=end, tracks={**self._played.tracks, **tracks})
 
     def _track_value(self, name: str, time: float) -> float:
-        """The value of the script's own track of a control, 0 if it has none."""
+        """Return the value of the script's track of a control, 0 if there is no track."""
         track = self._played.tracks.get(name)
         return track.value(time) if track is not None else 0.0
 
     def _joined(self, name: str, taken: Channel) -> Channel:
-        """The script's track with the recorded part in it, from whose end it returns to its own."""
+        """Insert a recorded part into the script's track, and return to the track's old values."""
         old = self._played.tracks.get(name, Channel([], []))
         start = rounded(taken.times[0])
         end = rounded(self.time)
@@ -106,14 +106,14 @@ class Recorder:
 
 
 def _along(track: Channel, first: float, last: float) -> list[Key]:
-    """Keys that follow a track after one time, up to another [s], with no key of its between."""
+    """Return keys that follow a track from one time to another [s], between two of its keys."""
     following = int(np.searchsorted(track.times, last))
     easing = track.easing(following).name if following < len(track) else "linear"
     value = track.value(last) if len(track) else 0.0
     end = Key(last, value, easing)
     if easing in ("linear", "hold") or {first, last} <= set(track.times.tolist()):
-        return [end]  # a part of such a way has the easing of the whole
-    # Straight lines between this many samples of an eased way have errors of 0.0002.
+        return [end]  # the easing of a part is the easing of the whole
+    # Straight lines between this many samples of an eased curve have errors of 0.0002.
     times = np.linspace(first, last, 64 + 1)
     along = thinned(times, [track.value(time) for time in times.tolist()])
     return [*along.keys[1:-1], replace(end, easing="linear")]

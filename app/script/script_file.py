@@ -1,7 +1,7 @@
-"""From a script file to a Script, or to an error that names the line or key; and back.
+"""Reading and writing of script files; an error names the wrong line or key.
 
-A written script reads back unchanged. Tracks with few keys are written as tables, which explain
-themselves; tracks with more keys are written as lines, which are short and fast to read. A single
+A written script reads back unchanged. Tracks with few keys are written as tables, which are easy to
+understand; tracks with more keys are written as lines, which are short and fast to read. A single
 pose is a script with one [[pose]] at time 0.
 """
 
@@ -59,7 +59,7 @@ def _channel(entries: Any) -> Channel:
 
 
 def _channel_of_lines(text: str) -> Channel:
-    """A channel from lines of a time, a value and, where it is not linear, an easing.
+    """Read a channel from lines of a time, a value and, unless it is linear, an easing.
 
     A take has half a million lines, so numbers are put into arrays and checked there.
     """
@@ -86,7 +86,7 @@ def _channel_of_lines(text: str) -> Channel:
 
 
 def _check_order(what: str, times: npt.ArrayLike) -> None:
-    """ValueError unless each time [s] comes after the one before it."""
+    """Raise ValueError unless the times [s] rise strictly."""
     rising = np.asarray(times)
     for place in np.flatnonzero(np.diff(rising) <= 0.0)[:1].tolist():
         raise ValueError(
@@ -135,7 +135,7 @@ def parse_script(text: str, *, source: str) -> Script:
     ends += [pose.time for pose in file.pose[-1:]]
     if not ends:
         raise UserError(f"{source}: no [[pose]] and no [tracks]: a script needs at least one key")
-    held = 1.0  # [s] for which a pose is held that is the only key, at 0 s
+    held = 1.0  # [s] of a script whose only key is at 0 s
     duration = (max(ends) or held) if file.duration is None else file.duration
     if duration <= 0.0:
         raise UserError(f"{source}: duration is {duration:g} s; it must be above 0")
@@ -171,7 +171,7 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def save_script(target: Path, script: Script) -> None:
-    """Write a script file, whole or not at all; raises UserError if it cannot be written."""
+    """Write a script file atomically; raise UserError if it cannot be written."""
     text = script_text(script, target.parent)
     if len(text) > LONGEST_FILE:
         raise UserError(
@@ -182,12 +182,12 @@ def save_script(target: Path, script: Script) -> None:
 
 
 def script_text(script: Script, folder: Path | None = None) -> str:
-    """The TOML text of a script; folder: the file's, for relative paths.
+    """Return the TOML text of a script; folder: folder of the file, for relative paths.
 
     Raises UserError for a sound whose name is not UTF-8, which TOML requires.
     """
     head = [as_text(script.preface)] if script.preface else []
-    if script.title:  # else it has its file's name
+    if script.title:  # without a title the file's name is used
         head.append(f"title = {_quoted(script.title)}")
     head.append(f"scene = {_quoted(script.scene)}")
     if script.camera is not None:
@@ -209,7 +209,7 @@ def script_text(script: Script, folder: Path | None = None) -> str:
 
 
 def pose_script(values: Mapping[str, float], *, title: str, scene: str) -> Script:
-    """A script of one pose alone; controls at 0 are left out."""
+    """Return a script of one pose; controls at 0 are left out."""
     pose = Pose(0.0, {name: rounded(value) for name, value in values.items() if rounded(value)})
     return Script(title, POSE_SECONDS, source=title, scene=scene, poses=(pose,))
 
@@ -222,9 +222,9 @@ def is_pose(script: Script) -> bool:
 
 
 def _as_seen_from(folder: Path | None, file: Path) -> str:
-    """A script's name for a file, relative to `folder`, so that both may move together.
+    """Return the path of a file relative to `folder`, so that script and file may move together.
 
-    It is the whole path if the file is neither in the folder nor near it: then only the script may
+    If the file is neither in the folder nor near it, the path is absolute, and only the script may
     move.
     """
     if folder is not None:
@@ -246,7 +246,7 @@ def _pose(pose: Pose) -> str:
 
 
 def _track(name: str, channel: Channel) -> str:
-    # Tables of more keys would be too long to read.
+    # A table of more keys would be too long for readers.
     if len(channel) > 24:
         parts = (channel.times.tolist(), channel.values.tolist(), channel.easing_rows())
         keys = "\n".join(f"{t!r} {v!r}{_ending(e)}" for t, v, e in zip(*parts, strict=True))
@@ -260,7 +260,7 @@ def _track(name: str, channel: Channel) -> str:
 
 @functools.cache
 def _ending(easing: Easing) -> str:
-    """The end of a key's line for an easing; "" for a linear one."""
+    """Return the end of a key's line for an easing; "" for the linear easing."""
     return "" if easing.name == "linear" else f" {easing.name}"
 
 

@@ -1,4 +1,4 @@
-"""Tracks of few keys from many samples: straight lines that follow a recorded channel."""
+"""Reduction of many samples to few keys: straight lines that follow a recorded channel."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ TOLERANCE = 2e-3  # of a value: the largest, invisible error of a line between k
 
 
 def thinned(times: npt.ArrayLike, values: npt.ArrayLike, tolerance: float = TOLERANCE) -> Channel:
-    """Linear keys at some of the samples, with errors of at most `tolerance` at all.
+    """Return linear keys at some samples; the error at each sample is at most `tolerance`.
 
-    times: those of the samples [s], shape (T,), T at least 1, rising. They are rounded to
-    microseconds, and a sample no later than the one before it is left out. values: shape (T,),
-    finite. Those of keys are rounded by at most a twentieth of the tolerance, to keep files short.
-    tolerance: that of a value, above 0.
+    times: times of the samples [s], shape (T,), T at least 1, rising. They are rounded to
+    microseconds, and samples that are then no later than the sample before are left out. values:
+    shape (T,), finite. Values of keys are rounded by at most a twentieth of the tolerance, to keep
+    files short. tolerance: largest error of a value, above 0.
 
     The next key is the farthest sample that a straight line can reach, as in Imai and Iri,
     "Computational-geometric methods for polygonal approximations of a curve" (1986). One pass
@@ -32,14 +32,14 @@ def thinned(times: npt.ArrayLike, values: npt.ArrayLike, tolerance: float = TOLE
     moments = moments[is_later]
     samples = np.array(values, np.float64)[is_later]
     decimals = math.ceil(-math.log10(0.1 * tolerance))
-    ends = samples.round(decimals) + 0.0  # which makes -0.0 to 0.0
+    ends = samples.round(decimals) + 0.0  # turns -0.0 into 0.0
     kept = _corners(moments, samples, ends, tolerance)
     return Channel(moments[kept], ends[kept], "linear")
 
 
 @njit
 def _corners(times: Floats64, values: Floats64, ends: Floats64, tolerance: float) -> Flags:
-    """Flags of the samples that become keys, shape (T,); a key has the value in `ends`."""
+    """Return which samples become keys, shape (T,); a key has the value in `ends`."""
     count = len(times)
     is_corner = np.zeros(count, np.bool_)
     start = 0

@@ -1,6 +1,6 @@
-"""From a sound file to its samples: any file with a sound for ffmpeg, such as WAV, MP3, a film.
+"""Decoding of sound files with ffmpeg: WAV, MP3, films and any other file with sound.
 
-Films go through the same ffmpeg, which `imageio_ffmpeg` includes.
+Films are written by the same ffmpeg, which `imageio_ffmpeg` includes.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ PATIENCE = 300.0  # [s] for ffmpeg to read a file
 
 @dataclass(frozen=True, eq=False)
 class Sound:
-    """Samples over time.
+    """A decoded sound.
 
     samples: (N, C) int16, where C is 1 or 2. rate: of each channel [samples/s].
     """
@@ -45,9 +45,9 @@ class Sound:
 
 
 class Peaks:
-    """The swings of a sound, of all channels together; made once for reading at any zoom."""
+    """Lowest and highest values of a sound over all channels, stored for a waveform at any zoom."""
 
-    BLOCK = 512  # samples with a stored lowest and highest value
+    BLOCK = 512  # samples that share a stored lowest and highest value
 
     def __init__(self, sound: Sound) -> None:
         self._rate = sound.rate
@@ -60,13 +60,13 @@ class Peaks:
         self._loudest = max(-int(low_blocks.min()), int(high_blocks.max()), 1)
 
     def between(self, start: float, end: float, count: int) -> tuple[Floats64, Floats64]:
-        """The lowest and highest value in each of `count` equal stretches of a time [s].
+        """Return the lowest and highest value in each of `count` equal intervals of a time [s].
 
-        Each has shape (count,), from -1 to 1, the sound's own largest swing, so a quiet recording
-        is visible, too. Values are 0 where there is no sound. start: not below 0.
+        Both have shape (count,). They are scaled to the sound's largest value, 1, so that a quiet
+        recording is visible too, and are 0 where there is no sound. start: not below 0.
         """
         edges = np.linspace(start, end, count + 1) * self._rate
-        # Stretches of four blocks or more have exact edges; for shorter ones samples are read.
+        # Intervals of four or more blocks read whole blocks, shorter intervals read samples.
         length = self.BLOCK if edges[-1] - edges[0] >= count * 4 * self.BLOCK else 1
         low, high = self._levels[length]
         places = np.floor(edges / length).astype(np.int64)
@@ -96,16 +96,16 @@ def ffmpeg() -> str:
 
 
 def sound_form() -> tuple[str, ...]:
-    """Options for a sound at `RATE`, in stereo if it has two channels.
+    """Return ffmpeg's options for a sound at `RATE`, in stereo if it has two channels.
 
-    A sound that begins late in its file, such as a film, begins equally late here.
+    If the sound begins late in its file, as it may in a film, the samples begin equally late.
     """
     form = f"aformat=sample_rates={RATE}:channel_layouts=mono|stereo"
     return "-af", f"aresample=async=1:first_pts=0,{form}"
 
 
 def sound_input(file: Path, seconds: float, begin: float = 0.0) -> tuple[str, ...]:
-    """Options for an input of this much sound: of a file, and of nothing that this may point to."""
+    """Return ffmpeg's options for `seconds` of sound; other protocols than files are forbidden."""
     skipped = ("-ss", f"{begin:.6f}") if begin else ()
     return "-protocol_whitelist", "file", *skipped, "-t", f"{seconds:.6f}", "-i", f"file:{file}"
 
@@ -114,7 +114,7 @@ def load_sound(file: Path) -> Sound:
     """Read a sound file, or the sound of a film; raises UserError with the reason of a failure."""
     read_bytes(file, what="sound file", longest=2**40, first=0)
     name = ffmpeg()
-    longest = 3600.0  # [s]; memory holds all of it: 690 MB in stereo
+    longest = 3600.0  # [s], which take 690 MB of memory in stereo
     source = sound_input(Path(os.path.abspath(file)), longest + 1.0)
     form = ["-map", "0:a:0", *sound_form(), "-f", "wav", "-c", "pcm_s16le"]
     try:
@@ -141,9 +141,9 @@ def load_sound(file: Path) -> Sound:
 
 
 def _samples(wav: bytes) -> npt.NDArray[np.int16]:
-    """The samples in a WAV of 16 bits as ffmpeg writes it into a pipe, (N, C)."""
+    """Return the samples, (N, C), in a 16-bit WAV that ffmpeg writes into a pipe."""
     channels = int.from_bytes(wav[22:24], "little") or 1
-    begin = wav.find(b"data") + 8  # behind the chunk's name and its length, which no pipe knows
+    begin = wav.find(b"data") + 8  # after the chunk's name, and a length that is wrong in a pipe
     count = (len(wav) - begin) // (2 * channels)
     if len(wav) < begin or count <= 0:
         return np.zeros((0, channels), np.int16)
@@ -152,7 +152,7 @@ def _samples(wav: bytes) -> npt.NDArray[np.int16]:
 
 
 def with_sound(script: Script, file: Path | None) -> Script:
-    """The script with this sound file; None keeps its own. UserError for a missing file."""
+    """Return the script with another sound file, or unchanged for None; UserError if missing."""
     if file is None:
         return script
     load_sound(file)

@@ -1,10 +1,10 @@
-"""Sound from a device, and the time that has been heard.
+"""Playback of sound on a device, and the time in the sound that is heard at present.
 
 The library is miniaudio: MIT licence, wheels of half a megabyte for Linux, macOS and Windows and
 each supported Python, and no further packages (sounddevice needs PortAudio on Linux, pygame and
 pyglet have their own windows, soundcard only supports PulseAudio there). It requests samples when
-the device needs them. So the requested samples count the time of the device's own clock, which the
-picture can follow, and a jump to another place is an answer with other samples.
+the device needs them. So the number of requested samples measures time by the device's clock, and
+the picture can follow it. To jump to another place, the player answers with other samples.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ except ImportError:  # no wheel for this machine; everything else works without
     miniaudio = None
 
 PERIOD = 0.04  # [s] of samples in one request
-PERIODS = 3  # periods in the device: new samples are heard after these
+PERIODS = 3  # periods that the device buffers before new samples are heard
 Samples = npt.NDArray[np.int16]
 
 
@@ -39,7 +39,7 @@ class NoDeviceError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """A part to play: from one time of the sound [s] to another [s], at a speed."""
+    """A part to play, from one time of the sound to another [s], at a speed."""
 
     start: float
     speed: float
@@ -56,7 +56,7 @@ class Player:
         self._clock = clock
         self._device = open_device(sound.rate, sound.samples.shape[1])
         self._part: _Part | None = None
-        # Time of the device's last request, its part, and the length given before [s].
+        # Time of the device's last request, the part that it got, and the length sent before [s].
         self._asked: tuple[float, _Part | None, float] = 0.0, None, 0.0
 
     @property
@@ -71,7 +71,7 @@ class Player:
         (when, asked_for, given) = self._asked
         if part is None or asked_for is not part:
             return part.start if part is not None else 0.0
-        since = min(self._clock() - when, 2.0 * PERIOD)  # a device that hangs keeps its place
+        since = min(self._clock() - when, 2.0 * PERIOD)  # a stuck device stays where it is
         heard = given - (PERIODS - 1) * PERIOD + since
         return part.start + max(heard, 0.0) * part.speed
 
@@ -80,19 +80,19 @@ class Player:
         """Whether the device requests no more samples, for example when unplugged."""
         part = self._part
         when = self._asked[0]
-        # A device without a request for this long [s] counts as lost.
+        # A device that makes no request for half a second is lost.
         return part is not None and self._clock() - max(when, part.since) > 0.5
 
     @property
     def is_heard(self) -> bool:
-        """Whether it plays, before the end of the sound."""
+        """Whether a part plays and has not ended."""
         part = self._part
         return part is not None and self.position < part.end and not self.is_stuck
 
     def play(self, start: float, speed: float = 1.0, seconds: float = math.inf) -> None:
-        """Play from a time of the sound [s] on, instead of the present part.
+        """Play from a time of the sound [s] on, in place of the present part.
 
-        speed: a speed other than 1 changes the pitch, like a tape. seconds: longest duration.
+        speed: a speed other than 1 also changes the pitch. seconds: longest duration.
         """
         end = min(start + seconds * speed, self._sound.duration)
         self._part = _Part(start, speed, end, self._clock())
@@ -103,11 +103,11 @@ class Player:
                 self._device.start(samples)
 
     def stop(self) -> None:
-        """Be silent; the device keeps running, to restart at once."""
+        """Stop the sound; the device keeps running, so that it can restart at once."""
         self._part = None
 
     def rest(self) -> None:
-        """Be silent for some time: the device stops, too."""
+        """Stop the sound and the device, for a longer pause."""
         self._part = None
         with contextlib.suppress(miniaudio.MiniaudioError):
             self._device.stop()
@@ -117,7 +117,7 @@ class Player:
         self._device.close()
 
     def _samples(self) -> Generator[Samples | bytes, int, None]:
-        """Answers each request for a number of frames, in the device's own thread."""
+        """Answer each request for a number of frames, in the device's thread."""
         part = None
         given = 0
         count = yield b""
@@ -131,7 +131,7 @@ class Player:
             count = yield chunk
 
     def _chunk(self, part: _Part | None, first: int, count: int) -> Samples:
-        """Frames `first` to `first + count` of a part, (count, C); silence outside the sound."""
+        """Return frames `first` to `first + count` of a part, (count, C); 0 outside the sound."""
         sound = self._sound.samples
         rate = self._sound.rate
         chunk = np.zeros((count, sound.shape[1]), np.int16)
@@ -143,7 +143,7 @@ class Player:
 
 
 def open_device(rate: int, channels: int) -> Any:
-    """The device that the system prefers, stopped; raises NoDeviceError if there is none."""
+    """Open the device that the system prefers, stopped; raise NoDeviceError if there is none."""
     if miniaudio is None:
         raise NoDeviceError("miniaudio is not installed (in the checkout: pip install '.[window]')")
     try:
