@@ -1,4 +1,4 @@
-"""Checks for every head mesh: it must be one clean, symmetric surface."""
+"""Checks that every head mesh must pass: one clean, symmetric surface."""
 
 import numpy as np
 from numpy.linalg import norm
@@ -13,7 +13,7 @@ from risorius.geometry.sides import sides_of
 
 
 def edge_faces(faces: Faces) -> dict[Edge, list[int]]:
-    """Faces beside each undirected edge, in the order of the face list."""
+    """Numbers of the faces at each undirected edge, in the order of the face list."""
     result: dict[Edge, list[int]] = {}
     for index, (a, b, c) in enumerate(faces.tolist()):
         for first, second in ((a, b), (b, c), (c, a)):
@@ -22,14 +22,14 @@ def edge_faces(faces: Faces) -> dict[Edge, list[int]]:
 
 
 def is_manifold(faces: Integers32) -> bool:
-    """Whether every edge has one or two faces and its two faces run along it in opposite ways."""
+    """Whether every edge has one face, or two faces that run along it in opposite directions."""
     directed = sides_of(faces)
     has_no_repeat = len(np.unique(directed, axis=0)) == len(directed)
     return has_no_repeat and all(len(beside) <= 2 for beside in edge_faces(faces).values())
 
 
 def component_count(faces: Integers32) -> int:
-    """Number of pieces connected by shared vertices."""
+    """The number of pieces, where a shared vertex connects faces."""
     used, corners = np.unique(faces, return_inverse=True)
     links = corners.reshape(-1, 3)[:, [0, 1, 1, 2]].reshape(-1, 2)
     graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(len(used),) * 2)
@@ -50,7 +50,7 @@ def is_mirrored(faces: Integers32, mirror: Integers32) -> bool:
     """Whether the mirror image of every face is a face with reversed corners."""
 
     def normalised(triangles: Integers32) -> set[tuple[int, ...]]:
-        """Each triangle with its lowest vertex first."""
+        """The triangles, each rotated so that its lowest vertex comes first."""
         start = triangles.argmin(axis=1)
         order = (start[:, None] + np.arange(3)) % 3
         return set(map(tuple, np.take_along_axis(triangles, order, axis=1).tolist()))
@@ -59,7 +59,7 @@ def is_mirrored(faces: Integers32, mirror: Integers32) -> bool:
 
 
 def check_part(part: Part, *, least_agreeing: float = 0.98) -> None:
-    """Check that arrays fit, and that unit normals face the drawn side."""
+    """Check that the part's arrays fit together, and that unit normals face the drawn side."""
     assert part.vertices.dtype == part.normals.dtype == part.colours.dtype == np.float32
     assert part.faces.dtype == np.int32
     rows = np.hstack([part.vertices, part.normals, part.colours])
@@ -81,10 +81,11 @@ def part(head: Head, name: str) -> Part:
 
 
 def winding_numbers(vertices: Floats64, faces: Integers32, points: Floats64) -> Floats64:
-    """Turns of a surface around points, shape (n,): 1 deep inside, 0 outside.
+    """Winding numbers of a surface around points, shape (n,): 1 deep inside, 0 outside.
 
-    It is less than 1 near openings. Source: Jacobson et al. 2013, "Robust inside-outside
-    segmentation using generalized winding numbers", equation 5 (van Oosterom, Strackee 1983).
+    Near openings a number lies between 0 and 1. Source: Jacobson et al. 2013, "Robust
+    inside-outside segmentation using generalized winding numbers", equation 5 (van Oosterom,
+    Strackee 1983).
     """
     a, b, c = (vertices[faces[:, k]] - points[:, None].astype(float) for k in range(3))
     length_a, length_b, length_c = (norm(each, axis=2) for each in (a, b, c))

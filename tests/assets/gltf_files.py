@@ -1,4 +1,4 @@
-"""glTF files for tests, made from arrays in every way that the specification allows."""
+"""glTF files for tests, made from arrays in all forms that the specification allows."""
 
 import json
 import struct
@@ -13,19 +13,19 @@ TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 
 
 class GltfMaker:
-    """A glTF file in the making; `parts` is its document, which tests may change."""
+    """A glTF file under construction; tests may change its document, `parts`."""
 
     def __init__(self) -> None:
         self.parts: dict[str, Any] = {"asset": {"version": "2.0"}, "scene": 0}
         self.data = bytearray()
 
     def add(self, kind: str, entry: dict[str, Any]) -> int:
-        """Add an entry to a list of the document; return its number."""
+        """Add an entry to a list of the document; return the entry's number."""
         self.parts.setdefault(kind, []).append(entry)
         return len(self.parts[kind]) - 1
 
     def view(self, data: bytes, **more: Any) -> int:
-        """Add bytes; return the number of their view."""
+        """Add bytes as a buffer view; return the view's number."""
         self.data += bytes(-len(self.data) % 4)
         start = len(self.data)
         self.data += data
@@ -33,7 +33,7 @@ class GltfMaker:
         return self.add("bufferViews", {**lies, **more})
 
     def accessor(self, rows: npt.ArrayLike, kind: str = "f4", *, gap: int = 0, **more: Any) -> int:
-        """Add rows of numbers; gap: bytes between them. Return the number of the accessor."""
+        """Add rows of numbers; return the accessor's number. gap: bytes between two rows."""
         array = np.atleast_2d(np.asarray(rows))
         array = array.T if array.shape[0] == 1 and np.ndim(rows) == 1 else array
         array = array.astype("<" + kind)
@@ -46,7 +46,7 @@ class GltfMaker:
         return self.described(array.shape, kind, **shown)
 
     def described(self, shape: tuple[int, int], kind: str, **more: Any) -> int:
-        """Add an accessor for this number of rows."""
+        """Add an accessor for rows of this shape, without data."""
         count, width = shape
         known = {"componentType": COMPONENTS[kind], "count": count, "type": TYPES[width]}
         return self.add("accessors", {**known, **more})
@@ -58,9 +58,9 @@ class GltfMaker:
     def primitive(
         self, vertices: npt.ArrayLike, faces: npt.ArrayLike | None, **more: Any
     ) -> dict[str, Any]:
-        """A primitive of plain positions and, if there are faces, their indices.
+        """A primitive with positions and, if there are faces, their indices.
 
-        more: "attributes" are added to these; other keys replace.
+        more: other keys of the primitive; "attributes" are added to the positions.
         """
         attributes = {"POSITION": self.accessor(vertices), **more.pop("attributes", {})}
         made: dict[str, Any] = {"attributes": attributes, **more}
@@ -69,21 +69,21 @@ class GltfMaker:
         return made
 
     def picture(self, content: bytes, **texture: Any) -> int:
-        """Add a picture and a texture of it; return the texture's number."""
+        """Add a picture and a texture that shows it; return the texture's number."""
         image = self.add("images", {"bufferView": self.view(content), "mimeType": "image/png"})
         return self.add("textures", {"source": image, **texture})
 
     def shown(self, *nodes: dict[str, Any]) -> None:
-        """Add nodes, and a scene of them."""
+        """Add nodes, and a scene with these nodes."""
         self.add("scenes", {"nodes": [self.add("nodes", node) for node in nodes]})
 
     def document(self, **buffer: Any) -> bytes:
-        """The document as text; buffer: the place of its data."""
+        """The document as text; buffer: keys that locate its data."""
         own = [{"byteLength": len(self.data), **buffer}]
         return json.dumps({"buffers": own, **self.parts}).encode()
 
     def glb(self, version: int = 2) -> bytes:
-        """The whole file as one."""
+        """The bytes of the whole GLB file."""
         text = self.document()
         text += b" " * (-len(text) % 4)
         data = bytes(self.data) + bytes(-len(self.data) % 4)
@@ -92,6 +92,6 @@ class GltfMaker:
         return struct.pack("<4sII", b"glTF", version, 12 + len(body)) + body
 
     def write(self, path: Path) -> Path:
-        """Write it as GLB."""
+        """Write the GLB file."""
         path.write_bytes(self.glb())
         return path

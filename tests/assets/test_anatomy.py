@@ -5,7 +5,7 @@ import pytest
 
 from risorius.geometry.sides import sides_of
 
-# The right-hand partner of every left-hand landmark, read from the iBug figure.
+# Pairs of a right and a left landmark, read from the iBug figure.
 PAIRS = (
     [(k, 16 - k) for k in range(8)]
     + [(17, 26), (18, 25), (19, 24), (20, 23), (21, 22), (31, 35), (32, 34)]
@@ -23,7 +23,7 @@ def test_landmarks_are_68_different_vertices(head):
 
 
 def test_landmarks_are_mirrored(head):
-    """Pairs are mirror images, the others lie in the mid-plane; the right side has x < 0."""
+    """Pairs of landmarks are mirror images; right ones have x < 0, unpaired ones x = 0."""
     for right, left in PAIRS:
         assert head.mirror[head.landmarks[left]] == head.landmarks[right]
         assert head.vertices[head.landmarks[right], 0] < 0.0
@@ -48,7 +48,10 @@ def test_landmarks_lie_where_the_scheme_says(head):
 
 
 def test_lip_landmarks_lie_on_the_lip_rows(head):
-    """Outer lips on the border of the red, inner ones where lips meet, corners between."""
+    """Outer lip landmarks lie on the border of the red, inner ones where the lips meet.
+
+    The corners lie between both.
+    """
     outer = [*range(49, 54), *range(55, 60)]
     for numbers, row in ((outer, "mouth_6"), ((48, 54), "mouth_3"), (range(60, 68), "mouth_2")):
         on_row = {*head.rings[f"{row}_left"].tolist(), *head.rings[f"{row}_right"].tolist()}
@@ -56,7 +59,7 @@ def test_lip_landmarks_lie_on_the_lip_rows(head):
 
 
 def test_the_mouth_ends_at_the_corners_of_the_lips(head):
-    """Landmarks 48 and 54 are at the anatomical corners, a little outside of 60 and 64."""
+    """Landmarks 48 and 54 are at the mouth's anatomical corners, slightly outside 60 and 64."""
     corners = [head.anatomy[f"cheilion_{side}"] for side in ("right", "left")]
     assert head.landmarks[[48, 54]].tolist() == corners
     wide, red = (np.ptp(head.vertices[head.landmarks[pair], 0]) for pair in ([48, 54], [60, 64]))
@@ -64,14 +67,14 @@ def test_the_mouth_ends_at_the_corners_of_the_lips(head):
 
 
 def test_lid_landmarks_lie_on_the_lid_margin(head):
-    """All twelve are there, on their own eye."""
+    """All twelve lid landmarks are on the lid margins of their own eye."""
     for numbers, side in ((range(36, 42), "right"), (range(42, 48), "left")):
         margin = set(head.rings[f"eye_2_{side}"].tolist())
         assert {int(head.landmarks[number]) for number in numbers} <= margin
 
 
 def test_anatomy_has_both_sides(head):
-    """Every _left has its mirror image _right; the rest lies in the mid-plane."""
+    """Every point _left has its mirror image _right; all other points lie in the mid-plane."""
     assert {"glabella", "nasion", "pronasale", "subnasale", "pogonion"} <= set(head.anatomy)
     for name, vertex in head.anatomy.items():
         if name.endswith("_left"):
@@ -83,7 +86,7 @@ def test_anatomy_has_both_sides(head):
 
 
 def test_rows_exist_on_both_sides(head):
-    """Columns of all rows around one opening correspond."""
+    """The columns of all rows around an opening correspond."""
     for name, row in head.rings.items():
         if name.endswith("_left"):
             assert np.array_equal(
@@ -95,7 +98,7 @@ def test_rows_exist_on_both_sides(head):
 
 
 def test_bone_depth_is_what_was_chosen(head):
-    """It is thin on nose bridge and forehead, thick in the cheek; equal on both sides."""
+    """Bone is near the surface at nose bridge and forehead, deep in the cheek; sides are equal."""
     depth = head.bone_depth
     anatomy = head.anatomy
     assert depth.min() > 2.0
@@ -112,7 +115,10 @@ def test_bone_depth_is_what_was_chosen(head):
 
 
 def test_mandible_carries_lower_lip_and_chin_only(head):
-    """Lower lip and chin have 1, upper lip and all above 0; corners are in between."""
+    """The mandible's weight is 1 at lower lip and chin, 0 from the upper lip upward.
+
+    At the corners of the mouth it is between.
+    """
     weight = head.mandible_weight
     rings = head.rings
     assert weight.min() == 0.0
@@ -130,7 +136,7 @@ def test_mandible_carries_lower_lip_and_chin_only(head):
 
 
 def test_mandible_weight_is_smooth(head):
-    """Neighbours never jump: at most 0.07 per millimetre."""
+    """The mandible's weight changes by at most 0.07 per millimetre between neighbours."""
     edges = sides_of(head.faces)
     step = np.abs(head.mandible_weight[edges[:, 0]] - head.mandible_weight[edges[:, 1]])
     length = np.linalg.norm(head.vertices[edges[:, 0]] - head.vertices[edges[:, 1]], axis=1)
@@ -139,7 +145,7 @@ def test_mandible_weight_is_smooth(head):
 
 
 def test_jaw_axis_runs_through_both_condyles(head):
-    """Right is first; they are in front of the ear, below the skin."""
+    """The right condyle comes first; both lie in front of the ear, below the skin."""
     right, left = head.jaw_axis
     assert np.array_equal(right * [-1.0, 1.0, 1.0], left)
     assert left[0] > 0.0

@@ -1,4 +1,4 @@
-"""Annotators' places of points: on visible features of a picture."""
+"""Annotated points are placed on visible features of a picture."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from risorius.assets.identities import complexion, person_called
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [3, 8, 21])
 def test_a_brow_ends_where_its_hairs_do(monkeypatch, number):
-    """The tail's point is within 1.5 mm of the last visible hair, whichever way it turns."""
+    """The point of a brow's tail is within 1.5 mm of the last visible hair, in any direction."""
     painted = complexion.painted
     pictures = []
 
@@ -24,10 +24,10 @@ def test_a_brow_ends_where_its_hairs_do(monkeypatch, number):
     assert person.segments is not None
     hairs = pictures[-1]
     points = annotation_of(person).inner_points(person.vertices)
-    seen = 0.3  # of the darkness of a hair
+    seen = 0.3  # share of a hair's darkness
     rows, columns = np.nonzero(hairs > seen)
     uv = (np.column_stack([columns, rows]) + 0.5) / len(hairs) * [1.0, -1.0] + [0.0, 1.0]
     places = places_on_texture(uv[columns > len(hairs) / 2]).interpolate(person.vertices)
     nose_end, tail = points[[22 - 17, 26 - 17]]
     last = places[norm(places - nose_end, axis=1).argmax()]
-    assert norm(tail - last) < 1.5  # mm
+    assert norm(tail - last) < 1.5  # [mm]

@@ -19,13 +19,13 @@ def coarse():
 
 
 def test_coarse_head_has_a_quarter_of_the_triangles(coarse):
-    """It has about 500, and every vertex is used."""
+    """The coarse head has about 500 triangles, and every vertex is used."""
     assert 480 <= len(coarse.faces) <= 540
     assert np.array_equal(np.unique(coarse.faces), np.arange(len(coarse.vertices)))
 
 
 def test_coarse_head_is_one_manifold_piece(coarse):
-    """It has four holes: the rim of the neck, the mouth, both eyes."""
+    """The coarse head has four holes: the rim of the neck, the mouth, and both eyes."""
     assert checks.is_manifold(coarse.faces)
     assert checks.component_count(coarse.faces) == 1
     assert checks.euler_characteristic(coarse.vertices, coarse.faces) == 2 - 4
@@ -33,13 +33,13 @@ def test_coarse_head_is_one_manifold_piece(coarse):
 
 
 def test_coarse_head_is_its_own_mirror_image(coarse):
-    """This holds to the last bit, for vertices and faces."""
+    """Vertices and faces equal their mirror images to the last bit."""
     assert checks.mirror_error(coarse.vertices, coarse.mirror) == 0.0
     assert checks.is_mirrored(coarse.faces, coarse.mirror)
 
 
 def test_coarse_triangles_are_sound(coarse):
-    """No slivers, no vertex with two or a dozen neighbours, no triangles that cross."""
+    """No triangle is a sliver or crosses another; no vertex has two or a dozen neighbours."""
     angles = np.degrees(trimesh.triangles.angles(coarse.vertices[coarse.faces]))
     assert angles.min() > 8.0
     assert np.percentile(angles.min(axis=1), 5) > 15.0
@@ -51,7 +51,7 @@ def test_coarse_triangles_are_sound(coarse):
 
 
 def test_coarse_head_lies_on_the_built_in_one(coarse, head):
-    """Its vertices and all landmarks are those of the built-in head; its faces are near it."""
+    """Vertices and landmarks are those of the built-in head, and faces lie near its surface."""
     assert np.array_equal(coarse.vertices, head.vertices[coarse.file_vertices])
     marked = coarse.vertices[coarse.landmarks]
     assert np.array_equal(marked, head.vertices[head.landmarks])
@@ -63,7 +63,10 @@ def test_coarse_head_lies_on_the_built_in_one(coarse, head):
 
 
 def test_coarse_triangles_look_outward(coarse, head):
-    """Except at the ears, which are sheets, each faces as the built-in head does at its corners."""
+    """Each face has the direction of the built-in head's normals at its corners.
+
+    The ears are left out, because they are sheets.
+    """
     corners = coarse.file_vertices[coarse.faces]
     fine = np.zeros_like(head.vertices)
     for corner in range(3):

@@ -1,4 +1,4 @@
-"""Skin of any tone and eyes of any colour: as if painted so, from one number."""
+"""Skin of any tone and eyes of any colour, computed from one number."""
 
 from itertools import pairwise
 
@@ -40,7 +40,7 @@ ANGLES = st.floats(DARKEST, LIGHTEST)
 
 
 def light_at(head, image, *names):
-    """Linear light around anatomical points, the median, shape (3,)."""
+    """The median of linear light around anatomical points, shape (3,)."""
     height, width = image.shape[:2]
     found = []
     for name in names:
@@ -52,19 +52,22 @@ def light_at(head, image, *names):
 
 
 def skin_of(head, image):
-    """The bare skin of the forehead and the temples."""
+    """The colours of bare skin at the forehead and the temples."""
     return light_at(head, image, "metopion", "temple_left", "temple_right")
 
 
 def test_own_tone_is_the_shipped_picture(head):
-    """They are equal byte by byte."""
+    """With its own tone, the picture equals the file byte by byte."""
     tints = _tints()
     angle = np.interp(-OWN.melanin, -tints.melanins, tints.angles)
     assert (recoloured(float(angle)) == head.albedo).all()
 
 
 def test_tones_are_in_order(head):
-    """The angle measured on bare skin is near the requested one; darker tones are darker."""
+    """The typology angle measured on bare skin is near the requested one.
+
+    A darker tone is darker everywhere.
+    """
     pictures = {angle: recoloured(angle) for angle in TONES}
     found = {angle: float(typology_angle(skin_of(head, x))) for angle, x in pictures.items()}
     for angle, measured in found.items():
@@ -79,10 +82,10 @@ def test_tones_are_in_order(head):
 @given(ANGLES)
 @settings(max_examples=12, deadline=None)
 def test_faces_keep_their_features(head, angle):
-    """Lips are redder than skin, brows and nostrils darker, skin never grey, in any tone."""
+    """In any tone, lips are redder than skin, brows and nostrils darker; skin is never grey."""
     image = recoloured(angle)
     skin = skin_of(head, image)
-    lips = light_at(head, image, "labiale_superius")  # on the border: half of it is red
+    lips = light_at(head, image, "labiale_superius")  # on the border, where half is red
     mucosa = to_linear(image[_texel(head, image, head.rings["mouth_4_left"][0])] / 255.0)
     assert mucosa[0] / mucosa[1] > 1.12 * skin[0] / skin[1]
     assert lips[0] / lips[1] > skin[0] / skin[1]
@@ -94,20 +97,20 @@ def test_faces_keep_their_features(head, angle):
 
 
 def _texel(head, image, vertex):
-    """Row and column of a vertex."""
+    """Row and column of a vertex in the map."""
     u, v = head.uv[vertex]
     return int((1.0 - v) * image.shape[0]), int(u * image.shape[1])
 
 
 @pytest.mark.parametrize("angle", [DARKEST - 1.0, LIGHTEST + 1.0, float("nan")])
 def test_no_other_tones(angle):
-    """One line reports them, with the allowed values."""
+    """An invalid tone is refused in one line with the allowed values."""
     with pytest.raises(ValueError, match="it must be -55 "):
         recoloured(angle)
 
 
 def test_eyes_have_their_colours(head):
-    """Blue is bluest, brown reddest and darkest; white, pupil and all else are unchanged."""
+    """Blue irises are bluest, brown ones reddest and darkest; only irises change."""
     person = make_person(sample_identity(1))
     iris = {}
     for name in IRIS_SHARES:
@@ -131,7 +134,7 @@ def test_eyes_have_their_colours(head):
 
 @pytest.mark.slow
 def test_colours_of_a_number(head):
-    """They are the same every time; dark skin goes with brown eyes."""
+    """A number always gives the same colours; dark skin goes with brown eyes."""
     person = make_person(sample_identity(0))
     first, second = (in_own_colours(person, 5) for _ in range(2))
     assert (first.albedo == second.albedo).all()
@@ -141,7 +144,7 @@ def test_colours_of_a_number(head):
     is_iris = (np.abs(others[0] - others[1]) > 0.01).any(axis=1)
 
     def redness(colours):
-        """Red over blue of irises."""
+        """The ratio of red to blue in the irises."""
         red, _, blue = colours[is_iris].mean(axis=0)
         return red / blue
 
@@ -155,7 +158,7 @@ def test_colours_of_a_number(head):
 
 
 def test_bands_of_texels_have_the_colours_of_the_whole(monkeypatch):
-    """They are equal byte by byte, for any number of rows coloured at once."""
+    """Colouring in bands equals colouring at once, byte by byte, for any number of rows."""
     colours = own_colours(sample_identity(3), 3)
     given = {"features": colours.features, "haired_as": colours.angle, "shrink": 2}
     usual = recoloured(colours.angle, **given)
@@ -165,7 +168,7 @@ def test_bands_of_texels_have_the_colours_of_the_whole(monkeypatch):
 
 
 def test_a_hairline_is_moved_on_the_scalp_alone():
-    """Rows of texels without scalp are left out; the others have the plain formula's values."""
+    """A shifted hairline moves only texels of the scalp, by the plain formula."""
     line = Hairline(front=4.0, temples=7.0, crown=0.6)
     tints = _tints()
     plain = np.float32(complexion.BEHIND) * tints.scalp - np.float32(complexion.IN_FRONT)
@@ -175,7 +178,10 @@ def test_a_hairline_is_moved_on_the_scalp_alone():
 
 
 def test_the_hem_of_painted_hair_is_single_hairs():
-    """They stand out of its mean near the hairline, on skin and dense hair they change nothing."""
+    """Near the hairline, single painted hairs differ from the mean colour.
+
+    Skin and dense hair are unchanged.
+    """
     behind = _behind(_tints(), Features())
     plain, fringed = (
         recoloured(40.0, haired_as=40.0, fringe=fringe).astype(int).sum(axis=2)
@@ -190,7 +196,10 @@ def test_the_hem_of_painted_hair_is_single_hairs():
 
 
 def test_old_skin_has_no_white_scratches_beside_former_hair():
-    """Lines of skin between the picture's hairs were lighter by 26 % on a bald forehead."""
+    """Skin where hair has fallen out has no bright lines.
+
+    Gaps between the picture's hairs were lighter by 26 % on a bald forehead.
+    """
     person = person_called(47)
     size = len(person.albedo)
     column, row = (person.uv[person.anatomy["trichion"]] * [size, -size] + [0, size]).astype(int)
@@ -199,7 +208,10 @@ def test_old_skin_has_no_white_scratches_beside_former_hair():
 
 
 def test_eyes_go_with_dark_skin():
-    """Flesh at the corners, wet edges and whites are darker; irises are unchanged."""
+    """With dark skin, corners, wet edges and whites of the eyes are darker.
+
+    Irises are unchanged.
+    """
     person = make_person(sample_identity(1))
     light, dark = (
         {part.name: part.colours for part in coloured(person, angle=angle).parts}
@@ -213,7 +225,7 @@ def test_eyes_go_with_dark_skin():
 
 
 def test_no_two_irises_are_alike():
-    """Those of one colour differ in lightness and in the ring around the pupil."""
+    """Irises of one colour differ in lightness and in the ring around the pupil."""
     person = make_person(sample_identity(1))
     random = np.random.default_rng(2)
     drawn = [Features(iris=drawn_iris(30.0, chance, random)) for chance in random.random(8)]
@@ -224,7 +236,7 @@ def test_no_two_irises_are_alike():
 
 
 def test_irises_have_fibres_and_edges_of_their_own():
-    """Fibres of another seed are in other places; a limbus only darkens the edge."""
+    """Another seed puts an iris's fibres in other places; a limbus darkens only the edge."""
     person = make_person(sample_identity(1))
 
     def light_of(**own):
@@ -246,7 +258,7 @@ def test_irises_have_fibres_and_edges_of_their_own():
 
 
 def test_the_dark_edge_of_irises_fades_with_age():
-    """For the same random numbers, the young have a darker one than the old."""
+    """With the same random numbers, young persons have a darker limbus than old ones."""
     ages = 20.0, 75.0
     young, old = (drawn_iris(years, 0.5, np.random.default_rng(1)) for years in ages)
     assert young.limbus > old.limbus + 0.3
@@ -255,7 +267,7 @@ def test_the_dark_edge_of_irises_fades_with_age():
 
 @pytest.mark.parametrize("angle", [60.0, 0.0, -50.0])
 def test_irises_follow_the_shares_where_skin_is_light(angle):
-    """As often as each share says; brown alone below the tone where others are rare."""
+    """In light skin, iris colours are as frequent as the given shares; dark skin has brown only."""
     random = np.random.default_rng(3)
     drawn = [drawn_irises(random, angle, {"brown": 1.0, "blue": 3.0}) for _ in range(400)]
     assert (0.68 < drawn.count("blue") / 400 < 0.82) if angle > 28.0 else set(drawn) == {"brown"}
@@ -263,11 +275,11 @@ def test_irises_follow_the_shares_where_skin_is_light(angle):
 
 @pytest.mark.slow
 def test_features_do_what_their_names_say(head):
-    """Brows have their own form, beards darken, lips redden, hair is grey or gone."""
+    """Each feature has its effect: brow shape, dark beard, red lips, grey or missing hair."""
     plain = recoloured(40.0).astype(int)
 
     def changed(**features):
-        """Mean change of the picture in each segment, by its number; shape (16, 3)."""
+        """Mean change of the picture in each segment, indexed by its number; shape (16, 3)."""
         off = recoloured(40.0, features=Features(**features)).astype(int) - plain
         return np.array([off[head.segments == n].mean(axis=0) for n in range(1, 14)])
 
@@ -291,7 +303,10 @@ def test_features_do_what_their_names_say(head):
 
 
 def test_lips_differ_by_person(head):
-    """Blood in them by a good part of its mean; of dark skin they are paler, of light skin not."""
+    """The redness of lips differs between persons by a good part of its mean.
+
+    The feature `pale_lips` lightens lips in dark skin, and changes nothing in light skin.
+    """
     random = np.random.default_rng(3)
     woman, man = (sample_identity(1, sex=sex, age=30.0) for sex in (Sex.WOMAN, Sex.MAN))
     drawn = {who: [features_of(who, -40.0, random) for _ in range(80)] for who in (woman, man)}
@@ -306,14 +321,17 @@ def test_lips_differ_by_person(head):
     assert off[head.segments == Segment.TOP_LIP].mean() > 5.0
     assert np.abs(off[head.segments == Segment.NECK]).max() == 0
     red, green, _ = off[head.segments == Segment.TOP_LIP].mean(axis=0)
-    assert red > 1.7 * green  # pink: all of it once was the colour of lighter skin
+    assert red > 1.7 * green  # pink: a uniform lighter skin colour was wrong
 
 
 def test_hair_turns_grey_as_in_the_survey():
-    """From 45 to 65 years a quarter of it is, with dark skin less; the young have none."""
+    """A quarter of the hair turns grey between 45 and 65 years, less with dark skin.
+
+    The young have no grey hair.
+    """
 
     def grey(angle, years):
-        """The mean share of people of ages, all alike but for chance."""
+        """The mean grey share of persons with these ages and equal other features."""
         random = np.random.default_rng(2)
         ages = random.uniform(*years, 300)
         drawn = [sample_identity(1, age=float(age)) for age in ages]
@@ -327,7 +345,10 @@ def test_hair_turns_grey_as_in_the_survey():
 
 @pytest.mark.parametrize("number", [3, 8])
 def test_small_pictures_have_the_same_colours_of_fewer_texels(number):
-    """Means of light over what was painted at full size, and the same hair and classes."""
+    """A small picture has the mean light of the blocks of the picture at full size.
+
+    Hair and classes are the same.
+    """
     person = make_person(sample_identity(number))
     colours = own_colours(person.identity, number)
     whole = in_colours(person, colours)

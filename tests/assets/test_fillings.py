@@ -1,4 +1,4 @@
-"""Masks with mouth and eyes filled by triangles: these are opened, and all else is unchanged."""
+"""Masks with mouth and eyes closed by triangles: the triangles are removed, all else stays."""
 
 import json
 from dataclasses import replace
@@ -14,17 +14,20 @@ from risorius.assets.meshes import read_mesh
 
 from ..heads import SHIFT, TURN, Stranger, closed, filled, masked
 
-COUNT = 62  # triangles of `masked` across its mouth and eyes, which are the last
+COUNT = 62  # triangles of `masked` across its mouth and eyes, the last of its list
 
 
 @pytest.fixture(scope="module")
 def mask() -> Stranger:
-    """A filled mask [mm]."""
+    """A mask with closed openings [mm]."""
     return masked()
 
 
 def test_only_the_filling_is_left_out(mask):
-    """In any unit and place; if landmarks are half a millimetre off, corners may stay."""
+    """Exactly the filling triangles are found, in any unit and place.
+
+    With landmarks half a millimetre off, corners of the filling may stay.
+    """
     last = np.arange(len(mask.mesh.faces))[-COUNT:]
     turned = replace(mask.mesh, vertices=0.001 * mask.mesh.vertices @ TURN.T + SHIFT)
     points = turned.vertices[mask.landmarks]
@@ -41,7 +44,7 @@ def test_only_the_filling_is_left_out(mask):
 
 
 def test_a_mask_is_opened_and_moves(mask, tmp_path):
-    """A line says so; lips part, lids shut, and vertices keep their numbers."""
+    """A line reports the removed triangles; lips part, lids shut, vertices keep their numbers."""
     head = fit_head(*mask.write(tmp_path))
     assert any("filled by 62 triangles" in note for note in head.notes)
     assert len(head.faces) == len(mask.mesh.faces) - COUNT
@@ -79,7 +82,7 @@ def test_a_picture_goes_on_without_the_triangles(mask, tmp_path):
 
 
 def test_skin_with_points_of_its_own_is_no_filling(mask, tmp_path):
-    """A fan around a middle over an eye is refused by name."""
+    """An eye covered by a fan around an added vertex is refused by name."""
     landmarks = mask.landmarks
     opened = mask.mesh.without(np.arange(len(mask.mesh.faces))[-COUNT:])
     covered = closed(filled(opened, landmarks[60:68]), landmarks[42:48])

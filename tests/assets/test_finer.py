@@ -1,4 +1,4 @@
-"""The finer meshes: the same head, more triangles, and the map between them."""
+"""The finer meshes: the same head with more triangles, and the map from coarse to fine."""
 
 from itertools import pairwise
 
@@ -15,26 +15,26 @@ from tests.assets import checks
 
 @pytest.fixture(scope="module", params=[1, 2])
 def fine(request: pytest.FixtureRequest, head: Head) -> FineMesh:
-    """The finer meshes of the head, one after the other."""
+    """The finer meshes of the head, in order."""
     return head.finer(request.param)
 
 
 def test_triangle_counts_are_powers_of_four(head):
-    """They are about 8 and 32 thousand; each edge gives one new vertex."""
+    """Finer meshes have about 8 and 32 thousand triangles; each edge gives one new vertex."""
     assert [len(head.finer(level).faces) for level in (1, 2)] == [8120, 32480]
     edges = quarter(head.faces, len(head.vertices)).edges
     assert len(head.finer(1).vertices) == len(head.vertices) + len(edges)
 
 
 def test_coarse_vertices_are_fine_vertices(head, fine):
-    """Bits and numbers are equal, so landmarks, rows and names stay valid."""
+    """Coarse vertices keep bits and numbers in the fine mesh; landmarks and rows stay valid."""
     count = len(head.vertices)
     assert np.array_equal(fine.vertices[:count], head.vertices)
     assert np.array_equal(np.unique(fine.faces), np.arange(len(fine.vertices)))
 
 
 def test_map_reproduces_the_coarse_mesh(head, fine):
-    """Coarse vertices map onto themselves exactly."""
+    """The map reproduces the coarse vertices exactly."""
     mapped = fine.interpolate(head.vertices)
     assert np.array_equal(mapped[: len(head.vertices)], head.vertices)
     number = fine.interpolate(np.arange(len(head.vertices), dtype=np.float64))
@@ -43,7 +43,10 @@ def test_map_reproduces_the_coarse_mesh(head, fine):
 
 
 def test_children_stand_in_the_place_of_their_parent(head, fine):
-    """Face k of the fine mesh is in face k / 4^level of the coarse one, and covers its share."""
+    """Face k of the fine mesh lies in face k / 4^level of the coarse mesh.
+
+    It covers its share of the area.
+    """
     share = len(fine.faces) // len(head.faces)
     flat = fine.interpolate(head.vertices)
     parent = np.repeat(cross_products(head.vertices, head.faces), share, axis=0) / share
@@ -51,7 +54,7 @@ def test_children_stand_in_the_place_of_their_parent(head, fine):
 
 
 def test_each_level_comes_nearer_to_the_form(head):
-    """The way from the flat triangles to the next level's vertices shrinks about to a quarter."""
+    """The distance of the next level's vertices from the triangles falls to about a quarter."""
     meshes = [(head.vertices, head.faces)]
     meshes += [(mesh.vertices, mesh.faces) for mesh in (head.finer(1), head.finer(2))]
     ways = []
@@ -64,13 +67,13 @@ def test_each_level_comes_nearer_to_the_form(head):
 
 
 def test_finer_mesh_is_its_own_mirror_image(fine):
-    """To the last bit, the mirrored vertices are the vertices."""
+    """Mirrored vertices equal the vertices to the last bit."""
     mirrored = fine.vertices * [-1.0, 1.0, 1.0] + 0.0  # + 0.0: no negative zero
     assert np.array_equal(np.unique(mirrored, axis=0), np.unique(fine.vertices + 0.0, axis=0))
 
 
 def test_finer_mesh_is_one_manifold_piece(head, fine):
-    """The topology is that of the coarse mesh, with the same holes."""
+    """A finer mesh has the topology of the coarse mesh, with the same holes."""
     assert checks.is_manifold(fine.faces)
     assert checks.component_count(fine.faces) == 1
     assert checks.euler_characteristic(fine.vertices, fine.faces) == (
@@ -79,7 +82,7 @@ def test_finer_mesh_is_one_manifold_piece(head, fine):
 
 
 def test_no_triangle_is_turned_over(head, fine):
-    """Every child faces about the same way as its parent."""
+    """Every subtriangle faces nearly the same way as its parent."""
     cross = cross_products(fine.vertices, fine.faces)
     parent = np.repeat(
         cross_products(head.vertices, head.faces), len(fine.faces) // len(head.faces), axis=0
@@ -90,12 +93,12 @@ def test_no_triangle_is_turned_over(head, fine):
 
 
 def test_finer_mesh_does_not_cut_itself(fine):
-    """The lips nearly touch; their curvature must not push them into each other."""
+    """A finer mesh does not intersect itself, although the lips nearly touch."""
     assert len(self_intersections(fine.vertices, fine.faces)) == 0
 
 
 def test_boundaries_become_smooth(head):
-    """At half the spacing a smooth curve turns half as much from edge to edge."""
+    """With edges half as long, a boundary turns half as much from edge to edge."""
 
     def turns(vertices, faces):
         found = []
@@ -113,7 +116,7 @@ def test_boundaries_become_smooth(head):
 
 
 def test_normals_are_unit_and_agree_with_the_faces(fine):
-    """A normal is that of the form, or of the mesh where the mesh differs from the form."""
+    """Normals are those of the head's form; where the mesh differs, those of the mesh."""
     assert np.allclose(norm(fine.normals, axis=1), 1.0)
     cross = cross_products(fine.vertices, fine.faces)
     total = np.zeros_like(fine.vertices)
@@ -125,7 +128,7 @@ def test_normals_are_unit_and_agree_with_the_faces(fine):
 
 
 def test_other_levels_are_refused(head):
-    """The message has the available ones."""
+    """An invalid level is refused, and the message has the available levels."""
     for level in (0, 3):
         with pytest.raises(ValueError, match=rf"level was {level}; allowed are 1 .* and 2"):
             head.finer(level)

@@ -1,4 +1,4 @@
-"""Any head: it gets the built-in anatomy, and each failure gives its reason in one line."""
+"""Fitting of any head: it gets the built-in anatomy, and each failure is one clear line."""
 
 import json
 from dataclasses import replace
@@ -31,7 +31,7 @@ def other() -> Stranger:
 
 @pytest.fixture(scope="module")
 def fitted(other: Stranger) -> FittedHead:
-    """The head fitted to it."""
+    """The built-in anatomy fitted to that head."""
     return fit(other.mesh, other.landmarks)
 
 
@@ -43,7 +43,7 @@ def simulation(fitted: FittedHead) -> sim.Simulation:
 
 @pytest.mark.slow
 def test_files_are_read_and_fitted(other, fitted, tmp_path):
-    """Vertex numbers and points give the same head; a bare list is enough."""
+    """Vertex numbers and points as landmarks give the same head; a plain list is accepted."""
     mesh, numbers = other.write(tmp_path)
     by_number = fit_head(mesh, numbers)
     assert np.abs(by_number.vertices - fitted.vertices).max() < 1e-3
@@ -54,7 +54,7 @@ def test_files_are_read_and_fitted(other, fitted, tmp_path):
 
 
 def test_head_comes_to_millimetres_and_the_face_space(fitted):
-    """In any unit and axes, landmarks are near those of the built-in head."""
+    """In any unit and axes, fitted landmarks are near those of the built-in head."""
     known = assets.load("head")
     off = fitted.vertices[fitted.landmarks] - known.vertices[known.landmarks]
     assert norm(off, axis=1).mean() < 10.0
@@ -62,7 +62,7 @@ def test_head_comes_to_millimetres_and_the_face_space(fitted):
 
 
 def test_eyes_lie_behind_their_lids(fitted):
-    """No skin of the lids is inside of an eyeball, and some of it touches it."""
+    """No skin of the lids is inside an eyeball, and some of it touches the ball."""
     for eye, numbers in zip(fitted.eyes, ((37, 38, 40, 41), (43, 44, 46, 47)), strict=True):
         lids = fitted.vertices[fitted.landmarks[list(numbers)]]
         reach = norm(fitted.vertices[:, None] - lids, axis=2).min(axis=1)
@@ -73,7 +73,7 @@ def test_eyes_lie_behind_their_lids(fitted):
 
 
 def test_the_built_in_head_fits_itself(head, tmp_path):
-    """Its own landmarks restore its own eyes: lids close over them as before."""
+    """Fitted to its own landmarks, the built-in head keeps its eyes: lids still close."""
     mesh = tmp_path / "same.ply"
     numbers = tmp_path / "same.json"
     trimesh.Trimesh(head.vertices, head.faces, process=False).export(mesh)
@@ -85,7 +85,10 @@ def test_the_built_in_head_fits_itself(head, tmp_path):
 
 
 def test_the_edge_of_the_neck_fades(fitted):
-    """It is invisible at its end, and fully visible at the chin; a closed neck has no end."""
+    """The neck is invisible at its open end, and fully visible at the chin.
+
+    A closed neck does not fade.
+    """
     shown = fitted.fade()[:, 0]
     edge = max(boundary_loops(fitted.faces), key=lambda x: -fitted.vertices[x, 1].mean())
     assert shown[edge].max() < 0.05
@@ -98,7 +101,10 @@ def test_the_edge_of_the_neck_fades(fitted):
 
 
 def test_the_inner_side_of_the_neck_does_not_show(fitted):
-    """Nor that of a forehead, seen through it; that of lids and lips does."""
+    """Inner sides of the neck, and of the forehead seen through it, are hidden.
+
+    Inner sides of lids and lips are visible.
+    """
     share, inner = fitted.fade().T
     assert inner[share < 1.0].max() <= 0.0
     highest = fitted.vertices[:, 1] > fitted.vertices[fitted.landmarks[19], 1] + 10.0
@@ -107,7 +113,10 @@ def test_the_inner_side_of_the_neck_does_not_show(fitted):
 
 
 def test_triangles_that_fade_are_drawn_last(fitted, other):
-    """They are blended over a chin that sinks in there; otherwise the order is that of the file."""
+    """Fading triangles are drawn last, so that they are blended over a chin behind them.
+
+    All other triangles keep the order of the file.
+    """
     fades = (fitted.fade()[fitted.faces, 0] < 1.0).any(axis=1)
     assert fades.any()
     assert (np.diff(fades.astype(np.int8)) >= 0).all()
@@ -128,7 +137,7 @@ def test_teeth_lie_behind_the_skin(fitted):
 
 
 def test_teeth_are_apart_in_a_mouth_that_is_open_at_rest():
-    """Each row stays as near to its lip as in the built-in head."""
+    """In a mouth that is open at rest, each row of teeth is as near to its lip as built in."""
     known = assets.load("head")
     opening = np.array([0.0, -14.0, 0.0])  # [mm]
     opened = known.vertices + known.mandible_weight[:, None] * opening
@@ -151,7 +160,10 @@ def test_depth_and_texture_come_from_the_same_place(fitted):
 
 
 def test_texture_runs_evenly_beside_the_mouth(fitted):
-    """Slopes of neighbouring triangles in the picture are nearly equal, so furrows do not break."""
+    """Beside the mouth, texture slopes of neighbouring triangles are nearly equal.
+
+    Otherwise furrows would break at triangle edges.
+    """
     corners = fitted.vertices[fitted.faces]
     uv = fitted.uv.astype(np.float64)[fitted.faces]
     slopes = np.linalg.pinv(corners[:, 1:] - corners[:, :1]) @ (uv[:, 1:] - uv[:, :1])
@@ -165,7 +177,7 @@ def test_texture_runs_evenly_beside_the_mouth(fitted):
 
 
 def test_a_fitted_head_makes_faces(fitted, simulation):
-    """A smile pulls the corners, a blink closes the eyes, the jaw opens, lips stay closed."""
+    """A fitted head smiles, blinks and opens its jaw; at rest its lips stay closed."""
     smile = settled_displacement(simulation, {"AU12": 1.0})
     assert moved_landmarks(fitted, smile, 54)[1] > 4.0
     assert lip_gap(simulation, fitted) < 0.8
@@ -179,7 +191,7 @@ def test_a_fitted_head_makes_faces(fitted, simulation):
 
 
 def test_the_chin_goes_stiffly_with_the_jaw(fitted, simulation):
-    """An open jaw moves the tip of the chin by nine tenths of the bone's way."""
+    """An open jaw moves the tip of the chin by 90 % of the bone's motion."""
     chin = fitted.vertices[fitted.landmarks[8]]
     displacement = settled_displacement(simulation, {"jaw_open": 1.0})
     jaw = simulation.bones.transforms()["mandible"]
@@ -189,7 +201,7 @@ def test_the_chin_goes_stiffly_with_the_jaw(fitted, simulation):
 
 
 def test_the_neck_of_a_fitted_head_does_not_tear(fitted, simulation):
-    """Below an open jaw no edge of the neck's skin doubles its length."""
+    """With an open jaw, no edge of the neck's skin doubles its length."""
     settled_displacement(simulation, {"jaw_open": 1.0})
     edges = np.array(list(edge_faces(fitted.faces)))
     rest = fitted.vertices
@@ -203,7 +215,7 @@ def test_the_neck_of_a_fitted_head_does_not_tear(fitted, simulation):
 
 
 def test_the_tongue_of_a_fitted_head_comes_out(fitted, simulation):
-    """It rests on its own lips."""
+    """The tongue of a fitted head comes out and rests on the lower lip."""
     settled_displacement(simulation, {"jaw_open": 0.4, "tongue_out": 1.0})
     bent = simulation.anatomy.tongue()
     jaw = simulation.bones.transforms()["mandible"]
@@ -214,14 +226,14 @@ def test_the_tongue_of_a_fitted_head_comes_out(fitted, simulation):
 
 @pytest.mark.parametrize("name", ["joy", "sadness", "surprise", "anger", "disgust", "fear"])
 def test_expressions_keep_a_fitted_mesh_sound(fitted, simulation, name):
-    """Almost none of eight thousand triangles is turned over."""
+    """In expressions, almost none of eight thousand triangles is turned over."""
     settled_displacement(simulation, {name: 1.0})
     assert inverted_triangles(fitted.faces, fitted.vertices, simulation.positions) <= 40
 
 
 @pytest.mark.slow
 def test_other_pieces_and_inside_out_meshes_do_no_harm(other):
-    """Eyeballs of the file are left out, and triangles that face inward are reversed."""
+    """Eyeballs of the file are left out, and a mesh with inward triangles is reversed."""
     vertices = other.mesh.vertices
     faces = other.mesh.faces
     ball = vertices[:3] + 0.01
@@ -245,7 +257,10 @@ def _numbers(other, **places):
 
 @pytest.mark.parametrize(("off", "is_allowed"), [(0.04, True), (0.07, False)])
 def test_points_lie_on_the_mesh(other, tmp_path, off, is_allowed):
-    """A point may be off by a twentieth of the distance of the eyes; a farther one is named."""
+    """A landmark point may be off the mesh by a twentieth of the eyes' distance.
+
+    A point farther away is reported by number.
+    """
     mesh, file = other.write(tmp_path)
     points = other.mesh.vertices[other.landmarks]
     tip = points[30]
@@ -261,7 +276,7 @@ def test_points_lie_on_the_mesh(other, tmp_path, off, is_allowed):
 
 
 def test_swapped_sides_are_noticed(other):
-    """Landmarks numbered from the viewer's side are the most common mistake."""
+    """Landmarks with left and right swapped, the most common mistake, are refused."""
     with pytest.raises(AssetError, match="left and right are swapped in the landmarks"):
         fit(other.mesh, other.landmarks[MIRRORED])
     mirrored = Mesh(other.mesh.vertices * (-1.0, 1.0, 1.0), other.mesh.faces[:, ::-1])
@@ -281,7 +296,7 @@ def test_swapped_sides_are_noticed(other):
     ],
 )
 def test_closed_openings_are_named(other, landmarks, message):
-    """Lips or lids joined by skin cannot part."""
+    """Joined lips or lids, which cannot part, are refused by name."""
     mesh = closed(other.mesh, other.landmarks[list(landmarks)])
     with pytest.raises(AssetError, match=message):
         fit(mesh, other.landmarks)
@@ -297,23 +312,26 @@ def test_closed_openings_are_named(other, landmarks, message):
     ],
 )
 def test_meshes_that_are_no_surface_are_named(other, change, message):
-    """Doubled, flipped, too few and too many triangles are named."""
+    """Doubled triangles, flipped triangles, too few and too many triangles are reported."""
     faces = np.ascontiguousarray(change(other.mesh.faces))
     with pytest.raises(AssetError, match=message):
         fit(Mesh(other.mesh.vertices, faces), other.landmarks)
 
 
 def test_pieces_that_are_left_away_may_be_anything(other):
-    """A card of hair that is no surface harms nobody; triangles of the skin keep their numbers."""
+    """Pieces that are left out may be no valid surface; the skin keeps its vertex numbers."""
     mesh = with_card(other.mesh)
     head = fit(mesh, other.landmarks)
     assert np.array_equal(head.file_vertices, np.arange(len(other.mesh.vertices)))
 
 
 def test_triangles_that_name_a_vertex_twice_are_left_away(other, fitted):
-    """They come from decimation and joined corners: without them the skin is the same."""
+    """Triangles that name a vertex twice, as from decimation, are left out.
+
+    The skin is the same without them.
+    """
     vertices, faces = other.mesh.vertices, other.mesh.faces
-    alone = len(vertices)  # a vertex without another triangle
+    alone = len(vertices)  # a vertex with no other triangle
     flat = np.array([[5, 6, 5], [7, 7, 7], [9, alone, alone]], np.int32)
     mesh = Mesh(np.vstack([vertices, vertices[9:10]]), np.vstack([faces[:9], flat, faces[9:]]))
     head = fit(mesh, other.landmarks)
@@ -322,7 +340,7 @@ def test_triangles_that_name_a_vertex_twice_are_left_away(other, fitted):
 
 
 def test_landmarks_on_two_pieces_are_named(other):
-    """A landmark on an eyeball is not on the skin."""
+    """A landmark on another piece, such as an eyeball, is refused."""
     count = len(other.mesh.vertices)
     mesh = Mesh(
         np.vstack([other.mesh.vertices, other.mesh.vertices[:3]]),
@@ -334,7 +352,10 @@ def test_landmarks_on_two_pieces_are_named(other):
 
 
 def test_the_warp_is_the_interpolant_of_scipy(generator):
-    """Through points, and near points with tolerance; at places in several blocks, and at none."""
+    """The warp equals scipy's interpolant, through points exactly and with a smoothing tolerance.
+
+    It is evaluated at points in several blocks, and at none.
+    """
     source = generator.normal(0.0, 50.0, (60, 3))
     target = source + generator.normal(0.0, 4.0, (60, 3))
     places = generator.normal(0.0, 60.0, (300, 3))
@@ -346,14 +367,14 @@ def test_the_warp_is_the_interpolant_of_scipy(generator):
 
 
 def test_no_warp_starts_from_a_plane(generator):
-    """The other side of a plane would be undetermined."""
+    """Landmarks in one plane are refused, because they leave the other direction undetermined."""
     source = generator.normal(0.0, 50.0, (60, 3)) * [1.0, 1.0, 0.0]
     with pytest.raises(np.linalg.LinAlgError, match="plane"):
         ThinPlateSpline(source, source)
 
 
 def test_warp_meets_its_points_and_keeps_similarities(generator):
-    """Landmarks go exactly to their targets; a similarity is continued everywhere."""
+    """The warp maps landmarks exactly to their targets, and continues a similarity everywhere."""
     source = generator.normal(size=(20, 3))
     target = source + 0.2 * generator.normal(size=(20, 3))
     assert np.abs(ThinPlateSpline(source, target).points(source) - target).max() < 1e-9
@@ -371,7 +392,10 @@ def test_warp_meets_its_points_and_keeps_similarities(generator):
 
 @pytest.mark.slow
 def test_a_bag_behind_the_lips_makes_room():
-    """The built-in mouth goes there; the outer skin, its landmarks and numbers stay."""
+    """A pouch behind the lips of the file is removed for the built-in mouth.
+
+    The outer skin keeps its landmarks and vertex numbers.
+    """
     other = stranger()
     bagged = closed(other.mesh, other.landmarks[60:68])
     vertices = bagged.vertices.copy()

@@ -1,4 +1,4 @@
-"""The eyes of users' heads: no view passes the ball into the empty head."""
+"""The eyes of users' heads: no line of sight passes the eyeball into the empty head."""
 
 from dataclasses import replace
 
@@ -21,8 +21,8 @@ from tests.heads import shape
 from tests.meshes import ball
 
 Array = npt.NDArray[np.float64]
-NEAR = 25.0  # [mm] around an eye: its own parts
-SIDES, RINGS = 3, 30  # lines of sight beside each vertex of the edge, and from the middle to it
+NEAR = 25.0  # [mm] around an eye, for the eye's parts
+SIDES, RINGS = 3, 30  # samples along each edge of the rim, and from the middle to the rim
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def fitted() -> FittedHead:
 
 
 def _across(edge):
-    """Places of lines of sight through a hole with this edge (n, 3), along z; shape (m, 2)."""
+    """Places (m, 2) of lines of sight along z through a hole with this edge (n, 3)."""
     middle = edge.mean(axis=0)
     first, second = (each - middle for each in (edge, np.roll(edge, 1, axis=0)))
     enters = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] > 0.0  # faces the viewer
@@ -46,7 +46,7 @@ def _across(edge):
 
 
 def _meets(points, triangles):
-    """Flags of lines along z that meet a triangle (m, 3, 3) facing the viewer, shape (n,)."""
+    """Whether lines along z meet one of the triangles (m, 3, 3) that face the viewer; (n,)."""
     a, b, c = (triangles[:, corner, :2] for corner in range(3))
     u = b - a
     v = c - a
@@ -60,7 +60,7 @@ def _meets(points, triangles):
 
 @pytest.mark.parametrize("yaw", [-50.0, -40.0, -25.0, 0.0, 25.0, 40.0, 50.0])
 def test_nothing_is_seen_behind_an_eye(fitted, yaw):
-    """Every line of sight between the lids ends on the ball, or on flesh."""
+    """Every line of sight between the lids ends on the eyeball, or on flesh."""
     across = np.cos(np.radians(yaw))
     ahead = np.sin(np.radians(yaw))
     view = np.array([[across, 0.0, ahead], [0.0, 1.0, 0.0], [-ahead, 0.0, across]])
@@ -73,7 +73,7 @@ def test_nothing_is_seen_behind_an_eye(fitted, yaw):
 
 
 def test_the_flesh_of_the_eyes_is_well_formed(fitted):
-    """It is a sound part, and each eye's collar reaches behind the ball."""
+    """The flesh at the eyes is a valid part that reaches behind each eyeball."""
     flesh = next(part for part in fitted.parts if part.name == "eye_corners")
     check_part(flesh)
     for eye in fitted.eyes:
@@ -83,7 +83,7 @@ def test_the_flesh_of_the_eyes_is_well_formed(fitted):
 
 
 def test_the_wall_of_a_socket_moves_no_eye():
-    """A socket narrower than its ball faces it: it is not a lid, and the ball stays in front."""
+    """The wall of a socket narrower than its ball is no lid, and does not push the ball back."""
     head = assets.load("head")
     normals = vertex_normals(head.vertices, head.faces)
     points = head.vertices[head.landmarks]
@@ -106,13 +106,13 @@ def test_the_wall_of_a_socket_moves_no_eye():
 
 
 def _ball(centre, radius):
-    """Vertices of a sphere, and its triangles."""
+    """Vertices and triangles of a sphere."""
     unit = ball(2)
     return centre + radius * unit.vertices, unit.faces
 
 
 def test_eyeballs_of_the_file_say_where_eyes_are():
-    """They have the size and place of the balls behind the lids; irises keep the face's size."""
+    """Eyes get the centre and size of the file's eyeballs; irises keep the face's size."""
     head = assets.load("head")
     vertices = shape(head.vertices)
     faces = head.faces
@@ -133,7 +133,7 @@ def test_eyeballs_of_the_file_say_where_eyes_are():
 
 
 def test_an_iris_is_smaller_than_its_ball():
-    """Small balls for their face still have corners."""
+    """An eyeball that is small for its face still leaves visible corners."""
     head = assets.load("head")
     points = head.vertices[head.landmarks]
     normals = vertex_normals(head.vertices, head.faces)
@@ -151,7 +151,7 @@ def test_an_iris_is_smaller_than_its_ball():
 
 
 def test_a_closed_socket_is_the_shell_of_its_ball():
-    """Its skin gives the size of the ball, which touches the lids from behind."""
+    """A closed socket's skin gives the size of the eyeball, which touches the lids from behind."""
     head = assets.load("head")
     normals = vertex_normals(head.vertices, head.faces)
     points = head.vertices[head.landmarks]
@@ -173,7 +173,7 @@ def test_a_closed_socket_is_the_shell_of_its_ball():
 
 
 def test_a_closed_socket_has_no_other_flesh(fitted):
-    """Its own skin fills the corners; flesh of another head would stick out there."""
+    """A closed socket gets no built-in flesh, which would stick out of its own skin."""
     far = np.array([[0.0, 500.0, 0.0], [1.0, 500.0, 0.0], [0.0, 501.0, 0.0]])
     triangle = np.array([[0, 1, 2]], np.int32)
     head = assets.load("head")

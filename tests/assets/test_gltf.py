@@ -1,4 +1,4 @@
-"""glTF is read by its specification: every kind of numbers, places, pictures and colours."""
+"""glTF is read as specified: all numeric types, transforms, pictures and colours."""
 
 import base64
 import io
@@ -13,7 +13,7 @@ from tests.assets.gltf_files import GltfMaker
 
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float64)
 FACES = np.array([[0, 1, 2], [0, 2, 3]])
-UV = np.array([[0.125, 0.75], [0.5, 0.75], [0.5, 0.25], [0.125, 0.25]])  # v down
+UV = np.array([[0.125, 0.75], [0.5, 0.75], [0.5, 0.25], [0.125, 0.25]])  # v grows downward
 UP = UV * [1, -1] + [0, 1]
 RED = (250, 10, 20)
 GREEN = (10, 240, 30)
@@ -21,30 +21,30 @@ GREEN = (10, 240, 30)
 
 @pytest.fixture
 def maker() -> GltfMaker:
-    """An empty file."""
+    """A glTF maker without content."""
     return GltfMaker()
 
 
 def png(colour=RED, form="PNG"):
-    """A picture of one colour."""
+    """The bytes of a picture with one colour."""
     content = io.BytesIO()
     PIL.Image.new("RGBA" if len(colour) == 4 else "RGB", (4, 4), colour).save(content, form)
     return content.getvalue()
 
 
 def material(maker, texture, **more):
-    """Add a material with a picture."""
+    """Add a material with a picture; return the material's number."""
     pbr = {"baseColorTexture": texture, **more}
     return maker.add("materials", {"pbrMetallicRoughness": pbr})
 
 
 def read(maker, folder):
-    """The mesh of the file."""
+    """Write the file, and read its mesh."""
     return assets.read_mesh(maker.write(folder / "a.glb"))
 
 
 def shape_of(mesh):
-    """The corners of its triangles, (F, 3, 3)."""
+    """The corners of the mesh's triangles, (F, 3, 3)."""
     return mesh.vertices[mesh.faces]
 
 
@@ -54,20 +54,20 @@ def uv_of(mesh):
 
 
 def show_square(maker, attributes=None, **more):
-    """Show the square; more: other keys of its primitive."""
+    """Add the square as the file's scene; more: other keys of its primitive."""
     square = maker.primitive(SQUARE, FACES, attributes=attributes or {}, **more)
     maker.shown({"mesh": maker.mesh(square)})
 
 
 def painted(maker, uv, texture=None, **more):
-    """A square with a picture."""
+    """Add a square with a picture."""
     number = material(maker, {"index": maker.picture(png()), **(texture or {})})
     show_square(maker, {"TEXCOORD_0": uv, **more}, material=number)
 
 
 @pytest.mark.parametrize(("kind", "greatest"), [("f4", 1), ("u1", 255), ("u2", 65535)])
 def test_texture_coordinates_may_be_shares(maker, tmp_path, kind, greatest):
-    """Normalized bytes and shorts are shares of the greatest."""
+    """Normalized bytes and shorts are shares of the type's maximum."""
     rows = np.rint(UV * greatest) if greatest > 1 else UV
     painted(maker, maker.accessor(rows, kind, normalized=greatest > 1, gap=2))
     found = read(maker, tmp_path)
@@ -75,7 +75,7 @@ def test_texture_coordinates_may_be_shares(maker, tmp_path, kind, greatest):
 
 
 def test_a_picture_may_have_the_second_coordinates(maker, tmp_path):
-    """The material gives the number of the set, which may be any."""
+    """The material gives the number of the set of texture coordinates, which may be any."""
     first = maker.accessor(np.zeros((4, 2)))
     third = maker.accessor(UV)
     painted(maker, first, {"texCoord": 2}, TEXCOORD_1=first, TEXCOORD_2=third)
@@ -87,14 +87,14 @@ def test_a_picture_may_have_the_second_coordinates(maker, tmp_path):
     [
         ({"offset": [0.25, 0.5]}, UV + np.array([0.25, 0.5])),
         ({"scale": [0.5, 2.0], "offset": [0.25, 0.0]}, UV * [0.5, 2.0] + [0.25, 0.0]),
-        # Counter-clockwise with v downward: u turns into -v.
+        # Rotation is counter-clockwise with v downward, so u becomes -v.
         ({"rotation": np.pi / 2}, np.column_stack([UV[:, 1], -UV[:, 0]])),
         ({"rotation": np.pi / 2, "scale": [2.0, 1.0]}, np.column_stack([UV[:, 1], -2 * UV[:, 0]])),
         ({"texCoord": 1}, UV[::-1]),
     ],
 )
 def test_texture_coordinates_are_transformed(maker, tmp_path, placing, wanted):
-    """KHR_texture_transform scales, turns and shifts them, and may name another set."""
+    """KHR_texture_transform scales, rotates and shifts coordinates, and may name another set."""
     maker.parts["extensionsRequired"] = ["KHR_texture_transform"]
     info = {"extensions": {"KHR_texture_transform": placing}}
     painted(maker, maker.accessor(UV), info, TEXCOORD_1=maker.accessor(UV[::-1]))
@@ -103,7 +103,7 @@ def test_texture_coordinates_are_transformed(maker, tmp_path, placing, wanted):
 
 
 def test_pictures_go_on_beyond_their_edge_as_the_file_says(maker, tmp_path):
-    """Clamped along u, mirrored along v."""
+    """A sampler that clamps along u and mirrors along v is followed beyond the edge."""
     sampler = maker.add("samplers", {"wrapS": 33071, "wrapT": 33648})
     texture = maker.picture(png(), sampler=sampler)
     uv = maker.accessor(np.array([[-0.5, 1.25], [1.75, 1.25], [1.75, -0.25], [0.5, -0.25]]))
@@ -118,7 +118,7 @@ def test_pictures_go_on_beyond_their_edge_as_the_file_says(maker, tmp_path):
     [("i1", True, 127), ("i2", True, 32767), ("u2", False, 1), ("i2", False, 1), ("u1", False, 1)],
 )
 def test_positions_may_be_integers(maker, tmp_path, kind, normalized, scale):
-    """KHR_mesh_quantization: a node scales them to their size; rows are padded to four bytes."""
+    """KHR_mesh_quantization is read: a node scales integers; rows are padded to four bytes."""
     maker.parts["extensionsRequired"] = ["KHR_mesh_quantization"]
     width = int(kind[1])
     rows = maker.accessor(SQUARE * 100, kind, gap=-3 * width % 4, normalized=normalized)
@@ -130,7 +130,7 @@ def test_positions_may_be_integers(maker, tmp_path, kind, normalized, scale):
 @pytest.mark.parametrize("width", [3, 4])
 @pytest.mark.parametrize(("kind", "greatest"), [("f4", 1), ("u1", 255), ("u2", 65535)])
 def test_colours_of_vertices_are_linear_light(maker, tmp_path, kind, greatest, width):
-    """0.2 0.5 0.9 of light are 124 188 243 on a screen, for any kind of numbers."""
+    """Linear vertex colours 0.2 0.5 0.9 become 124 188 243 on a screen, for any numeric type."""
     rows = np.tile(np.array([0.2, 0.5, 0.9, 0.3])[:width] * greatest, (4, 1))
     rows = rows if greatest == 1 else np.rint(rows)
     colours = maker.accessor(rows, kind, normalized=greatest > 1, gap=-width * int(kind[1]) % 4)
@@ -140,7 +140,7 @@ def test_colours_of_vertices_are_linear_light(maker, tmp_path, kind, greatest, w
 
 
 def test_materials_tint(maker, tmp_path):
-    """Factors of light multiply colours and pictures; a picture without one is unchanged."""
+    """A material's linear factors multiply colours and pictures; without them nothing changes."""
     texture = maker.picture(png((200, 200, 200)))
     half = material(maker, {"index": texture}, baseColorFactor=[0.5, 1.0, 0.0, 1.0])
     plain = material(maker, {"index": texture})
@@ -160,7 +160,7 @@ def test_materials_tint(maker, tmp_path):
 
 
 def test_older_materials_have_a_picture(maker, tmp_path):
-    """KHR_materials_pbrSpecularGlossiness calls it diffuse."""
+    """The picture that KHR_materials_pbrSpecularGlossiness names diffuse is read."""
     info = {"diffuseTexture": {"index": maker.picture(png(GREEN)), "texCoord": 1}}
     number = maker.add("materials", {"extensions": {"KHR_materials_pbrSpecularGlossiness": info}})
     show_square(maker, {"TEXCOORD_1": maker.accessor(UV)}, material=number)
@@ -170,7 +170,7 @@ def test_older_materials_have_a_picture(maker, tmp_path):
 
 
 def test_webp_and_transparent_pictures_are_read(maker, tmp_path):
-    """A texture may have its picture only by EXT_texture_webp; transparency is ignored."""
+    """A picture that only EXT_texture_webp names is read; transparency is ignored."""
     image = maker.add("images", {"bufferView": maker.view(png((*RED, 9), "WEBP"))})
     texture = maker.add("textures", {"extensions": {"EXT_texture_webp": {"source": image}}})
     number = material(maker, {"index": texture})
@@ -180,12 +180,12 @@ def test_webp_and_transparent_pictures_are_read(maker, tmp_path):
 
 
 def test_nodes_place_meshes(maker, tmp_path):
-    """Turned, scaled, shifted, by a matrix, in a chain; a mirrored one keeps its outside."""
+    """Nodes rotate, scale, shift, nest, and have matrices; a mirroring node keeps the outside."""
     half = np.sqrt(0.5)
     square = maker.mesh(maker.primitive(SQUARE, FACES))
     matrix = np.array([[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 7], [0, 0, 0, 1.0]])
     child = maker.add("nodes", {"mesh": square, "matrix": matrix.T.ravel().tolist()})
-    maker.add("nodes", {"mesh": square})  # it is in no scene
+    maker.add("nodes", {"mesh": square})  # a node in no scene
     turned = {"rotation": [0, 0, half, half], "scale": [2, 2, 2], "translation": [0, 0, 1]}
     maker.shown({"children": [child], **turned}, {"mesh": square})
     found = read(maker, tmp_path)
@@ -204,7 +204,7 @@ def test_nodes_place_meshes(maker, tmp_path):
     ],
 )
 def test_triangles_may_be_strips_and_fans(maker, tmp_path, mode, corners, wanted):
-    """Any kind of indices is read; lines and points are left out."""
+    """Strips and fans with any index type are read; lines and points are left out."""
     square = maker.primitive(SQUARE, None, **({} if mode is None else {"mode": mode}))
     square["indices"] = maker.accessor(corners, "u2")
     line = maker.primitive(SQUARE, [0, 1, 2, 3], mode=1)
@@ -213,14 +213,14 @@ def test_triangles_may_be_strips_and_fans(maker, tmp_path, mode, corners, wanted
 
 
 def test_triangles_need_no_indices(maker, tmp_path):
-    """Three vertices each are a triangle; vertices in one place are merged."""
+    """Without indices, three vertices form a triangle; vertices at one place are merged."""
     maker.shown({"mesh": maker.mesh(maker.primitive(SQUARE[FACES].reshape(-1, 3), None))})
     assert read(maker, tmp_path).faces.tolist() == [[0, 1, 2], [0, 2, 5]]
 
 
 @pytest.mark.parametrize("has_rows", [True, False])
 def test_sparse_rows_are_filled_in(maker, tmp_path, has_rows):
-    """They replace some rows, or rows of zeros if there are none."""
+    """Sparse accessors replace some rows, or rows of zeros without a buffer view."""
     filled = (
         SQUARE + np.array([0, 0, 3]) if has_rows else np.where([[0], [1], [0], [1]], SQUARE, 0.0)
     )
@@ -244,7 +244,7 @@ def halves(shift=0.0):
 
 @pytest.mark.parametrize("is_one_mesh", [True, False])
 def test_parts_of_a_mesh_hang_together(maker, tmp_path, is_one_mesh):
-    """Materials and seams double vertices of a mesh; lashes are a mesh of their own."""
+    """Parts of one mesh are joined at equal vertices; lashes in another mesh are not."""
     parts = [maker.primitive(half, [0, 1, 2]) for half in halves()]
     meshes = [maker.mesh(*parts)] if is_one_mesh else [maker.mesh(part) for part in parts]
     maker.shown(*({"mesh": number} for number in meshes))
@@ -255,7 +255,7 @@ def test_parts_of_a_mesh_hang_together(maker, tmp_path, is_one_mesh):
 
 @pytest.mark.parametrize("moved", ["shape", "bone", "nothing"])
 def test_vertices_that_move_apart_are_two(maker, tmp_path, moved):
-    """Touching lips are in one place; a shape or a bone of the file parts them."""
+    """Lip vertices at one place are kept separate if a shape or a bone of the file parts them."""
     first, second = halves()
     joints = np.zeros((3, 4))
     attributes = [{}, {}]
@@ -284,7 +284,7 @@ def test_vertices_that_move_apart_are_two(maker, tmp_path, moved):
 
 @pytest.mark.parametrize("where", ["mesh", "node"])
 def test_shapes_are_added_as_the_file_weighs_them(maker, tmp_path, where):
-    """A file may show a shape at rest."""
+    """Morph targets are added with the weights of the file."""
     target = {"POSITION": maker.accessor(np.tile([0.0, 0.0, 2.0], (4, 1)))}
     square = maker.primitive(SQUARE, FACES, targets=[target])
     weights = {"weights": [0.5]}
@@ -294,7 +294,7 @@ def test_shapes_are_added_as_the_file_weighs_them(maker, tmp_path, where):
 
 
 def test_bones_bend_meshes(maker, tmp_path):
-    """Bones, and not the node, give the places of vertices in the file; also many bones."""
+    """Joints, not the node, place the vertices of a skinned mesh, also with many joints."""
     bind = np.stack([np.eye(4), np.eye(4)])
     bind[1, :3, 3] = [-1, 0, 0]
     joints = np.array([[0, 0, 0, 0], [1, 0, 0, 0], [1, 0, 0, 0], [0, 1, 0, 0]])
@@ -329,7 +329,7 @@ def _unknown(maker):
 
 
 def _draco_beside(maker):
-    """Compressed data, with plain numbers for readers that cannot decode them."""
+    """Draco data, and uncompressed numbers beside it for readers that cannot decode Draco."""
     maker.parts["extensionsUsed"] = ["KHR_draco_mesh_compression"]
     primitive = maker.parts["meshes"][0]["primitives"][0]
     primitive["extensions"] = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {}}}
@@ -337,7 +337,7 @@ def _draco_beside(maker):
 
 @pytest.mark.parametrize("change", [_extras, _unknown, _draco_beside])
 def test_what_is_not_needed_is_left_alone(maker, tmp_path, change):
-    """Extras of any kind, extensions that are not required, and cameras are ignored."""
+    """Unknown extras, optional extensions, and cameras are ignored."""
     show_square(maker)
     change(maker)
     assert np.allclose(shape_of(read(maker, tmp_path)), SQUARE[FACES])
@@ -415,7 +415,7 @@ def _circle(maker):
     ],
 )
 def test_what_cannot_be_read_is_named(maker, tmp_path, change, message):
-    """Each gives one clear line."""
+    """Each unreadable content gives one clear line."""
     show_square(maker)
     change(maker)
     with pytest.raises(AssetError, match=message) as refusal:
@@ -425,7 +425,7 @@ def test_what_cannot_be_read_is_named(maker, tmp_path, change, message):
 
 @pytest.mark.parametrize("is_beside", [True, False])
 def test_a_document_may_have_its_data_beside_it(maker, tmp_path, is_beside):
-    """A .gltf file has data and picture in files, or in text within it."""
+    """A .gltf file has data and picture in other files, or as text within it."""
     painted(maker, maker.accessor(UV))
     image = maker.parts["images"][0]
     del image["bufferView"]
@@ -445,7 +445,7 @@ def test_a_document_may_have_its_data_beside_it(maker, tmp_path, is_beside):
 
 @pytest.mark.parametrize("name", ["Haut für 顔.png", "Haut%20f%C3%BCr%20%E9%A1%94.png"])
 def test_a_picture_beside_it_may_have_any_letters(maker, tmp_path, name):
-    """The name is given directly, or in the encoding of URIs."""
+    """A file name beside the .gltf file may be plain or percent-encoded, with any letters."""
     painted(maker, maker.accessor(UV))
     image = maker.parts["images"][0]
     del image["bufferView"]
@@ -458,7 +458,10 @@ def test_a_picture_beside_it_may_have_any_letters(maker, tmp_path, name):
 
 
 def test_pictures_of_a_kind_that_is_not_read_are_named(maker, tmp_path):
-    """They are only reported when drawn: hair may have another kind than the skin."""
+    """A picture in an unknown format is reported only when it is drawn.
+
+    Hair may have a format other than the skin's.
+    """
     texture = maker.add("textures", {"extensions": {"KHR_texture_basisu": {"source": 0}}})
     number = material(maker, {"index": texture})
     show_square(maker, {"TEXCOORD_0": maker.accessor(UV)}, material=number)
@@ -478,7 +481,7 @@ def test_pictures_of_a_kind_that_is_not_read_are_named(maker, tmp_path):
     ],
 )
 def test_pictures_that_cannot_be_read_are_named(maker, tmp_path, change, message):
-    """They are reported when drawn, in one line."""
+    """A broken picture is reported in one line when it is drawn."""
     painted(maker, maker.accessor(UV))
     maker.parts["images"][0].update({"name": "face", **change})
     found = read(maker, tmp_path)

@@ -1,4 +1,4 @@
-"""The first guess of 68 landmarks: near the true ones, on the skin, and refused for wrong input."""
+"""The first guess of 68 landmarks: near the true ones, on the skin, refused for wrong input."""
 
 import numpy as np
 import pytest
@@ -14,11 +14,11 @@ from risorius.assets.meshes import Mesh
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import METRES, stranger
 
-JAW = 17  # the first landmarks, along the jaw: their places on this line are not defined exactly
+JAW = 17  # number of jaw landmarks, which come first and have no exact place along the jaw
 
 
 def errors(mesh, true):
-    """Errors of the landmarks that are guessed from the first points."""
+    """Errors of the landmarks guessed from the first five points."""
     found = guess(mesh, {number: true[number] for number in FIRST})
     off = norm(found - true, axis=1)
     assert not off[list(FIRST)].max() > 1e-9 * np.abs(true).max()
@@ -26,14 +26,17 @@ def errors(mesh, true):
 
 
 def test_the_built_in_head_is_found_again(head):
-    """With finer triangles, all of it is in the same place."""
+    """On the built-in head with finer triangles, all landmarks are found at their places."""
     fine = head.finer(1)
     assert errors(Mesh(fine.vertices, fine.faces), head.vertices[head.landmarks]).max() < 1.0
 
 
 @pytest.mark.parametrize("seed", range(1, 6))
 def test_other_persons_are_found(seed):
-    """Without the jaw line half of the points are within 1.5 mm, and none is 6 mm off."""
+    """On other persons half of the landmarks are within 1.5 mm, and none is 6 mm off.
+
+    The jaw line is left out.
+    """
     person = make_person(sample_identity(seed))
     off = errors(Mesh(person.vertices, person.faces), person.vertices[person.landmarks])
     assert np.median(off[JAW:]) < 1.5
@@ -43,7 +46,7 @@ def test_other_persons_are_found(seed):
 
 @pytest.mark.slow
 def test_unit_axes_and_other_pieces_do_not_matter():
-    """In metres, z up, facing inward, with balls in its eyes: guessed on the skin, not on these."""
+    """For a head in metres, z up, inside out, with eyeballs, landmarks lie on the skin."""
     other = stranger()
     true = other.mesh.vertices[other.landmarks]
     balls = [true[list(eye)].mean(axis=0) for eye in (range(36, 42), range(42, 48))]
@@ -66,7 +69,7 @@ def test_unit_axes_and_other_pieces_do_not_matter():
 
 @pytest.mark.slow
 def test_more_points_make_it_better_and_stay():
-    """A point placed by hand stays, and draws its neighbours along."""
+    """Given points stay where they are, and further ones improve the guess of their neighbours."""
     person = make_person(sample_identity(1))
     mesh = Mesh(person.vertices, person.faces)
     true = person.vertices[person.landmarks]
@@ -87,7 +90,7 @@ def test_more_points_make_it_better_and_stay():
     ],
 )
 def test_points_of_no_face_are_refused(head, order, words):
-    """Landmarks in an unknown order are refused in one line."""
+    """Points in a wrong order are refused in one line."""
     points = head.vertices[head.landmarks][order]
     with pytest.raises(AssetError, match=words) as raised:
         guess(Mesh(head.vertices, head.faces), {number: points[number] for number in FIRST})
@@ -95,7 +98,7 @@ def test_points_of_no_face_are_refused(head, order, words):
 
 
 def test_a_mesh_is_brought_into_the_middle():
-    """It works in any unit, and gives the requested size."""
+    """A mesh in any unit is centred and scaled to the requested size."""
     vertices = assets.load("head").vertices
     seen = centred(0.001 * vertices + 7.0, 140.0).points(0.001 * vertices + 7.0)
     assert norm(seen, axis=1).max() == approx(140.0)

@@ -1,4 +1,4 @@
-"""Hair of persons: it grows on the scalp, stands off the head, and does not cover the face."""
+"""Hair of persons: it grows on the scalp, stands off the head, and leaves the face free."""
 
 from dataclasses import replace
 from functools import cache
@@ -29,7 +29,7 @@ from tests.assets.checks import check_part
 
 @cache
 def haired(cut, *, receded=0.0, length=1.0):
-    """A person with a cut."""
+    """A person with a haircut."""
     identity = replace(sample_identity(0), cut=cut, hair=length)
     return coloured(
         make_person(identity), angle=30.0, features=Features(hairline=Hairline(front=receded))
@@ -37,15 +37,15 @@ def haired(cut, *, receded=0.0, length=1.0):
 
 
 def hair_of(person, name=HAIR):
-    """The person's hair, visible from outside: on the scalp, or tied."""
+    """A part of the person's hair, by default the hair on the scalp."""
     return next(part for part in person.parts if part.name == name)
 
 
 @pytest.mark.parametrize("cut", CUTS)
 def test_hair_is_a_sound_part(cut):
-    """Arrays fit, and triangles are visible from the side to which normals point."""
+    """Arrays of hair fit together, and triangles are visible from the side of their normals."""
     for part in [each for each in haired(cut).parts if each.name in (HAIR, HAIR + "_tied")]:
-        check_part(part, least_agreeing=0.9)  # over its hairline the lower side of hair turns
+        check_part(part, least_agreeing=0.9)  # at the hairline the lower side of hair turns over
         assert part.bone == "cranium"
         assert part.striation.shape == (len(part.vertices), 6)
         assert np.isfinite(part.striation).all()
@@ -53,7 +53,7 @@ def test_hair_is_a_sound_part(cut):
 
 @pytest.mark.parametrize("cut", CUTS)
 def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut):
-    """Dense hair is above the skin; none hangs before brows, eyes, nose and mouth."""
+    """Dense hair is above the skin, and no hair hangs before brows, eyes, nose and mouth."""
     person = haired(cut)
     part = hair_of(person)
     way = part.striation[:, 2:5]
@@ -63,7 +63,7 @@ def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut):
     over = [((each - roots) * part.normals).sum(axis=1)[dense] for each in (part.vertices, tips)]
     assert over[0].min() >= 0.0
     assert np.median(over[1]) > 2.0
-    if not isinstance(CUTS[cut], Fall):  # it hangs beside the head
+    if not isinstance(CUTS[cut], Fall):  # hangs beside the head
         nearest = cKDTree(person.vertices).query(roots)[1]
         heights = ((roots - person.vertices[nearest]) * part.normals).sum(axis=1)
         assert np.quantile(np.abs(heights[dense]), 0.95) < 4.0
@@ -75,7 +75,7 @@ def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut):
 
 
 def test_hair_is_as_long_and_begins_where_it_is_set():
-    """Longer hair reaches farther, receded hair begins farther back."""
+    """Longer hair reaches farther down, and receded hair begins farther back."""
     usual, longer, receded = (
         hair_of(haired("brushed", length=length, receded=by))
         for length, by in ((1.0, 0.0), (1.3, 0.0), (1.0, 20.0))
@@ -86,14 +86,14 @@ def test_hair_is_as_long_and_begins_where_it_is_set():
 
 
 def test_cropped_hair_has_no_ring_of_light_around_its_whorl():
-    """It is dull in any light; longer hair shines as before."""
+    """Cropped hair is dull, so that its whorl has no bright ring; longer hair shines as before."""
     shines = {cut: hair_of(haired(cut)).shine for cut in ("cropped", "short", "brushed")}
     assert shines["cropped"] < 0.25 * shines["short"]
     assert shines["short"] == shines["brushed"] == 0.12
 
 
 def test_a_tail_is_tied_behind_the_ears_and_touches_no_skin_below():
-    """It hangs without touching neck and shoulders."""
+    """A ponytail hangs behind the ears without touching neck and shoulders."""
     person = haired("tailed")
     tail = hair_of(person, HAIR + "_tied").vertices
     ear = person.anatomy["tragion_left"]
@@ -104,7 +104,7 @@ def test_a_tail_is_tied_behind_the_ears_and_touches_no_skin_below():
 
 
 def test_hair_keeps_its_colour_in_other_tones_of_skin():
-    """The scalp beneath is unchanged by another tone of skin; newly made hair follows the tone."""
+    """Another skin tone leaves the scalp below hair unchanged; newly made hair follows the tone."""
     ada = person_called("ada")
     assert ada.in_tone is not None
     assert make_person(sample_identity(0)).in_tone is None
@@ -119,7 +119,7 @@ def test_hair_keeps_its_colour_in_other_tones_of_skin():
 
 
 def label_of(person):
-    """A picture and its classes."""
+    """A picture and its segmentation."""
     options = CaptureOptions(size=(200, 200), passes=("segmentation",))
     with Capture(FaceScene(person), options) as capture:
         image = capture.draw_image()
@@ -129,7 +129,10 @@ def label_of(person):
 
 
 def test_sparse_hair_is_called_what_is_behind_it():
-    """This holds where fewer than half of its strands are, as at its tips."""
+    """A pixel has the class of hair only where at least half of the strands are.
+
+    Elsewhere, as at sparse tips, it has the class behind the hair.
+    """
     long = haired("parted")
     few = np.float32([1.0, 1.0, 1.0, 1.0, 1.0, 0.2])
     parts = [
@@ -141,9 +144,9 @@ def test_sparse_hair_is_called_what_is_behind_it():
 
 
 def test_hair_is_seen_framed_and_labelled():
-    """It is in the frame as a whole, has its class, and is hidden over muscles and on clay."""
+    """Hair is inside the frame, has its class, and is hidden over muscles and on clay."""
     scene = FaceScene(person_called("ada"))
-    assert scene.skin.fade is None  # the shirt covers the end of the neck
+    assert scene.skin.fade is None  # no fade, because a shirt covers the end of the neck
     assert scene.framing.framed[:, 1].max() >= hair_of(person_called("ada")).vertices[:, 1].max()
     image, classes = label_of(haired("short"))
     is_hair = classes == Segment.HAIR
@@ -160,7 +163,7 @@ def test_hair_is_seen_framed_and_labelled():
 
 
 def test_lobes_of_ears_stay_under_hair_that_falls():
-    """They do not come through a short bob with tips that curve to the face."""
+    """Earlobes do not come through a short bob with tips that curve to the face."""
     person = person_called(4)
     hair = hair_of(person)
     rings = load("head").rings
@@ -173,7 +176,7 @@ def test_lobes_of_ears_stay_under_hair_that_falls():
 
 
 def gaps(person, rows, camera="60,5"):
-    """Number of empty pixels in some rows, between the left outline and the right one."""
+    """The number of background pixels between the left and right outline in some rows."""
     options = CaptureOptions((700, 700), camera=camera, style=Style(background=None))
     with Capture(FaceScene(person), options) as capture:
         is_seen = capture.draw_image()[rows, :, 3] >= 128
@@ -183,24 +186,27 @@ def gaps(person, rows, camera="60,5"):
 
 
 def test_no_slit_is_between_hair_and_the_refined_nape():
-    """From behind the ear, where hollow skin lies deeper than its coarse triangles."""
+    """From behind the ear no gap shows between hair and nape.
+
+    There, hollow skin lies deeper than its coarse triangles.
+    """
     assert gaps(load("head"), slice(370, 450)) < 30
 
 
 def test_no_slit_is_below_the_hem_of_a_bald_crown():
-    """Where hair lies on a horizon of skin, no light shows behind it."""
+    """No gap shows below the hem of hair around a bald crown, at the horizon of the skin."""
     features = Features(hairline=Hairline(front=6.0, temples=12.0, crown=0.5))
     person = make_person(replace(sample_identity(0), cut="swept", hair=1.0))
     assert gaps(coloured(person, angle=30.0, features=features), slice(30, 70)) < 40
 
 
 def test_no_slit_is_below_the_outline_of_hair_from_above():
-    """Layers of hair that is drawn back are closed for views over them."""
+    """From above, no gap shows below the outline of swept-back hair."""
     assert gaps(haired("knotted"), slice(0, 330), camera="0,65") < 40
 
 
 def test_strands_turn_along_great_circles(generator):
-    """From each direction to another, as scipy interpolates them one by one."""
+    """Strands turn along great circles, as scipy interpolates each of them."""
     start, end = unit_vectors(generator.normal(size=(2, 8, 3)).reshape(-1, 3)).reshape(2, 8, 3)
     shares = np.linspace(0.0, 1.0, 5)
     wanted = [geometric_slerp(*pair, shares) for pair in zip(start, end, strict=True)]
@@ -208,7 +214,7 @@ def test_strands_turn_along_great_circles(generator):
 
 
 def test_hair_reaches_over_the_farthest_skin_near_by(generator):
-    """A soft maximum over the points in about a direction, by the plain formula."""
+    """The reach of hair is a soft maximum of the skin's distance near a direction."""
     solid = 90.0 * unit_vectors(generator.normal(size=(300, 3)))
     solid *= generator.uniform(0.9, 1.1, (300, 1))
     ways = unit_vectors(generator.normal(size=(12, 3))).reshape(4, 3, 3)
@@ -219,7 +225,11 @@ def test_hair_reaches_over_the_farthest_skin_near_by(generator):
 
 
 def test_strands_stand_up_at_a_whorl_and_lie_around_it():
-    """Else they turn there from one direction to all others at once, and their light is a ring."""
+    """Strands stand up at a whorl, and lie around it.
+
+    Otherwise they would turn there from one direction to all others, and their shine would be a
+    ring.
+    """
     hair = hair_of(haired("short"))
     way = hair.striation[:, 2:5]
     long = np.maximum(np.linalg.norm(way, axis=1), 1e-6)

@@ -1,4 +1,4 @@
-"""Persons: heads with the requested measures, and faces like the built-in one."""
+"""Persons: heads with the requested measures, and faces that move like the built-in one."""
 
 from dataclasses import replace
 
@@ -36,12 +36,12 @@ PERSONS = (0, 1039)
 
 @pytest.fixture(scope="module", params=PERSONS)
 def person(request: pytest.FixtureRequest) -> Person:
-    """Some persons."""
+    """A few persons."""
     return make_person(sample_identity(request.param))
 
 
 def test_few_persons_lie_far_from_the_mean():
-    """The root mean square of weights is about 1.4; in one of a hundred it is above 2."""
+    """The root mean square of a person's weights is about 1.4; for 1 in 100 it is above 2."""
     sizes = [np.sqrt(np.mean(np.square(sample_identity(n).weights))) for n in range(400)]
     assert 1.3 < np.median(sizes) < 1.6
     assert np.mean(np.array(sizes) > 2.0) < 0.03
@@ -50,7 +50,7 @@ def test_few_persons_lie_far_from_the_mean():
 @given(SEEDS)
 @settings(max_examples=4, deadline=None)
 def test_a_number_is_one_person(seed):
-    """The same number gives the same bytes; no person exceeds the allowed deviations."""
+    """A number always gives the same bytes, and no person exceeds the allowed deviations."""
     first = sample_identity(seed)
     second = sample_identity(seed)
     assert first == second
@@ -65,7 +65,10 @@ def test_a_number_is_one_person(seed):
 @given(SEEDS)
 @settings(max_examples=4, deadline=None)
 def test_an_even_face_is_its_own_mirror_image(seed):
-    """Within rounding; an uneven one is so within some millimetres, but not exactly."""
+    """A symmetric face equals its mirror image within rounding.
+
+    An asymmetric face differs from its mirror image by some millimetres.
+    """
     even = make_person(sample_identity(seed, is_even=True))
     assert mirror_error(even.vertices, even.mirror) < 1e-6
     assert np.abs(even.vertices[even.mirror == np.arange(len(even.mirror)), 0]).max() < 1e-6
@@ -74,9 +77,9 @@ def test_an_even_face_is_its_own_mirror_image(seed):
 
 
 def test_persons_are_spread_as_published():
-    """Of 400: both sexes differ nearly as published, and long faces have long noses.
+    """Among 400 persons, sexes differ nearly as published, and long faces have long noses.
 
-    They are not a sample of the people behind these norms, but vary around them.
+    Persons are no sample of the people behind these norms, but vary around them.
     """
     space = person_space()
     everyone = [sample_identity(seed) for seed in range(400)]
@@ -100,9 +103,10 @@ def test_persons_are_spread_as_published():
 
 
 def test_women_and_men_differ_as_measured():
-    """Of people alike but for sex: as published, nearly; men's brows lie lower and farther out.
+    """Mean women and men, alike except for sex, differ nearly as published.
 
-    Brows are taken from the corners of the eyes. Women's necks are a sixth narrower.
+    Men's brows lie lower and farther out, relative to the corners of the eyes. Women's necks are a
+    sixth narrower.
     """
     space = person_space()
     weights = {
@@ -122,7 +126,7 @@ def test_women_and_men_differ_as_measured():
 
 
 def test_womens_necks_are_narrower():
-    """By a sixth, as published, if all else is one person's."""
+    """Women's necks are a sixth narrower, as published, if everything else is equal."""
     identity = sample_identity(4, is_even=True)
     her, him = (make_person(replace(identity, sex=sex)) for sex in (Sex.WOMAN, Sex.MAN))
     is_neck = him.vertices[:, 1] < him.vertices[him.anatomy["menton"], 1] - 40.0
@@ -131,7 +135,10 @@ def test_womens_necks_are_narrower():
 
 
 def test_nine_of_ten_parts_of_what_differs_need_eight_ways():
-    """People are not of three or four types: principal components of a hundred faces."""
+    """90 % of the variance of a hundred faces needs at least eight principal components.
+
+    Fewer components would mean that persons are of three or four types.
+    """
     space = person_space()
     x = np.array([space.moved(np.array(sample_identity(k).weights)) for k in range(100)])
     face = space.mean[:, 2] > 40.0
@@ -141,7 +148,7 @@ def test_nine_of_ten_parts_of_what_differs_need_eight_ways():
 
 
 def test_age_is_seen():
-    """Lips get thinner, and the skin of lips longer; furrows show at rest."""
+    """With age lips get thinner and the skin above them longer; furrows show at rest."""
     young, old = (make_person(sample_identity(4, age=age)) for age in (25.0, 70.0))
     assert old.measures["ls-sto"] < young.measures["ls-sto"] - 0.5
     assert old.measures["sn-ls"] > young.measures["sn-ls"] + 0.5
@@ -149,7 +156,10 @@ def test_age_is_seen():
 
 
 def test_persons_of_one_age_and_sex_differ_in_small_things():
-    """Lids, corners of the mouth, brows and furrows, each by a good part of its mean spread."""
+    """Persons of one age and sex differ in lids, corners of the mouth, brows and furrows.
+
+    Each varies by a good part of its mean spread.
+    """
     alike = [sample_identity(seed, sex=Sex.WOMAN, age=60.0) for seed in range(40)]
     for name, least in (("covered", 0.3), ("corners", 0.45), ("brows", 0.8), ("furrows", 0.25)):
         assert np.std([getattr(each, name) for each in alike]) > least, name
@@ -159,7 +169,10 @@ def test_persons_of_one_age_and_sex_differ_in_small_things():
 
 
 def test_furrows_of_old_persons_lie_in_places_of_their_own():
-    """Of two as old, one has them on the forehead, another beside the mouth; halves are alike."""
+    """Two equally old persons have furrows in different places, as forehead or mouth.
+
+    Both halves of a face are alike.
+    """
     persons = [make_person(sample_identity(number, age=70.0)) for number in (1, 2)]
     shares = [each.wrinkles.resting / each.wrinkles.resting.max() for each in persons]
     assert abs(np.corrcoef(*shares)[0, 1]) < 0.8
@@ -169,7 +182,7 @@ def test_furrows_of_old_persons_lie_in_places_of_their_own():
 
 
 def test_people_are_drawn_freely():
-    """No direction of form is narrower than people's own spread, except the head's size."""
+    """Weights vary at least as much as people's in every direction, except in the head's size."""
     weights = np.array(
         [sample_identity(seed, sex=Sex.MAN, age=30.0).weights for seed in range(300)]
     )
@@ -180,7 +193,10 @@ def test_people_are_drawn_freely():
 
 
 def test_upper_lids_cover_a_part_of_the_iris():
-    """They cover half a millimetre to three, and lower ones touch it, so no person stares."""
+    """Upper lids cover half a millimetre to three of the iris, and lower lids touch it.
+
+    With less, a person would stare.
+    """
     for seed in range(8):
         person = make_person(sample_identity(seed))
         for eye in person.eyes:
@@ -192,7 +208,7 @@ def test_upper_lids_cover_a_part_of_the_iris():
 
 @pytest.mark.slow
 def test_named_persons_are_different_people(head):
-    """They have both sexes, different tones and ages, and none has the built-in head's face."""
+    """Named persons differ in sex, tone and age, and none has the built-in head's face."""
     people = [person_called(name) for name in NAMED]
     assert HEAD_NAMES == (*NAMED, COARSE)
     assert {each.identity.sex for each in people} == set(Sex)
@@ -205,7 +221,10 @@ def test_named_persons_are_different_people(head):
 
 
 def test_person_is_a_sound_head(person, head):
-    """No triangle is turned over or pierces another; eyes and mouth are open enough for fitting."""
+    """No triangle is turned over or crosses another.
+
+    Eyes and mouth are open enough to be fitted.
+    """
     check_manifold(person.faces)
     check_openings(
         SkinPiece(
@@ -220,7 +239,7 @@ def test_person_is_a_sound_head(person, head):
     assert len(self_intersections(person.vertices, person.faces)) == 0
     assert not np.shares_memory(person.vertices, head.vertices)
     for old, new in zip(head.eyes, person.eyes, strict=True):
-        for row in ("eye_1", "eye_2"):  # the lids, as far from their eye as the built-in ones
+        for row in ("eye_1", "eye_2"):  # lids are as far from their eye as built in
             ring = np.delete(head.rings[f"{row}_{old.name}"], [0, 10])
             before, now = (
                 norm(x[ring] - eye.centre, axis=1) / eye.radius
@@ -230,7 +249,7 @@ def test_person_is_a_sound_head(person, head):
 
 
 def test_expressions_work_on_persons(person, head, request):
-    """It stays still at rest, with lips that meet; it laughs, and shuts its eyes."""
+    """A person stays still at rest with closed lips, laughs, and shuts the eyes."""
     simulation = sim.create(person)
     usual = sim.create(head)
     for _ in range(30):
@@ -250,14 +269,14 @@ def test_expressions_work_on_persons(person, head, request):
         assert share < moved[0] / moved[1] < 1.0 / share, pose
     landmarks = simulation.positions[person.landmarks]
     shown = simulation.positions, simulation.faces, landmarks, eyeballs_of(person, simulation)
-    # Past the inner corner of the most unusual person's lids one sees no skin from below,
-    # and in a picture no eye: test_passes.py.
+    # On the most unusual person, skin is hidden past the inner corner of the lids when seen from
+    # below; in a picture no eye shows there: test_passes.py.
     if request.node.callspec.params["person"] != PERSONS[-1]:
         assert max(lid_gaps(*shown).values()) < 0.3
 
 
 def test_person_is_a_scene(person, head):
-    """A scene uses it like any head, with its own light at once: that of the built-in head."""
+    """A scene accepts a person like any head, lit at once like the built-in head."""
     scene = FaceScene(person)
     assert scene.skin.ambient_occlusion is person.ambient_occlusion
     assert scene.skin.albedo.shape == head.albedo.shape

@@ -6,7 +6,7 @@ from risorius.assets.intersections import self_intersections
 
 
 def test_large_and_small_triangles_are_compared():
-    """Candidates are found by classes of size; every crossing of a seeded heap is found."""
+    """Every crossing in a seeded heap is found, although candidates are found by size classes."""
     random = np.random.default_rng(5)
     sizes = np.exp(random.uniform(-2.0, 2.5, 50))
     points = random.uniform(-3.0, 3.0, (50, 1, 3)) + sizes[:, None, None] * random.normal(

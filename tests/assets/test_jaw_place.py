@@ -7,34 +7,34 @@ from risorius.assets.fitting.jaw_place import jaw_axis_of, opening_as_people
 
 
 def found_axis(head, size):
-    """The axis found on a head with parts scaled by `size`."""
+    """The axis found on a head whose ears and other parts are scaled by `size`."""
     vertices = head.vertices * size
     return jaw_axis_of(vertices, head.faces, vertices[head.landmarks])
 
 
 def test_condyles_are_found_in_front_of_the_ears(head):
-    """On the built-in head they are within 3 mm of their places in its anatomy."""
+    """On the built-in head the condyles are found within 3 mm of the anatomy's places."""
     axis = found_axis(head, np.ones(3))
     assert np.abs(axis - head.jaw_axis).max() < 3.0
 
 
 @pytest.mark.parametrize("depth", [0.9, 1.1])
 def test_condyles_follow_the_ears(head, depth):
-    """In a flatter or deeper head the axis moves with the ears."""
+    """In a flatter or deeper head, the axis moves with the ears."""
     axis = found_axis(head, np.array([1.0, 1.0, depth]))
     wanted = head.jaw_axis * (1.0, 1.0, depth)
     assert np.abs(axis - wanted)[:, 2].max() < 5.0
 
 
 def test_without_ears_no_axis_is_found(head):
-    """For a mask that ends before its ears, landmarks give the axis."""
+    """For a mask that ends before its ears no axis is found, and landmarks give it."""
     is_front = head.vertices[:, 2] > head.vertices[head.anatomy["tragion_left"], 2] + 15.0
     faces = head.faces[is_front[head.faces].all(axis=1)]
     assert jaw_axis_of(head.vertices, faces, head.vertices[head.landmarks]) is None
 
 
 def test_the_opening_grows_with_the_mandible(head):
-    """Heads of any size open by the same share of the way from the axis to the teeth."""
+    """Heads of any size open by the same share of the distance from axis to teeth."""
     points = head.vertices[head.landmarks]
     rig = opening_as_people(head.rig, head.jaw_axis, points)
     angle = np.radians(rig["jaw"]["opening_deg"])

@@ -1,4 +1,4 @@
-"""Landmarks in a wrong order are refused by name; right ones are accepted, however rough."""
+"""Landmarks in a wrong order are refused by name; correct ones are accepted, however rough."""
 
 import numpy as np
 import pytest
@@ -25,14 +25,14 @@ ROUGHNESS = 2.0  # [mm]
 
 @pytest.fixture(scope="module")
 def other() -> Stranger:
-    """A head of another shape, its mouth closed."""
+    """A head of another shape, with a closed mouth."""
     return stranger()
 
 
 @settings(deadline=None, max_examples=60)
 @given(seed=st.integers(0, 2**32 - 1), stretch=st.tuples(*[st.floats(0.85, 1.15)] * 3))
 def test_right_landmarks_are_taken(seed, stretch):
-    """They are those of another head, stretched, and each up to 2 mm off its place."""
+    """Landmarks of another, stretched head are accepted, although each is up to 2 mm off."""
     random = np.random.default_rng(seed)
     away = random.normal(size=(68, 3))
     away *= ROUGHNESS * random.random((68, 1)) / norm(away, axis=1, keepdims=True)
@@ -43,7 +43,7 @@ def test_right_landmarks_are_taken(seed, stretch):
 @settings(deadline=None, max_examples=10)
 @given(data=st.data())
 def test_a_group_in_another_order_is_named(group, data):
-    """It is reversed, shifted, or both, at any place of the group."""
+    """A group of landmarks that is reversed, rotated, or both is reported, at any place."""
     own = np.arange(group.first, group.first + group.count)
     orders = [np.roll(own[::way], by) for way in (1, -1) for by in range(group.count)]
     orders = [each for each in orders if _moves(own, each) > 5.0]
@@ -54,13 +54,16 @@ def test_a_group_in_another_order_is_named(group, data):
 
 
 def _moves(own, order):
-    """Mean motion of the points of a group by an order [mm]."""
+    """Mean motion [mm] of the points of a group when they are put in an order."""
     return float(norm(TEMPLATE[own] - TEMPLATE[order], axis=1).mean())
 
 
 @pytest.mark.parametrize("group", GROUPS, ids=lambda group: group.name)
 def test_a_group_in_disorder_is_refused_in_one_line(group, other):
-    """Reversed, or right and left swapped: the line has its numbers and the right order."""
+    """A reversed group, or one with sides swapped, is refused in one line.
+
+    The line has the group's numbers and the right order.
+    """
     numbers = other.landmarks.copy()
     own = slice(group.first, group.first + group.count)
     is_pair = group.name.startswith("two")
@@ -70,14 +73,14 @@ def test_a_group_in_disorder_is_refused_in_one_line(group, other):
 
 
 def test_numbers_counted_from_1_are_refused(other, tmp_path):
-    """Each is the vertex after the intended one."""
+    """Vertex numbers that are one too high, as if counted from 1, are refused."""
     mesh, numbers = other.write(tmp_path, landmarks=other.landmarks + 1)
     with pytest.raises(AssetError, match=r"\.obj: landmarks number vertices from 1"):
         fit_head(mesh, numbers)
 
 
 def test_a_point_on_a_lash_means_the_skin_beneath(other, tmp_path):
-    """The mesh may have its own lashes and eyeballs, which clicks beside the eye hit."""
+    """A point on a lash or eyeball, hit by a click, is moved to the skin behind it."""
     points = other.mesh.vertices[other.landmarks]
     count = len(other.mesh.vertices)
     lash = points[36] + 0.001 * np.eye(3)
@@ -91,6 +94,6 @@ def test_a_point_on_a_lash_means_the_skin_beneath(other, tmp_path):
 
 @pytest.mark.parametrize("by", [1, -1, 5])
 def test_a_list_that_begins_elsewhere_is_refused(by, other):
-    """Then every landmark is in a wrong place."""
+    """A list that begins at another landmark is refused, since all places are wrong."""
     with pytest.raises(AssetError, match="landmark"):
         fit(other.mesh, np.roll(other.landmarks, by))

@@ -1,4 +1,4 @@
-"""Folds of lids, and the neck: in the maps at the identity's places, and nowhere else."""
+"""Folds of lids, and the neck: drawn into the maps where the identity requires, only there."""
 
 from dataclasses import replace
 
@@ -20,12 +20,12 @@ def person() -> Person:
 
 
 def folded(person: Person, **own: float) -> Person:
-    """The same person with other lids."""
+    """The same person with changed lids."""
     return replace(person, identity=replace(person.identity, **own))
 
 
 def test_creases_lie_as_high_as_the_identity_says(person):
-    """One millimetre higher along the skin in the middle; a hidden crease makes no shade."""
+    """A crease set 1 mm higher lies 1 mm higher along the skin; a hidden one has no shade."""
     middle = load("head").anatomy["palpebrale_superius_left"]
     heights = []
     for seen in (1.2, 2.2):
@@ -57,7 +57,7 @@ def test_creases_have_no_kinks(side):
 
 
 def test_hooding_lowers_the_outer_half_alone(person):
-    """There the crease is hidden; towards the nose it is unchanged."""
+    """Hooding hides the crease in the outer half of the lid, and changes nothing at the nose."""
     plain, hooded = (
         fold_of(folded(person, seen_lid=1.5, hooding=h), "left", 1280).light for h in (0.0, 3.0)
     )
@@ -69,7 +69,7 @@ def test_hooding_lowers_the_outer_half_alone(person):
 
 
 def test_folds_are_wrinkles_of_the_lids_alone(person):
-    """They show at rest where the skin can yield; maps with fewer texels have the same shade."""
+    """Folds of lids show at rest where the skin can yield; smaller maps have the same shade."""
     open_eyed = folded(person, seen_lid=2.0)
     drawn, small = (coloured(open_eyed, angle=50.0, shrink=each).wrinkles for each in (1, 4))
     hidden = coloured(folded(person, seen_lid=-3.0), angle=50.0)
@@ -94,14 +94,17 @@ def test_folds_are_wrinkles_of_the_lids_alone(person):
 
 
 def test_people_show_as_much_of_their_lids_as_measured():
-    """Of 200 women and men at fifty: 1.4 ± 1.1 mm as the mean of both."""
+    """Visible lids of 200 persons at fifty are 1.4 ± 1.1 mm high, as measured in both sexes."""
     seen = [sample_identity(seed, age=50.0).seen_lid for seed in range(200)]
     assert 1.2 < np.mean(seen) < 1.7
     assert 0.9 < np.std(seen) < 1.4
 
 
 def test_the_larynx_stands_out_as_far_as_the_identity_says(person):
-    """A ridge in the middle of the neck, higher in men, fades out within its map."""
+    """The larynx is a ridge in the middle of the neck, as high as the identity requires.
+
+    It is higher in men, and fades out within its map.
+    """
     found = larynx_of(folded(person, larynx=4.0), 1024)
     column = found.heights.max(axis=0).argmax()
     assert column + found.columns.start == pytest.approx(511.5, abs=12.0)
@@ -114,7 +117,10 @@ def test_the_larynx_stands_out_as_far_as_the_identity_says(person):
 
 
 def test_sternomastoids_stand_out_of_lean_and_old_necks(person):
-    """Ridges on both sides, as high as the identity says, higher in the old and the lean."""
+    """Sternomastoids are ridges on both sides of the neck, as high as the identity requires.
+
+    They are higher in the old and the lean.
+    """
     even = folded(person, sternomastoid=0.0)
     lean = height_of(even)
     raised, sunk = (

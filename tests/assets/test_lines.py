@@ -1,4 +1,4 @@
-"""Lines of expression: their numbers by age and sex, and their maps."""
+"""Expression lines (wrinkles of habit): their numbers by age and sex, and their maps."""
 
 from collections import Counter
 from dataclasses import replace
@@ -32,17 +32,17 @@ PLAIN = Lines(
 
 
 def people(age: float, sex: Sex | None = None) -> list[Lines]:
-    """The lines of two hundred persons of that age."""
+    """The lines of two hundred persons of one age."""
     return [sample_identity(seed, age=age, sex=sex).lines for seed in range(200)]
 
 
 def drawn(shrink: int = 1, **own: object) -> np.ndarray:
-    """The map of PLAIN with other lines."""
+    """The map of PLAIN with some fields of the lines replaced."""
     return with_lines(load("head").wrinkles, PLAIN._replace(**own), shrink).map.astype(int)
 
 
 def about(name: str, high: int, wide: int) -> tuple[slice, slice]:
-    """The part of the map about a named point: so many texels up and down, and to each side."""
+    """Rows and columns of the map around a named point, by half height and half width [texels]."""
     head = load("head")
     size = len(head.wrinkles.map)
     column, row = (head.uv[head.anatomy[name]] * [size, -size] + [0.0, size]).astype(int)
@@ -50,13 +50,13 @@ def about(name: str, high: int, wide: int) -> tuple[slice, slice]:
 
 
 def furrows_along(depth: np.ndarray) -> int:
-    """The number of furrows on a way across them, shape (n,)."""
+    """The number of furrows crossed along each path, shape (n,)."""
     is_deep = np.concatenate([[False], depth > 40])
     return int((is_deep[1:] & ~is_deep[:-1]).sum())
 
 
 def test_lines_get_more_and_deeper_with_age_and_in_men():
-    """At seventy compared with twenty-five, as a mean of two hundred."""
+    """On average, lines are more and deeper at seventy than at twenty-five, and in men."""
     young, old = people(25.0), people(70.0)
     for name in ("forehead", "feet", "reach", "fine"):
         assert np.mean([getattr(x, name) for x in old]) > np.mean([getattr(x, name) for x in young])
@@ -70,7 +70,7 @@ def test_lines_get_more_and_deeper_with_age_and_in_men():
 
 
 def test_patterns_have_their_published_shares():
-    """Foreheads, frowns and fans are each within a tenth of all people."""
+    """Patterns of foreheads, frowns and crow's feet have nearly their published shares."""
     lines = people(50.0)
     spreads, frowns, fans = (
         Counter(getattr(x, name) for x in lines) for name in ("spread", "frown", "fan")
@@ -84,7 +84,7 @@ def test_patterns_have_their_published_shares():
 
 
 def test_a_number_has_the_same_lines_and_map_every_time():
-    """A number always gives the same bytes, others give others; no shared map is written."""
+    """A number always gives the same lines and map, other numbers others; shared maps stay."""
     known = load("head").wrinkles
     before = known.map.copy()
     lines = [sample_identity(seed).lines for seed in (7, 7, 8)]
@@ -100,7 +100,10 @@ def test_a_number_has_the_same_lines_and_map_every_time():
 
 @pytest.mark.parametrize("count", [2, 4])
 def test_as_many_lines_are_drawn_as_the_record_says(count):
-    """They are counted on the forehead up its middle, between the brows from side to side."""
+    """Each map has the recorded number of lines, counted along paths across them.
+
+    Paths run up the middle of the forehead, and from side to side between the brows.
+    """
     rows, columns = about("metopion", 110, 60)
     counts = [
         furrows_along(depth)
@@ -115,7 +118,10 @@ def test_as_many_lines_are_drawn_as_the_record_says(count):
 
 
 def test_spread_fan_and_reach_are_where_the_record_says():
-    """Lines are in the middle or at the sides, crow's feet above or below, short or long."""
+    """Lines lie where recorded: in the middle or at the sides; crow's feet above or below.
+
+    Their lengths are as recorded, too.
+    """
     rows, columns = about("metopion", 60, 170)
     ways = (Spread.MIDDLE, Spread.SIDES)
     middle, sides = (drawn(spread=each)[rows, columns, 2].sum(axis=0) for each in ways)
@@ -131,7 +137,10 @@ def test_spread_fan_and_reach_are_where_the_record_says():
 
 
 def test_folds_get_as_deep_as_the_record_says_and_all_else_stays():
-    """Half or twice as deep beside the mouth; nose, lips, lower lids and chin as built in."""
+    """Folds beside the mouth are half or 1.4 times as deep as built in, as recorded.
+
+    Nose, lips, lower lids and chin are unchanged.
+    """
     known = load("head").wrinkles.map.astype(int)
     shallow, deep = (drawn(fold_depth=depth) for depth in (0.5, 1.4))
     rows, columns = about("stomion", 60, 170)
@@ -151,7 +160,10 @@ def test_folds_get_as_deep_as_the_record_says_and_all_else_stays():
 
 
 def test_small_pictures_have_fewer_texels_of_the_same_lines():
-    """Half the texels each way have the same depth and slopes; the smallest share them."""
+    """A map with half the texels each way has the same depths and slopes.
+
+    The smallest maps are shared between persons.
+    """
     whole, half = drawn(), drawn(2)
     assert half.shape == (640, 640, 4)
     means = whole.reshape(640, 2, 640, 2, 4).mean(axis=(1, 3))
@@ -159,7 +171,7 @@ def test_small_pictures_have_fewer_texels_of_the_same_lines():
     assert np.corrcoef(means[..., 2].ravel(), half[..., 2].ravel())[0, 1] > 0.97
     person = make_person(sample_identity(6))
     small = coloured(person, angle=40.0, shrink=4).wrinkles.map
-    below = slice(about("subnasale", 0, 0)[0].start // 4, None)  # without lids
+    below = slice(about("subnasale", 0, 0)[0].start // 4, None)  # below the lids
     assert_array_equal(small[below], shared_map(4)[below])
     assert len(coloured(person, angle=40.0, shrink=2).wrinkles.map) == 640
     bare = replace(person, identity=replace(person.identity, lines=None))

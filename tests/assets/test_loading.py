@@ -1,4 +1,4 @@
-"""Loading: the promises of `assets.load`, and its messages when it fails."""
+"""Loading: the promises of `assets.load`, and its messages when a file fails."""
 
 import shutil
 import subprocess
@@ -14,17 +14,17 @@ from risorius.assets.fitting.painting import plain_skin
 from risorius.assets.loading import HEAD_FILE, load_head
 from tests.tracked import tracked
 
-MOST_DATA = 3_600_000  # bytes of all data files together; a quarter of it is the painted skin
+MOST_DATA = 3_600_000  # [bytes] of all data files; a quarter of it is the painted skin
 
 
 def test_unknown_name_is_refused_with_the_known_ones():
-    """A typing error is answered with the known names."""
+    """An unknown name is refused, and the message has the known names."""
     with pytest.raises(AssetError, match=r"'haed'; available: head, plane; a mesh file is"):
         assets.load("haed")
 
 
 def test_plane_is_that_of_the_paper():
-    """Figure 9: 7 x 11 cells, 154 triangles, flat, all facing the viewer."""
+    """The plane of Figure 9: 7 x 11 cells, 154 triangles, flat, all facing the viewer."""
     plane = assets.load("plane")
     corner = plane.vertices[plane.faces]
     cross = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
@@ -35,7 +35,7 @@ def test_plane_is_that_of_the_paper():
 
 
 def test_types_and_shapes_are_those_of_the_docstrings(head):
-    """Other packages rely on dtypes without checks."""
+    """Types and shapes are as documented, because other packages rely on them unchecked."""
     count = len(head.vertices)
     for array, kind, shape in (
         (head.vertices, np.float64, (count, 3)),
@@ -66,7 +66,10 @@ ASKED = {
 
 @pytest.mark.parametrize("name", ASKED)
 def test_missing_and_broken_files_are_reported_when_they_are_needed(name, tmp_path):
-    """The message has the remedy; neither garbage nor half a file gives a library's traceback."""
+    """Missing and broken files are reported when they are needed, with the remedy.
+
+    Neither garbage nor half a file gives a library's traceback.
+    """
     folder = shutil.copytree(HEAD_FILE.parent, tmp_path / "data", symlinks=True)
     whole = (folder / name).read_bytes()
     for content in (b"nothing", whole[:5000], b""):
@@ -75,13 +78,13 @@ def test_missing_and_broken_files_are_reported_when_they_are_needed(name, tmp_pa
             ASKED[name](load_head(folder / "head.npz"))
     (folder / name).unlink()
     if name != "head.npz":
-        load_head(folder / "head.npz")  # it can still be simulated
+        load_head(folder / "head.npz")  # enough for a simulation
     with pytest.raises(AssetError, match=rf"{name} cannot be read \(.*No such file.*; install"):
         ASKED[name](load_head(folder / "head.npz"))
 
 
 def test_files_are_made_from_this_head(head):
-    """Maps over a head were made from its mesh."""
+    """Maps that belong to a head were made from its mesh."""
     own = zlib.crc32(head.faces.tobytes(), zlib.crc32(head.vertices.tobytes()))
     found = [np.load(file).get("made_from") for file in tracked("assets/data", "head_*.npz")]
     assert found == len(found) * [own]
@@ -98,7 +101,7 @@ def test_broken_text_files_are_reported(tmp_path, monkeypatch):
 
 
 def test_layers_arrive_as_written(tmp_path, monkeypatch):
-    """A table of expressions keeps its rows, and knows its file for error texts."""
+    """A table of expressions keeps its rows, and knows its file for error messages."""
     file = tmp_path / "expressions.toml"
     file.write_text("[smile]\nzygomaticus_major_left = 0.8\n", encoding="utf-8")
     monkeypatch.setattr(loading, "LAYER_FILES", {"Expressions": file})
@@ -110,12 +113,12 @@ def test_layers_arrive_as_written(tmp_path, monkeypatch):
 
 
 def test_data_stay_small():
-    """The package must stay small."""
+    """All data files together stay below the limit, so that the package stays small."""
     assert sum(file.stat().st_size for file in tracked("assets/data")) < MOST_DATA
 
 
 def test_loading_is_light():
-    """It needs neither SciPy, as fits and persons do, nor a picture: `load` must stay fast."""
+    """Loading needs neither SciPy, as fits and persons do, nor a picture, so it stays fast."""
     code = (
         "import sys; from risorius import assets; assets.load('head');"
         "assert not any(name.startswith(('scipy', 'PIL')) for name in sys.modules)"

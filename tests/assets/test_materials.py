@@ -31,7 +31,10 @@ def png(colour=RED):
 
 
 def read(folder, material, library, /, **names):
-    """A triangle with one material of a library; names: of "material", "library" and "picture"."""
+    """A triangle with one material of a library.
+
+    names: file or material names for the keys "material", "library" and "picture".
+    """
     path = folder / "a.obj"
     named = names.get("library", "a.mtl")
     path.write_text(OBJ.format(library=named, material=names.get("material", material)))
@@ -43,7 +46,7 @@ def read(folder, material, library, /, **names):
 
 
 def colour_of(mesh):
-    """The colour of its picture."""
+    """The colour of a mesh's picture."""
     assert mesh.texture.picture.tolist() == [0]
     red, green, blue = mesh.texture.pictures[0]()[0, 0].tolist()
     return red, green, blue
@@ -68,7 +71,7 @@ def colour_of(mesh):
     ],
 )
 def test_libraries_are_read_as_programs_write_them(tmp_path, library, picture):
-    """Tabs, blanks, ends of lines, names with blanks, quotes, folders, options."""
+    """Tabs, blanks, line ends, quoted names, names with blanks, folders and options are read."""
     mesh = read(tmp_path, "skin", library, picture=picture)
     assert colour_of(mesh) == RED
     assert np.allclose(mesh.texture.uv[mesh.texture.face_uv], [UV])
@@ -85,7 +88,7 @@ def test_libraries_are_read_as_programs_write_them(tmp_path, library, picture):
     ],
 )
 def test_options_say_how_a_picture_lies(tmp_path, options, wanted):
-    """Coordinates are scaled first, and then shifted."""
+    """A picture's coordinates are scaled first, and shifted then."""
     mesh = read(tmp_path, "skin", f"newmtl skin\nmap_Kd {options} skin.png\n")
     assert colour_of(mesh) == RED
     assert np.allclose(mesh.texture.uv[mesh.texture.face_uv], [wanted])
@@ -102,7 +105,7 @@ def test_options_say_how_a_picture_lies(tmp_path, options, wanted):
     ],
 )
 def test_lines_name_libraries(tmp_path, line, file):
-    """A name may have blanks, or there may be several; a comment may follow."""
+    """A library line may have several names, a name with blanks, and a comment."""
     (tmp_path / "maps").mkdir()
     mesh = read(tmp_path, "skin", "newmtl skin\nmap_Kd skin.png\n", library=line, file=file)
     assert colour_of(mesh) == RED
@@ -110,7 +113,7 @@ def test_lines_name_libraries(tmp_path, line, file):
 
 @pytest.mark.parametrize("name", ["Material__25", "Material #25", "01 -  Default#1", "my\tskin"])
 def test_materials_may_have_any_names(tmp_path, name):
-    """They may have blanks and number signs; a comment may follow in the OBJ file."""
+    """Material names may have blanks and number signs; a comment may follow in the OBJ file."""
     library = f"newmtl Material\nmap_Kd other.png\nnewmtl {name}\nmap_Kd skin.png\n"
     assert colour_of(read(tmp_path, name, library)) == RED
     assert colour_of(read(tmp_path, name, library, material=f"{name} # of the face")) == RED
@@ -128,7 +131,10 @@ def test_materials_may_have_any_names(tmp_path, name):
     ],
 )
 def test_names_may_have_any_letters(tmp_path, name, encoding):
-    """Names of library, material, group and picture; UTF-8, UTF-16, otherwise Latin-1."""
+    """Names of library, material, group and picture may have any letters.
+
+    UTF-8 and UTF-16 are recognised; any other file is read as Latin-1.
+    """
     obj = OBJ.format(library=f"{name}.mtl", material=name).replace("\nf", f"\ng {name}\nf")
     (tmp_path / f"{name}.obj").write_bytes(obj.encode(encoding))
     library = f"# {name}\nnewmtl {name}\nmap_Kd -s 1 1 1 maps\\{name}.png\n"
@@ -143,7 +149,10 @@ def test_names_may_have_any_letters(tmp_path, name, encoding):
 
 
 def test_letters_with_marks_may_be_written_in_two_ways(tmp_path):
-    """A folder has the letter and its mark separate, the library both as one, as after a copy."""
+    """A picture is found if its name and the library differ in the form of accented letters.
+
+    A copied file may have letter and accent separate, where the library has one character.
+    """
     library = "newmtl skin\nmap_Kd für.png\n"
     apart = unicodedata.normalize("NFD", "für.png")
     assert apart != "für.png"
@@ -151,7 +160,7 @@ def test_letters_with_marks_may_be_written_in_two_ways(tmp_path):
 
 
 def test_a_wrong_line_may_have_any_letters(tmp_path):
-    """It is shown in one line, even if it is cut within a letter."""
+    """A wrong line is shown as one line, even if it is cut within a letter."""
     path = tmp_path / "a.obj"
     path.write_text("v 0 0 0\nf 1 2 " + "ü" * 40, encoding="utf-8")
     with pytest.raises(AssetError, match="line 2: 'f 1 2 ü"):
@@ -159,13 +168,13 @@ def test_a_wrong_line_may_have_any_letters(tmp_path):
 
 
 def test_libraries_name_pictures_of_all_kinds():
-    """Colour, bumps with options, gloss."""
+    """Maps of colour, of bumps with options, and of gloss are recognised."""
     library = b"newmtl a\nmap_Kd a.png\nbump -bm 0.4 b c.png\nmap_Ks maps\\d.png\nKs 1 1 1\n"
     assert maps_of(library) == ["a.png", "b c.png", "maps\\d.png"]
 
 
 def test_pictures_may_lie_otherwise_each(tmp_path):
-    """Two materials share one picture, one of them shifted, and a triangle has none."""
+    """Two materials may share one picture with separate shifts; a triangle may have none."""
     path = tmp_path / "a.obj"
     obj = OBJ.format(library="a.mtl", material="b") + "usemtl a\nf 1/1 2/2 3/3\nf 1 2 3\n"
     path.write_text(obj)
@@ -210,7 +219,7 @@ def _palette():
     ],
 )
 def test_pictures_of_every_kind_keep_their_colours(content, wanted):
-    """Grey of 16 bits, palettes, ink, and transparency are read."""
+    """Pictures in 16-bit grey, with palettes, in CMYK, and with transparency are read."""
     found = decoded(content, "skin")
     assert found.dtype == np.uint8
     assert found.shape[2] == 3
@@ -218,7 +227,7 @@ def test_pictures_of_every_kind_keep_their_colours(content, wanted):
 
 
 def test_colours_of_16_bits_keep_their_higher_bits():
-    """A PNG file of red, green and blue of 16 bits each."""
+    """Of a PNG file with 16 bits per channel, the higher 8 bits are kept."""
 
     def chunk(kind, data):
         return (
@@ -232,7 +241,7 @@ def test_colours_of_16_bits_keep_their_higher_bits():
 
 
 def test_other_formats_are_named():
-    """One line names the formats that are read."""
+    """An unknown format is refused in one line with the accepted formats."""
     content = _saved(PIL.Image.new("RGB", (4, 4)), "BMP")
     with pytest.raises(AssetError, match=r"its picture skin\.bmp: .* neither PNG, JPEG nor WebP"):
         decoded(content, "skin.bmp")

@@ -17,20 +17,20 @@ TUCKED_ROWS = ("eye_0", "eye_1", "mouth_0", "mouth_1", "mouth_2", "nostril")
 
 
 def test_triangle_count_is_that_of_the_paper(head):
-    """Table 1: 2030 triangles; every vertex is used."""
+    """The mesh has 2030 triangles (the paper's Table 1), and every vertex is used."""
     assert len(head.faces) == 2030
     assert np.array_equal(np.unique(head.faces), np.arange(len(head.vertices)))
 
 
 def test_skin_is_one_manifold_piece(head):
-    """One piece, consistently oriented, Euler characteristic of a sphere with four holes."""
+    """The skin is one piece, consistently oriented, with the Euler characteristic of four holes."""
     assert checks.is_manifold(head.faces)
     assert checks.component_count(head.faces) == 1
     assert checks.euler_characteristic(head.vertices, head.faces) == 2 - 4
 
 
 def test_boundary_loops_are_rim_mouth_and_eyes(head):
-    """The four loops are the rows with these names."""
+    """The four boundary loops are the rows with these names."""
     loops = [set(loop) for loop in boundary_loops(head.faces)]
     assert len(loops) == 4
     for name in ("rim", "mouth_0"):
@@ -41,19 +41,22 @@ def test_boundary_loops_are_rim_mouth_and_eyes(head):
 
 
 def test_mesh_is_its_own_mirror_image(head):
-    """To the last bit, vertices and faces; the mirror map is its own inverse."""
+    """Vertices and faces equal their mirror images to the last bit.
+
+    The mirror map is its own inverse.
+    """
     assert checks.mirror_error(head.vertices, head.mirror) == 0.0
     assert checks.is_mirrored(head.faces, head.mirror)
     assert np.array_equal(head.mirror[head.mirror], np.arange(len(head.vertices)))
 
 
 def test_mesh_does_not_cut_itself(head):
-    """Lips are closed and lids are folded, but no two faces intersect."""
+    """No two faces intersect, although lips are closed and lids are folded."""
     assert len(self_intersections(head.vertices, head.faces)) == 0
 
 
 def test_triangles_are_well_shaped(head):
-    """No slivers: the simulation's step length and the shading depend on it."""
+    """No triangle is a sliver; the simulation's step length and the shading depend on this."""
     corners = head.vertices[head.faces]
     angle = np.degrees(trimesh.triangles.angles(corners)).min(axis=1)
     assert angle.min() > 12.0
@@ -63,7 +66,7 @@ def test_triangles_are_well_shaped(head):
 
 
 def test_lips_are_closed_but_not_welded(head):
-    """Upper and lower lip nearly touch, and stay different vertices at least 0.3 mm apart."""
+    """Upper and lower lip have separate vertices at least 0.3 mm apart, but nearly touch."""
     row = head.rings["mouth_2_left"]
     columns = len(row) // 2
     upper = head.vertices[row[:columns]]
@@ -77,7 +80,7 @@ def test_lips_are_closed_but_not_welded(head):
 def test_edges_follow_the_nasolabial_fold(head):
     """A chain of mesh edges runs from the wing of the nose past the corner of the mouth.
 
-    There a smile creases the skin.
+    A smile creases the skin along it.
     """
     corner = head.vertices[head.anatomy["cheilion_left"]]
     directed = sides_of(head.faces)
@@ -94,7 +97,7 @@ def test_edges_follow_the_nasolabial_fold(head):
 
 
 def test_outline_of_the_crown_is_smooth(head):
-    """From all sides, the upper half of the skull shows no long edges."""
+    """From all sides, the upper half of the skull has no long straight edge."""
     edges = sides_of(head.faces)
     ends = head.vertices[edges]
     on_crown = ends[:, :, 1].min(axis=1) > 45.0
@@ -104,7 +107,7 @@ def test_outline_of_the_crown_is_smooth(head):
 
 
 def test_head_is_closed_behind(head):
-    """The only free border is the collar."""
+    """The head's rim is at the collar only: it is low, and closed from back to front."""
     rim = head.vertices[head.rings["rim_left"]]
     assert rim[:, 1].max() < -130.0
     assert rim[0, 0] == rim[-1, 0] == 0.0
@@ -112,7 +115,10 @@ def test_head_is_closed_behind(head):
 
 
 def test_no_face_is_inside_out(head):
-    """Except in the tucked-in rows, every face points about the same way as its corners."""
+    """Every face points about the same way as its vertices' normals.
+
+    Tucked-in rows, ears and nostrils are left out.
+    """
     tucked = {
         vertex
         for name in TUCKED_ROWS
@@ -128,7 +134,7 @@ def test_no_face_is_inside_out(head):
 
 
 def ear_faces(head):
-    """Faces of both ears: those with a corner above the roots, shape (F,)."""
+    """Faces of both ears, which have a corner above the roots, shape (F,)."""
     on_ears = []
     for side in ("left", "right"):
         root = head.rings[f"ear_0_{side}"]
@@ -137,7 +143,10 @@ def ear_faces(head):
 
 
 def test_ears_have_their_size_and_place(head):
-    """59 by 32 mm, from below the brow to the base of the nose, leaning back, off the head."""
+    """Ears are 59 by 32 mm, from below the brow to the base of the nose.
+
+    They lean back, and stand off the head.
+    """
     edge = head.vertices[head.rings["ear_1_left"]]
     high = edge[edge[:, 1].argmax()]
     low = edge[edge[:, 1].argmin()]
@@ -158,7 +167,7 @@ def test_ears_have_their_size_and_place(head):
 
 
 def test_ear_looks_outward_in_front_and_toward_the_head_behind(head):
-    """Neither side is turned over: from the side helix, scapha and concha are visible."""
+    """Neither side of an ear is turned over; from the side helix, scapha and concha are visible."""
     rows = [set(head.rings[f"ear_{row}_left"].tolist()) for row in range(5)]
     root = rows[0]
     cross = cross_products(head.vertices, head.faces)
@@ -177,7 +186,7 @@ def test_ear_looks_outward_in_front_and_toward_the_head_behind(head):
 
 
 def _nostril_faces(head):
-    """Faces of the caps: those with all corners within 6 mm of a nostril's roof."""
+    """Faces of the nostrils' caps, with all corners within 6 mm of a nostril's roof, shape (F,)."""
     near = np.zeros(len(head.vertices), dtype=bool)
     for side in ("left", "right"):
         roof = head.vertices[head.anatomy[f"nostril_roof_{side}"]]
@@ -186,7 +195,11 @@ def _nostril_faces(head):
 
 
 def test_holes_that_meet_in_a_vertex_have_loops():
-    """Two triangles at a vertex; five by five vertices without two squares at the middle one."""
+    """Boundary loops are found for holes that share a vertex.
+
+    Examples: two triangles at a vertex; a grid of five by five vertices without two squares that
+    share the middle vertex.
+    """
     touching = np.array([[0, 1, 2], [0, 3, 4]], dtype=np.int32)
     assert boundary_loops(touching) == [[0, 1, 2], [0, 3, 4]]
     corners = [x + 5 * y for y in range(4) for x in range(4) if (x, y) not in ((1, 1), (2, 2))]
@@ -197,7 +210,7 @@ def test_holes_that_meet_in_a_vertex_have_loops():
 
 
 def test_checks_find_faults():
-    """A check that cannot fail is useless."""
+    """The checks detect planted faults; a check that cannot fail is useless."""
     points = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1.5, 0.5]])
     crossing = np.array([[0, 1, 2], [3, 4, 5]], dtype=np.int32)
     assert self_intersections(points, crossing).tolist() == [[0, 1]]

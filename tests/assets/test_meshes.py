@@ -1,4 +1,4 @@
-"""Meshes of users: order kept, mistakes reported."""
+"""Meshes of users: order is kept, and mistakes are reported."""
 
 import struct
 
@@ -8,7 +8,7 @@ import trimesh
 
 from risorius import assets
 
-# Vertices 1 and 3 are in the same place, and vertex 4 is unused: both must stay.
+# Vertices 1 and 3 are at the same place, and vertex 4 is unused: both must stay.
 OBJ = """v 0 0 0
 v 1 0 0
 v 0 1 0
@@ -21,7 +21,7 @@ f 4 6 3
 
 
 def test_order_and_doubles_are_kept(tmp_path):
-    """Vertex numbers mean the same in the file and in the array."""
+    """Vertices keep their numbers in the array, also doubled and unused ones."""
     path = tmp_path / "mesh.obj"
     path.write_text(OBJ)
     mesh = assets.read_mesh(path)
@@ -31,7 +31,7 @@ def test_order_and_doubles_are_kept(tmp_path):
 
 @pytest.mark.parametrize("suffix", ["ply", "off", "glb"])
 def test_other_formats(tmp_path, suffix):
-    """A file written by trimesh is read with the same number of vertices and triangles."""
+    """A file written by trimesh is read with the same numbers of vertices and triangles."""
     path = tmp_path / f"ball.{suffix}"
     ball = trimesh.creation.icosphere(subdivisions=1)
     ball.export(path)
@@ -42,7 +42,7 @@ def test_other_formats(tmp_path, suffix):
 
 @pytest.mark.parametrize("names", ["s t", "u v", "texture_u texture_v", "texcoord"])
 def test_a_ply_file_may_have_texture_coordinates(tmp_path, names):
-    """Under any of their names, or at the corners of each face: the mesh is read directly."""
+    """Texture coordinates of a PLY file are read, under any usual name, or at face corners."""
     first, *second = names.split()
     at_vertices = f"property float {first}\nproperty float {second[0]}\n" if second else ""
     at_faces = "" if second else f"property list uchar float {first}\n"
@@ -69,7 +69,7 @@ def test_polygons_become_triangles(tmp_path):
 
 
 def test_seams_and_materials_keep_vertices_together(tmp_path):
-    """Two materials and a seam of the texture cut nothing: a vertex keeps its number."""
+    """Two materials and a texture seam split no vertex: each keeps its number."""
     path = tmp_path / "seam.obj"
     path.write_text(
         "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
@@ -81,7 +81,7 @@ def test_seams_and_materials_keep_vertices_together(tmp_path):
 
 
 def test_corners_of_stl_become_vertices(tmp_path):
-    """STL repeats each corner; corners in one place become one vertex, in the order of the file."""
+    """Corners of an STL file at one place become one vertex, in the order of the file."""
     path = tmp_path / "ball.stl"
     ball = trimesh.creation.icosphere(subdivisions=1)
     ball.export(path)
@@ -98,8 +98,8 @@ HOUSE = [[0, 1, 2], [0, 2, 3], [2, 4, 3]]
 def ply(form, lists, element="face", **more):
     """A PLY file of five points and lists of their numbers.
 
-    more: "kind", that of the lists' numbers; "colours", a row for each point; "names" and
-    "colour_kind" of these.
+    more: "kind", the type of the lists' numbers; "colours", a row for each point; "names" and
+    "colour_kind" of the colours.
     """
     kind = more.get("kind", "int")
     colours = more.get("colours")
@@ -134,7 +134,7 @@ FORMS = ("ascii", "binary_little_endian", "binary_big_endian")
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("lists", [HOUSE, [[0, 1, 2, 3], [2, 4, 3]], [[0, 1, 2, 4, 3]]])
 def test_polygons_of_ply_may_be_of_any_sizes(tmp_path, form, lists):
-    """Each becomes a fan, in the order of the file."""
+    """A polygon of any size becomes a fan, in the order of the file."""
     path = tmp_path / "house.ply"
     path.write_bytes(ply(form, lists))
     mesh = assets.read_mesh(path)
@@ -146,7 +146,7 @@ def test_polygons_of_ply_may_be_of_any_sizes(tmp_path, form, lists):
 
 @pytest.mark.parametrize("form", FORMS)
 def test_ply_files_may_hold_strips(tmp_path, form):
-    """Strips of triangles end at -1; each other triangle of one runs the other way."""
+    """Strips end at -1, and every second triangle of a strip is reversed."""
     path = tmp_path / "strips.ply"
     path.write_bytes(ply(form, [[1, 2, 0, 3, -1, 2, 4, 3], [3, 3, 0, 1]], "tristrips"))
     mesh = assets.read_mesh(path)
@@ -167,7 +167,7 @@ def test_ply_files_may_hold_strips(tmp_path, form):
     ],
 )
 def test_colours_of_ply_may_be_of_any_kind(tmp_path, form, colour_kind, row, names):
-    """Integers of 8 or 16 bits, or shares, under the names that programs write."""
+    """Colours are read as integers of 8 or 16 bits or as shares, under all usual names."""
     path = tmp_path / "house.ply"
     colours = {"colours": [row] * 5, "colour_kind": colour_kind, "names": names}
     path.write_bytes(ply(form, HOUSE, **colours))
@@ -179,7 +179,10 @@ def test_colours_of_ply_may_be_of_any_kind(tmp_path, form, colour_kind, row, nam
 
 @pytest.mark.parametrize("end", ["\r\n", " \r\n", "\n"])
 def test_lines_may_end_anyhow(tmp_path, end):
-    """Text PLY, the header of binary PLY, and OBJ, with or without a joining backslash."""
+    """Any line ends are read: in text PLY, in headers of binary PLY, and in OBJ.
+
+    OBJ lines may continue after a backslash.
+    """
     text = ply("ascii", HOUSE)
     head, body = ply("binary_little_endian", HOUSE).split(b"end_header\n")
     files = {

@@ -28,18 +28,18 @@ Angle Orthodontist 85:211-217, persons with a normal vertical pattern.
 
 @pytest.fixture(scope="module")
 def measures(head: Head) -> dict[str, float]:
-    """Measures of the head."""
+    """The measures of the head."""
     return measures_of(head.vertices, head.anatomy)
 
 
 @pytest.fixture(scope="module")
 def page() -> str:
-    """The page about the head."""
+    """The documentation's page about the head."""
     return (Path(__file__).parents[2] / "docs" / "head.md").read_text(encoding="utf-8")
 
 
 def test_head_is_usual_in_every_measure_with_a_norm(measures):
-    """All are within two deviations of the mean of women and of men."""
+    """All measures are within two deviations of the published means of women and of men."""
     for code, norm in NORMS.items():
         for sample in (norm.women, norm.men):
             assert abs(sample.score(measures[code])) <= 2.0, code
@@ -47,7 +47,7 @@ def test_head_is_usual_in_every_measure_with_a_norm(measures):
 
 
 def test_head_is_near_the_middle_on_the_whole(measures):
-    """It is not enough that each measure is usual: scores must not all lean to one side."""
+    """The scores of all measures do not lean to one side on average."""
     scores = [
         0.5 * (norm.women.score(measures[code]) + norm.men.score(measures[code]))
         for code, norm in NORMS.items()
@@ -57,7 +57,10 @@ def test_head_is_near_the_middle_on_the_whole(measures):
 
 
 def test_lips_lie_a_little_behind_the_line_from_nose_to_chin(head, page):
-    """The aesthetic line of Ricketts; lips of three scanned persons lie -4 to 9 mm behind it."""
+    """Both lips lie a little behind the line from nose to chin (Ricketts).
+
+    Lips of three scanned persons lie -4 to 9 mm behind the line.
+    """
     middle = head.vertices[head.vertices[:, 0] == 0.0]
     tip, chin, seam = (
         head.vertices[head.anatomy[name]] for name in ("pronasale", "pogonion", "stomion")
@@ -73,7 +76,7 @@ def test_lips_lie_a_little_behind_the_line_from_nose_to_chin(head, page):
 
 
 def test_norms_are_plausible_figures():
-    """Against typing mistakes: deviations are 4 to 25 %, and men are larger."""
+    """Each norm is plausible, against typing mistakes: deviations are 3 to 25 %, men larger."""
     for code, norm in NORMS.items():
         assert norm.men.mean > norm.women.mean, code
         for sample in (norm.women, norm.men):
@@ -81,7 +84,7 @@ def test_norms_are_plausible_figures():
 
 
 def test_the_page_shows_the_measures_and_the_norms(measures, page):
-    """All of them are there, with scores if there is a norm."""
+    """The page has every measure, with scores where there is a norm."""
     for code, value in measures.items():
         row = f", {code} | {value:.1f} |"
         for sample in (NORMS[code].women, NORMS[code].men) if code in NORMS else ():
@@ -91,7 +94,7 @@ def test_the_page_shows_the_measures_and_the_norms(measures, page):
 
 
 def test_bone_lies_as_deep_as_was_published(head, page):
-    """It is within two deviations of every published figure; each figure is on the page."""
+    """Bone depths are within two deviations of every published figure; the page has each figure."""
     for name, (sample, source) in DEPTHS.items():
         depth = float(head.bone_depth[head.anatomy[name]])
         assert abs(sample.score(depth)) < 2.0, name

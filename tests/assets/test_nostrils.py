@@ -6,7 +6,10 @@ from risorius.assets.data_files import read_arrays
 
 
 def test_nostrils_are_no_black_holes(head):
-    """A quarter of the light reaches their walls; elsewhere the map is unchanged."""
+    """The walls of nostrils get a quarter of the light, so that they are not black.
+
+    Elsewhere the map is unchanged.
+    """
     lit = head.ambient_occlusion.astype(int)
     given = read_arrays(head.beside("_ambient_occlusion.npz"))["ambient_occlusion"].astype(int)
     size = len(lit)

@@ -1,4 +1,4 @@
-"""Full lips, one over the other: each has its own colour and its own bone."""
+"""Full lips, where one covers the other: each keeps its own colour and bone."""
 
 import numpy as np
 
@@ -8,13 +8,16 @@ from risorius.assets.meshes import Mesh
 
 
 def test_a_lip_that_lies_over_the_other_is_itself(head):
-    """A lower lip 3 mm higher and 4 mm in front moves with the jaw, and is red, not dark."""
+    """A lower lip 3 mm higher and 4 mm in front moves with the jaw.
+
+    Its texture is that of the lip, red and not dark.
+    """
     upper, lower = (
         path_lengths(head.vertices, head.faces, head.landmarks[lip]).min(axis=0)
         for lip in (slice(61, 64), slice(65, 68))
     )
     is_lower = lower < upper
-    reach = 12.0  # [mm] of the lip
+    reach = 12.0  # [mm], size of the lip
     share = np.where(is_lower, np.clip(1.0 - lower / reach, 0.0, 1.0), 0.0)
     full = head.vertices + share[:, None] * [0.0, 3.0, 4.0]
     fitted = fit(Mesh(full, head.faces), head.landmarks)

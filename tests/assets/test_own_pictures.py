@@ -1,4 +1,4 @@
-"""Pictures of users' meshes: read only from beside the mesh, and laid on its triangles."""
+"""Pictures of users' meshes: read only from the mesh's folder, and laid on its triangles."""
 
 import io
 import json
@@ -27,14 +27,14 @@ def other() -> Stranger:
 
 
 def _striped():
-    """A picture whose colour codes the place: red along u, green along v."""
+    """A picture whose colour encodes the place: red along u, green along v."""
     steps = np.arange(SIZE, dtype=np.uint8) * (256 // SIZE)
     rows = np.dstack([*np.meshgrid(steps, steps[::-1]), np.full((SIZE, SIZE), 60, np.uint8)])
     return PIL.Image.fromarray(rows)
 
 
 def _uv(other):
-    """Texture coordinates in two pieces, the right half and the left one, with a seam between."""
+    """Texture coordinates of two pieces, the right and the left half, with a seam between."""
     places = other.mesh.vertices[:, [0, 2]]
     places = (places - places.min(axis=0)) / np.ptp(places, axis=0)
     half = places * [0.45, 0.9] + 0.05
@@ -44,7 +44,7 @@ def _uv(other):
 
 
 def _write_obj(folder, other, picture="skin.png"):
-    """The head as OBJ with a material library, and a landmark file."""
+    """Write the head as OBJ with a material library, and a landmark file."""
     uv, face_uv = _uv(other)
     lines = ["mtllib head.mtl", *(f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in other.mesh.vertices)]
     lines += [f"vt {u:.7f} {v:.7f}" for u, v in uv] + ["usemtl skin"]
@@ -59,7 +59,7 @@ def _write_obj(folder, other, picture="skin.png"):
 
 
 def _write_glb(folder, other):
-    """The same head as GLB, whose vertices are doubled along the seam."""
+    """Write the same head as GLB, whose vertices are doubled along the seam."""
     uv, face_uv = _uv(other)
     corners, numbers = np.unique(face_uv, return_inverse=True)
     vertices = np.vstack([other.mesh.vertices] * 2)[corners]
@@ -77,12 +77,12 @@ def _write_glb(folder, other):
 
 
 def _colours(head):
-    """The colours of its triangles' middles."""
+    """The picture's colours at the middles of the head's triangles."""
     return sampled(head.albedo, head.uv[head.face_uv].astype(np.float64).mean(axis=1))
 
 
 def _of_file(other, fitted):
-    """The file's number of each triangle of a fitted head: those that fade come last there."""
+    """The file's number of each triangle of a fitted head, which draws fading ones last."""
     numbers = {frozenset(face): n for n, face in enumerate(other.mesh.faces.tolist())}
     return [numbers[frozenset(face)] for face in fitted.file_vertices[fitted.faces].tolist()]
 
@@ -108,7 +108,7 @@ def test_own_picture_lies_where_the_file_has_it(write, other, tmp_path):
 
 @pytest.mark.slow
 def test_maps_go_along_to_the_own_layout(other, tmp_path):
-    """Lips stay lips and furrows stay furrows for any texture coordinates of the mesh."""
+    """For any layout of a mesh, maps of lips lie on lips and furrows on furrows."""
     files = _write_obj(tmp_path, other)
     _striped().save(tmp_path / "skin.png")
     head = fit_head(*files)
@@ -127,9 +127,9 @@ def test_maps_go_along_to_the_own_layout(other, tmp_path):
 
 @pytest.mark.slow
 def test_maps_turn_with_the_layout(head):
-    """In a layout turned by a quarter and half as large, slopes are turned and doubled."""
+    """In a layout rotated by 90 degrees and half as large, slopes are rotated and doubled."""
     smooth = ndimage.gaussian_filter(head.wrinkles.map.astype(np.float64), (12.0, 12.0, 0.0))
-    known = replace(assets.load("head"))  # one with another possible map
+    known = replace(assets.load("head"))  # a copy, whose map is replaced
     vars(known)["wrinkles"] = replace(head.wrinkles, map=smooth.round().astype(np.uint8))
     theirs = Layout(known.uv, known.face_uv)
     turned = 0.5 * np.column_stack([-known.uv[:, 1], known.uv[:, 0]]) + [0.5, 0.0]
@@ -155,7 +155,7 @@ def test_maps_turn_with_the_layout(head):
 
 @pytest.mark.slow
 def test_vertex_colours_are_drawn(other, tmp_path):
-    """A PLY file with red on the right half and blue on the left."""
+    """Vertex colours of a PLY file are drawn: red on the right half, blue on the left."""
     is_left = other.mesh.vertices[:, 0] > np.median(other.mesh.vertices[:, 0])
     colours = np.where(is_left[:, None], (20, 20, 220), (220, 20, 20)).astype(np.uint8)
     mesh = tmp_path / "head.ply"
@@ -184,7 +184,7 @@ def test_vertex_colours_are_drawn(other, tmp_path):
     ],
 )
 def test_pictures_that_cannot_be_used_are_refused(name, content, message, other, tmp_path):
-    """Broken, missing, or outside the folder: one line each."""
+    """A picture that is broken, missing, or outside the folder is refused in one line."""
     files = _write_obj(tmp_path, other, name)
     if content is not None:
         (tmp_path / name).write_bytes(content)
@@ -194,7 +194,7 @@ def test_pictures_that_cannot_be_used_are_refused(name, content, message, other,
 
 
 def test_a_link_out_of_the_folder_is_refused(other, tmp_path):
-    """The target of a name counts, not the name itself."""
+    """A link to a file outside the folder is refused by its target."""
     folder = tmp_path / "inside"
     folder.mkdir()
     _striped().save(tmp_path / "secret.png")
@@ -204,7 +204,7 @@ def test_a_link_out_of_the_folder_is_refused(other, tmp_path):
 
 
 def test_huge_pictures_are_refused_before_they_unfold(other, tmp_path):
-    """A header claims more pixels than fit into memory."""
+    """A header that claims more pixels than fit into memory is refused before decoding."""
     files = _write_obj(tmp_path, other)
     whole = io.BytesIO()
     PIL.Image.new("L", (4, 4)).save(whole, "PNG")
@@ -217,7 +217,7 @@ def test_huge_pictures_are_refused_before_they_unfold(other, tmp_path):
 
 @pytest.mark.slow
 def test_a_missing_library_paints_nothing(other, tmp_path):
-    """Many files name one that is missing; one line reports it."""
+    """A missing library, as in many files, is reported in one line, and paints nothing."""
     files = _write_obj(tmp_path, other)
     (tmp_path / "head.mtl").unlink()
     assert read_mesh(files[0]).texture is None
@@ -226,7 +226,7 @@ def test_a_missing_library_paints_nothing(other, tmp_path):
 
 
 def test_layouts_that_cover_a_picture_many_times_are_refused():
-    """A small file must not need hours."""
+    """Layouts that cover a picture many times are refused, because they would take hours."""
     uv = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], np.float32)
     layout = Layout(uv, np.tile(np.arange(3, dtype=np.int32), (100_000, 1)))
     with pytest.raises(AssetError, match="many times over"):
@@ -234,7 +234,7 @@ def test_layouts_that_cover_a_picture_many_times_are_refused():
 
 
 def test_pictures_are_drawn_from_one_layout_to_another():
-    """Mirrored twice, a picture is as before."""
+    """A picture redrawn to a mirrored layout and back is unchanged."""
     picture = np.asarray(_striped())
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32)
     faces = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
@@ -247,7 +247,10 @@ def test_pictures_are_drawn_from_one_layout_to_another():
 
 @pytest.mark.slow
 def test_dense_heads_are_simplified_with_their_colours():
-    """A head above the limit keeps its form, openings and colours, and a line reports it."""
+    """A head above the limit is simplified, and keeps its form, openings and colours.
+
+    A line reports the simplification.
+    """
     dense = stranger(2)
     vertices, faces = trimesh.remesh.subdivide(dense.mesh.vertices, dense.mesh.faces)
     colours = np.where(vertices[:, [0]] > dense.mesh.vertices[:, 0].mean(), 250, 10)
@@ -258,5 +261,5 @@ def test_dense_heads_are_simplified_with_their_colours():
     assert "simplified" in head.notes[0]
     off = head.to_millimetres.points(vertices[dense.landmarks]) - head.vertices[head.landmarks]
     assert np.linalg.norm(off, axis=1).max() < 1e-6
-    is_right = head.vertices[head.faces, 0].mean(axis=1) < 0.0  # the file's x points there
+    is_right = head.vertices[head.faces, 0].mean(axis=1) < 0.0  # the file's x axis is reversed
     assert ((_colours(head)[:, 0] > 128) == is_right).mean() > 0.95

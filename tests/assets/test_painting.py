@@ -1,13 +1,13 @@
-"""The picture of the skin: red, dark and hairy places, in every tone, and reading of the file."""
+"""The picture of the skin: red, dark and hairy places, in every tone, and how it is read."""
 
 import numpy as np
 import pytest
 
-LARGEST_IMAGE_FILE = 1_250_000  # bytes
+LARGEST_IMAGE_FILE = 1_250_000  # [bytes]
 
 
 def test_albedo_is_a_picture(head):
-    """It is square, 8 bits, three channels, read-only, small on disk, and read only once."""
+    """The picture is square, 8 bits, three channels, read-only, small on disk, and read once."""
     assert head.albedo.dtype == np.uint8
     assert head.albedo.ndim == 3
     assert head.albedo.shape[0] == head.albedo.shape[1] >= 1024
@@ -31,7 +31,7 @@ def test_picture_is_mirrored_but_for_patches_and_grain(head):
 
 
 def test_picture_goes_on_outside_the_skin(head):
-    """A filter that reaches over the rim finds skin, not a border."""
+    """The picture continues outside the skin, so that filters across the rim find no border."""
     rim = head.rings["rim_left"][3:-3]
     size = len(head.albedo)
     inside = head.uv[rim] * [size, -size] + [0.0, size]

@@ -1,4 +1,4 @@
-"""The rigid parts: well-formed, inside the head, hidden while mouth and eyes are at rest."""
+"""The rigid parts: valid, inside the head, hidden while mouth and eyes are at rest."""
 
 import numpy as np
 from numpy.linalg import norm
@@ -11,7 +11,7 @@ IN_MOUTH = ("teeth", "gums", "tongue", "oral_cavity")
 
 
 def test_parts_are_well_formed(head):
-    """Arrays, bones and shine are within their ranges; names are unique."""
+    """Arrays, bones and shine are within their ranges, and names are unique."""
     assert len({found.name for found in head.parts}) == len(head.parts)
     for found in head.parts:
         check_part(found)
@@ -20,7 +20,7 @@ def test_parts_are_well_formed(head):
 
 
 def test_what_belongs_to_the_jaw_moves_with_it(head):
-    """Lower teeth, lower gums, tongue and the floor of the mouth follow the mandible."""
+    """Lower teeth, lower gums, tongue and the floor of the mouth move with the mandible."""
     on_mandible = {found.name for found in head.parts if found.bone == "mandible"}
     assert on_mandible == {"teeth_lower", "gums_lower", "tongue", "oral_cavity_lower"}
 
@@ -32,7 +32,7 @@ def test_parts_look_outward_or_into_the_mouth(head):
         away = found.vertices - found.vertices.mean(axis=0)
         assert (found.normals * away).sum(axis=1).mean() > 0.0
     flesh = part(head, "eye_corners")
-    assert flesh.normals[flesh.vertices[:, 2] > 79.5, 2].min() > 0.5  # its sides face aside
+    assert flesh.normals[flesh.vertices[:, 2] > 79.5, 2].min() > 0.5  # its sides face sideways
     cavity = part(head, "oral_cavity_upper")
     inward = np.array([0.0, -75.0, 56.0]) - cavity.vertices
     assert ((cavity.normals * inward).sum(axis=1) > 0.0).mean() > 0.95
@@ -40,7 +40,7 @@ def test_parts_look_outward_or_into_the_mouth(head):
 
 
 def test_everything_in_the_mouth_is_inside_the_head(head):
-    """No part comes through lips or cheeks at rest."""
+    """No part of the mouth comes through lips or cheeks at rest."""
     for found in head.parts:
         if found.name.startswith(IN_MOUTH):
             assert winding_numbers(head.vertices, head.faces, found.vertices).min() > 0.65, (
@@ -49,7 +49,7 @@ def test_everything_in_the_mouth_is_inside_the_head(head):
 
 
 def test_teeth_darken_toward_the_corners_of_the_mouth(head):
-    """Molars and premolars are in the shade of the cheeks, although their neighbours are white."""
+    """Premolars have about half the lightness of incisors, as in the shade of the cheeks."""
     teeth = part(head, "teeth_upper")
     lightness = teeth.colours.mean(axis=1)
     aside = np.abs(teeth.vertices[:, 0])
@@ -59,7 +59,7 @@ def test_teeth_darken_toward_the_corners_of_the_mouth(head):
 
 
 def test_teeth_stand_behind_the_lips(head):
-    """The vestibule ends in front of the teeth."""
+    """The vestibule (the space behind the lips) ends in front of the teeth."""
     vestibule = head.vertices[head.rings["mouth_0_left"]]
     for name in ("teeth_upper", "teeth_lower"):
         teeth = part(head, name).vertices
@@ -69,7 +69,7 @@ def test_teeth_stand_behind_the_lips(head):
 
 
 def test_teeth_are_pairs_of_fourteen_and_ivory(head):
-    """Two mirrored quarters; warm, not white."""
+    """Each jaw has two mirrored quarters of seven teeth; their colour is warm, not white."""
     for name in ("teeth_upper", "teeth_lower"):
         teeth = part(head, name)
         assert len(teeth.vertices) % 14 == 0
@@ -80,7 +80,7 @@ def test_teeth_are_pairs_of_fourteen_and_ivory(head):
 
 
 def test_upper_incisors_overlap_the_lower(head):
-    """Overbite and overjet of one to four millimetres."""
+    """Overbite and overjet of the incisors are one to four millimetres."""
     upper = part(head, "teeth_upper").vertices
     lower = part(head, "teeth_lower").vertices
     front = [teeth[np.abs(teeth[:, 0]) < 4.0] for teeth in (upper, lower)]
@@ -89,7 +89,7 @@ def test_upper_incisors_overlap_the_lower(head):
 
 
 def test_mouth_is_darker_toward_the_throat(head):
-    """Teeth and cheeks lose light with depth, but the throat is not black."""
+    """Teeth and cheeks lose light toward the throat, but the throat is not black."""
     for name in ("teeth_lower", "teeth_upper", "oral_cavity_upper"):
         found = part(head, name)
         depth = found.vertices[:, 2]
@@ -113,7 +113,10 @@ def test_gums_hold_the_teeth(head):
 
 
 def test_the_tongue_lies_against_the_lower_crowns(head):
-    """The gap is at most 2.5 mm, from the canines to the molars: their inner sides are hidden."""
+    """The tongue is at most 2.5 mm from the lower teeth, from the canines to the molars.
+
+    The inner sides of these teeth are therefore hidden.
+    """
     tongue, teeth = (part(head, name).vertices for name in ("tongue", "teeth_lower"))
     for z in (80.0, 75.0, 68.0, 59.0):
         crowns = teeth[
@@ -124,12 +127,12 @@ def test_the_tongue_lies_against_the_lower_crowns(head):
 
 
 def test_parts_cost_no_more_than_they_must(head):
-    """In a software renderer they take as long as the skin: 8000 to 16 600 triangles."""
+    """Parts have 8000 to 16 600 triangles, so that software draws them as fast as the skin."""
     assert 8000 <= sum(len(found.faces) for found in head.parts) <= 16600
 
 
 def test_lids_rest_on_the_iris_as_in_a_calm_face(head):
-    """The upper lid covers one or two millimetres of it, the lower one touches its edge."""
+    """The upper lid covers one or two millimetres of the iris; the lower lid touches its edge."""
     for eye, side in zip(head.eyes, ("right", "left"), strict=True):
         margin = head.vertices[head.rings[f"eye_1_{side}"]] - eye.centre
         above, below = (
@@ -141,7 +144,7 @@ def test_lids_rest_on_the_iris_as_in_a_calm_face(head):
 
 
 def test_lashes_are_rooted_in_the_lids_edges(head):
-    """Each begins on a margin, points away from the eye, and does not touch the eyeball."""
+    """Each lash begins on a lid margin, points away from the eye, and is off the eyeball."""
     lashes = part(head, "lashes")
     assert lashes.roots is not None
     assert lashes.strand_radius > 0.0
@@ -159,7 +162,7 @@ def test_lashes_are_rooted_in_the_lids_edges(head):
 
 
 def test_lower_lashes_are_short_and_lean_outward(head):
-    """Long ones that stand straight below the eye would look like a doll's."""
+    """Lower lashes are short and lean outward; long straight ones would look like a doll's."""
     lashes = part(head, "lashes")
     eye = head.eyes[1]
     tips = np.flatnonzero(np.diff(lashes.roots, append=-1))
@@ -175,7 +178,7 @@ def test_lower_lashes_are_short_and_lean_outward(head):
 
 
 def test_wet_edges_lie_between_lid_and_eyeball(head):
-    """On the lower lids, facing up and forward, hardly above the ball."""
+    """Wet edges lie on the lower lids, face up and forward, and hardly rise above the ball."""
     wet = part(head, "wet_edges")
     assert wet.roots is not None
     assert (wet.roots == np.arange(len(wet.vertices))).all()
@@ -187,7 +190,7 @@ def test_wet_edges_lie_between_lid_and_eyeball(head):
 
 
 def test_eyeballs_fit_their_lids(head):
-    """The lid margin does not touch the ball, and the ball fills the fissure."""
+    """Lid margins do not touch the eyeball, and the ball fills the opening between the lids."""
     for eye, side in zip(head.eyes, ("right", "left"), strict=True):
         ball = part(head, f"eyeball_{side}").vertices - eye.centre
         radius = norm(ball, axis=1)
@@ -199,7 +202,7 @@ def test_eyeballs_fit_their_lids(head):
 
 
 def test_pupil_is_at_the_pole_and_the_iris_has_its_radius(head):
-    """Dark in the middle, coloured ring, light beyond."""
+    """The pupil is dark, the iris a coloured ring of its radius, and the sclera light."""
     eye = head.eyes[1]
     ball = part(head, "eyeball_left")
     local = ball.vertices - eye.centre
@@ -215,7 +218,7 @@ def test_pupil_is_at_the_pole_and_the_iris_has_its_radius(head):
 
 
 def test_upper_lid_throws_a_shadow_on_the_eye(head):
-    """It is painted: above, the sclera is darker than below, by a quarter to a half."""
+    """The sclera is painted darker at the top than below, by a quarter to a half."""
     ball = part(head, "eyeball_left")
     local = ball.vertices - head.eyes[1].centre
     sclera = (local[:, 2] > 6.0) & (np.hypot(local[:, 0], local[:, 1]) > 6.8)
@@ -225,7 +228,7 @@ def test_upper_lid_throws_a_shadow_on_the_eye(head):
 
 
 def test_eye_corners_are_filled(head):
-    """Flesh reaches from the ball to both corners, behind the lid margin."""
+    """Flesh fills the eye's corners, from the ball to both ends, behind the lid margin."""
     flesh = part(head, "eye_corners").vertices
     for name in ("endocanthion_left", "exocanthion_left"):
         corner = head.vertices[head.anatomy[name]]

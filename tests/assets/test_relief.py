@@ -2,7 +2,7 @@
 
 import numpy as np
 
-EAR_PLACES = {  # of the left ear, height and depth [mm]
+EAR_PLACES = {  # height and depth on the left ear [mm]
     "stem of the antihelix": (-22.0, -15.3),
     "upper crus": (-8.0, -12.4),
     "lower crus": (-11.0, -7.0),
@@ -12,7 +12,7 @@ EAR_PLACES = {  # of the left ear, height and depth [mm]
 
 
 def _texel(head, fine, place, size):
-    """Row and column of the outer side of the left ear at a height and a depth [mm]."""
+    """Row and column of the left ear's outer side at a height and a depth [mm]."""
     outer = np.flatnonzero((fine.vertices[:, 0] > 60.0) & (fine.normals[:, 0] > 0.2))
     off = fine.vertices[outer][:, 1:] - place
     u, v = fine.interpolate(head.uv)[outer[(off**2).sum(axis=1).argmin()]]
@@ -20,7 +20,10 @@ def _texel(head, fine, place, size):
 
 
 def test_an_antihelix_parts_into_two_crura(head):
-    """Its stem and both crura are light, the fossa between them and the groove are dark."""
+    """The antihelix divides into two crura; they and its stem are light.
+
+    The fossa between them, and the groove beside them, are dark.
+    """
     fine = head.finer(2)
     light = head.ambient_occlusion
     found = {
@@ -32,7 +35,7 @@ def test_an_antihelix_parts_into_two_crura(head):
 
 
 def test_a_muscle_stands_out_of_each_side_of_the_neck(head):
-    """The slopes on the way across it rise and fall, on both sides equally."""
+    """Across the muscle on each side of the neck, slopes rise and fall, equally on both sides."""
     slopes = head.fine_shape.slopes[..., 0].astype(int) - 128
     row = slopes[930]
     left = row[512:]

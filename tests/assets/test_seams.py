@@ -1,4 +1,4 @@
-"""Vertices that files double: at seams of a texture, and at touching lips."""
+"""Vertices that files double: at texture seams, and at touching lips."""
 
 import json
 from dataclasses import replace
@@ -24,19 +24,19 @@ def head() -> Head:
 
 @pytest.fixture(scope="module")
 def plain(head: Head) -> FittedHead:
-    """The head fitted to it."""
+    """The built-in head, fitted to its own mesh."""
     return fit(Mesh(head.vertices, head.faces), head.landmarks)
 
 
 def assert_same(found, plain):
-    """Check that both have the same triangles in the same places."""
+    """Check that two heads have the same triangles at the same places."""
     assert found.faces.shape == plain.faces.shape
     assert len(found.vertices) == len(plain.vertices)
     assert np.abs(found.vertices[found.faces] - plain.vertices[plain.faces]).max() < 1e-2
 
 
 def test_a_skin_that_is_cut_along_seams_hangs_together(head, plain):
-    """The left half has its own vertices along the middle, as for a mirrored texture."""
+    """A skin that is cut along its middle, as for a mirrored texture, becomes one piece."""
     is_left = head.vertices[head.faces][:, :, 0].mean(axis=1) > 0.0
     count = len(head.vertices)
     faces = head.faces + count * is_left[:, None].astype(np.int32)
@@ -47,7 +47,10 @@ def test_a_skin_that_is_cut_along_seams_hangs_together(head, plain):
 
 
 def test_triangles_of_their_own_vertices_hang_together(head, plain, tmp_path):
-    """Some programs write OBJ and PLY so; landmarks are points."""
+    """A mesh whose triangles share no vertices, as some programs write, becomes one piece.
+
+    Landmarks are given as points.
+    """
     corners = head.vertices[head.faces].reshape(-1, 3)
     lines = [f"v {x} {y} {z}" for x, y, z in corners.tolist()]
     lines += [f"f {3 * face + 1} {3 * face + 2} {3 * face + 3}" for face in range(len(head.faces))]
@@ -58,7 +61,7 @@ def test_triangles_of_their_own_vertices_hang_together(head, plain, tmp_path):
 
 @pytest.mark.parametrize("way", ["bare", "pictured", "moved apart"])
 def test_lips_that_touch_exactly_are_two(head, tmp_path, way):
-    """Without a picture, with one, and with a shape of the file that parts them."""
+    """Lips that touch exactly are kept separate: with and without a picture, and with a shape."""
     upper, lower = (head.landmarks[lip] for lip in (UPPER, LOWER))
     vertices = head.vertices.copy()
     vertices[lower] = vertices[upper]
@@ -76,7 +79,7 @@ def test_lips_that_touch_exactly_are_two(head, tmp_path, way):
     mesh = maker.write(tmp_path / "head.glb")
     marks = tmp_path / "head.json"
     marks.write_text(json.dumps(head.landmarks.tolist()))
-    for file in (marks, None):  # it is also known by its vertices
+    for file in (marks, None):  # also without landmarks: the head is known by its vertices
         found = fit_head(mesh, file)
         assert found.lip_cut is None
         assert len(found.vertices) == len(head.vertices)
@@ -84,7 +87,7 @@ def test_lips_that_touch_exactly_are_two(head, tmp_path, way):
 
 
 def test_lips_that_are_one_are_shut(head, tmp_path):
-    """If a file doubles no vertices between them, they cannot part."""
+    """Lips that share vertices cannot part, so the head is refused."""
     number = np.arange(len(head.vertices))
     number[head.landmarks[LOWER]] = head.landmarks[UPPER]
     maker = GltfMaker()
@@ -96,7 +99,7 @@ def test_lips_that_are_one_are_shut(head, tmp_path):
 
 
 def test_pieces_that_are_left_away_may_be_painted_with_anything(head, tmp_path):
-    """An unreadable picture of hair does not affect the skin's own; eyes need no colours."""
+    """An unreadable picture of hair has no effect on the skin; eyes need no colours."""
     maker = GltfMaker()
     broken = material(maker, {"index": maker.picture(b"no picture")})
     own = material(maker, {"index": maker.picture(png())})
@@ -116,7 +119,7 @@ def test_pieces_that_are_left_away_may_be_painted_with_anything(head, tmp_path):
 
 
 def test_colours_of_the_skin_count_alone(head):
-    """Eyes or hair may have none; if only these have some, the skin keeps its picture."""
+    """The skin keeps its picture if eyes or hair have none, or if only these have colours."""
     count = len(head.vertices)
     vertices = np.vstack([head.vertices, head.vertices[:3] + 500.0])
     faces = np.vstack([head.faces, [[count, count + 1, count + 2]]]).astype(np.int32)

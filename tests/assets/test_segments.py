@@ -1,4 +1,4 @@
-"""The map of classes: every texel has one, sides mirror, and named places have their classes."""
+"""The map of classes: every texel has one, sides mirror, named places have theirs."""
 
 import numpy as np
 import pytest
@@ -21,14 +21,14 @@ PLACES = {
 
 
 def at(head, vertices):
-    """The classes of vertices."""
+    """The classes at vertices."""
     size = len(head.segments)
     columns, rows = (head.uv[np.atleast_1d(vertices)] * [size, -size] + [0.0, size]).astype(int).T
     return head.segments[rows, columns].tolist()
 
 
 def test_every_texel_has_a_class(head):
-    """It is a class of skin: no background, nothing to ignore, nothing worn."""
+    """Every texel has a class of skin: none is background, ignored, or clothing."""
     assert head.segments.shape == head.albedo.shape[:2]
     assert set(np.unique(head.segments)) == set(Segment) - {
         Segment.BACKGROUND, Segment.CLOTHING, Segment.GLASSES, Segment.FACE_WEAR, Segment.IGNORE,
@@ -36,7 +36,7 @@ def test_every_texel_has_a_class(head):
 
 
 def test_the_right_half_is_the_left_one_mirrored(head):
-    """It has the classes of the subject's other side; left is at large u."""
+    """A mirrored texel has the class of the subject's other side; left is at large u."""
     mirrored = head.segments[:, ::-1]
     expected = head.segments.copy()
     for right, left in MIRRORED.items():
@@ -48,13 +48,13 @@ def test_the_right_half_is_the_left_one_mirrored(head):
 
 @pytest.mark.parametrize("place", list(PLACES))
 def test_named_places_are_what_they_are(head, place):
-    """Anatomical points well within a region have its class."""
+    """Anatomical points well within a region have the region's class."""
     assert at(head, head.anatomy[place]) == [PLACES[place]]
 
 
 def test_lips_ears_and_lids_follow_their_rows(head):
-    """The red is lip, above or below, behind it is mouth, the helix is ear."""
-    upper, lower = slice(1, 5), slice(10, 14)  # without corners, and the middle of both sides
+    """The red has the class of its lip, behind it the mouth begins; the helix is ear."""
+    upper, lower = slice(1, 5), slice(10, 14)  # without corners and middle
     for row in (3, 4):
         ring = head.rings[f"mouth_{row}_left"]
         assert set(at(head, ring[upper])) == {Segment.TOP_LIP}

@@ -1,4 +1,4 @@
-"""Bodies with many triangles: they are simplified, and the face keeps its own."""
+"""Meshes with a large body: the body is simplified, and the face keeps its vertices."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from tests.assets import checks
 
 @pytest.fixture
 def with_body(head: Head) -> SkinPiece:
-    """The built-in head with a body at its neck, 1.2 m long and with many triangles."""
+    """The built-in head with a body at its neck, 1.2 m long, with many triangles."""
     loops = boundary_loops(head.faces)
     neck = min(loops, key=lambda loop: head.vertices[loop, 1].mean())
     row_count = 120
@@ -35,7 +35,7 @@ def with_body(head: Head) -> SkinPiece:
 
 
 def test_a_face_keeps_its_vertices_beside_a_body_of_many(with_body, head, monkeypatch):
-    """Those around the landmarks stay in place; the body has the others, and stays connected."""
+    """Vertices around the landmarks stay; the body is simplified, and stays connected."""
     monkeypatch.setattr(simplifying, "SIMPLIFIED", 5000)
     assert len(with_body.faces) > 7000
     marks = head.vertices[head.landmarks]
@@ -51,7 +51,7 @@ def test_a_face_keeps_its_vertices_beside_a_body_of_many(with_body, head, monkey
 
 
 def test_a_dense_head_leaves_its_body_a_share(with_body, head, monkeypatch):
-    """If the head alone has too many triangles, both are simplified and stay connected."""
+    """If the head alone exceeds the limit, head and body are simplified and stay connected."""
     monkeypatch.setattr(simplifying, "SIMPLIFIED", 1800)
     found = simplifying.simplified(with_body, head.vertices[head.landmarks])
     assert len(found.faces) <= 1800
@@ -60,7 +60,7 @@ def test_a_dense_head_leaves_its_body_a_share(with_body, head, monkeypatch):
 
 
 def test_sheets_that_touch_along_an_edge_are_parted():
-    """In a fold pinched by simplification, the sheet continues, and the scrap below is left out."""
+    """Where simplification pinches a sheet, the sheet continues, and the scrap is removed."""
     sheet = grid_faces(np.arange(25).reshape(5, 5))
     scrap = np.array([[12, 13, 25], [13, 12, 26], [12, 25, 26], [25, 13, 26]])
     vertices = np.random.default_rng(0).normal(size=(27, 3))
@@ -72,11 +72,11 @@ def test_sheets_that_touch_along_an_edge_are_parted():
 
 
 def test_two_folds_pinched_together_stay_one_surface():
-    """Opposite walls of a pocket meet at an edge: all triangles stay in their places."""
+    """Where opposite walls of a pocket are pinched together, all triangles keep their places."""
     rows = np.arange(30).reshape(6, 5)
     sheet = grid_faces(rows)
     number = np.arange(30)
-    number[rows[4, 2:4]] = rows[1, 2:4]  # two edges of the sheet far apart become one
+    number[rows[4, 2:4]] = rows[1, 2:4]  # two distant edges of the sheet become one
     vertices = np.random.default_rng(0).normal(size=(30, 3))
     pinched = number[sheet].astype(np.int32)
     assert not checks.is_manifold(pinched)

@@ -1,4 +1,4 @@
-"""Smiles of persons: their own shares of muscles, only in AU12 and joy, and lips that follow."""
+"""Smiles of persons: shares of muscles in AU12 and joy alone, and lips that follow."""
 
 from dataclasses import replace
 
@@ -11,12 +11,15 @@ from risorius.assets.loading import load
 
 
 def test_smiles_change_two_rows_within_their_limits():
-    """The usual one changes nothing; the strongest ones keep shares between 0 and 1."""
+    """Smiles change the rows AU12 and joy only, and keep their shares between 0 and 1.
+
+    The usual smile changes nothing.
+    """
     layers = load("head").layers
     plain = {name: row for layer in layers for name, row in layer.rows.items()}
 
     def rows(smile):
-        """All rows of a smile."""
+        """All rows of the layers with a smile."""
         return {name: row for layer in smiling(layers, smile) for name, row in layer.rows.items()}
 
     for name, row in rows(USUAL_SMILE).items():
@@ -31,7 +34,7 @@ def test_smiles_change_two_rows_within_their_limits():
 
 
 def test_a_lifted_smile_bares_more_teeth_and_a_shut_one_stays_shut():
-    """Joy raises the upper lip farther; AU12 alone does not part the lips."""
+    """A smile with lifted lips bares more teeth in joy; AU12 alone does not part the lips."""
     identity = sample_identity(110)
     heights, slits = [], []
     for lift in (0.0, 1.0):
@@ -51,6 +54,9 @@ def test_a_lifted_smile_bares_more_teeth_and_a_shut_one_stays_shut():
 
 
 def test_a_third_of_people_smile_with_the_raisers_of_the_lip():
-    """Rubin 1974: 31 and 2 of 100; women's lips are lifted farther."""
+    """A third of persons raise the upper lip when they smile.
+
+    Rubin 1974: 31 % canine and 2 % full-denture smiles. Women's lips are lifted farther.
+    """
     lifts = np.array([sample_identity(seed).smile.lift for seed in range(300)])
     assert 0.27 < (lifts >= 0.4).mean() < 0.39

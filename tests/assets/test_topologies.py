@@ -1,4 +1,4 @@
-"""Heads with known vertex numbers need no landmark file."""
+"""Heads of a known topology (vertex numbering) need no landmark file."""
 
 import json
 from dataclasses import replace
@@ -23,18 +23,18 @@ TABLE = read_toml(Path(assets.__file__).with_name("topologies.toml"))["topology"
 
 @pytest.fixture(autouse=True)
 def _no_topologies(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The user's folder is in the test's folder."""
+    """Put the user's folder of topologies inside the test's folder."""
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
 
 
 def lumps(points):
-    """Triangles with corners at points (n, 3), like eyes and teeth: (n + 2 for each point, F)."""
+    """One small triangle at each point (n, 3), like teeth or eyes: vertices (3 n, 3) and faces."""
     vertices = np.repeat(points, 3, axis=0) + np.tile(0.1 * np.eye(3), (len(points), 1))
     return vertices, np.arange(3 * len(points), dtype=np.int32).reshape(-1, 3)
 
 
 def with_pieces_in_front(mesh):
-    """The mesh after two other pieces."""
+    """The mesh behind two other pieces."""
     vertices, faces = lumps(np.array([[0.0, 0.0, -50.0], [9.0, 0.0, -50.0]]))
     both = np.vstack([faces, mesh.faces + len(vertices)]).astype(np.int32)
     return Mesh(np.vstack([vertices, mesh.vertices]), both)
@@ -46,7 +46,7 @@ def as_another(head):
 
 
 def test_our_own_heads_are_known_beside_other_pieces():
-    """They may have any shape, and their vertices may begin anywhere."""
+    """The project's heads are recognised in any shape, also with other pieces before them."""
     head = assets.load("head")
     known = recognised(with_pieces_in_front(as_another(head)))
     assert known.name == "the built-in head"
@@ -58,7 +58,10 @@ def test_our_own_heads_are_known_beside_other_pieces():
 
 
 def test_a_known_head_is_fitted_without_a_landmark_file(tmp_path):
-    """It fits as with one; a line names the head. Other meshes get a line about landmarks."""
+    """A known head is fitted as with a landmark file, and a line names the topology.
+
+    For other meshes a line asks for landmarks.
+    """
     other = replace(stranger(), mesh=as_another(assets.load("head")))
     mesh, marks = other.write(tmp_path)
     fitted = fit_head(mesh)
@@ -71,7 +74,7 @@ def test_a_known_head_is_fitted_without_a_landmark_file(tmp_path):
 
 
 def test_the_table_is_sound():
-    """Each entry has 68 existing vertices, and edges that are a share of a face."""
+    """Each entry has 68 existing vertices, and edge lengths as shares of the face."""
     assert len(TABLE) >= 3
     for row in TABLE:
         fewest = min(vertices for vertices, _ in row["counts"])
@@ -81,7 +84,7 @@ def test_the_table_is_sound():
 
 
 def test_edges_tell_meshes_of_the_same_counts_apart(tmp_path):
-    """A user's topology only counts for meshes with its edges."""
+    """A user's topology is applied only to meshes with its edges, not just its vertex count."""
     other = stranger()
     mesh = other.mesh
     right, left = mesh.vertices[other.landmarks[[36, 45]]]
@@ -99,7 +102,7 @@ def test_edges_tell_meshes_of_the_same_counts_apart(tmp_path):
 
 
 def test_a_known_head_that_cannot_be_fitted_may_be_marked(tmp_path):
-    """Landmarks of another head with the same vertex count are an error that leads to marking."""
+    """If a topology's landmarks do not fit a mesh, the error suggests marking the landmarks."""
     other = stranger()
     write_topology(tmp_path / "config", other, landmarks=list(range(COUNT)))
     mesh, marks = other.write(tmp_path)
@@ -119,7 +122,7 @@ def test_a_known_head_that_cannot_be_fitted_may_be_marked(tmp_path):
     ],
 )
 def test_a_wrong_topology_is_one_line(tmp_path, change, message):
-    """The line names the file, the value and the allowed ones."""
+    """A wrong topology file is reported in one line: file, value, and allowed values."""
     whole = {"counts": [[100, 200]], "landmarks": list(range(COUNT))}
     write_topology(tmp_path / "config", stranger(), **whole | change)
     with pytest.raises(assets.AssetError, match=message) as raised:

@@ -1,13 +1,13 @@
-"""Texture coordinates: one flat piece, nothing turned over, little stretched, a mirror image."""
+"""Texture coordinates: one flat piece, not folded, little stretched, mirror-symmetric."""
 
 import numpy as np
 from numpy.linalg import norm
 
-TUCKED_ROWS = ("mouth_0", "mouth_1", "eye_0")  # behind lips and lids: never seen at rest
+TUCKED_ROWS = ("mouth_0", "mouth_1", "eye_0")  # behind lips and lids, hidden at rest
 
 
 def signed_areas(flat, faces):
-    """Twice the area of flat triangles, positive where they are counter-clockwise."""
+    """Twice the area of flat triangles, positive for counter-clockwise ones."""
     first, second = (flat[faces[:, k]] - flat[faces[:, 0]] for k in (1, 2))
     return np.asarray(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
 
@@ -29,7 +29,7 @@ def stretches(head):
 
 
 def seen_in_front(head):
-    """Faces of the face itself, without tucked-in ones, shape (F,)."""
+    """Flags of visible faces of the face itself, shape (F,); tucked-in ones are left out."""
     tucked = [head.rings[f"{row}_{side}"] for row in TUCKED_ROWS for side in ("left", "right")]
     _, y, z = head.vertices[head.faces].mean(axis=1).T
     in_front = (z > 62.0) & (y < 62.0) & (y > -112.0)
@@ -37,7 +37,7 @@ def seen_in_front(head):
 
 
 def test_coordinates_are_one_piece_within_the_picture(head):
-    """Every vertex has one pair of coordinates, and some margin is left for filters."""
+    """Every vertex has one pair of texture coordinates, with a margin for filters at the edge."""
     assert head.uv.dtype == np.float32
     assert head.uv.shape == (len(head.vertices), 2)
     assert head.face_uv.dtype == np.int32
@@ -47,12 +47,12 @@ def test_coordinates_are_one_piece_within_the_picture(head):
 
 
 def test_no_triangle_is_turned_over(head):
-    """This includes those behind lips and lids."""
+    """No triangle is turned over in the picture, also not behind lips and lids."""
     assert signed_areas(head.uv.astype(np.float64), head.face_uv).min() > 0.0
 
 
 def test_no_two_triangles_share_a_texel(head):
-    """Two places of the skin must not share a colour: samples are in one face at most."""
+    """No two triangles share a texel: every sample is in at most one face."""
     side = 300
     covered = np.zeros((side, side), dtype=np.int64)
     for a, b, c in head.uv.astype(np.float64)[head.face_uv] * side:
@@ -70,7 +70,7 @@ def test_no_two_triangles_share_a_texel(head):
 
 
 def test_face_is_hardly_stretched(head):
-    """A freckle's length is at most one and a half times its width; detail is spread evenly."""
+    """In the face a freckle's length is at most 1.5 times its width; detail is spread evenly."""
     largest, smallest = stretches(head)[seen_in_front(head)].T
     ratio = largest / smallest
     assert np.median(ratio) < 1.55
@@ -81,19 +81,19 @@ def test_face_is_hardly_stretched(head):
 
 
 def test_face_gets_more_of_the_picture_than_the_rest(head):
-    """The back of the head must not take texels from the brow's hairs."""
+    """The face gets more texels than the back of the head, for details such as brow hairs."""
     scale = np.sqrt(stretches(head).prod(axis=1))
     behind = head.vertices[head.faces].mean(axis=1)[:, 2] < 10.0
     assert np.median(scale[seen_in_front(head)]) > 1.3 * np.median(scale[behind])
 
 
 def test_coordinates_are_their_own_mirror_image(head):
-    """u -> 1 - u takes each vertex to its mirror image."""
+    """u -> 1 - u maps each vertex to its mirror image."""
     assert np.abs(head.uv[head.mirror] * [-1.0, 1.0] + [1.0, 0.0] - head.uv).max() < 1e-6
 
 
 def test_coordinates_are_upright(head):
-    """v grows upward, u to the subject's left."""
+    """v grows upward, u toward the subject's left."""
     at = {name: head.uv[vertex] for name, vertex in head.anatomy.items()}
     assert at["glabella"][1] > at["pronasale"][1] > at["pogonion"][1]
     assert at["cheek_left"][0] > 0.5 > at["cheek_right"][0]

@@ -1,4 +1,4 @@
-"""Shirts and glasses: the place of frames on any person, and other unchanged parts."""
+"""Shirts and glasses on any person; other parts are unchanged."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def people():
 
 @pytest.mark.parametrize("name", FRAMES)
 def test_frames_lie_before_eyes_and_off_the_skin(people, name):
-    """Rims around both eyes, temples that reach behind the ears, mirrored, none within the skin."""
+    """Rims surround both eyes, temples reach behind the ears, and no rim is within the skin."""
     for person in people:
         part = glasses(person, FRAMES[name])
         points = part.vertices.astype(float)
@@ -44,7 +44,7 @@ def test_frames_lie_before_eyes_and_off_the_skin(people, name):
 
 
 def test_normals_point_out_of_the_frame(people):
-    """Faces must agree with their normals, or they would be culled."""
+    """Faces of frames agree with their normals; otherwise they would be culled."""
     part = glasses(people[0], FRAMES["oval"])
     a, b, c = (part.vertices[part.faces[:, k]].astype(float) for k in range(3))
     across = np.cross(b - a, c - a)
@@ -52,7 +52,7 @@ def test_normals_point_out_of_the_frame(people):
 
 
 def test_shirts_keep_their_shades(people):
-    """Only the shirt's colours differ; without glasses there are none."""
+    """Only the shirt's colours differ; without glasses there is no part of glasses."""
     plain = people[0]
     white = wearing(plain, shirt="white")
     for before, after in zip(plain.parts, white.parts, strict=True):
@@ -66,14 +66,14 @@ def test_shirts_keep_their_shades(people):
 
 
 def shirt_of(person):
-    """The only part that stands still."""
+    """The shirt, the only part that stands still."""
     (shirt,) = [part for part in person.parts if part.bone == "neck"]
     return shirt
 
 
 @pytest.mark.parametrize("collar", [name for name in COLLARS if name != "band"])
 def test_collars_lie_on_the_shirt_and_off_the_neck(people, collar):
-    """The built-in shirt stays below them; no skin of the neck is outside, and normals go out."""
+    """Collars lie on the unchanged shirt, outside the neck, and their normals face outward."""
     for person in people:
         plain = shirt_of(wearing(person, shirt="grey"))
         worn = shirt_of(wearing(person, shirt="grey", collar=collar))
@@ -95,7 +95,7 @@ def test_collars_lie_on_the_shirt_and_off_the_neck(people, collar):
 
 
 def test_a_v_shows_the_shirt_below(people):
-    """Its point is in the middle; the shirt in it is white, or dark below a light jersey."""
+    """A V-neck's point is in the middle; the shirt below is white, or dark under a light jersey."""
     person = people[0]
     count = len(shirt_of(person).vertices)
     below = shirt_of(wearing(person, shirt="red", collar="v")).colours[:count]

@@ -1,4 +1,4 @@
-"""The map of wrinkles: furrows in wrinkling skin, and none elsewhere."""
+"""The map of wrinkles: furrows where skin wrinkles, and none elsewhere."""
 
 import numpy as np
 import pytest
@@ -14,13 +14,16 @@ def texels(head, vertices):
 
 
 def is_plain(found):
-    """Whether none of the texels has a furrow, except the last of one that fades out."""
+    """Whether none of the texels has a furrow; faint ends of furrows are tolerated."""
     slopes = np.abs(found[:, :2].astype(int) - 128)
     return bool(slopes.max() < 4 and found[:, 2].max() < 4)
 
 
 def test_arrays_fit_the_head(head):
-    """Shapes and types follow `Wrinkles`, directions have plausible lengths, all are read-only."""
+    """Arrays have the shapes and types of `Wrinkles`; directions have plausible lengths.
+
+    All arrays are read-only.
+    """
     wrinkles = head.wrinkles
     assert wrinkles.map.ndim == 3
     assert wrinkles.map.shape[2] == 4
@@ -42,7 +45,7 @@ def test_arrays_fit_the_head(head):
     ],
 )
 def test_no_furrows_where_skin_does_not_wrinkle(head, rings):
-    """Margins of the lids, the red of the lips, ears, nostrils, the foot of the neck."""
+    """Lid margins, red of the lips, ears, nostrils and the foot of the neck have no furrows."""
     for ring in rings:
         for side in ("left", "right"):
             assert is_plain(texels(head, head.rings[f"{ring}_{side}"])), ring
@@ -50,7 +53,7 @@ def test_no_furrows_where_skin_does_not_wrinkle(head, rings):
 
 @pytest.mark.parametrize(("place", "slot"), [("glabella", 255), ("metopion", 0), ("nasion", 0)])
 def test_furrows_follow_the_amount_of_their_own_region(head, place, slot):
-    """Other regions have no effect outside of their own furrows."""
+    """Furrows depend on the wrinkling amount of their own region only."""
     size = len(head.wrinkles.map)
     column, row = (head.uv[head.anatomy[place]] * [size, -size] + [0.0, size]).astype(int)
     around = head.wrinkles.map[row - 12 : row + 13, column - 25 : column + 26].reshape(-1, 4)
@@ -60,23 +63,23 @@ def test_furrows_follow_the_amount_of_their_own_region(head, place, slot):
 
 
 def test_none_behind_the_face(head):
-    """Scalp, nape and throat have none."""
+    """Scalp, nape and throat have no furrows."""
     _, y, z = head.vertices.T
     assert is_plain(texels(head, np.flatnonzero((z < 10.0) | (y > 78.0) | (y < -125.0))))
 
 
 def test_furrows_are_no_cliffs(head):
-    """Very few slopes are cut off at the ends of a byte, and few are steep."""
+    """Very few slopes are cut off at the limits of a byte, and few are steep."""
     slopes = np.abs(head.wrinkles.map[..., :2].astype(int) - 128)
     assert (slopes > 126).sum() < 10
     assert (slopes > 127 * STEEPEST_FURROW).mean() < 1e-4
 
 
 def test_left_and_right_are_not_alike(head):
-    """Directions are mirrored; furrows are in the same regions, and differ."""
+    """Left and right furrows differ, but are in the same regions; their directions are mirrored."""
     across = head.wrinkles.across
     mirrored = across[head.mirror] * [-1.0, 1.0, 1.0]
-    same_way = np.sign((mirrored * across).sum(axis=2, keepdims=True))  # a sign has no meaning
+    same_way = np.sign((mirrored * across).sum(axis=2, keepdims=True))  # an axis has no sign
     np.testing.assert_allclose(same_way * mirrored, across, atol=1e-4)
     depth = head.wrinkles.map[..., 2].astype(float)
     half = depth.shape[1] // 2
@@ -87,7 +90,10 @@ def test_left_and_right_are_not_alike(head):
 
 
 def test_the_fold_of_the_cheek_runs_whole(head):
-    """Slopes change little from texel to texel: other heads have no triangle's side there."""
+    """In the fold of the cheek, slopes change little from texel to texel.
+
+    On other heads, edges of triangles are elsewhere.
+    """
     wrinkles = head.wrinkles
     size = len(wrinkles.map)
     slopes = (wrinkles.map[..., :2].astype(float) - 128.0) * (wrinkles.steepest / 127.0)

@@ -11,7 +11,7 @@ from risorius import render
 
 @pytest.fixture
 def surface() -> Iterator[render.Surface]:
-    """A small square frame, four samples per pixel."""
+    """A small square frame, with four samples per pixel."""
     with render.open_offscreen((96, 96)) as opened:
         yield opened
 
@@ -27,5 +27,5 @@ def window() -> Iterator[render.WindowSurface]:
 
 @pytest.fixture
 def renderer(surface: render.Surface) -> render.Renderer:
-    """A renderer of the small frame."""
+    """A renderer for the small frame."""
     return render.Renderer(surface)

@@ -1,4 +1,4 @@
-"""Small things to draw, and helpers that read images."""
+"""Small shapes to draw, and helpers that read images."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from risorius import render
 from risorius.geometry.arrays import Floats32
 from tests.meshes import ball
 
-SignedImage = npt.NDArray[np.int32]  # an image that can be subtracted from another, (H, W, 3)
+SignedImage = npt.NDArray[np.int32]  # differences of images, (H, W, 3)
 
 PLAIN = render.Style(background=render.WHITE, shadows=False)
 """Skin before pure white, so all other pixels are drawn ones."""
@@ -51,7 +51,7 @@ def square(half: float = 50.0, *, z: float = 0.0, bulge: float = 0.0) -> Shape:
 
 
 def joined(first: Shape, second: Shape) -> Shape:
-    """Both shapes in one mesh."""
+    """Both shapes as one mesh."""
     return Shape(
         np.concatenate([first.positions, second.positions]),
         np.concatenate([first.normals, second.normals]),
@@ -60,7 +60,7 @@ def joined(first: Shape, second: Shape) -> Shape:
 
 
 def lent(renderer: render.Renderer, shape: Shape, *, columns: int = 6) -> render.Stream:
-    """A stream of exactly the shape's size, uploaded."""
+    """A stream with exactly the size of the shape, uploaded."""
     stream = renderer.lend_stream(len(shape.positions), len(shape.triangles), columns)
     stream.vertices[:, :3] = shape.positions
     stream.vertices[:, 3:6] = shape.normals
@@ -95,7 +95,7 @@ def draw(
 
 
 def still(*parts: Any) -> list[render.PlacedPart]:
-    """Parts whose bones are at rest."""
+    """The parts, placed by bones at rest."""
     return [render.PlacedPart.of(part, STILL) for part in parts]
 
 
@@ -114,14 +114,14 @@ def draw_image(
 
 
 def needs_samples(surface: render.Surface) -> None:
-    """Skip a test of smooth edges if the driver has one sample a pixel."""
+    """Skip a test of smooth edges if the driver has one sample per pixel."""
     if surface.samples < 4:
         driver = surface.gl.info["GL_RENDERER"]
         pytest.skip(f"{driver} has up to {surface.samples} samples a pixel, and 4 are asked for")
 
 
 def at(image: SignedImage, x: float, y: float) -> npt.NDArray[np.int32]:
-    """The pixel that shows the point (x, y, 0) of `facing`'s view."""
+    """The colour of the pixel at the point (x, y, 0) in the view of `facing`."""
     height, width, _ = image.shape
     scale = 0.5 * height / (250.0 * np.tan(np.radians(12.5)))
     return np.asarray(image[int(0.5 * height - y * scale), int(0.5 * width + x * scale)])

@@ -1,4 +1,4 @@
-"""Wrinkles of the skin: visible by their amounts, and nowhere else."""
+"""Wrinkles of the skin (bumps): visible in proportion to their amounts, and nowhere else."""
 
 from dataclasses import replace
 
@@ -9,14 +9,14 @@ from risorius import render
 
 from .scenes import PLAIN, at, draw, lent, sphere, square
 
-LEVEL = (128, 128, 0, 0)  # a slope of 1 over a square of 100 mm
-STEEP = 100.0
+LEVEL = (128, 128, 0, 0)  # no slope
+STEEP = 100.0  # a slope of 1 over a square of 100 mm
 
 
 def furrowed(surface, texel, amounts, style=PLAIN, *, left=LEVEL, corner=(1.0, 0.0)):
-    """A square whose right half has `texel` in its map and bumps by `amounts`.
+    """The picture of a square whose map has `texel` in its right half, with bumps by `amounts`.
 
-    left: of the other half. corner: the texture coordinates of the lower right vertex.
+    left: the texel of the left half. corner: the texture coordinates of the lower right vertex.
     """
     texels = np.full((32, 32, 4), left, np.uint8)
     texels[:, 16:] = texel
@@ -27,14 +27,14 @@ def furrowed(surface, texel, amounts, style=PLAIN, *, left=LEVEL, corner=(1.0, 0
     stream.vertices[1, 6:8] = corner
     has_bumps = amounts is not None
     stream.vertices[:, 8:10] = amounts if has_bumps else 1.0
-    stream.vertices[:, 10:] = (0.01, 0.0, 0.0, 0.0, 0.01, 0.0)  # of u and v over 100 mm
+    stream.vertices[:, 10:] = (0.01, 0.0, 0.0, 0.0, 0.01, 0.0)  # u and v grow by 1 over 100 mm
     stream.upload(len(shape.positions), len(shape.triangles), has_bumps=has_bumps)
     bumps = render.BumpMap(renderer.surface, texels, STEEP)
     return draw(renderer, render.Skin(stream, render.SkinMaps(bumps=bumps)), style)
 
 
 def test_slopes_are_lit_like_the_slopes_they_are(surface):
-    """The key comes from the viewer's upper left: what rises to the right faces it, and shines."""
+    """Slopes that rise to the right face the key light, at the upper left, and are brighter."""
     plain = furrowed(surface, LEVEL, (1.0, 1.0))
     rises_right = furrowed(surface, (190, 128, 0, 0), (1.0, 0.0))
     rises_up = furrowed(surface, (128, 190, 0, 0), (1.0, 0.0))
@@ -44,7 +44,7 @@ def test_slopes_are_lit_like_the_slopes_they_are(surface):
 
 
 def test_furrows_are_darker(surface):
-    """They darken with depth, red least."""
+    """Furrows are darker the deeper they are, least in red."""
     plain = at(furrowed(surface, LEVEL, (1.0, 1.0)), 25, 0)
     deep = at(furrowed(surface, (128, 128, 200, 0), (1.0, 0.0)), 25, 0)
     assert (deep < plain).all()
@@ -52,7 +52,7 @@ def test_furrows_are_darker(surface):
 
 
 def test_a_texel_follows_its_own_amount(surface):
-    """Alpha 0 uses the first, 255 the second."""
+    """A texel with alpha 0 follows the first amount, one with 255 the second."""
     plain = at(furrowed(surface, LEVEL, (1.0, 1.0)), 25, 0)
     first = (190, 190, 90, 0)
     second = (190, 190, 90, 255)
@@ -64,7 +64,7 @@ def test_a_texel_follows_its_own_amount(surface):
 
 @pytest.mark.parametrize("amounts", [None, (0.0, 0.0), (1.0, 1.0)])
 def test_none_without_amounts_or_strength(surface, amounts):
-    """A style without bumps, and skin without amounts, give the same bytes."""
+    """A style without bumps and a skin without amounts give the same bytes."""
     smooth = replace(PLAIN, bumps=0.0)
     style = smooth if amounts == (1.0, 1.0) else PLAIN
     texel = (190, 90, 200, 128)
@@ -73,7 +73,7 @@ def test_none_without_amounts_or_strength(surface, amounts):
 
 @pytest.mark.parametrize("shading", [render.Shading.FLAT, render.Shading.GOURAUD])
 def test_per_pixel_shading_alone_has_them(surface, shading):
-    """Other shadings have no normal for each pixel."""
+    """Only per-pixel shading shows bumps, because others have no normal for each pixel."""
     style = replace(PLAIN, shading=shading)
     texel = (190, 90, 200, 128)
     furrows = furrowed(surface, texel, (1.0, 1.0), style)
@@ -81,7 +81,7 @@ def test_per_pixel_shading_alone_has_them(surface, shading):
 
 
 def test_part_of_a_mesh_has_bumps_without_a_crack(renderer):
-    """With a level map, a sphere with bumps on one half looks the same as without."""
+    """With a level map, bumps on one half of a sphere change nothing, also along the border."""
     shape = sphere()
     stream = lent(renderer, shape, columns=16)
     level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
@@ -94,7 +94,7 @@ def test_part_of_a_mesh_has_bumps_without_a_crack(renderer):
 
 
 def test_what_does_not_fit_is_refused(renderer):
-    """Such are an invalid map, a stream without amounts, and one without texture coordinates."""
+    """An invalid map, a stream without amounts, and one without texture coordinates are refused."""
     with pytest.raises(ValueError, match="the bump map has shape"):
         render.BumpMap(renderer.surface, np.zeros((4, 4, 3), np.uint8), STEEP)
     shape = square()
@@ -107,7 +107,7 @@ def test_what_does_not_fit_is_refused(renderer):
 
 
 def test_a_furrow_runs_whole_over_unequal_triangles(surface):
-    """Light on a slope does not jump where one triangle is stretched more than its neighbour."""
+    """Light on a furrow does not jump between two triangles that are stretched differently."""
     slope = (190, 128, 0, 0)
     frame = furrowed(surface, slope, (1.0, 1.0), left=slope, corner=(0.6, 0.4))
     beside = np.abs(at(frame, 5, -5) - at(frame, -5, 5))

@@ -1,4 +1,4 @@
-"""Camera maths: a framed scene is fully visible, and moves of the camera have their effect."""
+"""Camera: a framed scene is fully visible, and each camera motion has its effect."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def test_framing_fits_everything(view, aspect):
 
 
 def test_views_look_from_where_they_say():
-    """Front is +z, the profile is from the subject's left (+x), below is from below."""
+    """Front is seen from +z, the profile from the subject's left (+x), below from -y."""
     eyes = {view: render.OrbitCamera.framing(HEAD, view=view).axes()[2] for view in render.VIEWS}
     assert eyes["front"] == approx((0, 0, 1))
     assert eyes["profile"] == approx((1, 0, 0))
@@ -38,7 +38,7 @@ def test_views_look_from_where_they_say():
 
 
 def test_orbit_stops_at_the_poles():
-    """However high the camera goes, up stays up."""
+    """However high the camera orbits, up stays up."""
     camera = render.OrbitCamera.framing(HEAD)
     camera.orbit(0.0, 500.0)
     assert camera.pitch < 90.0
@@ -47,7 +47,7 @@ def test_orbit_stops_at_the_poles():
 
 
 def test_zoom_has_an_end_on_both_sides():
-    """However far the wheel turns, the eye is never inside the target, nor the target invisible."""
+    """After any zoom the eye is outside the target, and the target is still visible."""
     camera = render.OrbitCamera.framing(HEAD)
     camera.zoom(1e30)
     assert camera.distance == approx(0.02 * camera.scene_radius)
@@ -56,7 +56,7 @@ def test_zoom_has_an_end_on_both_sides():
 
 
 def test_clipping_planes_hold_the_scene_from_anywhere():
-    """From every side and distance the visible half of the scene lies between near and far."""
+    """From every side and distance, the scene's visible half is between the clipping planes."""
     camera = render.OrbitCamera.framing(HEAD)
     for zoom in (0.2, 1.0, 1.0, 1.5):
         camera.zoom(zoom)
@@ -83,7 +83,7 @@ def test_framing_errors(vertices, view, message):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_what_is_seen_can_be_found_again(seed):
-    """A point, projected and back, is the same; its ray leaves the eye."""
+    """A point, projected and unprojected, is unchanged, and its ray starts at the eye."""
     random = np.random.default_rng(seed)
     camera = render.OrbitCamera.framing(HEAD, view=random.choice(list(render.VIEWS)))
     camera.orbit(*random.uniform(-60.0, 60.0, 2))
@@ -100,7 +100,7 @@ def test_what_is_seen_can_be_found_again(seed):
 
 
 def test_another_lens_keeps_the_target_as_large():
-    """A wide one is nearer; an impossible one is refused."""
+    """A wide lens moves the camera nearer; an impossible one is refused."""
     camera = render.OrbitCamera.framing(HEAD)
     above = camera.target + np.array([0.0, 0.1, 0.0])
     before = seen(camera, above[None], 1.0)[0, 1]

@@ -1,4 +1,4 @@
-"""Wireframe, and colours by the splits of each triangle."""
+"""Wireframe, and colours by each triangle's number of splits."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ SPLITS = replace(PLAIN, colour_by=render.ColourBy.SPLITS)
 
 
 def test_wireframe_darkens_edges_only(surface):
-    """Lines are along borders and diagonal; between them the surface is unchanged."""
+    """Lines appear along borders and the diagonal; between them the surface is unchanged."""
     plain = draw_image(surface, square())
     wired = draw_image(surface, square(), replace(PLAIN, wireframe=True, wire_width=3.0))
     assert at(wired, 0.0, 0.0).sum() < 0.8 * at(plain, 0.0, 0.0).sum()
@@ -26,7 +26,7 @@ def test_wireframe_darkens_edges_only(surface):
 @pytest.mark.parametrize("shading", render.Shading)
 @pytest.mark.parametrize("wireframe", [False, True])
 def test_split_colours_are_where_the_values_say(surface, shading, wireframe):
-    """A triangle with splits has the hue of its palette entry, its neighbour that of skin."""
+    """A split triangle has the hue of its palette entry, its unsplit neighbour that of skin."""
     style = replace(SPLITS, shading=shading, wireframe=wireframe)
     frame = draw_image(surface, square(), style, values=np.array([0, 4], np.uint8))
     lower = at(frame, 20.0, -20.0)
@@ -38,7 +38,10 @@ def test_split_colours_are_where_the_values_say(surface, shading, wireframe):
 
 
 def test_split_wires_outline_split_triangles_alone(surface):
-    """They have the palette's hue; insides, and outlines of whole triangles, are unchanged."""
+    """Outlines of split triangles have the palette's hue.
+
+    Their insides, and unsplit triangles, are unchanged.
+    """
     wires = replace(PLAIN, colour_by=render.ColourBy.SPLIT_WIRES, wire_width=3.0)
     plain = draw_image(surface, square())
     whole = draw_image(surface, square(), wires, values=np.array([0, 0], np.uint8))
@@ -48,11 +51,11 @@ def test_split_wires_outline_split_triangles_alone(surface):
     changed = (np.abs(split - plain) > 8).any(axis=2)
     assert 0.02 < changed.mean() < 0.15
     assert split[changed][:, 2].mean() > split[changed][:, 0].mean() + 20
-    assert not changed[60:, 70:].any()  # the whole triangle's corner
+    assert not changed[60:, 70:].any()  # corner of the unsplit triangle
 
 
 def test_split_colours_of_many_triangles(surface):
-    """Beyond one row of the look-up texture the numbers still fit their triangles."""
+    """With more triangles than one row of the look-up texture, colours fit their triangles."""
     shape = sphere(5)
     centres = shape.positions[shape.triangles].mean(axis=1)
     values = np.where(centres[:, 1] > 0.0, 5, 0).astype(np.uint8)
@@ -65,14 +68,14 @@ def test_split_colours_of_many_triangles(surface):
 
 
 def test_palette_darkens_with_the_number_of_splits():
-    """The order of the palette is visible without colour: luminance falls at each step."""
+    """Luminance falls with each entry, so that the palette's order is visible without colour."""
     luminance = np.array(render.SPLIT_PALETTE) @ (0.2126, 0.7152, 0.0722)
     assert len(luminance) == 6
     assert (np.diff(luminance) < -0.08).all()
 
 
 def test_split_values_must_be_there(surface):
-    """Missing numbers, and a wrong count of numbers, are refused."""
+    """Missing numbers of splits, and a wrong count of them, are refused."""
     with pytest.raises(ValueError, match="the style colours by values, so the skin needs values"):
         draw_image(surface, square(), SPLITS)
     with pytest.raises(ValueError, match="could not broadcast"):

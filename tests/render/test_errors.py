@@ -44,7 +44,7 @@ def run_python(code, **environment):
     ],
 )
 def test_broken_egl_is_one_line(monkeypatch, name, value, message):
-    """Each environment variable that breaks EGL is named with its remedy."""
+    """For each environment variable that breaks EGL, one line names it with its remedy."""
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.setenv(name, value)
     with pytest.raises(render.GLError, match=f"{message}.*Cure: unset {name}") as caught:
@@ -54,7 +54,7 @@ def test_broken_egl_is_one_line(monkeypatch, name, value, message):
 
 @on_linux
 def test_a_frame_that_does_not_fit_is_one_line(monkeypatch):
-    """If memory for a frame is refused, the text gives a possible size."""
+    """If memory for a frame is refused, one line suggests a possible size."""
 
     def refused(*_):
         raise moderngl.Error("the framebuffer is not complete (INCOMPLETE_ATTACHMENT)")
@@ -65,7 +65,7 @@ def test_a_frame_that_does_not_fit_is_one_line(monkeypatch):
 
 
 def test_no_screen_is_one_line_without_warnings():
-    """Without a screen a window fails with a GLError; GLFW's Python warnings stay away."""
+    """Without a screen, a window raises a GLError, and GLFW's Python warnings are suppressed."""
     output = run_python(
         "from risorius import render\n"
         "try: render.open_window((8, 8), 'test')\n"
@@ -92,7 +92,7 @@ def test_no_screen_is_one_line_without_warnings():
     ],
 )
 def test_known_texts_have_a_cure(monkeypatch, raw, cure):
-    """The text of the library is kept, and followed by one remedy."""
+    """The library's message is kept, and one remedy follows."""
     for name in [name for name in os.environ if name.startswith("GLCONTEXT_")]:
         monkeypatch.delenv(name)
     text = str(diagnose("opening", raw))
@@ -101,7 +101,7 @@ def test_known_texts_have_a_cure(monkeypatch, raw, cure):
 
 
 def test_shader_error_names_file_and_stage(surface, monkeypatch, tmp_path):
-    """A program that does not compile names its place."""
+    """The error of a shader that does not compile names its file and stage."""
     (tmp_path / "broken.glsl").write_text(
         "#if defined(VERTEX_STAGE)\n"
         "void main() { gl_Position = vec4(0.0); }\n"
@@ -116,7 +116,7 @@ def test_shader_error_names_file_and_stage(surface, monkeypatch, tmp_path):
 
 
 def test_probe_finds_what_is_there():
-    """The test machine can draw offscreen, and the finding names the driver."""
+    """On the test machine the probe can draw offscreen, and reports the driver's name."""
     (finding,) = render.probe(offscreen_only=True)
     assert finding.is_ok
     assert finding.message == ""
@@ -127,7 +127,7 @@ def test_probe_finds_what_is_there():
 
 @on_linux
 def test_probe_reports_failures(monkeypatch):
-    """Broken EGL and a missing screen are findings, not exceptions."""
+    """Broken EGL and a missing screen are reported, and raise nothing."""
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
     monkeypatch.setenv("GLCONTEXT_LINUX_LIBEGL", "nonexistent")
@@ -140,7 +140,7 @@ def test_probe_reports_failures(monkeypatch):
 
 @on_linux
 def test_probe_survives_a_crash(monkeypatch, tmp_path):
-    """A driver that kills its process is a finding with the exit code."""
+    """A driver that ends its process is reported with the exit code."""
     killer = tmp_path / "python"
     killer.write_text("#!/bin/sh\nkill -SEGV $$\n")
     killer.chmod(0o755)

@@ -1,4 +1,4 @@
-"""A picture is a value: the same frame gives the same picture after any other."""
+"""A frame gives the same picture after any other frame."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -19,7 +19,7 @@ FURROWED = (190, 90, 200, 128)
 
 @pytest.fixture(params=[0, 4])
 def renderer(request: pytest.FixtureRequest) -> Iterator[render.Renderer]:
-    """One renderer for all frames of a test, with one sample a pixel and with four."""
+    """One renderer for all frames of a test, with one sample per pixel and with four."""
     with render.open_offscreen((96, 96), samples=request.param) as surface:
         yield render.Renderer(surface)
 
@@ -56,7 +56,7 @@ def frames_of(renderer):
 
 
 def picture(renderer, *frames):
-    """The picture after one call."""
+    """The picture after one call of `draw` with these frames."""
     renderer.draw(*frames)
     return renderer.surface.read()
 
@@ -74,7 +74,7 @@ def test_no_order_of_pictures_matters(renderer):
 
 
 def test_frames_of_one_picture_are_apart(renderer):
-    """Two halves drawn by one call have the pixels of each alone, in either order."""
+    """Two halves drawn by one call have the same pixels as each half drawn alone."""
     style = replace(PLAIN, shadows=True)
     skin = render.Skin(lent(renderer, sphere(2, 30.0)))
     halves = [(0, 0, 48, 96), (48, 0, 48, 96)]
@@ -91,7 +91,7 @@ def test_frames_of_one_picture_are_apart(renderer):
 
 
 def test_reading_numbers_is_no_part_of_an_order(renderer):
-    """Numbers of a frame are the same after any other call."""
+    """The numbers (depth, normals and so on) of a frame are the same after any other call."""
     frames = frames_of(renderer)
     alone = [renderer.read(frame) for frame in frames]
     for frame in reversed(frames):
@@ -102,7 +102,7 @@ def test_reading_numbers_is_no_part_of_an_order(renderer):
 
 
 def test_a_frame_keeps_camera_and_shapes(renderer):
-    """A later turn of the camera or bend of a part does not change it."""
+    """A later motion of the camera, or of a part, does not change the frame."""
     ball = Ball()
     camera = facing()
     moving = Moving(ball)
@@ -133,7 +133,7 @@ class Moving(Ball):
 
 
 def test_a_frame_of_a_stream_that_was_filled_anew_is_refused(renderer):
-    """The stream now has another mesh."""
+    """A frame is refused after its stream was filled with another mesh."""
     stream = lent(renderer, sphere())
     frame = render.Frame(render.CameraView(facing()), PLAIN, render.Skin(stream))
     renderer.draw(frame)
@@ -144,7 +144,7 @@ def test_a_frame_of_a_stream_that_was_filled_anew_is_refused(renderer):
 
 
 def test_parts_under_opened_skin_are_seen_through_it(renderer):
-    """A ball behind a translucent wall is visible, although it comes after the skin."""
+    """A ball behind a translucent wall is visible, although it is drawn after the skin."""
     wall = render.Skin(lent(renderer, square(z=40.0)))
     style = replace(PLAIN, opacity=0.3)
     view = render.CameraView(facing())
@@ -156,7 +156,7 @@ def test_parts_under_opened_skin_are_seen_through_it(renderer):
 
 
 def test_fewer_samples_after_more_leave_no_hole():
-    """A target of one sample a pixel shows the inner side of a mesh, also after one of four."""
+    """The inner side of a mesh is drawn with one sample per pixel, also after four samples."""
     with render.open_offscreen((96, 96), samples=4) as surface:
         renderer = render.Renderer(surface)
         camera = facing()

@@ -1,4 +1,4 @@
-"""Numbers of each pixel's surface: compared with spheres and planes that are known exactly."""
+"""The surface's numbers at each pixel, compared with spheres and planes known exactly."""
 
 import numpy as np
 from hypothesis import given, settings
@@ -8,11 +8,11 @@ from risorius import render
 
 from .scenes import PLAIN, Ball, Shape, facing, joined, lent, sphere, square, still
 
-CHORD = 0.2  # [unit of the scene] largest depth of a sphere of 8192 triangles within its ball
+CHORD = 0.2  # [scene units] greatest depth of a flat triangle below its ball, for 8192 triangles
 
 
 def rays(camera, size):
-    """Through the middle of each pixel, one unit along the camera's axis long, (H, W, 3)."""
+    """Rays through the middles of pixels, one unit long along the camera's axis, (H, W, 3)."""
     width, height = size
     focal = camera.focal(width / height, height)
     x, y = np.meshgrid(np.arange(width) + 0.5 - width / 2, np.arange(height) + 0.5 - height / 2)
@@ -21,7 +21,7 @@ def rays(camera, size):
 
 
 def drawn(surface, shape, camera, *, parts=()):
-    """The numbers of one shape and parts."""
+    """The numbers read for one shape and parts."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape)
     view = render.CameraView(camera)
@@ -35,7 +35,10 @@ def drawn(surface, shape, camera, *, parts=()):
     size=st.tuples(st.integers(33, 120), st.integers(33, 120)),
 )
 def test_a_sphere_is_as_far_away_as_it_should_be(yaw, pitch, size):
-    """From all sides, in any format: depth along the axis, and normals in the camera's axes."""
+    """For every view and frame size, depth and normals of a sphere are exact.
+
+    Depth is along the camera's axis, and normals are in the camera's axes.
+    """
     camera = facing(60.0)
     camera.orbit(yaw, pitch)
     shape = sphere(5)
@@ -43,14 +46,14 @@ def test_a_sphere_is_as_far_away_as_it_should_be(yaw, pitch, size):
         found = drawn(surface, shape, camera)
     ways = rays(camera, size)
     eye = camera.eye
-    # |eye + s way| = 50, the nearer one
+    # The nearer solution of |eye + s way| = 50.
     a = (ways**2).sum(-1)
     b = ways @ eye
     under_root = b * b - a * (eye @ eye - 2500.0)
     is_hit = under_root > 0.0
     expected = (-b - np.sqrt(np.maximum(under_root, 0.0))) / a
     assert found.depth.shape == is_hit.shape
-    inner = is_hit & (under_root > 0.05 * under_root.max())  # an outline of chords is narrower
+    inner = is_hit & (under_root > 0.05 * under_root.max())  # the triangles' outline is narrower
     assert inner.sum() > 50
     assert (found.depth[inner] > 0.0).all()
     assert not found.depth[~is_hit].any()
@@ -67,7 +70,7 @@ def test_a_sphere_is_as_far_away_as_it_should_be(yaw, pitch, size):
 
 
 def test_the_top_row_comes_first_and_axes_are_those_of_pictures(surface):
-    """A square above and to the right of the middle is drawn there."""
+    """A square above and to the right of the middle is read at the top right."""
     shape = square(20.0)
     moved = Shape(shape.positions + np.float32([25.0, 25.0, 0.0]), shape.normals, shape.triangles)
     rows, columns = np.nonzero(drawn(surface, moved, facing()).depth)
@@ -78,7 +81,7 @@ def test_the_top_row_comes_first_and_axes_are_those_of_pictures(surface):
 
 
 def test_nearer_surfaces_hide_those_behind(surface):
-    """Of two squares and a ball the nearest is visible, in any order of drawing."""
+    """Of two squares and a ball the nearest surface is read, in any drawing order."""
     far = square(50.0, z=-30.0)
     near = square(10.0, z=40.0)
     for shape in (joined(far, near), joined(near, far)):
@@ -88,13 +91,13 @@ def test_nearer_surfaces_hide_those_behind(surface):
         corner = (10, 10)
         is_near = shape.positions[shape.triangles[:, 0], 2] > 0.0
         assert is_near[found.triangle[middle]]
-        assert found.triangle[beside] >= len(shape.triangles)  # of the ball
+        assert found.triangle[beside] >= len(shape.triangles)  # triangles of the ball
         assert not is_near[found.triangle[corner]]
         assert found.depth[middle] < found.depth[beside] < found.depth[corner]
 
 
 def test_triangles_are_numbered_through_all_parts(surface):
-    """Those of the mesh come first, then those of each part; empty pixels have -1."""
+    """Triangles of the mesh are numbered first, then those of each part; empty pixels have -1."""
     shape = square(10.0, z=45.0)
     ball = Ball()
     found = drawn(surface, shape, facing(70.0), parts=(ball,))
@@ -110,7 +113,7 @@ def test_triangles_are_numbered_through_all_parts(surface):
 
 
 def test_the_back_of_the_mesh_differs_from_its_front(surface):
-    """Normals point to the camera on either side."""
+    """The mesh's front and back are distinguished, and normals face the camera on both."""
     camera = facing()
     assert not drawn(surface, square(), camera).is_inside.any()
     camera.orbit(180.0)
@@ -120,7 +123,7 @@ def test_the_back_of_the_mesh_differs_from_its_front(surface):
 
 
 def test_a_picture_is_the_same_before_and_after(surface, renderer):
-    """Reading numbers changes no colours of this frame or of the next."""
+    """Reading numbers changes no colours of the same frame or of the next."""
     stream = lent(renderer, sphere())
     parts = still(Ball(shape=sphere(3, 60.0)))
     frame = render.Frame(render.CameraView(facing()), render.Style(), render.Skin(stream), parts)

@@ -1,4 +1,4 @@
-"""Other light: the pixels that it changes, and those that it does not."""
+"""Other lights: which pixels they change."""
 
 from dataclasses import replace
 
@@ -28,20 +28,20 @@ NO_RIM = replace(render.Light(), rim=(0.0, 0.0, 0.0))
 
 
 def swapped(light):
-    """The same light with left and right exchanged."""
+    """A light with left and right exchanged."""
     (a, b, c) = light.to_key
     (d, e, f) = light.to_fill
     return replace(light, to_key=(-a, b, c), to_fill=(-d, e, f))
 
 
 def scene(surface, light):
-    """A ball before a wall, in a mesh that equals its mirror image."""
+    """A ball before a wall, in a mesh that is mirror-symmetric."""
     shape = joined(square(70.0, z=-45.0), sphere(3, 30.0))
     return draw_image(surface, shape, replace(SHADED, light=light))
 
 
 def test_light_of_the_other_side_makes_the_mirror_image(surface):
-    """Shading and the cast shadow follow the key; everything else in the picture is symmetric."""
+    """A mirrored light gives the mirror image, with shading and cast shadow."""
     for light in (NO_RIM, replace(render.LIGHTS["window"], rim=(0.0, 0.0, 0.0))):
         here = scene(surface, light)
         there = scene(surface, swapped(light))
@@ -52,12 +52,12 @@ def test_light_of_the_other_side_makes_the_mirror_image(surface):
 
 
 def test_other_light_leaves_nothing_behind(surface, renderer):
-    """In one renderer, the studio, each other light, and the studio again are the same bits."""
+    """In one renderer, the studio light gives the same bits before and after other lights."""
     stream = lent(renderer, joined(square(70.0, z=-45.0), sphere(2, 30.0)))
     camera = render.OrbitCamera.framing(stream.vertices[:, :3])
 
     def picture(style):
-        """The mesh and a part in front of it."""
+        """The picture of the mesh and a part in front of it."""
         draw(renderer, stream, style, parts=still(Ball()), camera=camera)
         return surface.read()
 
@@ -70,7 +70,7 @@ def test_other_light_leaves_nothing_behind(surface, renderer):
 
 @pytest.mark.parametrize("name", render.LIGHTS)
 def test_no_light_burns_or_blackens(surface, name):
-    """Balls of light and of dark skin have colour in all places that face the viewer."""
+    """Balls in light and dark skin are neither white nor black where they face the viewer."""
     for albedo, low, high in ((LIGHT_SKIN, 60, 254), (DARK_SKIN, 16, 235)):
         style = replace(PLAIN, albedo=albedo, light=render.LIGHTS[name])
         image = draw_image(surface, sphere(4, 50.0), style)
@@ -81,5 +81,5 @@ def test_no_light_burns_or_blackens(surface, name):
 
 
 def test_the_command_knows_all_lights():
-    """The lights of `--style`, listed so that help needs no OpenGL, are complete."""
+    """The list of lights for `--style`, which exists so that help needs no OpenGL, is complete."""
     assert tuple(LIGHT_NAMES) == tuple(render.LIGHTS)

@@ -1,4 +1,4 @@
-"""Light from all around: the error of a key and nine numbers for a map."""
+"""Light from all around: errors of the key light and nine coefficients made from a map."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from .scenes import PLAIN, draw_image, sphere
 
 
 def matte(light, normals):
-    """Light on matte surfaces with these normals (n, 3), summed as in the shader."""
+    """Light on matte surfaces with these normals (n, 3), computed as in the shader."""
     x, y, z = normals.T
     second = [x * y, y * z, x * z, 3.0 * z * z - 1.0, x * x - y * y]
     polynomials = np.stack([np.ones_like(x), y, z, x, *second], axis=-1)
@@ -21,7 +21,7 @@ def matte(light, normals):
 
 
 def summed(radiance, normals):
-    """The same light as a sum over every texel of a map."""
+    """The same light, as a sum over every texel of the map."""
     rows, columns = radiance.shape[:2]
     away = directions(rows, columns)
     solid = np.repeat(-np.diff(np.sin(np.linspace(0.5, -0.5, rows + 1) * np.pi)), columns)
@@ -31,7 +31,7 @@ def summed(radiance, normals):
 
 
 def test_even_light_is_even():
-    """A white sphere all around lights each surface equally, and there is no key."""
+    """A uniform white environment lights each surface equally, and has no key light."""
     light = render.LightMap(np.full((32, 64, 3), 3.0)).light()
     lit = matte(light, directions(8, 16).reshape(-1, 3))
     assert np.ptp(lit) < 1e-3
@@ -40,7 +40,7 @@ def test_even_light_is_even():
 
 @pytest.mark.parametrize("name", render.LIGHT_MAPS)
 def test_key_and_harmonics_hold_the_light_of_the_map(name):
-    """The error is some per cent of the brightest surface."""
+    """The error is a few per cent of the brightest surface."""
     light_map = render.LIGHT_MAPS[name]
     normals = directions(8, 16).reshape(-1, 3)
     expected = summed(light_map.radiance, normals)
@@ -51,7 +51,7 @@ def test_key_and_harmonics_hold_the_light_of_the_map(name):
 
 
 def test_the_sun_is_the_key_wherever_it_is_turned():
-    """A spot at the upper right lights from there; turned right it moves on to the right."""
+    """A bright spot at the upper right becomes the key light, and turns with the map."""
     radiance = np.full((64, 128, 3), 0.05)
     away = directions(64, 128)
     sun = np.array([0.6, 0.64, 0.48])
@@ -65,7 +65,7 @@ def test_the_sun_is_the_key_wherever_it_is_turned():
 
 
 def test_any_unit_gives_the_same_picture():
-    """A map is exposed: nits or shares of white give the same light."""
+    """A map in nits and a map in shares of white give the same light, because it is exposed."""
     radiance = render.LIGHT_MAPS["room"].radiance
     light = render.LightMap(radiance).light()
     other = render.LightMap(1000.0 * radiance).light()
@@ -73,7 +73,7 @@ def test_any_unit_gives_the_same_picture():
 
 
 def test_a_ball_is_lit_as_the_map_says(surface):
-    """A red wall at the right colours the right side, a blue one at the left the left."""
+    """In a room with a red right and a blue left wall, a ball is red right and blue left."""
     radiance = np.zeros((32, 64, 3))
     away = directions(32, 64)
     radiance[away[..., 0] > 0.3] = (1.0, 0.1, 0.1)

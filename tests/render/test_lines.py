@@ -11,7 +11,10 @@ RED = (1.0, 0.0, 0.0)
 
 
 def test_lines_before_and_behind(renderer):
-    """A line in front has its full colour, one behind shows through, and 0 hides it."""
+    """A line in front has its full colour, a line behind shows through.
+
+    With a strength of 0 the line behind is hidden.
+    """
     wall = lent(renderer, square())
     over = np.array([(-40, 20, 5), (0, 20, 5), (40, 20, 5)], np.float64)
     under = over - (0, 40, 10)
@@ -28,7 +31,10 @@ def test_lines_before_and_behind(renderer):
 
 
 def test_lines_are_not_joined(renderer):
-    """No line is drawn from the end of one to the start of the next; empty lines are allowed."""
+    """The end of one polyline is not joined to the start of the next.
+
+    Empty polylines are accepted.
+    """
     left = np.array([(-40.0, -10, 0), (-40, 10, 0)])
     right = np.array([(40.0, -10, 0), (40, 10, 0)])
     lines = Lines([np.zeros((0, 3)), left, np.zeros((1, 3)), right], RED)

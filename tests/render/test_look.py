@@ -1,7 +1,7 @@
-"""Stored pictures: the look does not change unnoticed. Software drivers only: they agree closely.
+"""Stored pictures: the look changes only with approval. For software drivers, which agree closely.
 
-`RISORIUS_STORE_PICTURES=1 python -m pytest tests/render/test_look.py` stores them anew; look at
-them before you keep them.
+`RISORIUS_STORE_PICTURES=1 python -m pytest tests/render/test_look.py` stores new pictures; look at
+them before you commit them.
 """
 
 import os
@@ -28,7 +28,7 @@ STYLES = {
 
 
 def scene(surface, style):
-    """A sphere before a wall, a wet ball beside it, and a line through both."""
+    """The picture of a sphere before a wall, a wet ball beside it, and a line through both."""
     renderer = render.Renderer(surface)
     shape = joined(square(70.0, z=-45.0), sphere(2, 40.0))
     stream = lent(renderer, shape)
@@ -45,7 +45,7 @@ def scene(surface, style):
 
 @pytest.mark.parametrize("name", STYLES)
 def test_picture_is_as_stored(name, tmp_path):
-    """The scene looks as when its picture was approved."""
+    """The scene looks as in its approved picture."""
     with render.open_offscreen(SIZE) as surface:
         driver = str(surface.gl.info["GL_RENDERER"])
         if "llvmpipe" not in driver:
@@ -66,7 +66,7 @@ def test_picture_is_as_stored(name, tmp_path):
 
 
 def test_stored_pictures_would_notice():
-    """The tolerance is small: a slightly different skin fails."""
+    """A slightly different skin exceeds the tolerance."""
     with render.open_offscreen(SIZE) as surface:
         frame = scene(surface, STYLES["pixel"]).astype(int)
         paler = scene(surface, replace(STYLES["pixel"], albedo=LIGHT_SKIN)).astype(int)

@@ -1,4 +1,4 @@
-"""Light through an opening in a skin: to a ball that fills it, and to one behind it."""
+"""Light through an opening of the skin: on a ball that fills it, and on one behind it."""
 
 from dataclasses import replace
 
@@ -21,13 +21,13 @@ def rim(width, height, z):
 
 
 def light(renderer, opening, style=PLAIN):
-    """The picture of a ball of radius 20, as numbers; opening: None, or one before it."""
+    """The brightness of a picture with a ball of radius 20, behind an opening or None."""
     placed = render.PlacedPart.of(Ball(colour=WHITISH), STILL, opening=opening)
     return draw(renderer, style=style, parts=[placed]).sum(axis=2)[..., None]
 
 
 def test_an_eye_is_darkest_below_its_upper_lid(renderer):
-    """Most light is lost there, less in the corners, hardly any in the middle."""
+    """An eye loses most light below its upper lid, less in the corners, least in the middle."""
     opening = render.Opening(rim(30.0, 20.0, 15.0), is_filled=True)
     plain = light(renderer, None)
     share = light(renderer, opening) / plain
@@ -40,7 +40,7 @@ def test_an_eye_is_darkest_below_its_upper_lid(renderer):
 
 
 def test_a_mouth_lets_in_as_much_light_as_it_is_open(renderer):
-    """Behind a slit it is dark, behind a wide opening it is not; the edge is darker."""
+    """A ball is dark behind a slit and light behind a wide opening; the edge is darker."""
     plain = at(light(renderer, None), 0.0, 0.0).item()
     heights = (1.0, 8.0, 40.0)
     pictures = [
@@ -54,7 +54,7 @@ def test_a_mouth_lets_in_as_much_light_as_it_is_open(renderer):
 
 
 def test_what_is_out_of_the_mouth_has_all_light(renderer):
-    """A tongue before the lips loses nothing."""
+    """A tongue in front of the lips loses no light."""
     opening = render.Opening(rim(50.0, 20.0, 5.0), is_filled=False)
     out = at(light(renderer, opening), 0.0, 0.0).item()
     assert out == approx(at(light(renderer, None), 0.0, 0.0).item(), abs=3.0)
@@ -62,7 +62,7 @@ def test_what_is_out_of_the_mouth_has_all_light(renderer):
 
 @pytest.mark.parametrize("is_filled", [True, False])
 def test_without_skin_maps_openings_do_not_count(renderer, is_filled):
-    """The switch turns off all darkening by openings."""
+    """With skin maps off, openings darken nothing."""
     style = replace(PLAIN, skin_maps=False)
     opening = render.Opening(rim(30.0, 10.0, 22.0), is_filled=is_filled)
     assert (light(renderer, opening, style) == light(renderer, None, style)).all()

@@ -1,4 +1,4 @@
-"""Rigid parts: their places by bones, their shine, and what hides them."""
+"""Rigid parts: their places by bones, their shine, and their visibility."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -13,7 +13,7 @@ from .scenes import PLAIN, STILL, Ball, Shape, at, draw, drawn, facing, lent, sq
 
 
 def reshaped(ball, **changes):
-    """A ball with some other arrays."""
+    """A ball with some arrays replaced."""
     names = ("vertices", "normals", "faces", "colours", "striation")
     part = SimpleNamespace(**vars(ball), **{name: getattr(ball, name) for name in names})
     vars(part).update({name: array.astype(np.float32) for name, array in changes.items()})
@@ -21,7 +21,7 @@ def reshaped(ball, **changes):
 
 
 def test_parts_move_with_their_bones(renderer):
-    """A part is drawn at the place given by the column-vector matrix of its bone."""
+    """A part is drawn at the place given by its bone's matrix, for column vectors."""
     ball = Ball(bone="eye_left")
     places = []
     for x in (-25.0, 25.0):
@@ -35,7 +35,7 @@ def test_parts_move_with_their_bones(renderer):
 
 
 def test_a_part_that_changes_its_shape_is_drawn_anew(renderer):
-    """Other arrays of the same part are uploaded, after any other drawing."""
+    """New arrays of the same part are uploaded, whatever was drawn in between."""
     pixels = []
     ball = Ball()
     part = reshaped(ball)
@@ -46,7 +46,7 @@ def test_a_part_that_changes_its_shape_is_drawn_anew(renderer):
 
 
 def test_wet_parts_have_a_crisp_highlight(renderer):
-    """Shine makes a few pixels nearly white, and only changes these and the outline."""
+    """Shine makes a few pixels nearly white, and changes only these and the outline."""
     frames = []
     for shine in (0.0, 1.0):
         style = replace(PLAIN, background=render.DARK)
@@ -56,20 +56,22 @@ def test_wet_parts_have_a_crisp_highlight(renderer):
     dull, wet = frames
     assert dull.max() < 400
     assert wet.max() > 600
-    away = np.hypot(*(np.indices(wet.shape) - 47.5))  # of the middle [pixels]; the outline is at 35
+    away = np.hypot(
+        *(np.indices(wet.shape) - 47.5)
+    )  # [pixels] from the middle; the outline is at 35
     assert ((wet - dull) > 150)[away < 30.0].mean() < 0.015
 
 
 def test_parts_and_mesh_hide_each_other(renderer):
-    """Depth decides."""
+    """Of a part and the mesh, the nearer surface is visible."""
     wall = lent(renderer, square(z=10.0))
     frame = draw(renderer, wall, parts=still(Ball()))
-    assert at(frame, 0.0, 0.0)[2] > at(frame, 0.0, 0.0)[0]  # the ball's front comes through
-    assert at(frame, 19.0, 0.0)[0] > at(frame, 19.0, 0.0)[2]  # its rim is behind the wall
+    assert at(frame, 0.0, 0.0)[2] > at(frame, 0.0, 0.0)[0]  # the ball's front is before the wall
+    assert at(frame, 19.0, 0.0)[0] > at(frame, 19.0, 0.0)[2]  # the ball's rim is behind the wall
 
 
 def test_parts_have_one_side(renderer):
-    """Only the side from which a part's triangles run counter-clockwise is drawn."""
+    """Only the side whose triangles run counter-clockwise is drawn."""
     ball = Ball()
     behind = ball.vertices[ball.faces].mean(axis=1)[:, 2] < 0.0
     bowl = ball.shape.triangles[behind]
@@ -90,7 +92,7 @@ def test_part_errors():
 
 @pytest.mark.parametrize("samples", [0, 4])
 def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples):
-    """However coarse the picture is, a hair takes as much light, and is as dark all along."""
+    """A hair thinner than a pixel takes as much light at any resolution, evenly along it."""
     taken = []
     for scale in (1, 2, 4):
         with render.open_offscreen((60 * scale, 60 * scale), samples=samples) as surface:
@@ -117,7 +119,7 @@ def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples):
 
 
 def test_hair_is_dense_up_to_its_outline(renderer):
-    """It covers the skin beneath, no veil is around its outline, and bare places stay bare."""
+    """Hair covers the skin up to its outline, which has no veil; bare places stay bare."""
     ball = Ball(colour=(0.1, 0.1, 0.1))
     covers = []
     for dense in (1.0, 0.0):
@@ -128,14 +130,14 @@ def test_hair_is_dense_up_to_its_outline(renderer):
         row = 255 - draw(renderer, parts=still(hair))[48].mean(axis=1)
         covers.append(row[48:])
     assert not covers[1].any()
-    pixels = covers[0]  # 0.86 of a millimetre each; roots are 20 mm from the middle
+    pixels = covers[0]  # 0.86 mm each; roots are 20 mm from the middle
     assert pixels[:20].min() > 150.0
     assert not pixels[27:].any()
     assert ((pixels > 5.0) & (pixels < 200.0)).sum() <= 2
 
 
 def test_hair_hides_the_skin_behind_it(renderer):
-    """An outline of skin under hair does not show through it."""
+    """Hair hides the outline of skin behind it."""
     wall = lent(renderer, square(z=-5.0))
     ball = Ball(colour=(0.1, 0.1, 0.1))
     striation = np.column_stack([ball.vertices[:, :2], 6.0 * ball.normals, ball.normals[:, 0]])
@@ -146,7 +148,10 @@ def test_hair_hides_the_skin_behind_it(renderer):
 
 
 def test_hair_shines_where_it_lies_and_not_by_how_far_it_stands_off(renderer):
-    """Otherwise a dark patch with a ring around it would be where strands begin."""
+    """The highlight stays where strands lie in its direction, for any distance from the skin.
+
+    Otherwise a dark patch with a ring would appear where strands begin.
+    """
     ball = Ball(colour=(0.02, 0.02, 0.02), shine=0.4)
     out = ball.normals
     down = np.array([0.0, -1.0, 0.0]) + out[:, 1:2] * out
@@ -161,11 +166,11 @@ def test_hair_shines_where_it_lies_and_not_by_how_far_it_stands_off(renderer):
         rows.append(int(np.argmax(light)))
         most.append(light.max())
     assert abs(rows[1] - rows[0]) < 3
-    assert most[2] < 0.5 * most[0]  # strands that stand up show their tips alone
+    assert most[2] < 0.5 * most[0]  # of strands that stand up only tips are visible
 
 
 def test_a_hem_of_hair_throws_no_shadow(renderer):
-    """Light passes where no strand is visible; dense hair shades what is below."""
+    """Where no strand is visible, hair throws no shadow; dense hair does."""
     lit = []
     for dense in (0.0, 2.0):
         wall = lent(renderer, square(z=-25.0))

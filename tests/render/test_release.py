@@ -1,4 +1,4 @@
-"""Memory of OpenGL: objects without references leave nothing behind."""
+"""Memory of OpenGL: objects without references are released."""
 
 import weakref
 from collections import Counter, namedtuple
@@ -18,7 +18,7 @@ KINDS += ("vertex_array", "simple_framebuffer", "depth_renderbuffer", "sampler")
 
 
 def counting(monkeypatch):
-    """A counter of new objects of each kind that were not released."""
+    """A function that counts new objects of each kind that were not released."""
     made = []
 
     def noting(make):
@@ -44,7 +44,7 @@ def counting(monkeypatch):
 
 
 def draw_all(surface):
-    """A picture that needs every program and buffer, without references afterwards."""
+    """Draw a picture with every program and buffer, and keep no references."""
     renderer = render.Renderer(surface)
     shape = sphere()
     stream = renderer.lend_stream(len(shape.positions), len(shape.triangles), 16)
@@ -69,11 +69,11 @@ def draw_all(surface):
 
 @pytest.mark.parametrize("samples", [0, 4])
 def test_a_lost_renderer_leaves_nothing(samples, monkeypatch):
-    """Ten renderers one after the other give the same image, and no object remains."""
+    """Ten renderers, one after the other, give the same image, and no object remains."""
     with render.open_offscreen((96, 96), samples=samples) as surface:
         count = counting(monkeypatch)
         images = [draw_all(surface) for _ in range(10)]
-        assert surface.gl.objects  # without references, to be released
+        assert surface.gl.objects  # unreferenced, waiting for release
         surface.begin()
         assert count() == {}
         assert not surface.gl.objects
@@ -82,7 +82,7 @@ def test_a_lost_renderer_leaves_nothing(samples, monkeypatch):
 
 
 def test_a_lost_part_leaves_nothing(monkeypatch):
-    """A renderer that draws one person after the other only holds the parts of the last."""
+    """A renderer that draws several persons keeps only the parts of the last one."""
     left = list[Counter[str]]()
     style = replace(PLAIN, shadows=True)
     with render.open_offscreen((96, 96), samples=4) as surface:
@@ -100,7 +100,7 @@ def test_a_lost_part_leaves_nothing(monkeypatch):
 
 
 def test_a_part_without_weak_references_is_drawn():
-    """A named tuple can be a part: it is kept, and drawn like any other."""
+    """A named tuple, which has no weak references, is drawn and kept like any other part."""
     ball = Ball()
     names = ("name", "vertices", "normals", "faces", "colours", "bone", "shine")
     names += ("is_enclosed", "strand_radius", "striation")
@@ -116,7 +116,10 @@ def test_a_part_without_weak_references_is_drawn():
 
 
 def test_a_closed_frame_hands_its_context_on(monkeypatch):
-    """The next frame reuses it, unless the wanted OpenGL has changed, or an error ended it."""
+    """The next frame reuses a closed frame's context.
+
+    It does not after an error, or if another version of OpenGL is requested.
+    """
     with render.open_offscreen((96, 96)) as first, render.open_offscreen((64, 48)) as beside:
         assert first.gl is not beside.gl
     with render.open_offscreen((64, 48), samples=0) as second:
@@ -136,7 +139,7 @@ def test_a_closed_frame_hands_its_context_on(monkeypatch):
 
 @pytest.mark.slow
 def test_frames_that_are_opened_and_closed_take_no_memory():
-    """Two hundred frames, each with a picture: less than 3 MB."""
+    """Two hundred frames, opened, drawn and closed, leave less than 3 MB."""
 
     def draw_frames(number):
         for _ in range(number):

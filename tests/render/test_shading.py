@@ -14,7 +14,7 @@ GOURAUD = replace(PLAIN, shading=render.Shading.GOURAUD)
 
 
 def test_flat_facets_have_one_colour(surface):
-    """Flat shading gives a tilted triangle the same colour everywhere; Gouraud does not."""
+    """Flat shading gives a tilted triangle one colour; Gouraud does not."""
     shape = square(bulge=1.0)
     tilted = Shape(shape.positions.copy(), shape.normals, shape.triangles[:1])
     tilted.positions[:, 2] = (0.0, 25.0, 5.0, 0.0)
@@ -27,7 +27,7 @@ def test_flat_facets_have_one_colour(surface):
 
 
 def test_only_pixel_shading_lights_the_middle_of_a_facet(surface):
-    """Between four corners that face away, Gouraud stays as dark as they are."""
+    """Between four corners that face away, Gouraud is as dark as they are; per-pixel is lighter."""
     shape = square(bulge=3.0)
     middle = {
         name: int(at(draw_image(surface, shape, style), 3.0, -1.0).sum())
@@ -37,7 +37,7 @@ def test_only_pixel_shading_lights_the_middle_of_a_facet(surface):
 
 
 def test_light_comes_from_the_upper_left(surface):
-    """The sphere is brightest at the upper left of its middle, and its dark side is not black."""
+    """A sphere is brightest at the upper left, and its dark side is not black."""
     frame = draw_image(surface, sphere(4), replace(PLAIN, albedo=render.CLAY)).sum(axis=2)
     upper_left = frame[32, 32]
     lower_right = frame[64, 64]
@@ -69,7 +69,7 @@ def test_inner_side_is_dark_flesh(surface):
 
 
 def fading(renderer, shape, shares, inner):
-    """A shape that fades by shares of its vertices; a number below 0 hides its inner side."""
+    """A shape with fading shares at its vertices; `inner` below 0 hides its inner side."""
     stream = lent(renderer, shape, columns=18)
     stream.vertices[:, 16] = shares
     stream.vertices[:, 17] = inner
@@ -79,8 +79,8 @@ def fading(renderer, shape, shares, inner):
 
 @pytest.mark.parametrize("wireframe", [False, True])
 def test_skin_fades_as_its_vertices_have_it(renderer, wireframe):
-    """It is full at 1, half at half, and missing at 0; also with wires."""
-    skin = fading(renderer, square(30.0), (0.0, 0.0, 1.0, 1.0), 1.0)  # from below to above
+    """Skin is opaque for a share of 1, half for a half, and missing for 0; also with wires."""
+    skin = fading(renderer, square(30.0), (0.0, 0.0, 1.0, 1.0), 1.0)  # from the bottom to the top
     pictures = []
     style = replace(PLAIN, wireframe=wireframe, wire_width=0.01)
     for each in (render.Skin(skin.stream), skin):
@@ -95,16 +95,16 @@ def test_skin_fades_as_its_vertices_have_it(renderer, wireframe):
 
 
 def test_the_inside_of_a_faded_neck_does_not_show(renderer):
-    """Back faces with a number below 0 are hidden; the others, of lips and lids, are visible."""
+    """Back faces with a number below 0 are hidden, those of lips and lids are visible."""
     shape = square(30.0)
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
     for inner, is_seen in ((0.5, True), (-0.5, False)):
-        skin = fading(renderer, turned, (0.25, 1.75, 1.75, 0.25), inner)  # half of it is whole
+        skin = fading(renderer, turned, (0.25, 1.75, 1.75, 0.25), inner)  # half of it is opaque
         assert (draw(renderer, skin)[48, 60].mean() < 250.0) == is_seen
 
 
 def test_a_fade_needs_its_columns(renderer):
-    """Rows without these columns are refused."""
+    """Rows without the columns of a fade are refused."""
     stream = lent(renderer, square(), columns=16)
     with pytest.raises(ValueError, match="a fade on a stream of 16 columns"):
         render.Skin(stream, fading=np.zeros((1, 3)))
@@ -112,7 +112,10 @@ def test_a_fade_needs_its_columns(renderer):
 
 @pytest.mark.parametrize("turn", [1, -1])
 def test_the_inside_of_a_faded_neck_shows_through_the_lips(renderer, turn):
-    """Where they are seen from outside there is no hole; beside them the inside is hidden."""
+    """Faded back faces are drawn within the outline of the mouth, so that it has no hole.
+
+    Beside it they are hidden.
+    """
     shape = square(30.0)
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
     skin = fading(renderer, turned, (1.75, 1.75, 1.75, 1.75), -0.5)

@@ -1,4 +1,4 @@
-"""The shadow of the key light."""
+"""Shadows of the key light."""
 
 from dataclasses import dataclass, replace
 
@@ -23,13 +23,14 @@ from .scenes import (
 
 
 def test_shadow_of_the_key_light(surface):
-    """A small square before a wall only darkens the wall at its lower right."""
+    """A small square before a wall darkens the wall only at its lower right."""
     blocker = square(12.0, z=30.0)
     thick = Shape(blocker.positions - (0, 0, 4), -blocker.normals, blocker.triangles[:, ::-1])
     shape = joined(square(), joined(blocker, thick))
     without = draw_image(surface, shape, replace(PLAIN, albedo=render.CLAY))
     within = draw_image(surface, shape, replace(PLAIN, albedo=render.CLAY, shadows=True))
-    # The key is at (-0.53, 0.63, 0.57): 28 mm before the wall are 26 mm right and 31 mm down.
+    # The key light is at (-0.53, 0.63, 0.57): the shadow of a point 28 mm before the wall is 26 mm
+    # right and 31 mm down.
     assert at(within, 26.0, -31.0).sum() < 0.8 * at(without, 26.0, -31.0).sum()
     assert at(within, 26.0, -31.0).min() > 40
     assert (at(within, -30.0, 30.0) == at(without, -30.0, 30.0)).all()
@@ -37,7 +38,7 @@ def test_shadow_of_the_key_light(surface):
 
 
 def wall_in_shadow(style):
-    """A wall with and without the shadow of a square: the row 25 mm below the middle, x >= 0."""
+    """A row of a wall with and without a square's shadow: 25 mm below the middle, x >= 0."""
     blocker = square(20.0, z=30.0)
     rows = []
     with render.open_offscreen((480, 480)) as surface:
@@ -52,7 +53,7 @@ def wall_in_shadow(style):
 
 
 def test_shadows_have_soft_edges():
-    """From shadow to light the wall brightens steadily; on a head within 2 to 6 mm."""
+    """From shadow to light the wall brightens steadily, on a head within 2 to 6 mm."""
     within, without = wall_in_shadow(replace(PLAIN, albedo=render.CLAY))
     lightness = within.sum(axis=1) / without.sum(axis=1)
     darkest = int(lightness.argmin())
@@ -69,7 +70,7 @@ def test_shadows_have_soft_edges():
 
 @pytest.mark.parametrize("shading", render.Shading)
 def test_convex_things_do_not_shadow_themselves(surface, shading):
-    """On a coarse sphere shadows change almost nothing: no stripes along the terminator."""
+    """On a coarse sphere, shadows change almost nothing, without stripes at the terminator."""
     style = replace(PLAIN, shading=shading)
     without = draw_image(surface, sphere(2), style)
     within = draw_image(surface, sphere(2), replace(style, shadows=True))
@@ -79,9 +80,10 @@ def test_convex_things_do_not_shadow_themselves(surface, shading):
 
 @pytest.mark.parametrize("shading", [render.Shading.GOURAUD, render.Shading.PIXEL])
 def test_few_triangles_with_round_normals_have_no_stripes(surface, shading):
-    """The key light grazes a square whose shading normals face 35 degrees more toward the light.
+    """A square grazed by the key light has no stripes.
 
-    The side of a nose of few triangles is similar, and had stripes from too small a bias.
+    Its shading normals face 35 degrees more toward the light than its plane. The side of a nose of
+    few triangles is similar, and had stripes when the bias was too small.
     """
     toward_key = np.array([-0.53, 0.63, 0.57])
     toward_key /= np.linalg.norm(toward_key)
@@ -106,9 +108,9 @@ def test_few_triangles_with_round_normals_have_no_stripes(surface, shading):
 
 @pytest.mark.parametrize("shadows", [True, False])
 def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(renderer, shadows):
-    """A ball of hair before a wall darkens it to its lower right, where shadows are on.
+    """A ball of hair shadows the wall behind it, at the lower right, if shadows are on.
 
-    The ball keeps its colours: hair only a little nearer to the light does not shade it.
+    The ball does not shadow itself: hair slightly nearer to the light casts no shadow.
     """
     style = replace(PLAIN, albedo=render.CLAY, shadows=shadows)
     wall = lent(renderer, square())
@@ -126,11 +128,11 @@ def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(renderer, shadows):
 
 @dataclass(frozen=True, eq=False)
 class HairyBall(Ball):
-    """A ball whose strands stand up, and lean a little."""
+    """A ball whose strands stand up and lean slightly."""
 
     @property
     def striation(self):
-        """Across and along [mm], the share of the way from root to tip, and 1, shape (n, 6)."""
+        """Across and along [mm], direction from root to tip, share of the way, shape (n, 6)."""
         normals = self.normals.astype(np.float64)
         way = 0.5 * normals - [0.0, 1.0, 0.0] + normals[:, 1:2] * normals
         return np.hstack([self.vertices[:, :2], way, np.ones((len(way), 1))]).astype(np.float32)

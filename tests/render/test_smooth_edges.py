@@ -1,4 +1,4 @@
-"""Edges that samples smooth, with one shading per pixel."""
+"""Smooth edges by samples, with one shading per pixel."""
 
 from dataclasses import replace
 
@@ -26,7 +26,7 @@ CLAY = replace(PLAIN, gloss=0.0)
 
 
 def pictures(shape, style=CLAY, *, camera=None):
-    """A shape without smooth edges and with them, shape (2, H, W), lightness 0..255."""
+    """Lightness (0..255) of a shape without and with smooth edges, shape (2, H, W)."""
     seen = []
     for samples in (0, 4):
         with render.open_offscreen((96, 96), samples=samples) as surface:
@@ -37,7 +37,7 @@ def pictures(shape, style=CLAY, *, camera=None):
 
 
 def turned(shape, degrees):
-    """A shape, turned around the line of sight."""
+    """A shape rotated around the line of sight."""
     angle = np.radians(degrees)
     cosine = np.cos(angle)
     sine = np.sin(angle)
@@ -46,34 +46,34 @@ def turned(shape, degrees):
 
 
 def test_an_outline_covers_as_much_as_its_shape():
-    """Edges of a turned black square have all five levels of four samples; its area is exact."""
+    """Edges of a rotated black square have all five levels of four samples; its area is exact."""
     black = replace(CLAY, albedo=(0.0, 0.0, 0.0))
     hard, smooth = pictures(turned(square(30.0), 20.0), black)
     darkest = smooth.min()
     cover = (255.0 - smooth) / (255.0 - darkest)
     levels = np.unique(np.round(4.0 * cover))
     assert levels.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
-    across = 60.0 * 96 / (2.0 * 250.0 * np.tan(np.radians(12.5)))  # pixels
+    across = 60.0 * 96 / (2.0 * 250.0 * np.tan(np.radians(12.5)))  # [pixels]
     assert abs(cover.sum() - across**2) < 0.01 * across**2
     assert ((hard > darkest + 1.0) & (hard < 254.0)).sum() == 0
 
 
 @pytest.mark.parametrize("shading", list(render.Shading))
 def test_colours_inside_stay_as_they_are(shading):
-    """Farther than a pixel from any edge, nothing changes."""
+    """Pixels more than one pixel from any edge are unchanged."""
     shape = sphere(4, 40.0)
     style = replace(CLAY, shading=shading)
     hard, smooth = pictures(shape, style)
     away = np.hypot(*(np.indices(hard.shape) - 47.5))
     radius = away[hard < 250.0].max()
     inside = away < 0.8 * radius
-    most = 0.0 if shading is not render.Shading.FLAT else 12.0  # edges of facets are smoothed
+    most = 0.0 if shading is not render.Shading.FLAT else 12.0  # edges of flat facets are smoothed
     assert np.abs(hard - smooth)[inside].max() <= most
     assert np.abs(hard - smooth).max() > 20.0
 
 
 def test_surfaces_that_touch_have_a_smooth_line_between_them():
-    """Two halves at one depth, one facing up and one down, like lips: the line has levels."""
+    """The line between two touching halves that face up and down, like lips, is smooth."""
     halves = []
     for sign in (1.0, -1.0):
         half = square(30.0)
@@ -90,7 +90,7 @@ def test_surfaces_that_touch_have_a_smooth_line_between_them():
 
 
 def test_the_line_where_a_part_comes_through_is_smooth(renderer):
-    """A ball in a wall ends in mixed pixels, although no triangle ends there."""
+    """The intersection of a ball and a wall is smooth, although no triangle ends there."""
     needs_samples(renderer.surface)
     wall = lent(renderer, square(z=10.0))
     smooth = draw(renderer, wall, parts=still(Ball()))
@@ -104,7 +104,7 @@ def test_the_line_where_a_part_comes_through_is_smooth(renderer):
 
 @pytest.mark.parametrize("yaw", [20.0, 200.0])
 def test_either_side_of_a_sheet_has_a_smooth_outline(yaw):
-    """This includes the back of the mesh."""
+    """Both sides of a sheet have smooth outlines."""
     camera = facing()
     camera.orbit(yaw, 10.0)
     hard, smooth = pictures(turned(square(30.0), 15.0), camera=camera)
@@ -113,7 +113,7 @@ def test_either_side_of_a_sheet_has_a_smooth_outline(yaw):
 
 
 def test_facets_have_smooth_edges():
-    """If each triangle has one colour, the lines between them are mixed, too."""
+    """With flat shading, lines between triangles are smooth, too."""
     values = (np.arange(2) % 2).astype(np.uint8) * 3
     shape = turned(square(30.0), 10.0)
     style = replace(CLAY, colour_by=render.ColourBy.SPLITS)

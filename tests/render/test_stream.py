@@ -1,4 +1,4 @@
-"""The buffer contract: capacities, columns, reuse."""
+"""Streams (buffers shared with OpenGL): capacities, columns, reuse."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def test_lent_arrays_fit_the_contract(surface):
 
 
 def test_eight_columns_draw_the_same(surface, renderer):
-    """Texture coordinates are skipped, not taken for positions."""
+    """A stream of eight columns draws the same: texture coordinates are not read as positions."""
     expected = draw_image(surface, sphere())
     stream = lent(renderer, sphere(), columns=8)
     stream.vertices[:, 6:] = 1e6
@@ -31,7 +31,7 @@ def test_eight_columns_draw_the_same(surface, renderer):
 
 
 def test_only_the_used_part_is_drawn(surface, renderer):
-    """Rows beyond the counts are random, and invisible."""
+    """Rows beyond the counts, filled at random, are not drawn."""
     expected = draw_image(surface, square())
     stream = renderer.lend_stream(1000, 1000, 6)
     stream.vertices[:] = np.nan
@@ -45,7 +45,7 @@ def test_only_the_used_part_is_drawn(surface, renderer):
 
 
 def test_hundred_frames_use_the_same_buffers(renderer):
-    """Neither the arrays, nor OpenGL's buffers, nor the process grow while a mesh changes."""
+    """While a mesh changes, arrays, OpenGL's buffers and the process keep their size."""
     resource = pytest.importorskip("resource", reason="this system does not report memory in use")
     shape = sphere(4)
     stream = lent(renderer, shape)
@@ -67,7 +67,7 @@ def test_hundred_frames_use_the_same_buffers(renderer):
 
 
 def test_a_frame_takes_no_more_memory_than_it_fills(renderer):
-    """Blocks have the size of the mesh, not of the worst case, and grow again with the mesh."""
+    """Buffers have the size of the mesh, not of the worst case, and grow with the mesh."""
     stream = renderer.lend_stream(100_000, 100_000, 8)
     for count in (10, 5_000, 10):
         stream.upload(count, count)
@@ -83,7 +83,7 @@ def test_mesh_without_triangles_draws_nothing(renderer):
 
 
 def test_positions_that_are_not_finite_are_survived(renderer):
-    """A simulation that blew up still gives a frame."""
+    """A frame with positions that are not finite is drawn, as after a failed simulation."""
     stream = lent(renderer, sphere())
     stream.vertices[3, 0] = np.inf
     stream.vertices[4, 1] = np.nan

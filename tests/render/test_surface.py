@@ -1,4 +1,4 @@
-"""Offscreen frames: size, orientation, samples, life and death."""
+"""Offscreen frames: size, orientation, samples, opening and closing."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def upper_square():
 
 @pytest.mark.parametrize("samples", [0, 4])
 def test_read_gives_the_top_row_first(samples):
-    """The upper part of the world is in the first rows of the array."""
+    """The upper part of the scene is in the first rows of the array."""
     with render.open_offscreen((64, 48), samples=samples) as surface:
         frame = draw_image(surface, upper_square())
     assert frame.shape == (48, 64, 3)
@@ -25,7 +25,7 @@ def test_read_gives_the_top_row_first(samples):
 
 
 def test_read_is_a_new_array_each_time(surface):
-    """A frame that was read is not changed by the next one."""
+    """An array that was read does not change with the next frame."""
     draw_image(surface, sphere())
     first = surface.read()
     kept = first.copy()
@@ -37,7 +37,7 @@ def test_read_is_a_new_array_each_time(surface):
 
 
 def test_samples_smooth_edges():
-    """With samples, border pixels are between skin and background; without samples, none is."""
+    """With samples, border pixels mix skin and background; without samples, none does."""
     shape = sphere(3)
     levels = {}
     for samples in (0, 4):
@@ -51,7 +51,7 @@ def test_samples_smooth_edges():
 
 
 def test_bad_arguments():
-    """Impossible sizes and samples are refused."""
+    """Impossible sizes and numbers of samples are refused."""
     with pytest.raises(ValueError, match=r"size is \(0, 10\); it must be \(width, height\)"):
         render.open_offscreen((0, 10))
     with pytest.raises(ValueError, match=r"samples is -1; it must be 0 \(none\)"):
@@ -82,7 +82,7 @@ def test_two_surfaces_do_not_mix(surface):
 
 
 def test_begin_repairs_what_a_panel_changed(surface):
-    """Depth test, culling, blending, scissor and masks are correct in every frame."""
+    """Every frame sets depth test, culling, blending, scissor and masks, whatever a panel set."""
     expected = draw_image(surface, sphere())
     gl = surface.gl
     gl.disable(gl.DEPTH_TEST)

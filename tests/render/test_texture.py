@@ -23,7 +23,7 @@ def textured(
     occlusion=None,
     fine_shape=None,
 ):
-    """A square (or another shape) under the image, which spans x and y from -50 to 50."""
+    """The picture of a square (or another shape) with the image spanning x and y from -50 to 50."""
     shape = shape or square()
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape, columns=8)
@@ -41,7 +41,7 @@ def plain_image(colour, size=(8, 8)):
 
 
 def quarters():
-    """Red up left, green up right, blue down left, grey down right."""
+    """An image: red up left, green up right, blue down left, grey down right."""
     image = np.zeros((48, 64, 3), np.uint8)
     image[:24, :32] = (200, 30, 30)
     image[:24, 32:] = (30, 200, 30)
@@ -53,7 +53,7 @@ def quarters():
 @pytest.mark.parametrize("shading", render.Shading)
 @pytest.mark.parametrize("wireframe", [False, True])
 def test_top_row_lies_at_v_1(surface, shading, wireframe):
-    """The image is upright and not mirrored, in every shading."""
+    """The image's top row lies at v = 1, not mirrored, in every shading."""
     frame = textured(surface, quarters(), replace(PLAIN, shading=shading, wireframe=wireframe))
     assert frame[24, 24].argmax() == 0
     assert frame[24, 24, 0] > 150 > frame[24, 24, 1]
@@ -66,9 +66,9 @@ def test_top_row_lies_at_v_1(surface, shading, wireframe):
 
 @pytest.mark.parametrize("level", [20, 128, 230])
 def test_grey_texture_is_the_grey_albedo(surface, level):
-    """A texture of one colour gives the same picture as an equal albedo: sRGB is decoded."""
+    """A grey texture gives the same picture as an equal albedo, because sRGB is decoded."""
     albedo = (level / 255.0,) * 3
-    style = replace(PLAIN, gloss=0.0, albedo=albedo)  # highlights follow the picture
+    style = replace(PLAIN, gloss=0.0, albedo=albedo)  # highlights depend on the picture
     expected = draw_image(surface, sphere(3), style)
     frame = textured(surface, plain_image((level,) * 3), style, shape=sphere(3))
     assert np.abs(frame - expected).max() <= 2
@@ -79,7 +79,7 @@ def test_grey_texture_is_the_grey_albedo(surface, level):
 
 
 def test_texture_is_filtered_in_linear_light(surface):
-    """From afar, a fine black and white checker is as bright as its mean light: sRGB 188."""
+    """From afar, a fine checker of black and white is as bright as its mean light: sRGB 188."""
     rows, columns = np.indices((512, 512))
     checker = np.repeat(((rows + columns) % 2 * 255).astype(np.uint8)[:, :, None], 3, axis=2)
     frame = textured(surface, checker)[30:66, 30:66]
@@ -89,7 +89,10 @@ def test_texture_is_filtered_in_linear_light(surface):
 
 @pytest.mark.parametrize("size", [(6, 4), (7, 5), (1, 6), (5, 1)])
 def test_smaller_versions_are_means_of_blocks(size):
-    """A last row or column without a partner is left out, unless it is the only one."""
+    """In smaller versions, a last row or column without a partner is left out.
+
+    The only row or column is kept.
+    """
     values = np.random.default_rng(0).random((*size, 4), np.float32)
     height, width = (max(count // 2, 1) for count in size)
     tall, wide = (min(count, 2) for count in size)
@@ -101,7 +104,7 @@ def test_smaller_versions_are_means_of_blocks(size):
 @pytest.mark.parametrize("size", [(6, 4), (7, 5), (1, 6), (5, 1), (1, 1)])
 @pytest.mark.parametrize("is_shaded", [False, True])
 def test_compiled_texels_are_those_of_whole_arrays(size, is_shaded):
-    """The kernels give each texel, and the first smaller version, the bits of numpy's lines."""
+    """The kernels give each texel, and the first smaller version, the bits of numpy's result."""
     random = np.random.default_rng(1)
     image = random.integers(0, 256, (*size, 3), np.uint8)
     occlusion = random.integers(0, 256, size if is_shaded else (1, 1), np.uint8)
@@ -124,23 +127,23 @@ def test_untextured_style_is_the_plain_picture(surface):
 
 @pytest.mark.parametrize("shading", render.Shading)
 def test_splits_tint_the_texture(surface, shading):
-    """Triangles without splits stay textured; the others have the palette's hue over it."""
+    """Unsplit triangles stay textured; the others have the palette's hue over the texture."""
     style = replace(PLAIN, shading=shading)
     counted = replace(style, colour_by=render.ColourBy.SPLITS)
     image = quarters()
     frame = textured(surface, image, counted, values=np.array([0, 4], np.uint8))
     without = textured(surface, image, style)
-    lower = (72, 84)  # rows and columns of points below and above the diagonal
+    lower = (72, 84)  # row and column of a point below the diagonal; the next is above
     upper = (12, 24)
     assert (frame[lower] == without[lower]).all()
-    assert frame[upper][2] > frame[upper][0] + 40  # red before
+    assert frame[upper][2] > frame[upper][0] + 40  # red without the tint
     assert without[upper][0] > without[upper][2] + 100
-    other_side = frame[12, 60]  # green before: the picture still shows through the tint
+    other_side = frame[12, 60]  # green without the tint: the picture shows through
     assert np.abs(other_side - frame[upper]).max() > 15
 
 
 def test_lips_gloss(surface):
-    """Texels much redder than most of the picture shine more than the gloss of the skin."""
+    """Texels much redder than most of the picture shine more than the gloss of skin."""
     lips = plain_image((212, 176, 160), (256, 256))
     lips[64:192, 64:192] = (200, 120, 108)
     shine = {}
@@ -154,7 +157,7 @@ def test_lips_gloss(surface):
 
 
 def test_back_faces_keep_the_inner_albedo(surface):
-    """The texture lies on the outside only."""
+    """The texture lies on the outside only; back faces have the inner albedo."""
     shape = square()
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
     blue = textured(surface, plain_image((0, 0, 255)), shape=turned)
@@ -162,7 +165,7 @@ def test_back_faces_keep_the_inner_albedo(surface):
 
 
 def test_texture_needs_eight_columns(renderer):
-    """Without texture coordinates nothing can be looked up."""
+    """A stream without texture coordinates is refused for a texture."""
     stream = lent(renderer, square())
     texture = render.Texture(renderer.surface, quarters())
     with pytest.raises(ValueError, match="a texture meets a stream of 6 columns; it needs texture"):
@@ -180,14 +183,14 @@ def test_texture_needs_eight_columns(renderer):
     ],
 )
 def test_bad_images(surface, image, message):
-    """Images that are not sRGB images, or are too large, are refused."""
+    """Images that are not 8-bit RGB, or are too large, are refused."""
     with pytest.raises(ValueError, match=message):
         render.Texture(surface, image)
 
 
 @pytest.mark.parametrize("shading", render.Shading)
 def test_less_light_where_it_is_less_open(surface, shading):
-    """The texture's openness darkens light from all sides, and not the key light."""
+    """The texture's ambient occlusion darkens light from all sides, not the key light."""
     image = plain_image((180, 140, 120))
     occlusion = np.full((8, 8), 255, np.uint8)
     occlusion[:, :4] = 128
@@ -202,7 +205,7 @@ def test_less_light_where_it_is_less_open(surface, shading):
     lower = np.s_[5 * height // 8, 3 * width // 8]
     assert lost[right] == 0
     assert 5 < lost[upper] < lost[lower]
-    assert folded[lower].min() > 20  # the key light still shines there
+    assert folded[lower].min() > 20  # the key light is still there
     off = textured(surface, image, replace(style, skin_maps=False), occlusion=occlusion)
     assert np.array_equal(off, plain)
 
@@ -210,7 +213,7 @@ def test_less_light_where_it_is_less_open(surface, shading):
 @pytest.mark.parametrize("shading", render.Shading)
 @pytest.mark.parametrize("is_textured", [True, False])
 def test_fine_shape_tilts_what_each_pixel_shows(surface, shading, is_textured):
-    """Slopes that rise to the right face the key; level skin and other shadings are unchanged."""
+    """Slopes that rise to the right are brighter; level skin and other shadings are unchanged."""
     slopes = np.full((32, 32, 2), 128, np.uint8)
     slopes[:, 16:] = 190, 128
     image = plain_image((180, 140, 120))
@@ -229,13 +232,13 @@ def test_fine_shape_tilts_what_each_pixel_shows(surface, shading, is_textured):
 
 
 def test_fine_shape_that_is_none_is_refused(surface):
-    """A map of wrinkles is not one."""
+    """A map of wrinkles is refused as a map of fine shape."""
     with pytest.raises(ValueError, match=r"the fine shape has shape \(4, 4, 4\)"):
         render.BumpMap(surface, np.zeros((4, 4, 4), np.uint8), 1.0, 2)
 
 
 def test_maps_are_uploaded_once(surface):
-    """Persons share their maps of wrinkles and pores; unused ones are freed."""
+    """Maps of wrinkles and pores are shared between persons; unused ones are freed."""
     renderer = render.Renderer(surface)
     texels = np.full((8, 8, 4), 128, np.uint8)
     first = renderer.bump_map(texels, 1.0)

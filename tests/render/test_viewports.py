@@ -1,4 +1,4 @@
-"""Viewports and backgrounds: each only changes its own pixels."""
+"""Viewports and backgrounds: each changes its own pixels only."""
 
 import pytest
 
@@ -9,7 +9,7 @@ from .scenes import PLAIN, Ball, facing, lent, sphere, still
 
 @pytest.mark.parametrize("samples", [0, 4])
 def test_viewports_are_apart(samples):
-    """Two halves show the same, and one alone leaves every pixel of the other empty."""
+    """Both halves show the same; with one half drawn, every pixel of the other stays empty."""
     left = (0, 0, 60, 50)
     right = (60, 0, 60, 50)
     with render.open_offscreen((120, 50), samples=samples) as surface:

@@ -1,4 +1,4 @@
-"""The window: the same interface and the same pictures as offscreen. It needs a screen, or Xvfb."""
+"""Windows: the interface and pictures of offscreen frames. They need a screen, or Xvfb."""
 
 import time
 
@@ -13,14 +13,14 @@ pytestmark = pytest.mark.window
 
 
 def needs_one_driver(window, offscreen):
-    """Skip a comparison if a card draws offscreen, and software in a window of Xvfb."""
+    """Skip a comparison if a card draws offscreen, but software draws in a window of Xvfb."""
     drivers = [surface.gl.info["GL_RENDERER"] for surface in (window, offscreen)]
     if drivers[0] != drivers[1]:
         pytest.skip(f"windows are drawn by {drivers[0]}, offscreen frames by {drivers[1]}")
 
 
 def test_same_picture(window):
-    """A window shows an offscreen frame's picture, and can be read after it was shown."""
+    """A window shows the picture of an offscreen frame, which can be read after it was shown."""
     style = render.Style(wireframe=True)
     shown = draw_image(window, sphere(), style)
     with render.open_offscreen(window.size) as offscreen:
@@ -30,7 +30,7 @@ def test_same_picture(window):
 
 
 def test_window_that_is_resized(window):
-    """The frame follows the window; no pixels of the old size remain."""
+    """The frame follows the window's size; no pixels of the old size remain."""
     import glfw
 
     draw_image(window, sphere())
@@ -47,7 +47,7 @@ def test_window_that_is_resized(window):
 
 
 def test_a_window_fits_the_screen(window):
-    """A visible window is no larger than the room on the screen."""
+    """A visible window is no larger than the free area of the screen."""
     import glfw
 
     room = glfw.get_monitor_workarea(glfw.get_primary_monitor())[2:]
@@ -56,7 +56,7 @@ def test_a_window_fits_the_screen(window):
 
 
 def test_closing(window):
-    """A close request can be read and set; a closed window reports it."""
+    """A close request can be read and set, and a closed window reports that it is closed."""
     assert not window.should_close
     window.should_close = True
     assert window.should_close
@@ -73,7 +73,7 @@ def test_hidden_window_can_be_read(window):
 
 
 def test_window_and_offscreen_take_turns(window):
-    """A picture can be filmed offscreen while a window is open."""
+    """Frames can be drawn offscreen while a window is open."""
     first = draw_image(window, sphere())
     with render.open_offscreen((40, 40)) as offscreen:
         for _ in range(2):
@@ -84,7 +84,7 @@ def test_window_and_offscreen_take_turns(window):
 
 
 def test_probe_finds_the_window(window):
-    """If a window opens, the probe says so."""
+    """The probe reports a window exactly if one can be opened."""
     finding = render.probe()[1]
     assert finding.name == "window"
     assert finding.is_ok
@@ -92,9 +92,9 @@ def test_probe_finds_the_window(window):
 
 
 def test_a_coarser_scene_fills_the_window(window):
-    """With fewer pixels and samples the image is the same, enlarged; panels keep full resolution.
+    """A scene with fewer pixels and samples is enlarged; panels keep the full resolution.
 
-    Smooth edges reach two pixels of the scene aside.
+    Smoothing spreads up to two pixels of the scene sideways.
     """
     renderer = render.Renderer(window)
     images = []
@@ -111,7 +111,7 @@ def test_a_coarser_scene_fills_the_window(window):
 
 
 def test_the_scene_outlives_its_panels(window):
-    """A second resolve shows the scene without the panel."""
+    """A second resolve shows the scene without the panel that was drawn over it."""
     renderer = render.Renderer(window)
     renderer.draw(render.Frame(render.CameraView(facing()), render.Style()))
     window.end()
@@ -124,7 +124,7 @@ def test_the_scene_outlives_its_panels(window):
 
 
 def test_single_samples_have_smooth_edges(window):
-    """Smoothing removes part of the steps along an outline that four samples would remove."""
+    """Without samples, smoothing removes a part of the steps that four samples remove."""
     needs_samples(window)
     fine = draw_image(window, sphere())
     window.detail = render.Detail(samples=0)
@@ -133,13 +133,13 @@ def test_single_samples_have_smooth_edges(window):
         needs_one_driver(window, offscreen)
         jagged = draw_image(offscreen, sphere())
     before, after = (np.abs(each - fine).max(axis=2) > 40 for each in (jagged, smoothed))
-    assert before.sum() > 50 and after.sum() < 0.8 * before.sum()  # 0.7 on software
+    assert before.sum() > 50 and after.sum() < 0.8 * before.sum()  # 0.7 with software
 
 
 def test_smoothed_edges_leave_small_discs_round(window):
-    """A disc as wide as pupils has no pixel in a window far from that of four samples."""
+    """With smoothing, no pixel of a disc as wide as pupils is far from that of four samples."""
     needs_samples(window)
     pupil = sphere(4, radius=7.0)
     fine = draw_image(window, pupil)
     window.detail = render.Detail(samples=0)
-    assert np.abs(draw_image(window, pupil) - fine).max() < 75  # 51 on software; else squares
+    assert np.abs(draw_image(window, pupil) - fine).max() < 75  # 51 on software; more if square

@@ -1,4 +1,4 @@
-"""The built-in head and one simulation of it, shared: construction takes longer than most tests."""
+"""The built-in head and one simulation of it, shared because construction takes long."""
 
 import pytest
 
@@ -17,13 +17,13 @@ def model(head: Head) -> FaceModel:
 
 @pytest.fixture(scope="session")
 def state(model: FaceModel) -> State:
-    """The arrays that the kernels of the shared simulation read and write."""
+    """The arrays that kernels of the shared simulation read and write."""
     return State.at_rest(model.surface, len(model.muscles.bundle.muscle))
 
 
 @pytest.fixture(scope="session")
 def shared_simulation(model: FaceModel, state: State) -> sim.Simulation:
-    """One simulation for the session; use the `simulation` fixture, which puts it back to rest."""
+    """One simulation for the session; use the `simulation` fixture, which resets it to rest."""
     return sim.Simulation(model, state)
 
 
@@ -36,5 +36,5 @@ def simulation(shared_simulation: sim.Simulation) -> sim.Simulation:
 
 @pytest.fixture
 def controls(simulation: sim.Simulation) -> Controls:
-    """Controls of the simulation, all at zero."""
+    """The controls of the simulation, all at zero."""
     return simulation.controls

@@ -1,4 +1,4 @@
-"""Posing and measuring a face in tests."""
+"""Poses and measurements of a face for tests."""
 
 from collections.abc import Mapping
 from types import SimpleNamespace
@@ -27,7 +27,7 @@ def both_sides(simulation: sim.Simulation, values: Mapping[str, float]) -> dict[
 def settled_displacement(
     simulation: sim.Simulation, values: Mapping[str, float], *, frames: int = 60
 ) -> Array:
-    """Pose the face from rest and return its displacements [mm], shape (V, 3)."""
+    """Pose the face from rest, wait, and return its displacements [mm], shape (V, 3)."""
     simulation.reset()
     simulation.controls.set_all(values)
     for _ in range(frames):
@@ -43,7 +43,7 @@ def moved_landmarks(head: Any, moved: Array, *numbers: int) -> Array:
 
 
 def inverted_triangles(faces: npt.NDArray[np.int32], rest: Array, now: Array) -> int:
-    """Number of triangles that turned their normal by more than a right angle."""
+    """The number of triangles whose normals turned by more than a right angle."""
 
     def normals(x: Array) -> Array:
         return np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
@@ -59,6 +59,6 @@ def without(head: Any, *names: str) -> SimpleNamespace:
 
 
 def lip_gap(simulation: sim.Simulation, head: Any) -> float:
-    """Greatest vertical distance [mm] between the inner lip landmarks."""
+    """Greatest vertical distance [mm] between inner lip landmarks."""
     y = simulation.positions[head.landmarks, 1]
     return float(max(y[u] - y[low] for u, low in ((61, 67), (62, 66), (63, 65))))

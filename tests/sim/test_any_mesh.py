@@ -1,4 +1,4 @@
-"""A simulation can be built from any triangle mesh, with any of its optional attributes."""
+"""Simulations can be built from any triangle mesh, with any of its optional attributes."""
 
 from types import SimpleNamespace
 
@@ -18,7 +18,7 @@ def _grid():
 
 
 def _with_flaws():
-    """A degenerate triangle, a vertex in no triangle, a second component, vertices on one spot."""
+    """A mesh with a degenerate triangle, an unused vertex, two pieces, and doubled vertices."""
     vertices = [
         [0, 0, 0],
         [1, 0, 0],
@@ -45,7 +45,7 @@ def _with_flaws():
     ids=["grid", "flaws", "small trimesh", "big trimesh", "one triangle"],
 )
 def test_any_mesh_is_stable_and_comes_back(mesh, generator):
-    """After a hard kick, a mesh of any size swings and returns to rest; it has no controls."""
+    """After a hard kick, a mesh of any size swings and returns to rest, without controls."""
     simulation = sim.create(mesh)
     assert simulation.controls.lowest == ()
     size = float(np.ptp(simulation.rest_positions, axis=0).max())
@@ -58,7 +58,7 @@ def test_any_mesh_is_stable_and_comes_back(mesh, generator):
 
 
 def test_input_arrays_are_copied(head):
-    """The simulation neither writes into the caller's arrays nor follows changes of them."""
+    """The simulation neither writes into the caller's arrays nor sees later changes of them."""
     mesh = _grid()
     before = mesh.vertices.copy()
     simulation = sim.create(mesh)
@@ -70,21 +70,21 @@ def test_input_arrays_are_copied(head):
 
 
 def test_mesh_with_landmarks_but_no_rig_has_no_muscles(head):
-    """Landmarks alone give gaze and head pose, own weights a jaw and lips; a rig gives muscles."""
+    """Landmarks alone give gaze and head pose; weights add a jaw and lips, a rig adds muscles."""
     simulation = sim.create(without(head, "rig"))
     assert set(simulation.controls.groups) == {"Lips", "Jaw", "Gaze", "Head", "Both sides"}
     assert moved_landmarks(head, settled_displacement(simulation, {"jaw_open": 1.0}), 8)[1] < -15.0
 
 
 def test_mesh_with_rig_but_no_landmarks_has_no_muscles(head):
-    """Without landmarks a rig cannot be placed, but its tissue still holds the skin."""
+    """Without landmarks a rig has no muscles, but its tissue still holds the skin."""
     simulation = sim.create(without(head, "landmarks", "eyes", "jaw_axis"))
     assert simulation.controls.lowest == ()
     simulation.step(FRAME)
 
 
 def test_everything_can_be_guessed_from_landmarks(head):
-    """A head without its own eyes, jaw axis and mandible weight still smiles and blinks."""
+    """A head without eyes, jaw axis and mandible weight of its own smiles and blinks."""
     simulation = sim.create(without(head, "eyes", "jaw_axis", "mandible_weight"))
     moved = settled_displacement(simulation, {"jaw_open": 1.0})
     assert moved_landmarks(head, moved, 66)[1] - moved_landmarks(head, moved, 62)[1] < -20.0
@@ -95,7 +95,10 @@ def test_everything_can_be_guessed_from_landmarks(head):
 
 
 def test_a_guessed_jaw_opens_back_rather_than_down(head):
-    """With condyles near the ears the chin goes as far back as down, as in scans and sculptures."""
+    """With guessed condyles near the ears, the chin moves as far back as down when it opens.
+
+    Scans and sculptures do the same.
+    """
     simulation = sim.create(without(head, "jaw_axis", "mandible_weight"))
     moved = settled_displacement(simulation, {"jaw_open": 1.0})
     _, up, forward = moved_landmarks(head, moved, 8)

@@ -1,4 +1,4 @@
-"""Controls besides muscles: head pose, lips over an open jaw, halves of a muscle, teeth, weight."""
+"""Controls other than muscles: head pose, lips over an open jaw, sides, teeth, weight."""
 
 from types import SimpleNamespace
 
@@ -18,7 +18,7 @@ INNER_LIPS = (62, 66)
     [("head_pitch", 1, 1.0), ("head_yaw", 0, 1.0), ("head_roll", 0, 1.0)],
 )
 def test_head_turns_as_one(simulation, head, control, axis, sign):
-    """Skin above the neck moves with the cranium: up, to the left, top of the head to the left."""
+    """Skin above the neck turns with the cranium: up, to the left, and tilted left."""
     settled_displacement(simulation, {control: 0.5})
     cranium = simulation.bones.transforms()["cranium"]
     carried = head.vertices @ cranium[:3, :3].T + cranium[:3, 3]
@@ -29,7 +29,7 @@ def test_head_turns_as_one(simulation, head, control, axis, sign):
 
 
 def test_lips_stay_closed_over_an_open_jaw(simulation, head):
-    """With lips_closed the jaw drops and the lips do not part; without it they do."""
+    """With lips_closed the lips do not part over an open jaw; without it they do."""
     for opening in (0.3, 1.0):
         moved = settled_displacement(simulation, {"jaw_open": opening, "lips_closed": 1.0})
         assert moved_landmarks(head, moved, CHIN)[1] < -20.0 * opening
@@ -40,7 +40,7 @@ def test_lips_stay_closed_over_an_open_jaw(simulation, head):
 
 @pytest.mark.parametrize("opening", [0.3, pytest.param(1.0, marks=pytest.mark.slow)])
 def test_mouths_that_are_open_at_rest_play(simulation, head, opening):
-    """In a mesh with parted lips all controls are there, and lips keep their distance."""
+    """A mesh with parted lips has all controls, and its lips keep their distance."""
     opened = head.vertices + settled_displacement(simulation, {"jaw_open": opening})
     parts = without(head)
     parts.vertices = opened
@@ -58,7 +58,10 @@ def test_mouths_that_are_open_at_rest_play(simulation, head, opening):
 
 @pytest.mark.parametrize("muscle", ["procerus", "orbicularis_oris_peripheral_upper"])
 def test_both_halves_are_the_whole(simulation, muscle):
-    """The control for both halves does the same as both together; they add up and are clipped."""
+    """A control for both sides does the same as both sides together.
+
+    They add up and are clipped.
+    """
     whole = settled_displacement(simulation, {muscle: 1.0})
     both = settled_displacement(simulation, {f"{muscle}_left": 1.0, f"{muscle}_right": 1.0})
     mixed = settled_displacement(

@@ -13,7 +13,7 @@ from tests.meshes import open_grid
 HUGE = 10**400
 NAN = float("nan")
 INF = float("inf")
-# Values that are not a number, an array of numbers or a name in any call.
+# Values that no call accepts as a number, an array of numbers or a name.
 NONSENSE = (None, "0.5", b"1", [], [[1], [1, 2]], object(), 1j, [None], "x" * 10**6, len, {1: 2})
 NO_NUMBER = (*NONSENSE, NAN, INF, -INF, HUGE, -HUGE, 10**5000, [0.5], np.array([0.5]))
 COUNT = 9
@@ -36,7 +36,7 @@ TABLES = (*NONSENSE[:-1], 3, NAN, ["jaw_open"], np.zeros(3))
 
 TRIANGLE = {"vertices": np.eye(3) * 10.0, "faces": np.array([[0, 1, 2]])}
 
-# Method, the wrong argument, its name in the text, and its values in turn.
+# Method, the wrong argument, its name in the message, and its wrong values.
 WRONG = [
     ("controls.set", "name", "control", (*NAMES, [], {})),
     ("controls.set", "value", "control 'jaw_open'", (*NO_NUMBER, -1, 2)),
@@ -48,7 +48,7 @@ WRONG = [
     ("controls.take", "values", "values", ARRAYS),
     ("copy_from", "other", "other", (*NONSENSE, 3, sim.create(SimpleNamespace(**TRIANGLE)))),
     ("touch.kick", "velocities", "velocities", ARRAYS),
-    ("touch.drag", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # none is a valid number
+    ("touch.drag", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # 4 alone is valid
     ("touch.drag", "targets", "targets", ARRAYS),
     ("touch.drag", "firmness", "firmness", SHARES),
     ("step", "dt", "dt", (*NO_NUMBER, 0, -1, 1, True)),
@@ -64,14 +64,14 @@ RIGHT = {
 
 
 def grid():
-    """A small mesh without anything else."""
+    """A small mesh without optional attributes."""
     mesh = open_grid(2, 2)
     return SimpleNamespace(vertices=10.0 * mesh.vertices, faces=mesh.faces)
 
 
 @pytest.fixture(scope="module")
 def small() -> sim.Simulation:
-    """A mesh with a jaw and nothing else."""
+    """A mesh with a jaw as its only attribute."""
     mesh = grid()
     mesh.mandible_weight = np.linspace(0.0, 1.0, COUNT)
     mesh.jaw_axis = [[-10.0, 10.0, -5.0], [10.0, 10.0, -5.0]]
@@ -79,7 +79,7 @@ def small() -> sim.Simulation:
 
 
 def refused(call, begins):
-    """The call is a ValueError with our text: the wrong value, shortened, and the allowed ones."""
+    """Check that a call raises a ValueError with the shortened wrong value and the allowed ones."""
     with pytest.raises(ValueError, match=MAY_BE) as error:
         call()
     text = str(error.value)
@@ -88,7 +88,7 @@ def refused(call, begins):
 
 @pytest.mark.parametrize(("method", "argument", "begins", "values"), WRONG)
 def test_wrong_arguments_are_reported(small, method, argument, begins, values):
-    """Each is a ValueError with the argument's name, and changes nothing."""
+    """A wrong argument raises a ValueError with its name, and changes nothing."""
     small.reset()
     for value in values:
         wrong = {**RIGHT.get(method, {}), argument: value}
@@ -100,16 +100,16 @@ def test_wrong_arguments_are_reported(small, method, argument, begins, values):
 
 EYE = SimpleNamespace(name="left", centre=[0.0, 0.0, 0.0], radius=1.0)
 PART = SimpleNamespace(name="teeth_upper", bone="cranium", vertices=np.zeros((2, 3)))
-LISTS = (*NONSENSE[1:3], object(), 3, NAN, [3], [None], [[]])  # they contain no such things
+LISTS = (*NONSENSE[1:3], object(), 3, NAN, [3], [None], [[]])  # no lists of the expected objects
 
 
 def with_(thing, name, *values):
-    """Lists of a thing with one wrong attribute."""
+    """Lists of one object with one wrong attribute."""
     return tuple([SimpleNamespace(**{**vars(thing), name: value})] for value in values)
 
 
 def under(*keys):
-    """Makes rigs with a wrong value at one place."""
+    """A function that makes rigs with a wrong value at one place."""
 
     def rigs(*values):
         return tuple({keys[0]: {keys[1]: value}} for value in values)
@@ -148,13 +148,13 @@ def test_wrong_heads_are_refused(attribute, begins, values):
 
 @pytest.mark.parametrize("given", LISTS)
 def test_what_is_no_layer_is_reported(given):
-    """A head's layers are a list of objects with titles and rows."""
+    """A head's layers must be a list of objects with titles and rows."""
     refused(lambda: read_layers(given, ["a"]), "head.layers")
 
 
 @pytest.mark.parametrize("head", [None, 3, "head", [], {}, object(), SimpleNamespace(vertices=1)])
 def test_what_is_no_head_is_reported(head):
-    """Without vertices and faces there is nothing to simulate."""
+    """A head must have vertices and faces."""
     with pytest.raises(ValueError, match=r"head: .* has no attribute '(vertices|faces)'; give any"):
         sim.create(head)
 
@@ -170,7 +170,10 @@ def test_what_is_no_head_is_reported(head):
     ],
 )
 def test_arrays_of_any_layout_are_taken(layout):
-    """Columns first, every second row, another byte order, small integers, and lists are equal."""
+    """Arrays with any memory order, strides, byte order or integer size, and lists, are accepted.
+
+    Results are equal.
+    """
     plain = sim.create(grid())
     mesh = grid()
     mesh.vertices = layout(mesh.vertices)

@@ -1,4 +1,4 @@
-"""Contacts of skin: its distance from an eyeball, and the parts of the lips that touch."""
+"""Contacts of skin: the distance from an eyeball, and the touching parts of the lips."""
 
 from types import SimpleNamespace
 
@@ -10,7 +10,10 @@ from risorius.sim.contact import pair_lips, watch_eyeballs
 
 
 def test_skin_may_come_as_near_as_a_lid_is_thick():
-    """0.3 mm from the ball; skin that starts nearer may stay there, distant skin is not watched."""
+    """Skin may approach the ball to 0.3 mm, the thickness of a lid.
+
+    Skin that starts nearer may stay there, and distant skin is not checked.
+    """
     ball = SimpleNamespace(centre=np.array([30.0, 0.0, 0.0]), radius=12.0)
     away = np.array([10.0, 12.1, 13.0, 20.0, 30.0])
     skin = SimpleNamespace(positions=ball.centre + away[:, None] * [0.0, 0.6, 0.8])
@@ -23,7 +26,10 @@ def test_skin_may_come_as_near_as_a_lid_is_thick():
 
 @pytest.mark.parametrize(("above", "below"), [(17, 9), (9, 17), (9, 9)])
 def test_every_vertex_of_either_lip_is_in_a_pair(above, below):
-    """One lip may have twice as many vertices as the other, and both get equal hold."""
+    """Every vertex of both lips is in a pair, and both lips are held equally.
+
+    One lip may have twice as many vertices.
+    """
     counts = (above, below)
     across = np.concatenate([np.linspace(-20.0, 20.0, count) for count in counts])
     is_upper = np.repeat([True, False], counts)

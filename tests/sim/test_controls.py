@@ -8,7 +8,7 @@ from risorius.sim.controls import Control, Controls
 
 
 def test_every_control_has_limits_a_value_and_one_group(controls):
-    """Limits, values and groups have the same controls, the lowest and those of layers."""
+    """Limits, values and groups have the same controls, of muscles and of layers."""
     names = [*controls.lowest, *(n for layer in controls.layers.values() for n in layer)]
     assert len(controls.lowest) > 40
     assert len(set(names)) == len(names)
@@ -17,7 +17,7 @@ def test_every_control_has_limits_a_value_and_one_group(controls):
 
 
 def test_both_sides_have_the_limits_of_their_sides(controls):
-    """Both eyes look down as well as up; rows of tables run from 0 to 1."""
+    """Both eyes look down as well as up; rows of tables have values from 0 to 1."""
     assert controls.limits["gaze_vertical"] == controls.limits["gaze_vertical_left"] == (-1, 1)
     assert controls.limits["zygomaticus_major"] == controls.limits["AU12"] == (0, 1)
     controls.pose({"gaze_horizontal": -0.5, "gaze_horizontal_left": 0.2})
@@ -26,14 +26,14 @@ def test_both_sides_have_the_limits_of_their_sides(controls):
 
 
 def test_unknown_control_suggests_near_names(controls):
-    """A typing error is answered with similar names, and nothing is set."""
+    """An unknown control is refused with similar names, and nothing is set."""
     with pytest.raises(ValueError, match=r"'zygomaticus_mayor_left'.*zygomaticus_major_left"):
         controls.set_all({"jaw_open": 1.0, "zygomaticus_mayor_left": 0.5})
     assert not any(controls.values.values())
 
 
 def test_value_must_be_within_limits(controls):
-    """Values beyond limits are refused, by name or in one array, and the limits are named."""
+    """Values beyond the limits are refused, alone and in an array, with the limits named."""
     with pytest.raises(ValueError, match=r"'jaw_open': was -0.5, allowed is 0 to 1"):
         controls.set("jaw_open", -0.5)
     with pytest.raises(ValueError, match=r"was 1.5, allowed is 0 to 1; clamp it first"):
@@ -43,7 +43,7 @@ def test_value_must_be_within_limits(controls):
 
 
 def test_activation_follows_without_overshoot():
-    """It follows a step within 0.1 s, monotonously, and equally for any step length."""
+    """An activation follows a step within 0.1 s, monotonically, for any step length."""
     coarse, fine = (Controls((Control("one", "Group"),)) for _ in range(2))
     coarse.set_all({"one": 1.0})
     fine.set_all({"one": 1.0})
@@ -59,7 +59,10 @@ def test_activation_follows_without_overshoot():
 
 
 def test_sums_of_values_are_those_of_a_face_that_takes_them(controls):
-    """They are computed without setting anything, including shares of layers and floors."""
+    """Sums of given values are those of a face with these values, without setting anything.
+
+    They include shares and floors of layers.
+    """
     controls.pose({"AU12": 0.4, "jawOpen": 0.3, "mouthClose": 0.2, "AU46_left": 1.0})
     before = controls.values
     wanted = controls.wanted.copy()

@@ -40,7 +40,7 @@ OTHERS = ("contempt", "wink", "kiss", "yawn", "mouth_open", "blink")
     ],
 )
 def test_muscle_pulls_its_landmark(simulation, head, muscle, landmark, direction, least):
-    """Each muscle at full strength moves its insertion by so many millimetres its own way."""
+    """Each muscle at full strength moves its insertion by the listed distance and direction."""
     moved = settled_displacement(simulation, both_sides(simulation, {muscle: 1.0}))
     way = np.array(direction) / norm(direction)
     assert moved_landmarks(head, moved, landmark) @ way > least
@@ -64,14 +64,17 @@ EXPRESSED = {  # landmarks, their direction, and their least motion [mm]
 
 @pytest.mark.parametrize("name", EXPRESSED)
 def test_expressions_move_their_landmarks(simulation, head, name):
-    """Brows, lids, corners of the mouth, lips and jaw move in the direction of each expression."""
+    """In each expression brows, lids, mouth corners, lips and jaw move in its direction."""
     moved = settled_displacement(simulation, head.expressions[name])
     for landmarks, way, least in EXPRESSED[name]:
         assert moved_landmarks(head, moved, *landmarks) @ way > least, landmarks
 
 
 def test_the_base_of_the_nose_hardly_lifts(simulation, head):
-    """Cartilage holds it in a sneer and under a raised lip; wings and lip rise beside it."""
+    """The base of the nose hardly rises in a sneer or under a raised lip.
+
+    Cartilage holds it, while wings and lip rise beside it.
+    """
     for shape, most, wings in (("noseSneer", 2.5, 7.0), ("mouthUpperUp", 1.6, 4.5)):
         values = {f"{shape}Left": 1.0, f"{shape}Right": 1.0}
         moved = settled_displacement(simulation, values)
@@ -82,7 +85,7 @@ def test_the_base_of_the_nose_hardly_lifts(simulation, head):
 
 
 def test_an_upper_lip_is_shrugged_up_and_rolled_back(simulation, head):
-    """A shrug goes up more than forward; a roll goes back and does not move the chin."""
+    """A shrugged upper lip moves up more than forward; a rolled one back, without the chin."""
     moved = settled_displacement(simulation, {"mouthShrugUpper": 1.0})
     _, up, forward = moved_landmarks(head, moved, 51)
     assert max(2.0, forward) < up < 7.0
@@ -92,7 +95,10 @@ def test_an_upper_lip_is_shrugged_up_and_rolled_back(simulation, head):
 
 
 def test_a_frown_and_a_funnel_go_as_far_as_scanned_ones(simulation, head):
-    """Corners go down, and little to the side; lips come 7 mm forward as in a scan, and open."""
+    """In a frown, corners move down and little sideways, as far as scanned ones.
+
+    In a funnel, lips come 7 mm forward and open, as in a scan.
+    """
     moved = settled_displacement(simulation, {"mouthFrownLeft": 1.0, "mouthFrownRight": 1.0})
     aside, up, _ = moved_landmarks(head, moved, 54)
     assert up < -3.5
@@ -104,7 +110,7 @@ def test_a_frown_and_a_funnel_go_as_far_as_scanned_ones(simulation, head):
 
 
 def test_a_funnel_opens_round(simulation, head):
-    """Lips part by half beside the middle, as in a scan; at the corners they touch."""
+    """In a funnel, lips part half as far beside the middle as in it; at the corners they touch."""
     moved = settled_displacement(simulation, {"mouthFunnel": 1.0})
     heights = (head.vertices + moved)[head.landmarks, 1]
     middle = heights[62] - heights[66]
@@ -113,14 +119,17 @@ def test_a_funnel_opens_round(simulation, head):
 
 
 def test_lids_follow_the_gaze_up_a_little(simulation, head):
-    """They rise by less than 2 mm, and by more than 1."""
+    """When eyes look up, lids rise by more than 1 and less than 2 mm."""
     moved = settled_displacement(simulation, {"eyeLookUpLeft": 1.0, "eyeLookUpRight": 1.0})
     for landmark in (37, 38, 43, 44):
         assert 1.0 < moved_landmarks(head, moved, landmark)[1] < 2.0
 
 
 def test_raised_inner_brows_leave_the_lids(simulation, head):
-    """An upper lid moves less than a third of a millimetre: scanned ones rise by a sixth."""
+    """Raised inner brows move an upper lid by less than a third of a millimetre.
+
+    Scanned lids rise by a sixth of a millimetre.
+    """
     moved = settled_displacement(simulation, {"browInnerUp": 1.0})
     for brow in (21, 22):
         assert moved_landmarks(head, moved, brow)[1] > 4.0
@@ -129,7 +138,7 @@ def test_raised_inner_brows_leave_the_lids(simulation, head):
 
 
 def test_joy_bares_the_teeth(simulation, head):
-    """The upper lip bares the lower part of the teeth; the lower lip lies along their edge."""
+    """In joy, the upper lip bares the lower part of the teeth; the lower lip lies at their edge."""
     moved = settled_displacement(simulation, head.expressions["joy"])
     edge = min(part.vertices[:, 1].min() for part in head.parts if part.name == "teeth_upper")
     lips = (head.vertices + moved)[head.landmarks[[62, 66]], 1]
@@ -138,7 +147,10 @@ def test_joy_bares_the_teeth(simulation, head):
 
 
 def test_the_upper_lip_of_joy_is_thinner_than_at_rest(simulation, head):
-    """Its red is stretched over the teeth, most in the middle, and straightens."""
+    """In joy, the red of the upper lip is stretched over the teeth, most in the middle.
+
+    The lip becomes straighter.
+    """
     border = head.rings["mouth_6_left"][:3]
     inner = head.rings["mouth_2_left"][:3]
     smiling = head.vertices + settled_displacement(simulation, head.expressions["joy"])
@@ -147,7 +159,7 @@ def test_the_upper_lip_of_joy_is_thinner_than_at_rest(simulation, head):
 
 
 def test_disgust_shows_no_bits_of_teeth(simulation, head):
-    """Its lips touch, and part beside the corners by less than 1.5 mm."""
+    """In disgust the lips touch, and part beside the corners by less than 1.5 mm."""
     moved = head.vertices + settled_displacement(simulation, head.expressions["disgust"])
     row = head.rings["mouth_2_left"]
     gaps = moved[row[:7], 1] - moved[row[:7:-1], 1]
@@ -156,14 +168,14 @@ def test_disgust_shows_no_bits_of_teeth(simulation, head):
 
 
 def test_sadness_slants_the_brows(simulation, head):
-    """The inner brows rise above the outer ones."""
+    """In sadness the inner brows rise above the outer ones."""
     moved = settled_displacement(simulation, head.expressions["sadness"])
     assert moved_landmarks(head, moved, 21, 22)[1] > 2.0 + moved_landmarks(head, moved, 17, 26)[1]
 
 
 @pytest.mark.parametrize("name", SIX + OTHERS)
 def test_expression_keeps_the_mesh_sound(simulation, head, name):
-    """In each expression hardly a triangle is turned over, and no skin goes far away."""
+    """In each expression hardly any triangle is turned over, and skin stays near."""
     moved = settled_displacement(simulation, head.expressions[name])
     turned = inverted_triangles(head.faces, head.vertices, simulation.positions)
     assert turned <= 6
@@ -180,7 +192,7 @@ def test_mirrored_input_gives_mirrored_motion(simulation, head):
 
 
 def test_left_smile_moves_the_left(simulation, head):
-    """Left is the subject's left (+x); the other corner hardly moves."""
+    """A left smile moves the subject's left corner (+x), and hardly the right one."""
     moved = settled_displacement(simulation, {"zygomaticus_major_left": 1.0})
     left = norm(moved_landmarks(head, moved, 54))
     right = norm(moved_landmarks(head, moved, 48))
@@ -199,7 +211,7 @@ def test_left_smile_moves_the_left(simulation, head):
     ids=["press", "frown", "kiss", "smile against frown"],
 )
 def test_lips_do_not_cross(simulation, model, state, values):
-    """Lips pressed by their own muscles touch; the lower one does not go far into the upper."""
+    """Lips pressed by their muscles touch; the lower lip hardly enters the upper one."""
     settled_displacement(simulation, both_sides(simulation, values))
     lips = model.skin.lips
     y = state.x[:, 1]
@@ -222,7 +234,7 @@ def test_lips_do_not_cross(simulation, model, state, values):
     ids=str,
 )
 def test_blink_closes_the_eyes(simulation, head, other):
-    """No straight line reaches a closed eye, in any direction of gaze, refined or not."""
+    """In a blink no line of sight reaches the eye, in any gaze, refined or not."""
     settled_displacement(simulation, {"AU45": 1.0, **other})
     refiner = refine.create("kahler", head.faces, head.vertices)
     landmarks = simulation.positions[head.landmarks]
@@ -233,7 +245,7 @@ def test_blink_closes_the_eyes(simulation, head, other):
 
 @pytest.mark.slow
 def test_a_cornea_that_pierces_a_lid_is_seen(simulation, head):
-    """The measure of a blink checks the surface in front, not only holes."""
+    """The measure of a blink detects a cornea that pierces a lid, not only holes."""
     settled_displacement(simulation, {"AU45": 1.0})
     landmarks = simulation.positions[head.landmarks]
     pushed = {
@@ -244,7 +256,7 @@ def test_a_cornea_that_pierces_a_lid_is_seen(simulation, head):
 
 
 def test_eyes_are_open_at_rest(simulation, head):
-    """The measure of a blink reports an open eye."""
+    """The measure of a blink detects an open eye."""
     landmarks = simulation.positions[head.landmarks]
     eyeballs = eyeballs_of(head, simulation)
     gaps = lid_gaps(simulation.positions, head.faces, landmarks, eyeballs)
@@ -253,7 +265,7 @@ def test_eyes_are_open_at_rest(simulation, head):
 
 @pytest.mark.parametrize("gaze", [-1.0, 0.0, 1.0])
 def test_skin_never_enters_the_eyeball(simulation, head, gaze):
-    """In a blink with all muscles around the eye active, no vertex sinks into the eyeball."""
+    """With all muscles around the eye active in a blink, no vertex enters the eyeball."""
     lowest = simulation.controls.lowest
     around = [n for n in lowest if "oculi" in n or "frontalis" in n or "super" in n]
     for level in (1.0, 0.0):
@@ -267,7 +279,7 @@ def test_skin_never_enters_the_eyeball(simulation, head, gaze):
 
 
 def test_jaw_opens_the_mouth(simulation, head):
-    """An open jaw parts the lips by at least 25 mm and carries the chin down and back."""
+    """An open jaw parts the lips by at least 25 mm, and moves the chin down and back."""
     moved = settled_displacement(simulation, {"jaw_open": 1.0})
     assert lip_gap(simulation, head) > 25.0
     chin = moved_landmarks(head, moved, 8)
@@ -276,7 +288,7 @@ def test_jaw_opens_the_mouth(simulation, head):
 
 
 def test_jaw_slides(simulation, head):
-    """The chin follows the jaw forward, a little back, and to a side; so do both condyles."""
+    """The chin follows the jaw forward, slightly back, and sideways, and so do both condyles."""
     for sign in (-1.0, 1.0):
         chin = moved_landmarks(head, settled_displacement(simulation, {"jaw_forward": sign}), 8)
         assert chin[2] > 4.0 if sign > 0.0 else -2.5 < chin[2] < -0.5
@@ -290,7 +302,7 @@ def test_jaw_slides(simulation, head):
 
 
 def test_gaze_turns_the_eyes(simulation, head):
-    """+1 looks to the subject's left and up, about the centre; the upper lid follows."""
+    """At +1 eyes turn to the subject's left and up, about their centres; upper lids follow."""
     moved = settled_displacement(simulation, {"gaze_horizontal": 1.0, "gaze_vertical": 1.0})
     for eye in head.eyes:
         matrix = simulation.bones.transforms()[f"eye_{eye.name}"]
@@ -306,7 +318,7 @@ def test_gaze_turns_the_eyes(simulation, head):
 
 
 def test_each_eye_looks_for_itself(simulation, head):
-    """Eyes converge, and a lid follows its own eye, without motion of the other."""
+    """Each eye can turn alone, and its lid follows without motion of the other lid."""
     gaze = {"gaze_horizontal_left": -0.5, "gaze_horizontal_right": 0.5, "gaze_vertical_left": -1.0}
     moved = settled_displacement(simulation, gaze)
     bones = simulation.bones.transforms()
@@ -319,7 +331,7 @@ def test_each_eye_looks_for_itself(simulation, head):
 
 
 def test_fibres_shorten(simulation):
-    """The drawn fibres of a contracting muscle get shorter; every muscle has some."""
+    """Every muscle has fibres to draw, which get shorter in a contraction."""
     relaxed = simulation.anatomy.fibres()
     assert all(relaxed[name] for name in relaxed)
     settled_displacement(simulation, {"zygomaticus_major_left": 1.0})
@@ -334,6 +346,9 @@ def _length(line):
 
 @pytest.mark.parametrize("name", ["cheekPuff", "mouthPucker", "kiss"])
 def test_blown_cheeks_and_kisses_keep_the_lips_shut(simulation, head, name):
-    """None of their muscles parts the lips, so the seal holds, also on heads with parted lips."""
+    """Blown cheeks and kisses keep the lips shut, because none of their muscles parts them.
+
+    This holds on heads with parted lips, too.
+    """
     settled_displacement(simulation, {name: 1.0})
     assert simulation.grip.stiffness > 50.0

@@ -1,4 +1,4 @@
-"""Layers: tables above the muscles add up, take sides, and name the row that is wrong."""
+"""Layers: tables of controls above the muscles. They add up, have sides, and report errors."""
 
 from types import SimpleNamespace
 
@@ -31,12 +31,12 @@ VISEMES = "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
 
 
 def layer(title, **rows):
-    """A table in the form that assets reads."""
+    """A table in the form in which assets reads it."""
     return SimpleNamespace(title=title, source=f"{title}.toml", rows=rows)
 
 
 def controls(*layers):
-    """Four lowest controls, one of them with two directions, under some layers."""
+    """Four lowest controls, one with two directions, below some layers."""
     lowest = tuple(Control(name, "Lowest", -1.0 if name == "slide" else 0.0) for name in LOWEST)
     return Controls(lowest, read_layers(layers, LOWEST))
 
@@ -56,13 +56,13 @@ def sums_of(*numbers):
 
 
 def wanted(subject, **values):
-    """The sums of the lowest controls with these values and no others."""
+    """The expected sums: these values, and 0 for all other lowest controls."""
     subject.pose(values)
     return subject.sums
 
 
 def test_rows_share_into_the_layers_below():
-    """A row scales its entries, through every layer down to the muscles."""
+    """A row scales its entries through every layer, down to the muscles."""
     subject = controls(UNITS, FACES)
     assert wanted(subject, both=1.0) == approx(sums_of(0.4, 0.4, 0.3, 0.25))
     assert wanted(subject, both=0.5)["puller_left"] == approx(0.2)
@@ -70,7 +70,7 @@ def test_rows_share_into_the_layers_below():
 
 
 def test_sides_of_a_pair_add_up_to_the_whole():
-    """A side takes its own muscles and half of one in the middle."""
+    """A side activates its own muscles, and half of a muscle in the middle."""
     subject = controls(UNITS)
     left = wanted(subject, A_left=1.0)
     right = wanted(subject, A_right=1.0)
@@ -79,7 +79,7 @@ def test_sides_of_a_pair_add_up_to_the_whole():
 
 
 def test_sides_may_be_spelled_as_arkit_does():
-    """Two controls of one row, and none for both."""
+    """Sides named as in ARKit make two controls of one row, and none for both."""
     subject = controls(layer("Shapes", smile={"pair": "Left Right", "puller": 0.5, "middle": 0.2}))
     assert subject.groups["Shapes"] == ("smileLeft", "smileRight")
     assert "smile" not in subject.names
@@ -93,7 +93,10 @@ SHARED = layer(
 
 @given(part=st.floats(0.0, 1.0), whole=st.floats(0.0, 1.0))
 def test_a_share_counts_as_part_of_the_whole(part, whole):
-    """All of a whole counts as 1, half of it as a half, none of it as nothing; it never jumps."""
+    """A share is its part divided by the whole, at most 1, also when the whole is near 0.
+
+    It never jumps.
+    """
     subject = controls(SHARED)
     share = wanted(subject, part=part, whole=whole)["middle"] / 0.8
     assert 0.0 <= share <= 1.0
@@ -105,7 +108,7 @@ def test_a_share_counts_as_part_of_the_whole(part, whole):
 
 
 def test_a_share_follows_the_whole_that_is_set_later():
-    """The order of both does not matter, and everything that it moves follows."""
+    """A share follows its whole in any order of setting, and everything it moves follows."""
     subject = controls(SHARED)
     subject.set_all({"part": 0.3})
     assert not subject.wanted.any()
@@ -115,7 +118,7 @@ def test_a_share_follows_the_whole_that_is_set_later():
 
 
 def test_what_rows_make_sure_of_does_not_add():
-    """The greatest of them holds, through every layer, unless the sum is greater anyway."""
+    """Of several floors the greatest holds, through every layer, unless the sum exceeds it."""
     units = layer(
         "Units",
         A={"puller": 0.5, "at_least": {"slide": 0.4}},
@@ -135,7 +138,10 @@ def test_what_rows_make_sure_of_does_not_add():
 
 
 def test_sums_are_cut_off_once_and_in_any_order():
-    """Own value and contributions add up, opposite ones cancel, and limits apply at the end."""
+    """The own value and contributions are summed in any order, and clipped once at the end.
+
+    Opposite contributions cancel.
+    """
     subject = controls(UNITS, FACES)
     other = controls(UNITS, FACES)
     values = {"puller_left": 0.5, "A": 0.9, "both": 1.0, "B_left": 1.0, "B_right": 0.4}
@@ -181,7 +187,10 @@ def test_a_wrong_row_is_named(rows, message):
 
 
 def test_a_row_cannot_hold_what_is_a_share():
-    """A share follows set values, which a row above does not know."""
+    """A row cannot use a control that is a share.
+
+    A share depends on set values, which a row in a higher layer does not have.
+    """
     with pytest.raises(ValueError, match=r"'above', 'part': is a share of 'whole', which"):
         controls(SHARED, layer("Y", above={"part": 1.0}))
 
@@ -204,7 +213,7 @@ def test_the_shipped_tables_are_complete(controls, head):
 
 
 def test_each_row_of_the_shipped_tables_does_something(controls):
-    """At full value it needs some muscle or bone; silence needs none."""
+    """At full value each row moves some muscle or bone, except the row of silence."""
     for title in TITLES:
         for name in controls.layers[title]:
             controls.pose({name: 1.0, **({"jawOpen": 0.5} if name == "mouthClose" else {})})
@@ -223,7 +232,7 @@ def mirrored(sums):
 
 
 def test_sides_of_arkit_shapes_ask_for_the_same(controls):
-    """A shape of the left moves the left as its twin moves the right."""
+    """A left ARKit shape has the mirrored sums of its right partner."""
 
     def sums(name):
         controls.pose({name: 1.0})
@@ -237,7 +246,7 @@ def test_sides_of_arkit_shapes_ask_for_the_same(controls):
 
 
 def test_expressions_have_sides(controls):
-    """Both sides together are the whole; a one-sided face has its image on the other side."""
+    """Both sides of an expression add up to the whole, and are mirror images of each other."""
 
     def sums(*names):
         controls.pose(dict.fromkeys(names, 0.5))
@@ -289,8 +298,11 @@ def test_rows_keep_the_mesh_sound(simulation, head, title):
 
 
 def test_units_that_look_alike_differ(simulation, head):
-    """AU9 pulls the nose up and the brows down over closed lips, AU10 parts the lips alone; AU23
-    narrows the mouth, AU24 flattens the lips."""
+    """Similar action units have different effects.
+
+    AU9 pulls the nose up and the brows down over closed lips, AU10 only parts the lips; AU23
+    narrows the mouth, AU24 flattens the lips.
+    """
     face = {
         name: settled_displacement(simulation, {name: 1.0})[head.landmarks]
         for name in ("AU9", "AU10", "AU23", "AU24")
@@ -308,7 +320,7 @@ def test_units_that_look_alike_differ(simulation, head):
 
 @pytest.mark.parametrize("sound", [sound for sound in VISEMES if sound != "sil"])
 def test_speech_is_crisp(simulation, head, sound):
-    """A viseme is complete after 120 ms, measured at the lips, and overshoots by 2 % at most."""
+    """A viseme is complete after 120 ms at the lips, and overshoots by 2 % at most."""
     lips = head.landmarks[48:68]
     target = settled_displacement(simulation, {f"viseme_{sound}": 1.0}, frames=90)[lips]
     simulation.reset()

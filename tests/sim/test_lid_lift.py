@@ -1,4 +1,4 @@
-"""A closed lid of few triangles is far enough out that the eyeball does not pierce it."""
+"""A closed lid of few triangles is lifted, so that the eyeball does not pierce it."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from risorius.sim.landmarks import Side
 from risorius.sim.lid_lift import lift_off
 from risorius.sim.skull import Eyeball
 
-CLEARANCE = 0.3  # mm
+CLEARANCE = 0.3  # [mm]
 BALL = Eyeball(Side.LEFT, np.array([30.0, 2.0, 70.0]), 13.0)
 AHEAD = np.array([[-6.0, -5.0], [6.0, -5.0], [0.0, 7.0]])  # a triangle before the pupil
 FACE = np.array([[0, 1, 2]], np.int32)
@@ -17,7 +17,7 @@ ABOVE = np.array([0.0, 20.0, 0.0])  # an earlier place of a closing lid
 
 
 def at(beside, distance):
-    """Points in front of the ball, `distance` [mm] from its centre, shape (n, 3)."""
+    """Points in front of the ball at this distance [mm] from its centre, shape (n, 3)."""
     ahead = np.sqrt(distance**2 - (beside**2).sum(axis=1))
     return BALL.centre + np.column_stack([beside, ahead])
 
@@ -35,7 +35,7 @@ def nearest(x):
 
 
 def test_a_flat_triangle_is_lifted_over_the_cornea():
-    """Its corners are well off the ball, its middle cuts it; lifted, the middle is off it, too."""
+    """A flat triangle whose middle cuts the cornea is lifted until its middle is outside."""
     closed = at(AHEAD, 14.0)
     rest = closed + ABOVE
     assert nearest(closed) < 13.0
@@ -45,7 +45,7 @@ def test_a_flat_triangle_is_lifted_over_the_cornea():
 
 
 def test_what_is_far_enough_stays():
-    """Small triangles at a lid's thickness from the ball, beside the cornea, need no lift."""
+    """Small triangles at a lid's thickness from the ball, beside the cornea, are not lifted."""
     closed = at(AHEAD / 20.0 + [11.0, 0.0], 13.0 + CLEARANCE + 0.05)
     assert not lift_off(closed, closed, FACE, ALL, BALL).any()
 
@@ -53,21 +53,24 @@ def test_what_is_far_enough_stays():
 @pytest.mark.parametrize(
     ("faces", "moves", "sunk"),
     [
-        (FACE, np.zeros(3), 0.0),  # the lower lid
+        (FACE, np.zeros(3), 0.0),  # a lower lid
         (FACE[:, ::-1], ALL, 0.0),  # the inner side of a lid
-        (FACE, ALL, 3.0),  # a part that was inside the ball, under the lid's edge
+        (FACE, ALL, 3.0),  # started inside the ball, under the lid's edge
     ],
     ids=["lower lid", "inner side", "sunk at rest"],
 )
 def test_what_belongs_there_stays(faces, moves, sunk):
-    """Only the outer side of the upper lid must be in front of the ball."""
+    """Only the outer side of the upper lid is lifted."""
     closed = at(AHEAD, 14.0)
     rest = at(AHEAD, 13.0 - sunk) if sunk else closed + ABOVE
     assert not lift_off(closed, rest, faces, moves, BALL).any()
 
 
 def test_the_drawn_eyeball_is_what_lids_are_lifted_over(head):
-    """Almost no point of it is farther out than the sphere with the cornea of lid_lift.py."""
+    """Almost no point of the drawn eyeball is outside the shape that lid_lift.py assumes.
+
+    The shape is a sphere with a cornea.
+    """
     for eye in head.eyes:
         ball = Eyeball(Side(eye.name), eye.centre, eye.radius)
         part = next(part for part in head.parts if part.name == f"eyeball_{eye.name}")

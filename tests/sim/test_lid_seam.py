@@ -14,7 +14,7 @@ WHERE = np.linspace(0.0, 1.0, COLUMNS)
 
 
 def test_no_step_below_a_corner_above_the_lower_lid():
-    """The seam rises to a corner of 6 degrees from a lid of -8, so there is no notch."""
+    """The seam rises from a lid at -8 degrees to a corner at 6 degrees without a notch."""
     seam = np.radians(np.where((WHERE == 0.0) | (WHERE == 1.0), 6.0, -8.0))
     upper = np.radians(6.0 + 68.0 * WHERE * (1.0 - WHERE))
     raised = raised_at_corners(seam, upper)
@@ -32,16 +32,19 @@ def test_a_level_lid_keeps_its_seam():
 
 
 def test_lids_follow_a_gaze_on_a_large_ball_no_farther():
-    """The motion of a lid does not grow with a ball beyond a human's size."""
+    """A lid's motion does not grow on eyeballs larger than a human's."""
     assert gaze_share_of(12.8) == 1.0
     assert_allclose(gaze_share_of(16.2) * 16.2, gaze_share_of(12.8) * 12.8)
 
 
 def test_a_shut_lid_is_a_smooth_sheet_over_the_ball(simulation, head):
-    """Its corner does not sink, and no vertex of the fold drops 4 mm beside a fixed one."""
+    """The corner of a shut lid does not sink.
+
+    No vertex of its fold drops 4 mm beside a fixed one.
+    """
     shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
     moved = settled_displacement(simulation, shut)
-    inner = np.array([0, 1, 2, 17, 18, 19])  # places in a row, from the inner corner
+    inner = np.array([0, 1, 2, 17, 18, 19])  # positions in a row, from the inner corner
     for row in ("eye_1_left", "eye_2_left", "eye_1_right", "eye_2_right"):
         assert moved[head.rings[row][inner], 2].min() > -1.0
     for row in ("eye_3_left", "eye_3_right"):
@@ -50,7 +53,10 @@ def test_a_shut_lid_is_a_smooth_sheet_over_the_ball(simulation, head):
 
 
 def test_a_shut_lid_of_deep_set_eyes_lies_on_the_ball():
-    """An old man's lid was a pouch, which stood 6 mm before the ball under a high brow."""
+    """With deep-set eyes a shut lid lies on the eyeball.
+
+    An old man's lid once stood 6 mm before the ball under a high brow.
+    """
     man = make_person(sample_identity(47))
     simulation = sim.Simulation(build_face_model(man))
     shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
@@ -64,7 +70,7 @@ def test_a_shut_lid_of_deep_set_eyes_lies_on_the_ball():
 
 
 def test_skin_beside_the_inner_corner_slides_along(simulation, head):
-    """No edge on the nose's side of it shortens by a fifth as the eye shuts."""
+    """When an eye shuts, no edge at the nose's side of the inner corner shortens by a fifth."""
     shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
     aside = settled_displacement(simulation, shut)[:, 0]
     corner = head.vertices[head.landmarks[42]]

@@ -1,4 +1,4 @@
-"""The visible mouth: shut unless a control opens it, and with rounded corners if one does.
+"""The visible mouth: shut unless a control opens it, and then with rounded corners.
 
 It is checked from the front, both sides, above and below, on the mesh and on the refined mesh
 (smoothing thins a folded lip a little, so closed lips are pressed together).
@@ -14,8 +14,8 @@ from risorius.assets.model import Head
 from risorius.bench.gaps import meshes_of, widest_slit
 from tests.sim.poses import both_sides, settled_displacement
 
-SHUT = 0.3  # mm: about a pixel of a full-screen close-up
-UNMOVED = 0.01  # mm: lips that no muscle moves need no check
+SHUT = 0.3  # [mm], about a pixel of a full-screen close-up
+UNMOVED = 0.01  # [mm]; lips that no muscle moves need no check
 SHUT_EXPRESSIONS = ("kiss", "sadness", "anger", "contempt", "wink", "blink")
 OPENERS = (
     "levator_labii_superioris_alaeque_nasi", "levator_labii_superioris",
@@ -34,7 +34,10 @@ def refiner(head: Head) -> refine.Refiner:
 
 @pytest.fixture
 def slits(simulation: sim.Simulation, head: Head, refiner: refine.Refiner) -> Slits:
-    """Measures the widest slit between the lips from any side: of the mesh, and refined."""
+    """A function that measures the widest slit between the lips, from any side.
+
+    It returns the slit of the mesh and of the refined mesh.
+    """
 
     def measure():
         landmarks = simulation.positions[head.landmarks]
@@ -48,7 +51,7 @@ def slits(simulation: sim.Simulation, head: Head, refiner: refine.Refiner) -> Sl
 
 @pytest.mark.parametrize("name", SHUT_EXPRESSIONS)
 def test_closed_mouth_shows_no_teeth(simulation, head, slits, name):
-    """In expressions with a closed mouth the lip line is shut, refined or not."""
+    """In expressions with a closed mouth the lips are shut, refined or not."""
     settled_displacement(simulation, head.expressions[name])
     for mesh, slit in slits().items():
         assert slit < SHUT, mesh
@@ -64,7 +67,7 @@ def test_closed_mouth_shows_no_teeth(simulation, head, slits, name):
     ],
 )
 def test_no_other_muscle_opens_the_mouth(simulation, model, slits, sides, strength):
-    """No muscle opens it, except those with this purpose."""
+    """No muscle opens the mouth, except those made for it."""
     muscles = {
         name.removesuffix("_left").removesuffix("_right")
         for name in simulation.controls.lowest
@@ -83,7 +86,7 @@ def test_no_other_muscle_opens_the_mouth(simulation, model, slits, sides, streng
 
 
 def test_slit_measure_sees_an_open_mouth(simulation, head, slits):
-    """The measure agrees with the lip landmarks of an open mouth."""
+    """The measure of slits agrees with the lip landmarks of an open mouth."""
     settled_displacement(simulation, {"jaw_open": 0.5})
     inner = simulation.positions[head.landmarks[[62, 66]], 1]
     assert slits()["static"] == pytest.approx(inner[0] - inner[1], abs=2.0)

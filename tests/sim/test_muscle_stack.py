@@ -1,4 +1,4 @@
-"""Muscles that lie on others follow these: moved along, lifted by their bulge, and only then."""
+"""A muscle that lies on others is moved along by them, and lifted by their bulge."""
 
 import copy
 
@@ -14,7 +14,7 @@ BENEATH = "buccinator"
 
 
 def stacked(head, stack, **changes):
-    """The head without muscles on others except those of `stack`, with `changes` to BENEATH."""
+    """The head whose only stacked muscles are those of `stack`; `changes` apply to BENEATH."""
     face = without(head)
     face.rig = copy.deepcopy(dict(head.rig))
     for name, muscle in face.rig["muscle"].items():
@@ -31,7 +31,7 @@ def displaced(simulation, muscle):
 
 
 def test_a_muscle_rises_on_the_bulge_beneath(head):
-    """Over a thicker buccinator the relaxed zygomaticus is lifted higher off the cheek's bone."""
+    """Over a thicker buccinator, the relaxed zygomaticus rises farther from the cheekbone."""
     rises = []
     for bulge in (0.0, 5.0, 10.0):
         simulation = sim.create(stacked(head, {ABOVE: [BENEATH]}, bulge=bulge))
@@ -41,11 +41,11 @@ def test_a_muscle_rises_on_the_bulge_beneath(head):
     lifted = [float(((rise - rises[0]) @ outward).max()) for rise in rises]
     assert lifted[1] > 1.5
     assert lifted[2] == pytest.approx(2.0 * lifted[1])
-    assert np.abs(rises[0]).max() > 2.0  # and it moves along without any bulge
+    assert np.abs(rises[0]).max() > 2.0  # it moves along even without a bulge
 
 
 def test_nothing_is_carried_by_what_does_not_lie_beneath(head):
-    """Without its row the zygomaticus does not move, and neither does that of the other side."""
+    """A muscle is not moved by one it does not lie on, nor by one of the other side."""
     apart = sim.create(stacked(head, {}))
     settled_displacement(apart, {f"{BENEATH}_left": 1.0})
     assert not displaced(apart, f"{ABOVE}_left").any()
@@ -55,7 +55,10 @@ def test_nothing_is_carried_by_what_does_not_lie_beneath(head):
 
 
 def test_carrying_is_the_formula(simulation, model, state):
-    """Each point moves by shares of the lines beneath, in plain numpy; the sum is at most 1."""
+    """Each point moves by shares of the lines beneath, as in plain numpy.
+
+    Their sum is at most 1.
+    """
     muscles = model.muscles
     pose = model.skull.mandible_motion(0.5, 0.3, 0.2)
     activation = np.linspace(-0.2, 1.0, len(muscles.names))

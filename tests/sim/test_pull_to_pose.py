@@ -1,4 +1,4 @@
-"""Pull to pose: muscles are found that hold skin at the place of a pull."""
+"""Pull to pose: muscles that hold skin at the place to which it was pulled."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from pytest import approx
 from risorius import sim
 from tests.sim.poses import FRAME
 
-FINGER = 16.0  # mm
+FINGER = 16.0  # [mm]
 RIGHT_CORNER = 48
 LEFT_CORNER = 54
 LEFT_BROW = 24
@@ -31,7 +31,7 @@ def candidates(face):
 
 
 def pull_at(face, vertex, offset, **options):
-    """Solve for skin around a vertex pulled by an offset [mm]; return the motion of the middle."""
+    """Solve for skin around a vertex pulled by an offset [mm]; return its middle's motion."""
     distance = norm(face.positions - face.positions[vertex], axis=1)
     finger = np.flatnonzero(distance < FINGER)
     firmness = (1.0 - (distance[finger] / FINGER) ** 2) ** 2
@@ -43,12 +43,12 @@ def pull_at(face, vertex, offset, **options):
 
 
 def values_of(pull):
-    """The solved values, by single controls."""
+    """The solved values of the controls, sides apart."""
     return {name: value for names, value in pull.changes.items() for name in names}
 
 
 def settled(face, values):
-    """Final places of the skin with these controls."""
+    """The places of the skin after these controls have settled."""
     face.controls.set_all(values)
     for _ in range(60):
         face.step(FRAME)
@@ -56,7 +56,7 @@ def settled(face, values):
 
 
 def test_a_corner_pulled_up_and_back_smiles(simulation, head):
-    """Joy's motion of the corner of the mouth is made by zygomaticus major, and stays."""
+    """A corner of the mouth pulled up and back, as in joy, is held by zygomaticus major."""
     corner = head.landmarks[LEFT_CORNER]
     drawn = settled(simulation, {"joy": 1.0})[corner] - simulation.rest_positions[corner]
     simulation.reset()
@@ -81,7 +81,7 @@ def test_a_corner_pulled_up_and_back_smiles(simulation, head):
     ],
 )
 def test_skin_is_held_by_what_moves_it_in_life(simulation, head, landmark, offset, wanted):
-    """Brow up, chin down or aside, corner down, lid shut: few muscles, and the right ones."""
+    """Pulled brow, chin, corner and lid are each held by the few muscles of anatomy."""
     pull, before = pull_at(simulation, head.landmarks[landmark], offset)
     found = values_of(pull)
     assert wanted <= found.keys()
@@ -90,7 +90,7 @@ def test_skin_is_held_by_what_moves_it_in_life(simulation, head, landmark, offse
 
 
 def test_what_no_muscle_can_do_is_not_done(simulation, head):
-    """The nose above its tip, pulled forward, does not move, and neither does the crown."""
+    """Pulled forward, the nose above its tip does not move, and neither does the crown."""
     pull, before = pull_at(
         simulation, head.landmarks[NOSE - 1], (0.0, 0.0, 10.0), sight=(1.0, 0.0, 0.0)
     )
@@ -114,7 +114,7 @@ def test_what_no_muscle_can_do_is_not_done(simulation, head):
     ],
 )
 def test_a_generous_pull_goes_as_far_as_a_short_one(simulation, head, landmark, way):
-    """Pulled far beyond the reach of muscles, skin goes to their limit, by three at most."""
+    """Skin pulled far beyond the reach of muscles moves to their limit, by three at most."""
     went = []
     for length in (6.0, 20.0, 40.0):
         simulation.reset()
@@ -128,7 +128,7 @@ def test_a_generous_pull_goes_as_far_as_a_short_one(simulation, head, landmark, 
 
 
 def test_mirrored_pulls_are_mirrored(simulation, head):
-    """The other corner, pulled the other way, is held by the muscles of the other side."""
+    """A mirrored pull is held by the muscles of the other side."""
     left, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (7.0, 8.0, 0.0))
     right, _ = pull_at(simulation, head.landmarks[RIGHT_CORNER], (-7.0, 8.0, 0.0))
     mirrored = {name.replace("left", "right"): value for name, value in values_of(left).items()}
@@ -137,7 +137,7 @@ def test_mirrored_pulls_are_mirrored(simulation, head):
 
 
 def test_the_answer_does_not_depend_on_the_way(simulation, head):
-    """A finger that made a detour, in many frames, ends with exactly the same muscles."""
+    """The result depends on the end of a pull only, not on detours in many frames."""
     straight, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (7.0, 8.0, 0.0))
     winding, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (0.0, 0.0, 0.0))
     at_rest = winding.targets
@@ -148,7 +148,7 @@ def test_the_answer_does_not_depend_on_the_way(simulation, head):
 
 
 def test_a_pose_stays_and_is_only_added_to(simulation, head):
-    """A brow pulled up does not change a smile; a corner pulled back down removes it."""
+    """A brow pulled up does not change a smile; a corner pulled back down removes the smile."""
     settled(simulation, {"zygomaticus_major_left": 0.8})
     brow, _ = pull_at(simulation, head.landmarks[LEFT_BROW], (0.0, 5.0, 0.0))
     assert "zygomaticus_major_left" not in values_of(brow)

@@ -1,4 +1,4 @@
-"""A finger on the skin: it follows, it stays stable, it swings back."""
+"""Pulled skin: it follows a pointer, stays stable, and swings back."""
 
 import numpy as np
 from numpy.linalg import norm
@@ -7,14 +7,14 @@ from tests.sim.poses import FRAME
 
 
 def cheek(simulation):
-    """The vertices within 12 mm of one on the left cheek."""
+    """Vertices within 12 mm of a vertex on the left cheek."""
     rest = simulation.rest_positions
     middle = rest[np.abs(rest - rest.mean(axis=0) - (40.0, -20.0, 60.0)).sum(axis=1).argmin()]
     return np.flatnonzero(norm(rest - middle, axis=1) < 12.0)
 
 
 def test_skin_follows_a_finger_and_swings_back(simulation):
-    """Pulled by 20 mm it moves most of the way with skin around; released, it returns to rest."""
+    """Pulled by 20 mm, skin and its surroundings move most of the way; released, they rest."""
     grabbed = cheek(simulation)
     target = simulation.rest_positions[grabbed] + (20.0, 0.0, 0.0)
     simulation.touch.drag(grabbed, target, np.ones(len(grabbed)))
@@ -31,7 +31,7 @@ def test_skin_follows_a_finger_and_swings_back(simulation):
 
 
 def test_a_finger_knows_where_a_turned_head_is(simulation):
-    """With a turned head the skin still follows the finger."""
+    """On a turned head, skin still follows the pointer."""
     simulation.controls.set("head_yaw", 1.0)
     for _ in range(90):
         simulation.step(FRAME)
@@ -47,7 +47,7 @@ def test_a_finger_knows_where_a_turned_head_is(simulation):
 
 
 def test_a_mad_finger_breaks_nothing(simulation, generator):
-    """Jumps of 100 mm in every frame stay bounded, at the longest step."""
+    """A pointer that jumps 100 mm in every frame leaves skin within bounds, at the longest step."""
     grabbed = cheek(simulation)
     for _ in range(40):
         offset = generator.uniform(-100.0, 100.0, 3)

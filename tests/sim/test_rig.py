@@ -19,7 +19,7 @@ def _fibre():
 
 
 def _document():
-    """A small rig of every kind of muscle."""
+    """A small rig with every kind of muscle."""
     text = {"action": "moves", "group": "Group"}
     return {
         "format": 1,
@@ -34,7 +34,7 @@ def _document():
 
 
 def test_small_rig_is_read():
-    """Values get to their places, and the others have their documented default."""
+    """Given values are read, and missing ones have their documented default."""
     rig = read_rig(_document())
     assert rig.tissue == Tissue(tangential=0.5)
     puller, closer, lifter = rig.muscles
@@ -46,7 +46,7 @@ def test_small_rig_is_read():
 
 
 def test_empty_rig_is_plain_tissue():
-    """No rig file means no muscles, not an error."""
+    """Without a rig file there are no muscles; it is not an error."""
     assert read_rig({}).muscles == ()
 
 
@@ -132,7 +132,7 @@ def test_each_mistake_is_named(change, message):
 
 
 def test_built_in_rig_is_complete(head):
-    """The face has the muscles of the textbooks; every real one has its action unit."""
+    """The face has the muscles of textbooks; every real muscle has its action unit."""
     rig = read_rig(head.rig)
     assert sum(muscle.tone for muscle in rig.muscles) >= 27
     for muscle in rig.muscles:
@@ -140,7 +140,7 @@ def test_built_in_rig_is_complete(head):
 
 
 def test_points_are_mirrored():
-    """On the right a point uses the mirrored landmark and the mirrored offset."""
+    """A point of the right side uses the mirrored landmark and the mirrored offset."""
     landmarks = np.zeros((68, 3))
     landmarks[54] = (30.0, -60.0, 5.0)
     landmarks[48] = (-30.0, -60.0, 5.0)
@@ -150,7 +150,7 @@ def test_points_are_mirrored():
 
 
 def test_rig_moves_with_the_head(head):
-    """Turned, moved and ten times smaller (with a guessed jaw), a smile is the same smile."""
+    """A smile is the same on a head turned, moved and ten times smaller, with a guessed jaw."""
     angle = np.radians(30.0)
     turn = np.array(
         [[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]]

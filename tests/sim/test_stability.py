@@ -1,4 +1,4 @@
-"""Rest stays at rest, energy decays, and no input breaks the face."""
+"""Stability: rest stays at rest, energy decays, and no input breaks the face."""
 
 from concurrent.futures import ThreadPoolExecutor
 
@@ -11,7 +11,7 @@ from tests.sim.poses import FRAME, both_sides, settled_displacement
 
 
 def test_rest_stays_at_rest(simulation, model, state):
-    """In two seconds without input nothing moves by a millionth of a millimetre."""
+    """In two seconds without input, nothing moves by a millionth of a millimetre."""
     for _ in range(120):
         simulation.step(FRAME)
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-6
@@ -20,7 +20,7 @@ def test_rest_stays_at_rest(simulation, model, state):
 
 @pytest.mark.parametrize("speed", [50.0, 500.0])
 def test_energy_only_falls_without_input(simulation, model, state, generator, speed):
-    """After a blow the energy falls in every frame and is 0 after a second and a half."""
+    """After a blow, energy falls in every frame, and is 0 after a second and a half."""
     simulation.touch.kick(generator.normal(scale=speed, size=simulation.positions.shape))
     energies = [_energy(model.skin, state, simulation.grip)]
     for _ in range(90):
@@ -31,7 +31,7 @@ def test_energy_only_falls_without_input(simulation, model, state, generator, sp
 
 
 def test_clones_do_not_disturb_each_other(simulation):
-    """In two threads at once each moves exactly as it does alone, to the bit."""
+    """Two clones in two threads move exactly as each does alone, to the bit."""
 
     def film(name):
         clone = simulation.clone()
@@ -50,7 +50,10 @@ def test_clones_do_not_disturb_each_other(simulation):
 @pytest.mark.slow
 @pytest.mark.parametrize("frames_per_second", [240.0, 60.0, 47.3, 20.0])
 def test_random_jumps_stay_bounded_and_come_back(simulation, generator, frames_per_second):
-    """Every control jumps in every frame; the face stays in bounds and is at rest after 2 s."""
+    """With random jumps of every control in every frame, the face stays within bounds.
+
+    It is at rest after 2 s without input.
+    """
     controls = simulation.controls
     limits = [controls.limits[name] for name in controls.lowest]
     furthest = 0.0
@@ -67,7 +70,7 @@ def test_random_jumps_stay_bounded_and_come_back(simulation, generator, frames_p
 
 
 def test_everything_at_once_on_and_off(simulation):
-    """All muscles at full strength, switched on and off every tenth of a second."""
+    """All muscles switch on and off every tenth of a second without breaking the face."""
     for beat in range(20):
         level = float(beat % 2)
         simulation.controls.set_all({name: level for name in simulation.controls.lowest})
@@ -88,7 +91,7 @@ def test_two_runs_are_bit_identical(simulation, head):
 
 
 def test_reset_forgets_everything(simulation):
-    """After a reset a run repeats itself bit by bit."""
+    """After a reset a run repeats itself to the bit."""
     values = both_sides(simulation, {"zygomaticus_major": 0.7, "jaw_open": 0.5})
     first = settled_displacement(simulation, values, frames=7)
     second = settled_displacement(simulation, values, frames=7)
@@ -96,7 +99,7 @@ def test_reset_forgets_everything(simulation):
 
 
 def test_frame_length_hardly_matters(simulation):
-    """A smile after a quarter of a second is the same at 20, 60 and 240 frames per second."""
+    """A smile after 0.25 s is the same at 20, 60 and 240 frames per second."""
     values = both_sides(simulation, {"zygomaticus_major": 1.0})
     poses = []
     for rate in (20, 60, 240):
@@ -106,11 +109,11 @@ def test_frame_length_hardly_matters(simulation):
             simulation.step(1.0 / rate)
         poses.append(simulation.positions.copy())
     apart = [np.abs(pose - poses[2]).max(axis=1) for pose in poses[:2]]
-    assert np.percentile(apart, 99) < 0.06 and np.max(apart) < 0.45  # a lip slides over teeth there
+    assert np.percentile(apart, 99) < 0.06 and np.max(apart) < 0.45  # where a lip slides over teeth
 
 
 def test_broken_state_is_reported(simulation, state):
-    """A state that is not finite raises, and a reset repairs it."""
+    """A state that is not finite raises an error, and a reset repairs it."""
     state.x[10] = np.nan
     with pytest.raises(sim.SimulationUnstable, match=r"vertices are not finite.*reset"):
         simulation.step(FRAME)

@@ -1,4 +1,4 @@
-"""The skin as a graph: fields on it, and ways along its edges, compared with scipy's."""
+"""The skin as a graph: fields on it, and paths along its edges, compared with scipy's."""
 
 from itertools import pairwise
 
@@ -19,7 +19,7 @@ def surface(model):
 
 
 def laplacian_of(surface):
-    """Laplacian of the edges' stiffness, assembled entry by entry."""
+    """The Laplacian of the edges' stiffness, assembled entry by entry."""
     i, j = surface.edges.T
     count = surface.vertex_count
     links = sparse.coo_array((surface.edge_stiffness, (i, j)), shape=(count, count)).tocsr()
@@ -28,12 +28,12 @@ def laplacian_of(surface):
 
 
 def undirected(surface, lengths):
-    """The mesh in scipy's form of an undirected graph: each edge once."""
+    """The mesh as scipy's undirected graph: each edge once."""
     return sparse.csr_array((lengths, tuple(surface.edges.T)), shape=(surface.vertex_count,) * 2)
 
 
 def test_fields_solve_their_equations(surface, generator):
-    """For one column and several, with the diagonals of smoothed and of seeded fields."""
+    """Smoothed and seeded fields solve their equations, for one column and several."""
     laplacian = laplacian_of(surface)
     seeds = np.zeros(surface.vertex_count)
     seeds[generator.integers(0, surface.vertex_count, 30)] = 1e4
@@ -46,7 +46,7 @@ def test_fields_solve_their_equations(surface, generator):
 
 
 def test_smoothing_keeps_the_sum_and_takes_details(surface, generator):
-    """A vertex's loss is its neighbours' gain, by their areas."""
+    """Smoothing keeps the area-weighted sum: a vertex's loss is its neighbours' gain."""
     noise = generator.normal(size=surface.vertex_count)
     smooth = surface.smoother(25.0)(noise)
     assert surface.areas @ smooth == pytest.approx(surface.areas @ noise)
@@ -54,7 +54,7 @@ def test_smoothing_keeps_the_sum_and_takes_details(surface, generator):
 
 
 def test_distances_are_those_of_the_undirected_graph(surface):
-    """They are to the nearest of some vertices; a separate piece is infinitely far."""
+    """Distances are to the nearest of some vertices; a separate piece is infinitely far."""
     wanted = scipy.sparse.csgraph.dijkstra(
         undirected(surface, surface.lengths), directed=False, indices=[5, 400], min_only=True
     )
@@ -66,7 +66,7 @@ def test_distances_are_those_of_the_undirected_graph(surface):
 
 @pytest.mark.parametrize("hindrance", [0.0, 3.0, 1000.0])
 def test_ways_are_the_cheapest(surface, generator, hindrance):
-    """This also holds if the cheapest costs more than the search's first limit."""
+    """Paths are the cheapest, also if they cost more than the search's first limit."""
     stops = [36, 300, 41, 700]
     cost = hindrance * generator.random(surface.vertex_count)
     way = surface.way_through(stops, cost)
@@ -80,7 +80,7 @@ def test_ways_are_the_cheapest(surface, generator, hindrance):
 
 
 def test_a_graph_is_known_by_its_triangles(surface):
-    """Persons share it; a mesh with another vertex has its own."""
+    """Persons with the same triangles share a graph; a mesh with another vertex has its own."""
     count = surface.vertex_count
     known = graph_of(surface.faces, count)
     assert graph_of(surface.faces.copy(), count) is known
@@ -90,7 +90,7 @@ def test_a_graph_is_known_by_its_triangles(surface):
 
 
 def test_distance_to_a_polyline(generator):
-    """It follows the simple formula; corners may coincide."""
+    """Distances to a polyline equal the simple formula; corners may coincide."""
     points = generator.normal(size=(50, 3))
     corners = generator.normal(size=(6, 3))[[0, 1, 2, 2, 3, 4, 5]]
     shares = np.linspace(0.0, 1.0, 20001)[:, None]

@@ -1,4 +1,4 @@
-"""Targets of springs are computed again after changes, and only then."""
+"""Targets of springs are computed again after changes only."""
 
 from numpy.linalg import norm
 
@@ -8,7 +8,7 @@ FRAME = 1.0 / 60.0
 
 
 def test_a_face_that_rests_places_no_targets(simulation, monkeypatch):
-    """Once activations are reached, a step only moves skin; a newly set control counts."""
+    """When activations are reached, a step moves skin only; a changed control is noticed."""
     placed = []
     place = Simulation.place_targets
     monkeypatch.setattr(
@@ -27,7 +27,7 @@ def test_a_face_that_rests_places_no_targets(simulation, monkeypatch):
 
 
 def test_a_finger_is_felt_by_a_resting_face(simulation):
-    """Skin is pulled from the next step on, and springs back when released."""
+    """Skin of a resting face moves in the first step of a pull, and springs back after it."""
     simulation.step(FRAME)
     rest = simulation.positions.copy()
     vertex = int(rest[:, 2].argmax())

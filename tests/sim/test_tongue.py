@@ -22,7 +22,7 @@ QUICK = {"tongueOut": 1.0}, {"tongue_out": 0.5, "jaw_open": 0.35}, {"viseme_DD":
 
 
 def placed(simulation, points, bone):
-    """Points of a part at their places by its bone."""
+    """A part's points, placed by its bone."""
     matrix = simulation.bones.transforms()[bone]
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
@@ -35,17 +35,17 @@ def tongue_now(simulation):
 
 
 def is_within(points, vertices, faces):
-    """Flags of points in a closed surface."""
+    """Whether points are inside a closed surface."""
     return np.abs(winding_numbers(vertices, faces, points)) > 0.5
 
 
 def with_middles(vertices, faces):
-    """Vertices and the middles of faces."""
+    """Vertices, and the middles of faces."""
     return np.vstack([vertices, vertices[faces].mean(axis=1)])
 
 
 def test_a_resting_tongue_is_the_part(simulation, head):
-    """Without its controls it does not move, in any pose of the jaw."""
+    """Without its controls the tongue is the rigid part, in any pose of the jaw."""
     settled_displacement(simulation, {"jaw_open": 0.6, "AU12": 1.0})
     bent = simulation.anatomy.tongue()
     assert bent is not None
@@ -54,7 +54,7 @@ def test_a_resting_tongue_is_the_part(simulation, head):
 
 @pytest.mark.parametrize("jaw", [0.25, 0.35, 0.6])
 def test_the_tongue_comes_out_over_the_lip(simulation, head, jaw):
-    """It moves farther and farther; at the end it hangs in front of the lower lip."""
+    """The tongue comes out farther and farther, and finally hangs before the lower lip."""
     tip = part(head, "tongue").vertices[:, 2].argmax()
     reach = []
     for out in (0.0, 0.25, 0.5, 0.75, 1.0):
@@ -63,12 +63,12 @@ def test_the_tongue_comes_out_over_the_lip(simulation, head, jaw):
     lip = simulation.positions[head.landmarks[LOWER_LIP]]
     assert np.all(np.diff(reach) > 0.3)
     assert reach[-1] > lip[2] + 2.0
-    hangs = 8.0 if jaw < 0.3 else 18.0  # [mm]: a narrow mouth holds it up
+    hangs = 8.0 if jaw < 0.3 else 18.0  # [mm]; a narrow mouth holds it up
     assert tongue_now(simulation)[tip, 1] < lip[1] - hangs
 
 
 def test_a_tongue_that_is_out_has_a_groove(simulation, head):
-    """Its upper side is lowest in the middle, before the lip; at the tip it is not."""
+    """A tongue that is out is lowest in the middle before the lip, but not at its tip."""
     tongue = part(head, "tongue")
     settled_displacement(simulation, {"jaw_open": 0.5, "tongue_out": 1.0})
     bent = simulation.anatomy.tongue()
@@ -83,7 +83,7 @@ def test_a_tongue_that_is_out_has_a_groove(simulation, head):
 
 
 def test_the_tongue_stays_in_a_shut_mouth(simulation, head):
-    """Closed lips keep it in, even over an open jaw."""
+    """Closed lips keep the tongue in, even over an open jaw."""
     for pose in ({"tongue_out": 1.0}, {"tongue_out": 1.0, "jawOpen": 0.5, "mouthClose": 0.5}):
         settled_displacement(simulation, pose)
         lips = simulation.positions[head.landmarks[[UPPER_LIP, LOWER_LIP]], 2]
@@ -91,7 +91,7 @@ def test_the_tongue_stays_in_a_shut_mouth(simulation, head):
 
 
 def test_the_tip_rises_behind_the_upper_teeth(simulation, head):
-    """In t, d, n and l it is near the incisors, above their edges, not in front of them."""
+    """In t, d, n and l the tip is behind the incisors, near them, and above their edges."""
     teeth = part(head, "teeth_upper").vertices
     incisors = teeth[np.abs(teeth[:, 0]) < 5.0]
     tip = part(head, "tongue").vertices[:, 2].argmax()
@@ -108,7 +108,7 @@ def test_the_tip_rises_behind_the_upper_teeth(simulation, head):
     ids=str,
 )
 def test_the_tongue_pierces_nothing(simulation, head, pose):
-    """No skin in front of the teeth and no front tooth is in the tongue."""
+    """Neither skin before the teeth nor a front tooth is inside the tongue."""
     settled_displacement(simulation, pose)
     tongue = tongue_now(simulation)
     faces = part(head, "tongue").faces
@@ -125,7 +125,7 @@ def test_the_tongue_pierces_nothing(simulation, head, pose):
 
 
 def test_the_measure_sees_what_is_pierced(head):
-    """The middle of the tongue is in it, a point above is not."""
+    """The measure reports the middle of the tongue as inside, and a point above as outside."""
     tongue = part(head, "tongue")
     points = np.array([[0.0, -77.0, 65.0], [0.0, -50.0, 65.0], [12.0, -77.0, 60.0]])
     found = is_within(points, tongue.vertices.astype(float), tongue.faces)
@@ -133,7 +133,7 @@ def test_the_measure_sees_what_is_pierced(head):
 
 
 def test_the_tongue_follows_in_time(simulation):
-    """It needs some frames, even if the lips burst open, and is back half a second later."""
+    """The tongue needs some frames, even if the lips burst open; half a second later it is back."""
     simulation.controls.pose({"jaw_open": 0.4, "tongue_out": 1.0})
     before = tongue_now(simulation)
     steps = []
@@ -149,7 +149,7 @@ def test_the_tongue_follows_in_time(simulation):
 
 
 def test_a_head_without_a_tongue_has_the_controls_all_the_same(head):
-    """Tables name them, and nothing is drawn."""
+    """A head without a tongue has its controls, because tables name them, and draws nothing."""
     bare = sim.create(without(head))
     bare.controls.pose({"tongue_out": 1.0})
     bare.step(FRAME)

@@ -30,7 +30,7 @@ def stirred(simulation: sim.Simulation, generator: np.random.Generator) -> sim.S
 
 
 def test_edge_forces(stirred, model, state):
-    """Biphasic tension along each edge plus shear on the difference of the ends' offsets."""
+    """Each edge has biphasic tension, and shear on the difference of its ends' offsets."""
     edges = model.skin.edges
     x = state.x
     state.offset[:] = x - state.carried
@@ -65,7 +65,7 @@ def test_tissue_forces(stirred, model, state):
 
 
 def test_seal_is_an_implicit_spring(stirred, model, state, generator):
-    """A single pair ends a substep at the speed that follows from the spring's force at its end."""
+    """A single pair's speed after a substep follows from its spring's force at the end."""
     skin = model.skin
     h = 0.002
     grip = Grip(3.0, 0.4)
@@ -130,7 +130,7 @@ def placed(model):
 
 
 def gate_of(muscle, side, model):
-    """Region of a muscle by the rig: on its side, and on its lip."""
+    """The region of a muscle by the rig: its side, and its lip."""
     gate = np.ones(model.surface.vertex_count)
     if muscle.pair and not muscle.crosses:
         gate = np.clip(0.5 + side.sign * model.surface.positions[:, 0] / 40.0, 0.0, 1.0)
@@ -141,7 +141,10 @@ def gate_of(muscle, side, model):
 
 
 def test_skin_hangs_on_fibres_by_the_formula(placed, model):
-    """A Gaussian across each fibre and past its end, and the motion of its skin by contraction."""
+    """The weight of skin on a fibre is a Gaussian across it and beyond its end.
+
+    Its motion follows from the contraction.
+    """
     x = model.surface.positions
     for at in placed:
         if not isinstance(at.muscle, LinearMuscle):
@@ -179,7 +182,10 @@ def test_skin_hangs_on_fibres_by_the_formula(placed, model):
 
 
 def test_skin_hangs_on_sphincters_by_the_formula(placed, model):
-    """Gaussians inside and outside an ellipse, along its arc, before the corners of the eyes."""
+    """The weight of skin on a sphincter is a Gaussian inside and outside an ellipse.
+
+    It fades along the arc, and is 0 more than 25 mm behind the corners of the eyes.
+    """
     x = model.surface.positions
     rear = model.landmarks[[36, 45], 2].mean() - 25.0
     for at in placed:
@@ -223,7 +229,7 @@ def test_fibres_contract_along_their_own_arc(stirred, model, state):
 
 
 def test_muscle_pull(stirred, model, state):
-    """Attachment and pull of all muscles, summed muscle by muscle and line by line."""
+    """Attachment and pull of all muscles equal sums muscle by muscle and line by line."""
     mandible = stirred.bones.mandible
     muscles = model.muscles
     weight = model.skull.mandible_weight
@@ -266,7 +272,7 @@ def test_muscle_pull(stirred, model, state):
 
 
 def test_bones_carry_anchors(stirred, model, state):
-    """Anchors blend between cranium and mandible by weight; their normals stay unit."""
+    """Anchors blend cranium and mandible by weight; their normals keep length one."""
     mandible = stirred.bones.mandible
     surface = model.surface
     weight = model.skull.mandible_weight
@@ -278,9 +284,9 @@ def test_bones_carry_anchors(stirred, model, state):
 
 
 def test_lids_turn_about_the_eyeball(simulation, model, state):
-    """Lids keep their distance from the eyeball's centre, except for their sinking; margins meet.
+    """Lids keep their distance from the eyeball's centre, except for sinking; margins meet.
 
-    Skin that slides beside the inner corner leaves the eyeball, and never enters it.
+    Skin that slides beside the inner corner may leave the eyeball, but never enters it.
     """
     lids = model.lids.vertices
     rest = model.surface.positions
@@ -301,7 +307,7 @@ def test_lids_turn_about_the_eyeball(simulation, model, state):
     turn_lids(state, rest, straight, closed, gaze)
 
     def angle(x):
-        """Angle [rad] about the axis of the lids."""
+        """The angle [radians] about the axis of the lids."""
         away = x[lids.vertex] - centre
         high = (away * lids.up[lids.eye]).sum(axis=1)
         far = (away * lids.forward[lids.eye]).sum(axis=1)
@@ -314,7 +320,7 @@ def test_lids_turn_about_the_eyeball(simulation, model, state):
 
 
 def test_an_open_lid_takes_its_fold_along(simulation, model, state):
-    """When it is raised and looks up, the fold is held and rises; at rest no force holds it."""
+    """The fold of a raised lid in upward gaze is held and rises; at rest no force holds it."""
     lids = model.lids.vertices
     rest = model.surface.positions
     still = np.zeros((len(lids.centres), 2))
@@ -331,7 +337,7 @@ def test_an_open_lid_takes_its_fold_along(simulation, model, state):
 
 
 def test_a_step_is_its_substeps(model):
-    """A frame without contact, computed with plain Euler, gives the same positions."""
+    """A frame without contact, computed with plain Euler steps, gives the same positions."""
     lips = model.skin.lips
     without_contact = model.skin._replace(
         lips=lips._replace(least_gap=lips.least_gap - 100.0),
