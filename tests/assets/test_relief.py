@@ -1,6 +1,7 @@
 """The relief of ears and neck in the maps of slopes and of light."""
 
 import numpy as np
+import scipy.ndimage
 
 EAR_PLACES = {  # height and depth on the left ear [mm]
     "stem of the antihelix": (-22.0, -15.3),
@@ -42,3 +43,36 @@ def test_a_muscle_stands_out_of_each_side_of_the_neck(head):
     assert left.max() > 15
     assert left.min() < -15
     np.testing.assert_allclose(row[::-1][512:], -left, atol=2)
+
+
+def test_shading_crosses_the_edges_of_the_neck(head):
+    """The map bends normals alike on both sides of an edge, so no triangle shows on the neck.
+
+    Slopes along u and v bend a normal by the gradients of u and v, which jump from triangle to
+    triangle. Beside four long edges on each side they were 3.06 to 4.8 degrees apart.
+    """
+    left = np.array([(193, 65), (193, 147), (193, 148), (193, 242)])
+    for edge in np.vstack([left, head.mirror[left]]):
+        faces = np.flatnonzero(np.isin(head.faces, edge).sum(axis=1) == 2)
+        first, second = (_bends_beside(head, face, edge) for face in faces)
+        apart = np.degrees(np.linalg.norm(first - second, axis=1).mean())
+        assert apart < 3.0, edge
+
+
+def _bends_beside(head, face, edge):
+    """Bends of the normal within a triangle, 1.5 texels beside an edge, (9, 3) [rad]."""
+    fine = head.fine_shape
+    size = len(fine.slopes)
+    corners = head.uv[head.face_uv[face]].astype(float)
+    ends = corners[[list(head.faces[face]).index(vertex) for vertex in edge]]
+    places = ends[0] + np.linspace(0.15, 0.85, 9)[:, None] * (ends[1] - ends[0])
+    inward = corners.mean(axis=0) - places
+    places += inward * 1.5 / (size * np.linalg.norm(inward, axis=1, keepdims=True))
+    at = size * (places * [1, -1] + [0, 1]) - 0.5
+    slopes = (fine.slopes - 128.0) * (fine.steepest / 127.0)
+    sampled = [
+        scipy.ndimage.map_coordinates(slopes[..., axis], at.T[::-1], order=1) for axis in (0, 1)
+    ]
+    sides = np.diff(head.vertices[head.faces[face]], axis=0)
+    gradients = np.linalg.pinv(sides) @ np.diff(corners, axis=0)
+    return np.array(sampled).T @ gradients.T
