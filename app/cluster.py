@@ -1,7 +1,7 @@
 """Work on a Dask cluster; each Dask worker runs it in processes of its own.
 
 Threads of a Dask worker cannot draw, and Dask reports a crash in a thread as a killed worker. So a
-Dask worker passes its work to a `WorkerPool`, as work on one computer does.
+Dask worker passes its work on to a `WorkerPool`.
 """
 
 from __future__ import annotations

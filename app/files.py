@@ -181,7 +181,7 @@ def check_links(target: Path) -> None:
 
 
 def entry_of(path: Path) -> str:
-    """Return a path without links in it; only a last link to a file is kept as it is."""
+    """Resolve the links in a path, except a link to a file at its end."""
     if path.is_dir():
         return os.path.realpath(path)
     return os.path.join(os.path.realpath(path.parent), path.name)

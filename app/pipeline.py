@@ -73,7 +73,7 @@ class Pipeline:
             self.maps = replace(self.maps, texture=texture)
 
     def step(self, seconds: float) -> None:
-        """Simulate some seconds, which moves the triangle mesh: the upper half of the figure."""
+        """Simulate `seconds`, and move the triangle mesh: the upper half of the figure."""
         self.scene.step(seconds)
 
     def refine(
@@ -83,7 +83,7 @@ class Pipeline:
         wrinkling: Wrinkling | None = None,
     ) -> None:
         """Refine each mesh; also needed for skipped frames, because a refiner may remember them."""
-        self.renderer.surface.make_current()  # streams on the graphics card belong to it
+        self.renderer.surface.make_current()  # streams on the card belong to its context
         for viewport in viewports:
             viewport.drawn.refine(self.scene.positions, camera, wrinkling)
 
@@ -136,7 +136,8 @@ class Pipeline:
             for viewport in viewports:
                 viewport.drawn.upload()
         with timer("draw"):
-            seen = self.anatomy.dissect(anatomy, has_hair=style.textured)  # plain skin shows form
+            # Hair is left out of pictures of plain skin, which show its form.
+            seen = self.anatomy.dissect(anatomy, has_hair=style.textured)
             self.renderer.draw(
                 *(self.frame_of(camera, style, each, seen, overlays) for each in viewports)
             )

@@ -23,9 +23,9 @@ _swept: set[Path] = set()  # parent folders that this process has cleaned
 
 
 class StagingFolder:
-    """A folder in `parent` to make files in; a context manager that makes and removes it.
+    """A context manager for a temporary folder in `parent`.
 
-    Raises OSError if it cannot be made.
+    Raises OSError if the folder cannot be made.
     """
 
     def __init__(self, parent: Path) -> None:

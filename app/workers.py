@@ -58,8 +58,8 @@ class Worker:
     ) -> None:
         """Begin `work(*arguments, send)`.
 
-        threads: number of threads for OpenGL, BLAS and refinement, which else take one for each
-        core. log: the file for the output of the process; None: the error stream.
+        threads: number of threads for each of OpenGL, BLAS and refinement; without a limit they
+        take one for each core. log: the file for the output of the process; None: the error stream.
         """
         code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve()"
         with contextlib.ExitStack() as stack:
@@ -325,7 +325,7 @@ def count_frames(work: Callable[[], object], send: Send) -> None:
 
 
 def give_way(niceness: int) -> None:
-    """Lower the priority of this process below its parent's priority, by 1 to 19."""
+    """Lower the priority of this process below its parent's; niceness: 1 to 19."""
     if hasattr(os, "nice"):
         os.nice(niceness)
     # If Linux shares time between sessions, niceness only works within one, and each process has

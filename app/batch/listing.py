@@ -16,7 +16,7 @@ from ..files import entry_of, read_text
 class Job:
     """A line of the list, which is a command to run.
 
-    command: its click command, "module:name". folder: the folder of its relative paths.
+    command: its click command, "module:name". folder: the folder in which its paths begin.
     inputs, outputs: the files that it reads and writes. log: the file for its output.
     """
 

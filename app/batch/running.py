@@ -29,7 +29,7 @@ SKIPPED = "skipped"
 
 @dataclass(frozen=True)
 class Result:
-    """The result of a line; `error` is the reason of a failure in one line, else empty."""
+    """The result of a line; error: the reason of a failure as one line of text, or ""."""
 
     job: Job
     status: str

@@ -17,7 +17,7 @@ from ..pictures import Image
 INK = (245, 245, 245)
 FAINT = (200, 203, 208)
 SHADE = (24, 26, 30)
-LEAST_CAPTION = 28  # [pixels] below a cell of a contact sheet: text of 15 pixels stays readable
+LEAST_CAPTION = 28  # [pixels] below a cell of a contact sheet, for readable text of 15 pixels
 LANCZOS = PIL.Image.Resampling.LANCZOS
 
 
@@ -70,7 +70,7 @@ def colour_bar(size: float) -> Image:
 
 
 def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, ImageDraw.ImageDraw]:
-    """A dark plate with round corners, and an object that draws on it."""
+    """Return a dark plate with round corners, and an object that draws on it."""
     page = PIL.Image.new("RGBA", (math.ceil(width), math.ceil(height)), (*SHADE, 0))
     draw = ImageDraw.Draw(page)
     corners = (0, 0, page.width - 1, page.height - 1)
@@ -86,7 +86,7 @@ def labels(
     has_bar: bool,
     least: float = 11.0,
 ) -> list[Label]:
-    """Captions at the foot of viewports, and the colour bar at the upper right.
+    """Return captions at the foot of viewports, and the colour bar at the upper right.
 
     A caption stands at the left of its viewport. The second of two captions stands at the right,
     away from the dividing line and the face. A caption without enough room is left out.

@@ -30,7 +30,7 @@ MARGIN = 0.05  # share of the frame that stays free on each side
 
 
 def whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
-    """A camera like that of `camera_for`, but far enough away to see the whole scene."""
+    """Return the camera of `camera_for`, moved away until it sees the whole scene."""
     camera = camera_for(scene, view)
     wanted = camera.distance
     camera.fit(scene.framing.extent, MARGIN)
@@ -91,7 +91,7 @@ def _framing(scene: Scene, view: str) -> render.OrbitCamera:
 
 @dataclass(frozen=True)
 class CaptureOptions:
-    """Options of a film of a script."""
+    """Options for the capture of a script."""
 
     size: tuple[int, int] = (1280, 720)  # of the whole picture [pixels]
     frames_per_second: float = 30.0
@@ -99,7 +99,7 @@ class CaptureOptions:
     beside: tuple[Refinement, ...] = ()  # comparisons, on the left
     captions: bool = True  # names and triangle counts under a comparison
     camera: str | render.OrbitCamera | None = None  # a view, or yaw,pitch[,zoom] in degrees
-    is_turntable: bool = False  # the camera goes round once, up to the last frame
+    is_turntable: bool = False  # the camera circles the scene once during the film
     span: tuple[float, float] | None = None  # [s] of the visible part of the script; None: all
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
     tone: float | None = None  # of the skin [deg]; None: the tone of the head
@@ -136,7 +136,7 @@ class Capture:
         meshes = [self.pipeline.bind(each) for each in refinements]
         self._passes = Passes(self.pipeline, meshes[-1]) if options.passes else None
         self.viewports = side_by_side(self.surface.size, meshes)
-        self._frame: Frame | None = None  # the last one
+        self._frame: Frame | None = None  # the last frame
         self._shown = np.zeros(0)  # positions and values in that frame
         if options.tone is not None:
             self.pipeline.set_tone(options.tone)

@@ -75,7 +75,7 @@ HEARD = tuple(suffix for suffix, each in FORMATS.items() if each.sound)
 
 
 def format_of(target: Path) -> FilmFormat | None:
-    """The format for a file of this name; None if it is not a film."""
+    """Return the film format for a file of this name, or None if it is not a film."""
     return FORMATS.get(target.suffix.lower())
 
 
@@ -162,7 +162,7 @@ class Encoder:
             self._process.kill()
         else:
             with contextlib.suppress(OSError):  # all processes have ended
-                os.killpg(self._process.pid, signal.SIGKILL)  # its session is its group
+                os.killpg(self._process.pid, signal.SIGKILL)  # its session is also its group
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(self.DYING)
         self._messages.close()
@@ -221,7 +221,7 @@ def film(
 
 @contextlib.contextmanager
 def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
-    """Write frames as numbered PNG files into an empty folder; raise UserError for another.
+    """Write frames as numbered PNG files; raise UserError if the folder is not empty.
 
     overwrite: replace the frames of an earlier film in the folder; other files stay.
     """

@@ -90,7 +90,7 @@ def drawing(
 
 
 def _draw(share: Share, send: Send) -> None:
-    """Send the frames of a share from its process, and None for a frame like the last one."""
+    """Draw and send the frames of a share; send None for a frame equal to the last one."""
     options = share.options
     if share.first == 0:
         announce_compiling()

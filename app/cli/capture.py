@@ -79,7 +79,7 @@ class Filming:
 
     @property
     def still_time(self) -> float | None:
-        """The time of a picture [s]; None: that of the script."""
+        """The time of a picture [s]; None: the script decides."""
         return self.times[0] if self.times is not None and len(self.times) == 1 else None
 
     @property
@@ -212,7 +212,7 @@ def capture(
 
 @click.command()
 def demo() -> None:
-    """Film the coarse head: unrefined, by the paper's rule and smooth.
+    """Film the coarse head three times: unrefined, by the paper's rule, and smooth.
 
     The head speaks in out/demo.mp4; out/demo.png has its expressions. Wires outline triangles that
     are split because muscles bend the skin.
@@ -226,7 +226,7 @@ def demo() -> None:
 
     clay = render.Style(textured=False, albedo=render.CLAY)
     beside = Refinement(refiner=STATIC), Refinement(PAPERS_PRESET)
-    camera = "-32,3,1.6"  # near, at three quarters
+    camera = "-32,3,1.6"  # a close three-quarter view
     still = CaptureOptions(beside=beside, camera=camera, style=clay, head=called_head(COARSE))
     wired = replace(clay, colour_by=render.ColourBy.SPLIT_WIRES)
     speech = next(path for path in examples("face") if path.stem == "speech")

@@ -217,7 +217,7 @@ def open_window(
     from ..viewer.window.splash_screen import SplashScreen
 
     def load() -> tuple[Script, FittedHead | None, str]:
-        """Load everything that takes long."""
+        """Load the head and modules, which takes long."""
         script = performance or new_script()
         head, complaint = fitted_head_of(drawing, may_be_marked=mesh is not None)
         import risorius.app.viewer.window.window  # noqa: F401

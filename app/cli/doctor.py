@@ -89,7 +89,7 @@ def _commands(works: Mapping[str, bool]) -> str:
 
 
 def _card(findings: list[render.Finding]) -> str:
-    """Return a line on the optional refiner `kahler-gl`, which needs a graphics card."""
+    """Return a line on the optional refiner `kahler-gl`, which needs OpenGL 4.3."""
     able = [each for each in findings if each.lends_gpu_streams]
     if not able:
         return "kahler-gl: no. It needs OpenGL 4.3; the refiner kahler does the same"

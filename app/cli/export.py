@@ -109,7 +109,7 @@ def export(
 
 
 def _simplified(head: FittedHead | None) -> FittedHead:
-    """The simplified mesh of a head as a head; raises UserError if it has none."""
+    """Return a head of the simplified mesh of a head; raise UserError if there is none."""
     from risorius.assets.fitting import simplified_head
 
     if head is None or head.simplified is None:

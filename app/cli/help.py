@@ -52,7 +52,7 @@ class RenewedCommand(click.Command):
     """A command whose errors name the replacements of options that were removed."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse; the error for a removed option names its replacement."""
+        """Parse arguments; the error for a removed option names its replacement."""
         try:
             return super().parse_args(ctx, args)
         except click.NoSuchOption as error:

@@ -45,7 +45,7 @@ SCENE = click.option("--scene", type=SCENE_NAMES, help="The scene to animate.")
 
 
 def option(*names: str, **about: Any) -> Any:
-    """Declare a dataclass field as a command-line option; without `names` the field names it."""
+    """Declare a dataclass field as a command-line option; default name: the field's name."""
     return field(metadata={"option": (names, about)})
 
 
@@ -177,7 +177,7 @@ class Drawing(Subject):
 
     @property
     def style_options(self) -> dict[str, Any]:
-        """The settings of style by name."""
+        """The settings of --style by name."""
         return style_in(self.style_settings)
 
     @property

@@ -21,7 +21,7 @@ TURNED = (  # positive values turn to one side, negative values to the other
 # Their sides are directions of one motion, so equal values cancel.
 OPPOSITE = ("AU30", "lips_sideways", "jaw", "mouth")
 KNOWN = 4096  # cached names; panels need the parts of all their names in each frame
-_TWINS = {  # action units that mirror each other by meaning: eyes turn left, right ...
+_TWINS = {  # mirrored controls whose names show no side: eyes turn left, right ...
     "AU61": "AU62", "AU62": "AU61", "AU51": "AU52", "AU52": "AU51", "AU55": "AU56", "AU56": "AU55",
     "wink": "wink_right", "wink_right": "wink", "contempt": "contempt_right",
     "contempt_right": "contempt",

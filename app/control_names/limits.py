@@ -1,4 +1,4 @@
-"""Limits of controls, and the only place where values are cut off at them.
+"""Limits of controls; no other module cuts values off at their limits.
 
 Tracks add to poses, gains multiply recorded values, and trackers overshoot. Only the final sum is
 cut off, when it becomes the value of a control: in a key from a recording, or in the

@@ -1,1 +1,1 @@
-"""Labelled pictures of faces, each made from its seed alone."""
+"""Labelled pictures of faces, which depend on their seed and number alone."""

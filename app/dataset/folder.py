@@ -29,7 +29,7 @@ LENGTHS = "files"  # label that holds the lengths of a sample's other files [byt
 
 
 def name_of(index: int) -> str:
-    """The first part of the names of a sample's files."""
+    """Return the digits with which the names of a sample's files begin."""
     return f"{index:06d}"
 
 

@@ -35,7 +35,8 @@ def labels_of_face(
     arkit = solved(scene, ARKIT_SHAPES, _in_one_frame(scene.simulation.controls.sums))
     labels = labels_of(scene, camera, size, depth, covered)
     pixels = np.array(labels["landmarks"]["pixels"])[:68]
-    positions = scene.positions @ scene.bone_transforms()["cranium"][:3, :3]  # turned back
+    # Positions without the turn of the head.
+    positions = scene.positions @ scene.bone_transforms()["cranium"][:3, :3]
     low, high = (np.clip(each, 0.0, size) for each in (pixels.min(axis=0), pixels.max(axis=0)))
     return {
         "action_units": action_units(scene),

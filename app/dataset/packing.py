@@ -46,7 +46,7 @@ class Packing:
         return number // self._size in self._packed
 
     def expect(self, missing: Iterable[int]) -> None:
-        """Note the samples that will be made; pack shards of which none is missing."""
+        """Note which samples will be made; pack all shards that are complete already."""
         places = {number // self._size for number in self._numbers}
         self._waiting = {place: set() for place in places - self._packed.keys()}
         for number in missing:

@@ -42,7 +42,7 @@ class SetRequest:
     version: str = version("risorius")
 
     def options(self) -> dict[str, Any]:
-        """Return the options that decide on samples, as JSON values; a resumed set repeats them."""
+        """Return the options that decide on samples, as JSON; a resumed set must have the same."""
         table = asdict(self.table) | {"excluded": sorted(map(sorted, self.table.excluded.pairs))}
         table["expressions"] = {name: row.row for name, row in self.table.expressions.items()}
         options = {

@@ -27,8 +27,8 @@ MOST_UNITS = 7  # of a mixture
 class SampleCamera:
     """A camera around the head.
 
-    yaw, pitch, field_of_view: [degrees]. zoom: 1 fits the head into the picture. shift: of the
-    head in the picture, as shares of its height.
+    yaw, pitch, field_of_view: [degrees]. zoom: 1 fits the head into the picture. shift: offset of
+    the head, as shares of the picture's height.
     """
 
     yaw: float
@@ -65,7 +65,7 @@ class Sample:
 
 
 def draw(table: SampleTable, seed: int, index: int) -> Sample:
-    """Sample number `index` of a seed."""
+    """Draw sample number `index` of a seed."""
     streams = np.random.SeedSequence([seed, index]).spawn(6)
     faces, sides, heads, cameras, looks, faults = map(np.random.default_rng, streams)
     kind = chosen(faces, table.kinds)

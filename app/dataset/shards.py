@@ -72,7 +72,7 @@ def write_shard(path: Path, samples: Iterable[tuple[int, Sequence[Path]]]) -> Sh
 
 
 def read_shard(path: Path) -> Shard | None:
-    """Return the shard of a tar file; None if its length is not the length in its listing."""
+    """Return the shard of a tar file; None if it does not have the length in its listing."""
     try:
         content = json.loads(listing_of(path).read_bytes())
         if content["bytes"] != path.stat().st_size:

@@ -166,9 +166,9 @@ class Studio:
 
 
 def _shrink_for(size: tuple[int, int]) -> int:
-    """Return the factor by which skin textures shrink each way for a picture size [pixels].
+    """Return the factor by which skin textures shrink for pictures of a size [pixels].
 
-    A face at zoom 1 covers two thirds of the skin's texels, and the height of the picture.
+    A face at zoom 1 has two thirds of the texture's height, and the whole height of the picture.
     """
     texels = 1280
     shrink = 1

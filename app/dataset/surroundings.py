@@ -99,7 +99,7 @@ class SampleLight:
 
 @dataclass(frozen=True)
 class LightFiles:
-    """The user's light maps; a random map lights each sample, or a light of the table if none."""
+    """The user's light maps, of which each sample has one; without maps it has a table's light."""
 
     paths: tuple[Path, ...] = ()
 
@@ -117,7 +117,7 @@ def _light_map(path: Path) -> LightMap:
 def light_of(name: str, files: LightFiles, random: np.random.Generator) -> SampleLight:
     """Vary a light at random: its brightness and colour, and its direction or the map's turn.
 
-    name: a light of the renderer; without effect if there are files.
+    name: a light of the renderer; ignored if there are files.
     """
     if not files.paths and name in LAMPS:
         return SampleLight(name, _lamp(name, random))

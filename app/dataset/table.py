@@ -79,7 +79,7 @@ Unit = Annotated[str, OneOf(_units)]
 
 @dataclass(frozen=True)
 class Expression(Record):
-    """An expression: its frequency, that of one-sided ones, and the probability of each unit."""
+    """An expression: its weight, the share of one-sided faces, the probability of each unit."""
 
     units: Annotated[dict[Unit, Share], called(REST)]
     share: Weight = 0.0
@@ -122,7 +122,7 @@ class Sides(Record):
 
 @dataclass(frozen=True)
 class Eyes(Record):
-    """Frequency of blinks and of looks into the camera; other directions of gaze [degrees]."""
+    """Shares of blinks and of looks into the camera; spread of the gaze in others [degrees]."""
 
     blink: Share
     at_camera: Share

@@ -1,4 +1,4 @@
-"""A live face: from packets to controls of the simulated face, and the weight of these controls.
+"""A live face: the conversion of packets to controls, and the weight of these controls.
 
     packets -> channels -> calibration -> mapping -> controls, with a presence of 0 to 1
 
@@ -56,7 +56,7 @@ class LiveFace(Receiver):
         wake: Callable[[], None] = lambda: None,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        """Listen from now on; raises UserError if this fails. wake: see `Receiver`."""
+        """Start to listen; raises UserError if this fails. wake: see `Receiver`."""
         listening.protocol.check()
         gains, default = gains_of(listening.gains, CHANNELS)
         super().__init__(listening, wake, clock)

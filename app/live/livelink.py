@@ -60,7 +60,7 @@ def parse(packet: bytes) -> LiveFrame | None:
 
 
 def _text(packet: bytes, at: int) -> tuple[bytes, int]:
-    """Read a text after its length; return it and the offset of its end. Raises ValueError."""
+    """Read a length and a text; return text and end. Raises ValueError for a wrong length."""
     (length,) = struct.unpack_from(">i", packet, at)
     end = at + 4 + length
     if not 0 <= length <= LONGEST_TEXT or end > len(packet):
@@ -69,7 +69,7 @@ def _text(packet: bytes, at: int) -> tuple[bytes, int]:
 
 
 def packet_of(channels: Mapping[str, float], *, subject: str, frame: int) -> bytes:
-    """The packet that the app would send for these channels; a missing channel is 0."""
+    """Return the packet that the app would send for these channels; a missing channel is 0."""
     values = [channels.get(name, 0.0) for name in ARKIT]
     for angle in ANGLES:
         degrees = channels.get(angle or "", 0.0) + OUTWARD.get(angle or "", 0.0)

@@ -25,7 +25,7 @@ class Receiver:
     has_frame: whether a frame is waiting.
     """
 
-    LOOK_AROUND = 0.1  # [s] between checks of the thread whether to end
+    LOOK_AROUND = 0.1  # [s] after which the thread checks for `close`
 
     def __init__(
         self,
@@ -62,7 +62,7 @@ class Receiver:
         return int(self._socket.getsockname()[1])
 
     def take(self) -> list[tuple[float, LiveFrame]]:
-        """The frames since the last call, oldest first, each with its time [s of the clock]."""
+        """Return the frames since the last call, oldest first, and their times [s of the clock]."""
         self.has_frame = False
         return [self._waiting.popleft() for _ in range(len(self._waiting))]
 

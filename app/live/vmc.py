@@ -42,7 +42,7 @@ Quaternion = tuple[float, float, float, float]  # x, y, z, w
 
 
 def parse(packet: bytes) -> LiveFrame | None:
-    """The channels that a packet adds to a frame; None if it is no packet of VMC."""
+    """Return the channels that a packet adds to a frame; None if it is no packet of VMC."""
     channels: dict[str, float] = {}
     bones: dict[str, Quaternion] = {}
     has_values = is_applied = False
@@ -65,7 +65,7 @@ def parse(packet: bytes) -> LiveFrame | None:
             elif parsed.params[0] in read_bones:
                 name, _, _, _, x, y, z, w = parsed.params
                 bones[name] = (x, y, z, w)
-    except (MessageError, ValueError, struct.error):  # Unicode errors among them
+    except (MessageError, ValueError, struct.error):  # a Unicode error is a ValueError
         return None
     _put_bones(channels, bones)
     if not (has_values or is_applied or bones):

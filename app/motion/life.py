@@ -3,7 +3,7 @@
 `Idle` adds this motion to a scene, and makes the face look at the viewer: each eye turns to the
 viewer, and beyond 10 degrees the head turns too. A viewer far to the side is not followed. Idle
 life does not touch controls that a script or a user moves, nor related controls: a set gaze in one
-direction stops the idle motion of both eyes, and a lowered lid stops that of both lids.
+direction stops the glances of both eyes, and a lowered lid stops the blinks of both lids.
 
 All values are functions of seed and time: they depend neither on the order of calls nor on a clock.
 Time is divided into spans, and in each span one blink or one glance begins at a random moment. Slow
@@ -195,7 +195,7 @@ def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
     if not centres:
         return {}
     aside = _angles(viewer - np.mean(list(centres.values()), axis=0))
-    # Horizontal and vertical angles up to which a viewer is followed, and from which not [degrees].
+    # Horizontal and vertical angles [degrees]: a nearer viewer is followed, a farther one is not.
     followed_angles = (45.0, 32.0)
     lost_angles = (65.0, 45.0)
     share = math.prod(map(_followed, aside, followed_angles, lost_angles))

@@ -211,5 +211,5 @@ def write_exr(path: Path, passes: Mapping[str, npt.NDArray[Any]]) -> None:
     try:
         with named_in_text(path) as named, module.File(header, channels) as file:
             file.write(str(named))
-    except RuntimeError as error:  # ... image file "...". No space left on device.
+    except RuntimeError as error:  # 'image file "...". No space left on device.'
         raise OSError(str(error).rpartition('". ')[2].rstrip(".")) from None

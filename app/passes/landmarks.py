@@ -18,7 +18,7 @@ from ..scenes import Face
 from .camera import CameraLabels
 
 SIDES = ("right", "left")  # the subject's, in the order of landmarks
-JAW_COUNT = 17  # landmarks, the first ones
+JAW_COUNT = 17  # the first landmarks
 MOST_BEHIND = 2.0  # [mm] of depth between the refined skin and a visible landmark
 
 

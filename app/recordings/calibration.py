@@ -60,7 +60,7 @@ class Calibration:
         }
 
     def _value(self, name: str, value: Value) -> Value:
-        """One channel without its neutral value, times its gain."""
+        """Subtract a channel's neutral value, and multiply by its gain."""
         neutral = self.neutral.get(name, 0.0)
         if name in ANGLES:
             return (value - neutral) * self.gains.get(name, 1.0)
@@ -77,7 +77,7 @@ def calibration_for(
     gains: Iterable[str] = (),
     mirror: bool = False,
 ) -> Calibration:
-    """Return the calibration of a take, with the defaults of its kind for all that is not set.
+    """Return the calibration of a take; its kind decides on neutral face and gains by default.
 
     neutral: "first:SECONDS", "percentile" or "none". gains: factors as "NAME=x", where NAME may be
     a pattern as mouth*. Raises UserError for any other value.
@@ -91,8 +91,8 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
 
     method: "first:SECONDS", the median of the first seconds; "percentile", the median of the first
     second for angles of the head, and the 5th percentile for channels that do not rest at 0; or
-    "none". None is "percentile", but none for takes under two seconds, and only angles of the head
-    for calibrated takes. Raises UserError for another method.
+    "none". None means "percentile", except for takes under two seconds (no neutral face) and for
+    calibrated takes (angles of the head alone). Raises UserError for another method.
     """
     if method == "none":
         return {}
@@ -107,7 +107,7 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
     neutral = _median_of_first(take, [n for n in names if n in HEAD_ANGLES], FIRST_SECONDS)
     if method is None and take.is_calibrated:
         return neutral
-    low_percentile = 5.0  # that counts as neutral
+    low_percentile = 5.0  # whose value counts as neutral
     # Channels that are 0 in a face at rest, or are a share of another channel.
     never_neutral = ("eyeLook*", "eyeBlink*", "jawOpen", "mouthClose", "AU43*", "AU45*", "AU46*")
     for name in names:
@@ -170,7 +170,7 @@ def gains_of(
 
 
 def _gain_in(setting: str) -> tuple[str, float]:
-    """Name and number of NAME=x."""
+    """Return name and number of NAME=x."""
     name, _, text = setting.partition("=")
     try:
         value = float(text)

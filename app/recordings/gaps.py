@@ -18,7 +18,7 @@ from ..text import counted
 from .names import measured
 from .take import Take
 
-SHORT_GAP = 0.3  # [s] that is bridged by a straight line
+SHORT_GAP = 0.3  # [s]; a gap up to this is bridged by a straight line
 
 
 def whole_take(

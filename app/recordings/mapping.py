@@ -42,7 +42,8 @@ def controls_of(channels: Mapping[str, Value]) -> dict[str, Value]:
     Values are not cut off at the limits of controls.
     """
     controls: dict[str, Value] = {}
-    controls_of_angles = {  # name, and value for a degree; 1 is a neck's whole range
+    # Name and value for a degree: at 1 a neck turns as far as it can without the shoulders.
+    controls_of_angles = {
         "head_yaw": ("head_yaw", 0.022222),
         "head_pitch": ("head_pitch", 0.033333),
         "head_roll": ("head_roll", 0.033333),

@@ -1,7 +1,7 @@
 """Shapes in JSON: results of MediaPipe's face landmarker, and exports of Audio2Face.
 
 A face is a list of `{"category_name": "jawOpen", "score": 0.2}` (`categoryName` on web pages; a
-score may be a text), or simply `{"jawOpen": 0.2}`. A frame holds one or several of them, under
+score may be a text), or simply `{"jawOpen": 0.2}`. A frame holds one or several faces, under
 `faceBlendshapes` or `blendshapes`, perhaps beside a time stamp and the head's matrix. A recording
 is a list of frames, under `frames` or not. Other documents name shapes once, above rows of numbers:
 NVIDIA's Audio2Face has `facsNames` and `weightMat`, tables have `columns` and `data`. In a third
@@ -50,7 +50,7 @@ def recognises_weights(document: Any) -> bool:
 
 
 def read_weights(document: Any, source: str, request: TakeRequest) -> Take:
-    """The take in `{"facsNames": ["jawOpen", ...], "weightMat": [[0.2, ...], ...]}`.
+    """Return the take in `{"facsNames": ["jawOpen", ...], "weightMat": [[0.2, ...], ...]}`.
 
     Frames may have a time and other values beside the weights: `{"weights": [0.2], "time": 0.0}`.
     """
@@ -205,7 +205,7 @@ def _faces(frame: Any, depth: int = DEEPEST) -> list[dict[str, float]]:
 
 
 def _flat(frame: Any, depth: int = DEEPEST) -> dict[str, Any]:
-    """Return the values of a frame, and of its tables with faces, but without the faces."""
+    """Return the keys and values of a frame without its faces, also from tables with faces."""
     if isinstance(frame, list):
         frame = frame[0] if len(frame) == 1 else {}
     keys = _plain(frame)

@@ -64,7 +64,7 @@ def measured(name: str, values: Floats64) -> Floats64:
 
 
 def letters_of(name: str) -> str:
-    """The name in lower case, without separators between words."""
+    """Return a name in lower case, without separators between words."""
     return re.sub(r"[^a-z0-9]", "", name.casefold())
 
 
@@ -108,13 +108,13 @@ class Unit:
     kind: str
 
     def channel(self, has_sides: bool) -> str:
-        """The channel's name. has_sides: whether the file has any column for the left side."""
+        """Return the channel's name. has_sides: whether the file has a column for a left side."""
         side = "" if self.is_short_right and not has_sides else self.side
         return f"AU{self.number}{side}"
 
 
 def unit_of(column: str) -> Unit | None:
-    """The action unit that a column holds; None for another column."""
+    """Return the action unit that a column holds, by its name; None for other columns."""
     match = ACTION_UNIT.match(column.casefold())
     if match is None:
         return None
@@ -129,17 +129,17 @@ def unit_of(column: str) -> Unit | None:
 
 @functools.lru_cache(maxsize=4096)  # JSON names each shape again in each frame
 def shape_of(column: str) -> str | None:
-    """The ARKit shape that a column holds; None for another column."""
+    """Return the ARKit shape that a column holds, by its name; None for other columns."""
     last_word = re.split(r"[.:/|]", column)[-1]
     return _SHAPES.get(letters_of(column)) or _SHAPES.get(letters_of(last_word))
 
 
 def angle_of(column: str) -> str | None:
-    """The angle of head or eye that a column holds, without its unit and sign."""
+    """Return the angle of head or eye that a column holds, by its name, or None."""
     return _ANGLES.get(letters_of(column))
 
 
 def viseme_of(column: str) -> str | None:
-    """The viseme that a column or track holds: `viseme_PP`, `PP`, or Oculus' `I`, `O`, `U`."""
+    """Return the viseme of a column or track: `viseme_PP`, `PP`, or Oculus' `I`, `O`, `U`."""
     sound = column.strip().casefold().removeprefix("viseme_").removeprefix("v_")
     return _SOUND.get(OCULUS_VOWELS.get(sound, sound).casefold())

@@ -58,7 +58,7 @@ def read(table: Table, request: TakeRequest) -> Take:
     units = without_rows({name: numbers[name] for name in found}, lost)
     scaling: list[str] = []
     channels = intensities(units, scaling)
-    if any("divided by 5." in note for note in scaling):  # the values are OpenFace's own
+    if any("divided by 5." in note for note in scaling):  # as usual in OpenFace, so no note
         scaling.clear()
     elif not scaling and units:
         scaling.append("Action units go no higher than 1, and were taken for 0 to 1, not 0 to 5.")

@@ -1,9 +1,10 @@
-"""py-feat's CSV (1 and 2): action units 0 to 1, head pose, and in 2 the shapes of MediaPipe.
+"""py-feat's CSV (1 and 2): action units 0 to 1, head pose, and in version 2 shapes of MediaPipe.
 
-Versions differ in the head's angles: those before 0.7 write degrees, Pitch + up, later ones
-radians, Pitch + down. Yaw + is to the subject's right; Roll + to the subject's left shoulder, in
-version 2 to the right one. A comparison of angles with landmarks in files of py-feat showed this;
-for version 2 it covered yaw and roll alone. No version gives times, only numbers of frames.
+Versions differ in the head's angles: versions before 0.7 write degrees, with Pitch + up; later
+versions write radians, with Pitch + down. Yaw + is to the subject's right. Roll + is to the
+subject's left shoulder, in version 2 to the right shoulder. A comparison of angles with landmarks
+in files of py-feat showed this; for version 2 it covered yaw and roll alone. No version gives
+times, only numbers of frames.
 
 Version 2 measures most of the face twice. Its shapes have a side and a strength, its units only a
 probability. So the shapes are used, and AU6 and AU9 in place of shapes that MediaPipe never sees.
@@ -77,7 +78,7 @@ def read(table: Table, request: TakeRequest) -> Take:
 
 
 def _head(numbers: dict[str, Floats64], is_second: bool, notes: list[str]) -> dict[str, Floats64]:
-    """The head's angles in degrees, from the units and signs of any version."""
+    """Convert the head's angles to degrees, from the units and signs of any version."""
     pose = {n: numbers[n] for n in POSE if n in numbers and np.isfinite(numbers[n]).any()}
     if not pose:
         return {}

@@ -36,7 +36,7 @@ DOCUMENTS: Sequence[tuple[Callable[[Any], bool], Callable[[Any, str, TakeRequest
     (mediapipe_json.recognises, mediapipe_json.read),
 )
 LONGEST_FILE = 2**29  # [bytes]; ten minutes of py-feat's 2183 columns are about as long
-BEGINNING = 2**16  # [bytes] that show whether a file is a recording; a header of 2183 names fits
+BEGINNING = 2**16  # [bytes] read to recognise a recording; a header of 2183 names fits
 NOT_IN_TEXT = re.compile("[\x00-\x08\x0e-\x1a\x1c-\x1f]")  # characters of no text and no table
 JSON = re.compile(r"\s*(\{|\[\s*(\[\s*)*[\{\]])")  # no TOML script begins like this
 SPEAKS_OF_FACES = re.compile(
@@ -98,7 +98,7 @@ def is_recording(path: Path) -> bool:
 
 
 def _strange(names: tuple[str, ...]) -> str:
-    """The description of a file of an unknown kind."""
+    """Describe a file of an unknown kind, for an error text."""
     if len(names) < 2:
         return "is no table and no JSON"
     listed = ", ".join(f"'{name}'" for name in names[:4])

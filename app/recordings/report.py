@@ -77,7 +77,7 @@ def report_of(take: Take, calibration: Calibration) -> Report:
 
 
 def _recognised(take: Take) -> str:
-    """The kind of the take, and its size."""
+    """Return a text on the kind and size of a take."""
     calibrated = ", calibrated" if take.is_calibrated else ""
     count = len(take.times)
     if count == 1:
@@ -89,7 +89,7 @@ def _recognised(take: Take) -> str:
 
 
 def _still(take: Take) -> set[str]:
-    """Channels that never change; for a single frame, those at 0."""
+    """Return the channels that never change; for a single frame, the channels at 0."""
     if len(take.times) == 1:
         return {name for name, values in take.channels.items() if not values.any()}
     return {name for name, values in take.channels.items() if not np.ptp(values)}

@@ -1,9 +1,9 @@
 """Speech in JSON: visemes of OpenFaceFX, and mouth shapes of Rhubarb Lip Sync.
 
-OpenFaceFX divides each moment among fifteen visemes, so PP has a weight of about 0.4 where lips
-meet, which does not shut them. This module raises the peaks of PP and FF until lips touch, and of
-silence to 1, which lowers all other visemes. Rhubarb has one of nine mouth shapes for each interval
-of time (its manual, "Mouth shapes").
+OpenFaceFX divides each moment among fifteen visemes, so PP has a weight of about 0.4 when lips
+should meet, which does not shut them. This module raises the peaks of PP and FF until lips touch,
+and the peaks of silence to 1, which lowers all other visemes. Rhubarb has one of nine mouth shapes
+for each interval of time (its manual, "Mouth shapes").
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ def _made_clear(channels: dict[str, Floats64], notes: list[str]) -> dict[str, Fl
 
 
 def _height(values: Floats64) -> float:
-    """The median height of a track's peaks; 0 without peaks."""
+    """Return the median height of a track's peaks; 0 without peaks."""
     edged = np.concatenate([[-1.0], values, [-1.0]])
     least_peak = 0.1  # a lower peak belongs to a neighbouring sound
     is_peak = (values >= edged[:-2]) & (values >= edged[2:]) & (values > least_peak)

@@ -3,10 +3,10 @@
 Plain lines stay as they are. The csv module divides other lines, with blanks between cells, quoted
 cells or decimal commas; their cells are joined again with `CLEAN` between them.
 
-Numbers are read by `numpy.loadtxt`, whose parser is compiled: ten minutes of 60 frames a second (36
-000 rows of 63 columns) take about 0.7 s. pandas and polars need 0.2 s, but are 80 MB or more for
-one function, and stop or guess at short rows, which this module finds and reports. The csv module
-alone took 2 to 3 s.
+`numpy.loadtxt`, whose parser is compiled, reads the numbers: ten minutes at 60 frames a second
+(36000 rows of 63 columns) take about 0.7 s. pandas and polars need 0.2 s, but they are 80 MB or
+more for one function, and they stop or guess at short rows, which this module finds and reports.
+The csv module alone took 2 to 3 s.
 """
 
 from __future__ import annotations

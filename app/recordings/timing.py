@@ -70,7 +70,7 @@ class Stamp:
 
 
 def stamp_of(name: str) -> Stamp | None:
-    """Return the time stamp that a column or key is by its name; None for any other name."""
+    """Return the time stamp that a name of a column or key means; None for other names."""
     letters = letters_of(name)
     stamp_names = (
         "timestamp",
@@ -160,8 +160,8 @@ def find_times(
 ) -> Floats64:
     """Return the times of `count` rows [s], shape (count,), NaN where unknown.
 
-    names: names of columns or keys. texts, numbers: functions that return the cells of a name as
-        text and as numbers, NaN for no number.
+    names: names of columns or keys. texts, numbers: functions from a name to its cells, as texts
+        and as numbers with NaN.
     rate: frames a second from the user. written_rate: frames a second from the file.
     """
     stamps = {name: stamp for name in names if (stamp := stamp_of(name))}

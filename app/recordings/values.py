@@ -54,7 +54,7 @@ def is_flag(name: str) -> bool:
 def rows_without_face(
     names: Iterable[str], texts: Callable[[str], Sequence[str]], count: int
 ) -> Rows:
-    """The rows in which a flag reports no visible face, shape (count,).
+    """Return the rows in which a flag reports that no face is visible, shape (count,).
 
     names: names of columns or keys. texts: function that returns the cells of a name, "" for empty
     cells. A confidence is used if there is no other flag.

@@ -82,7 +82,7 @@ def _presets_share(refinement: Refinement, options: Mapping[str, Any]) -> str:
 
 
 def options_of(refiner: str, criterion: str) -> dict[str, refine.Option]:
-    """Return the options of a refiner, then of its criterion, that a word or slider can set.
+    """Return the options of a refiner and of its criterion, except options that are objects.
 
     An option of a criterion has the criterion's name, as in `rest.levels`. If the refiner has the
     same option, only the refiner's is returned. Raises ValueError for a refiner that cannot be
@@ -168,7 +168,7 @@ def finer_mesh(scene: Drawable) -> tuple[Floats64, Integers32] | None:
 
 
 def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any]:
-    """Parse `--option NAME=VALUE ...` for a refiner; refiner: None for the preset's.
+    """Parse `--option NAME=VALUE ...`; refiner: None for the refiner of the preset.
 
     Values are numbers, on and off, or words. Raises UserError for an unknown refiner, and for
     options of the refiner `none`.

@@ -1,9 +1,9 @@
 """Animation scripts: keyframes of controls over time, in a TOML file.
 
-A script is a list of poses, and of tracks: a track moves a single control, and its values are added
-to the poses, for a blink, a glance, or a whole recording. `docs/scripts.md` describes the file.
-Before its first key and after its last key a channel is constant. This module holds poses, tracks
-of keys, and their values at any time.
+A script is a list of poses and of tracks. A track moves a single control, and its values are added
+to the poses, for example for a blink, a glance, or a whole recording. `docs/scripts.md` describes
+the file. Before its first key and after its last key a channel is constant. This module holds
+poses, tracks of keys, and their values at any time.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from .easings import ALLOWED, Easing, easing_named, easing_names, hermite, share
 Easings = npt.NDArray[np.uint8]  # rows of easings.Easing
 
 DECIMALS = 6  # of numbers from sliders and clocks
-LONGEST_FILE = 2**25  # [bytes]; three quarters of an hour of capture, and /dev/zero has no end
+LONGEST_FILE = 2**25  # [bytes], about three quarters of an hour of a recorded face
 POSE_SECONDS = 1.0  # duration of a script that is one pose
 LARGEST = 86_400.0  # largest number in a script; as a time [s] it is a day
 Number = Annotated[float, Within(-LARGEST, LARGEST)]
@@ -90,7 +90,7 @@ class Channel:
 
     @property
     def keys(self) -> tuple[Key, ...]:
-        """The keys as objects, which each call makes anew: for few keys or channels."""
+        """The keys as objects; each call makes them anew, so use it for few keys."""
         parts = zip(self.times.tolist(), self.values.tolist(), self.easing_rows(), strict=True)
         return tuple(Key(time, value, easing.name) for time, value, easing in parts)
 
@@ -133,7 +133,7 @@ class Channel:
 
     @functools.cached_property
     def ends(self) -> tuple[float, float]:
-        """The lowest and the highest value of a key."""
+        """The lowest and the highest value of all keys."""
         return float(self.values.min()), float(self.values.max())
 
     def raised(self, chosen: Flags, amount: float, low: float, high: float) -> Channel:
@@ -274,7 +274,7 @@ class Script:
         return sums
 
     def check(self, limits: Limits) -> None:
-        """Raise UserError for controls that the scene lacks, and for values beyond any use.
+        """Raise UserError for controls that the scene lacks, and for absurd values.
 
         Values of tracks may be negative, because only the sum with the poses is cut off. But no key
         of a track may be further from 0 than the whole range of the control.

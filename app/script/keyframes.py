@@ -42,13 +42,13 @@ def on_frame(time: float) -> float:
 
 
 def key_time(script: Script, time: float) -> float:
-    """Return the time [s] for a new key: of an old key within half a frame, or of a frame."""
+    """Return the time for a new key: that of an old key within half a frame, or a frame's."""
     near = places_of(script).near(time, 0.5 * FRAME)
     return near.first if near else on_frame(time)
 
 
 def time_beyond(script: Script, time: float, direction: int) -> float:
-    """Return the time of the next key, or for direction -1 of the previous; else `time` [s]."""
+    """Return the next key time [s], or the previous for direction -1; `time` without one."""
     all_times = places_of(script).times.values()
     if direction > 0:
         later = (times[np.searchsorted(times, time + SAME, "right") :][:1] for times in all_times)

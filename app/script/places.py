@@ -55,7 +55,7 @@ class Places(Set[KeyPlace]):
         return min(float(each[0]) for each in self.times.values())
 
     def latest_in(self, edges: Times, names: Iterable[str]) -> Times:
-        """Return the last key time of these tracks in each interval of `edges` [s] with keys."""
+        """Return the latest key time [s] of these tracks in each interval of `edges` with keys."""
         latest = np.full(len(edges) - 1, -np.inf)
         for times in (self.times[name] for name in names if name in self.times):
             after = np.searchsorted(times, edges)

@@ -45,7 +45,7 @@ from .easings import ALLOWED, Easing, easing_named
 
 
 def _channel(entries: Any) -> Channel:
-    """A channel from a list of tables, or from lines of text."""
+    """Read a channel from a list of tables, or from lines of text."""
     if isinstance(entries, str) and entries.strip():
         return _channel_of_lines(entries)
     if not isinstance(entries, list) or not entries:
@@ -162,7 +162,7 @@ def parse_script(text: str, *, source: str) -> Script:
 
 
 def preface_of(text: str) -> str:
-    """The comments at the beginning of a file; programs that rewrite the file keep them."""
+    """Return the comments at the beginning of a file, which survive when it is rewritten."""
     comments = itertools.takewhile(lambda line: line.startswith("#"), text.split("\n"))
     return "\n".join(comments)
 

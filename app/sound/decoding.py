@@ -105,7 +105,7 @@ def sound_form() -> tuple[str, ...]:
 
 
 def sound_input(file: Path, seconds: float, begin: float = 0.0) -> tuple[str, ...]:
-    """Return ffmpeg's options for `seconds` of sound; other protocols than files are forbidden."""
+    """Return ffmpeg's options to read `seconds` of sound from a file, and from no network."""
     skipped = ("-ss", f"{begin:.6f}") if begin else ()
     return "-protocol_whitelist", "file", *skipped, "-t", f"{seconds:.6f}", "-i", f"file:{file}"
 
@@ -152,7 +152,7 @@ def _samples(wav: bytes) -> npt.NDArray[np.int16]:
 
 
 def with_sound(script: Script, file: Path | None) -> Script:
-    """Return the script with another sound file, or unchanged for None; UserError if missing."""
+    """Return the script with another sound file, or unchanged for None; UserError if unusable."""
     if file is None:
         return script
     load_sound(file)
