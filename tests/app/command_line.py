@@ -1,4 +1,4 @@
-"""The command as tests run it in this process, its refusals, and Blender as a reader of files."""
+"""Run the command in this process, read its refusals, and read files with Blender."""
 
 import os
 import signal
@@ -19,14 +19,14 @@ def risorius(*arguments: object) -> Result:
 
 
 def succeeded(*arguments: object) -> str:
-    """The output of the command, which must succeed."""
+    """The output of the command; the test fails unless the command succeeds."""
     result = risorius(*arguments)
     assert result.exit_code == 0, result.output
     return result.output
 
 
 def refusal(result: Result) -> str:
-    """The one line of a refusal, without the line about compilation."""
+    """The single error line of a refused command, without a line about compilation."""
     assert result.exit_code == 2, result.output
     lines = [line for line in result.output.splitlines() if not line.startswith("Compiling, ")]
     assert len(lines) == 1 and lines[0].startswith("risorius: "), result.output
@@ -34,10 +34,9 @@ def refusal(result: Result) -> str:
 
 
 def started(*words: object, **options: Any) -> subprocess.Popen[bytes]:
-    """Start Python with these words as a process that hears signals in every shell.
+    """Start Python with these words as a process that receives signals in every shell.
 
-    Processes that run behind an `&` or `nohup` ignore signals, and their children do, too. The
-    output
+    Processes started behind `&` or `nohup` ignore signals, and so would their children. The output
     is kept.
     """
 
@@ -50,21 +49,21 @@ def started(*words: object, **options: Any) -> subprocess.Popen[bytes]:
 
 
 def positions_in_blender(path: Path, folder: Path, rate: float, frames: int) -> Path:
-    """Positions of a file's vertices in Blender, frame by frame, as an .npz; skips without bpy."""
+    """Positions of a file's vertices by frame, as Blender has them (.npz); skips without bpy."""
     found = folder / "found.npz"
     _in_blender("positions_in_blender.py", path, found, f"{rate:g}", frames)
     return found
 
 
 def shape_keys_in_blender(path: Path, folder: Path) -> Path:
-    """The shape keys of a file in Blender, as an .npz; skips without bpy."""
+    """The shape keys of a file, as Blender has them (.npz); skips without bpy."""
     found = folder / "keys.npz"
     _in_blender("shape_keys_in_blender.py", path, found)
     return found
 
 
 def _in_blender(program: str, *arguments: object) -> None:
-    """Run a program of this folder in a Python that has bpy; skip without it."""
+    """Run a program of this folder in a Python with bpy; skip the test without it."""
     python = os.environ.get("RISORIUS_BLENDER_PYTHON", sys.executable)
     if subprocess.run([python, "-c", "import bpy"], capture_output=True, check=False).returncode:
         pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")

@@ -1,4 +1,4 @@
-"""Fixtures that tests of a file share: the window in a known state; a Dask cluster."""
+"""Fixtures shared by tests: the window in a known state, faces, and a Dask cluster."""
 
 import functools
 from collections.abc import Iterator
@@ -36,7 +36,7 @@ def face(scene: FaceScene) -> FaceScene:
 
 @pytest.fixture
 def session(face: FaceScene, tmp_path: Path) -> Session:
-    """A session with a script of the user's own: poses and a blink."""
+    """A session with a user's script of poses and a blink."""
     path = tmp_path / "own.toml"
     path.write_text(HELLO.read_text(encoding="utf-8"))
     return Session(face, load_script(path))
@@ -47,14 +47,14 @@ def viewer() -> Iterator[Viewer]:
     """One window for all tests of a file."""
     script = replace(script_for(None, "face"), duration=0.5)
     with Viewer(script, SIZE) as opened:
-        opened.settings.is_alive = False  # pictures that are compared stand still
+        opened.settings.is_alive = False  # so that compared pictures do not move
         settle(opened)
         yield opened
 
 
 @pytest.fixture
 def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Start from the neutral face with refinement on, in a folder for this test alone."""
+    """Start from the neutral face with refinement on, in a folder of this test alone."""
     monkeypatch.chdir(tmp_path)
     xdotool(viewer, "mousemove", 2, 2, "key", "Escape")
     script = replace(script_for(None, "face"), duration=0.5)
@@ -75,7 +75,7 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
 
 @pytest.fixture
 def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
-    """A script of the user's own, with poses and a blink, opened in rows of keys."""
+    """A user's script with poses and a blink, opened in rows of keys."""
     path = tmp_path / "own.toml"
     path.write_text(HELLO.read_text(encoding="utf-8"))
     viewer.session.work.open(load_script(path))
@@ -88,7 +88,7 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
 
 @pytest.fixture(scope="module")
 def shared_scenes() -> Iterator[None]:
-    """Commands of a file share scenes of the built-in head; each begins with a reset."""
+    """Commands of a file share scenes of the built-in head, each reset before use."""
     built = motion.build_scene
     shared = functools.cache(built)
     with pytest.MonkeyPatch.context() as this_process:
@@ -102,7 +102,7 @@ def shared_scenes() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
-    """A Dask cluster of two workers in processes of their own."""
+    """A Dask cluster of two worker processes."""
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None

@@ -1,6 +1,6 @@
-"""Opens the window on a screen of twice the density and prints what a test needs to know.
+"""Open the window on a screen of twice the density, and print its state for a test.
 
-It is a separate program, because GLFW asks for the density once, when it starts.
+It is a separate program, because GLFW reads the density once, when it starts.
 """
 
 import contextlib
@@ -20,7 +20,7 @@ SIZE = (1200, 800)
 
 
 def main() -> None:
-    """Look at the window on a dense screen."""
+    """Print the state of the window on a dense screen."""
     with _dense_screen(), Viewer(script_for(None, "face"), SIZE) as viewer:
         first = viewer.face.view.viewport[0]
         settle(viewer)
@@ -30,7 +30,7 @@ def main() -> None:
 
 @contextlib.contextmanager
 def _dense_screen() -> Iterator[None]:
-    """Set the density of X's screen, and remove it in the end."""
+    """Set the density of the X screen, and remove it afterwards."""
     screen = display.Display()
     root = screen.screen().root
     resources = screen.intern_atom("RESOURCE_MANAGER")

@@ -28,17 +28,17 @@ NEEDS_A_SCREEN = [
     ),
 ]
 HELLO = Path(__file__).parents[2] / "docs" / "hello.toml"
-SIZE = (900, 600)  # of the window that tests share
+SIZE = (900, 600)  # size of the window that tests share
 DEADLINE = 60.0  # [s] limit for an answer that an idle machine gives at once
-LEAST_FRAMES = 10  # at least before a deadline counts: a frame that loads a head may last longer
-STEADY = 3  # number of equal frames after which no panel moves by itself
+LEAST_FRAMES = 10  # frames shown before a deadline counts: one that loads a head may last longer
+STEADY = 3  # equal frames, after which no panel moves
 
 
 def settle(viewer: Viewer) -> None:
-    """Draw until the window has handled all events, and panels show all values that were set.
+    """Draw until the window has handled all events, and panels show all set values.
 
-    When xdotool ends, the screen has handled its events: a question to the screen returns all of
-    them, in order, before the answer. A panel is arranged by sizes of the frame before.
+    When xdotool ends, the X server has processed its events: a query to the server returns all of
+    them, in order, before the answer. A panel is laid out with sizes of the previous frame.
     """
     shown: list[object] = []
     glfw.get_window_pos(viewer.surface.handle)
@@ -47,30 +47,30 @@ def settle(viewer: Viewer) -> None:
         shown.append((dict(viewer.gui.places), imgui.get_io().want_text_input))
         return viewer.file_drop.making is None and shown[-STEADY:] == STEADY * shown[-1:]
 
-    # While a face moves, panels may be older than the values that were set.
+    # While a face moves, panels may show older values.
     with mock.patch.object(viewer, "refresh", 0.0):
         assert until(viewer, is_steady), shown[-2:]
 
 
 def replace_state(part: object, fresh: object) -> None:
-    """Give a part of the window, to which others hold references, the state of a fresh one."""
+    """Reset a part of the window to the state of a new one, keeping all references to it."""
     vars(part).clear()
     vars(part).update(vars(fresh))
 
 
 def xdotool(viewer: Viewer, *words: object) -> None:
-    """Send real events and let the window handle them."""
+    """Send real events with xdotool, and let the window handle them."""
     subprocess.run(["xdotool", *map(str, words)], check=True, capture_output=True)
     settle(viewer)
 
 
 def press_keys(viewer: Viewer, *keys: str) -> None:
-    """Press keys, one after another, and let the window handle them."""
+    """Press keys one after another, and let the window handle them."""
     xdotool(viewer, "key", *keys)
 
 
 def until(viewer: Viewer, condition: Callable[[], object], seconds: float = DEADLINE) -> bool:
-    """Show frames, at least one, until a condition is true; fail after too long."""
+    """Show at least one frame until a condition is true; return whether it was in time."""
     end = time.monotonic() + seconds
     shown = 0
     while shown < LEAST_FRAMES or time.monotonic() < end:
@@ -88,14 +88,14 @@ def run(session: Session, steps: int) -> None:
 
 
 def set_by_hand(session: Session, **values: float) -> None:
-    """Move sliders, and release them."""
+    """Move sliders as a user does, and release them."""
     for name, value in values.items():
         session.set(name, value)
     session.note()
 
 
 def wait_for(condition: Callable[[], object], seconds: float = DEADLINE) -> None:
-    """Wait until a condition on another process is true; AssertionError after too long."""
+    """Wait for a condition on another process; AssertionError after too long."""
     end = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end
@@ -103,13 +103,13 @@ def wait_for(condition: Callable[[], object], seconds: float = DEADLINE) -> None
 
 
 def on_screen(viewer: Viewer, x: float, y: float) -> tuple[int, int]:
-    """A place of the window, on the screen."""
+    """Screen coordinates of a place in the window."""
     left, top = glfw.get_window_pos(viewer.surface.handle)
     return round(left + x), round(top + y)
 
 
 def middle(viewer: Viewer, name: str) -> tuple[int, int]:
-    """The middle of a panel's item, on the screen."""
+    """Screen coordinates of the middle of a panel's item."""
     assert until(viewer, lambda: name in viewer.gui.places), name
     left, top, right, bottom = viewer.gui.places[name]
     return on_screen(viewer, 0.5 * (left + right), 0.5 * (top + bottom))
@@ -122,7 +122,7 @@ def click(viewer: Viewer, name: str, *, times: int = 1) -> None:
 
 
 def drag(viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button: int = 1) -> None:
-    """Press, move, and keep the button pressed."""
+    """Press, move, and keep the button down."""
     xdotool(viewer, "mousemove", *place, "mousedown", button)
     xdotool(viewer, "mousemove_relative", "--", *by)
 
@@ -130,18 +130,18 @@ def drag(viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button:
 def drag_and_release(
     viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button: int = 1
 ) -> None:
-    """Press, move and release there."""
+    """Press, move and release at the end."""
     drag(viewer, place, by, button=button)
     xdotool(viewer, "mouseup", button)
 
 
 def write(viewer: Viewer, text: str) -> None:
-    """Type into the line that has the focus."""
+    """Type into the line with the keyboard focus."""
     xdotool(viewer, "type", text)
 
 
 def show_controls(viewer: Viewer, words: str) -> None:
-    """Type into the search line."""
+    """Type words into the search line."""
     click(viewer, "search")
     write(viewer, words)
 
@@ -158,14 +158,14 @@ def moved(viewer: Viewer) -> float:
 
 
 def nose(viewer: Viewer) -> tuple[int, int]:
-    """The tip of the nose, on the screen."""
+    """Screen coordinates of the tip of the nose."""
     return seen_at(
         viewer, viewer.session.scene.positions[viewer.session.scene.positions[:, 2].argmax()]
     )
 
 
 def seen_at(viewer: Viewer, point: np.ndarray) -> tuple[int, int]:
-    """A point of the scene, on the screen."""
+    """Screen coordinates of a point of the scene."""
     left, top, width, height = viewer.face.view.area
     camera = viewer.face.view.camera
     matrix = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / height))
@@ -175,7 +175,7 @@ def seen_at(viewer: Viewer, point: np.ndarray) -> tuple[int, int]:
 
 
 def drop(viewer: Viewer, *paths: Path) -> None:
-    """Let another program drop files onto the face, and wait until the window has taken them."""
+    """Drop files onto the face from another program, and wait until the window has them."""
     command = [sys.executable, "-m", "tests.app.dropping", "Risorius", *map(str, nose(viewer))]
     source = subprocess.Popen(
         [*command, *map(str, paths)], stderr=subprocess.PIPE, text=True,
@@ -187,25 +187,25 @@ def drop(viewer: Viewer, *paths: Path) -> None:
 
 
 def put(viewer: Viewer, *paths: Path) -> None:
-    """Drop files without the other program."""
+    """Drop files by a call, without another program."""
     viewer.drop([str(path) for path in paths])
     settle(viewer)
 
 
 def where_key(viewer: Viewer, place: KeyPlace) -> tuple[float, float]:
-    """Place of a key in the first row that has one [window units]."""
+    """Place of a key in the first row that has keys [window units]."""
     row = next(row for row in viewer.face.timeline.dope_sheet.rows if place in row.places)
     _, top, _, bottom = viewer.gui.places[f"row {row.name}"]
     return viewer.face.time_axis.x(place.time), 0.5 * (top + bottom)
 
 
 def key_at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:
-    """Place of such a key on the screen."""
+    """Screen coordinates of such a key."""
     return on_screen(viewer, *where_key(viewer, place))
 
 
 def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -> None:
-    """Click at a place, with keys held down; never as the second half of a double click."""
+    """Click at a place with keys held down, never as the second half of a double click."""
     usual, viewer.gui.double_click_time = viewer.gui.double_click_time, 0.0
     held = [word for key in keys for word in ("keydown", key)]
     xdotool(viewer, "mousemove", *place, *held)

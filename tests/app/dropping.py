@@ -1,9 +1,8 @@
-"""A small file manager: it drops files onto a window as a desktop does (XDND).
+"""A small file manager that drops files onto a window as a desktop does (XDND).
 
-`python -m tests.app.dropping TITLE X Y FILE...` releases the files over the place x, y of the
-screen, and ends when the window has reported that it took them. Source: "Drag-and-Drop Protocol for
-the X Window System", version 5 (freedesktop.org); the parts of a source that offers only file
-names.
+`python -m tests.app.dropping TITLE X Y FILE...` releases the files at the screen coordinates x, y,
+and ends when the window has reported that it took them. Source: "Drag-and-Drop Protocol for the X
+Window System", version 5 (freedesktop.org); only the parts of a source that offers file names.
 """
 
 import sys
@@ -32,7 +31,7 @@ class Source:
         self._data = "".join(f"{path.resolve().as_uri()}\r\n" for path in paths).encode()
 
     def drop(self, x: int, y: int) -> None:
-        """Enter the window, move to a place, release, and send the names when asked."""
+        """Enter the window, move to a place, release, and send the names on request."""
         uris = self._atom("text/uri-list")
         self._window.set_selection_owner(self._atom("XdndSelection"), X.CurrentTime)
         self._tell("XdndEnter", VERSION << 24, uris, 0, 0)
@@ -41,7 +40,7 @@ class Source:
         if not status.data[1][1] & 1:
             raise SystemExit("the window does not want the files")
         self._tell("XdndDrop", 0, X.CurrentTime, 0, 0)
-        # GLFW writes the length of the names where the protocol has one bit for success.
+        # GLFW writes the length of the names into the protocol's bit for success.
         if not self._wait_for("XdndFinished").data[1][1]:
             raise SystemExit("the window has not taken the files")
 
@@ -49,7 +48,7 @@ class Source:
         return int(self._display.intern_atom(name))
 
     def _find(self, window: Any, title: str) -> Any:
-        """The window with these words in its title that accepts drops, among all below this one."""
+        """The window below a parent that accepts drops and has these words in its title."""
         for child in window.query_tree().children:
             is_aware = child.get_full_property(self._atom("XdndAware"), Xatom.ATOM) is not None
             found = child if is_aware and title in (child.get_wm_name() or "") else None
@@ -66,7 +65,10 @@ class Source:
         self._display.flush()
 
     def _wait_for(self, name: str) -> Any:
-        """The window's answer; requests for the names are answered meanwhile."""
+        """The window's next message of this name.
+
+        Requests for file names are answered meanwhile.
+        """
         end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
             while self._display.pending_events():

@@ -1,4 +1,4 @@
-"""A simple player of glTF files: the place of each vertex at any time, by the specification."""
+"""A simple player of glTF files, after the specification: all vertices at any time."""
 
 import json
 import struct
@@ -15,7 +15,7 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 
 
 def document(path: Path) -> dict[str, Any]:
-    """The JSON of a GLB."""
+    """The JSON document of a GLB file."""
     data = path.read_bytes()
     (length,) = struct.unpack_from("<I", data, 12)
     found: dict[str, Any] = json.loads(data[20 : 20 + length])
@@ -55,7 +55,7 @@ class Player:
         return rows
 
     def _rows(self, view: int, offset: int | None, kind: Any, shape: tuple[int, ...]) -> Array:
-        """Numbers in a part of the buffer."""
+        """Numbers in a part of the buffer, as rows."""
         start = (self.file.bufferViews[view].byteOffset or 0) + (offset or 0)
         return np.frombuffer(self.blob, kind, int(np.prod(shape)), start).reshape(shape)
 
@@ -78,7 +78,7 @@ class Player:
         return self.values(inputs.pop())
 
     def track(self, node: int, path: str) -> Array | None:
-        """Values of one property of a node at each keyframe, (N, k); None if it has no track."""
+        """Values of one property of a node at each keyframe, (N, k); None without a track."""
         for channel in [] if self.animation is None else self.animation.channels:
             if (channel.target.node, channel.target.path) == (node, path):
                 assert self.animation is not None
@@ -88,7 +88,7 @@ class Player:
         return None
 
     def primitive(self, name: str) -> Any:
-        """The first primitive of a node's mesh; all of them share its vertices."""
+        """The first primitive of a node's mesh; all primitives share its vertices."""
         mesh = self.file.meshes[self.file.nodes[self.numbers[name]].mesh]
         first = mesh.primitives[0].attributes.POSITION
         assert {each.attributes.POSITION for each in mesh.primitives} == {first}
@@ -116,7 +116,7 @@ class Player:
         return track
 
     def matrix(self, node: int, frame: int) -> Array:
-        """From a node's coordinates to the scene's."""
+        """The matrix from a node's coordinates to the scene's."""
         local = np.eye(4)
         turn = self._at(node, "rotation", frame, self.file.nodes[node].rotation or [0, 0, 0, 1])
         shift = self._at(node, "translation", frame, self.file.nodes[node].translation or [0, 0, 0])
@@ -134,7 +134,7 @@ class Player:
         return local if parent is None else self.matrix(parent, frame) @ local
 
     def shape(self, name: str, frame: int, attribute: str = "POSITION") -> Array:
-        """Positions or normals of a node's vertices with its morph targets, before bones."""
+        """Positions or normals of a node's vertices with morph targets, before skinning."""
         points = self.attribute(name, attribute).astype(np.float64)
         weights = self.weights(name)[frame] if self.primitive(name).targets else []
         for number, weight in enumerate(weights):

@@ -1,4 +1,4 @@
-"""Packets written from the descriptions of their formats, without the code under test."""
+"""Packets written after the descriptions of their formats, without the code under test."""
 
 import struct
 from collections.abc import Mapping
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
 from pythonosc.osc_message_builder import OscMessageBuilder
 
-# The values of a Live Link Face packet, in its order.
+# The values of a Live Link Face packet, in order.
 LIVE_LINK = (
     "EyeBlinkLeft EyeLookDownLeft EyeLookInLeft EyeLookOutLeft EyeLookUpLeft EyeSquintLeft "
     "EyeWideLeft EyeBlinkRight EyeLookDownRight EyeLookInRight EyeLookOutRight EyeLookUpRight "
@@ -25,7 +25,7 @@ SHAPES = tuple(name[0].lower() + name[1:] for name in LIVE_LINK[:52])
 def live_link(
     values: Mapping[str, float] | None, *, subject: str = "somebody", version: int = 6
 ) -> bytes:
-    """A packet of Live Link Face; None for values means that it sees no face."""
+    """A packet of Live Link Face; with None as values, the app sees no face."""
     device = b"A0B1C2D3-0000-1111-2222-333344445555"
     name = subject.encode()
     packet = struct.pack(">Bi", version, len(device)) + device
@@ -38,7 +38,7 @@ def live_link(
 
 
 def osc(*messages: tuple[object, ...]) -> bytes:
-    """An OSC bundle of messages, each an address and its values."""
+    """An OSC bundle of messages, each with an address and values."""
     bundle = OscBundleBuilder(IMMEDIATELY)
     for address, *values in messages:
         builder = OscMessageBuilder(str(address))
@@ -49,6 +49,6 @@ def osc(*messages: tuple[object, ...]) -> bytes:
 
 
 def vmc(values: Mapping[str, float]) -> bytes:
-    """A whole frame of VMC in one packet."""
+    """A complete VMC frame in one packet."""
     shapes = [("/VMC/Ext/Blend/Val", name, value) for name, value in values.items()]
     return osc(*shapes, ("/VMC/Ext/Blend/Apply",))

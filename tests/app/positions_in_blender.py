@@ -1,9 +1,9 @@
-"""Run by a Python that has bpy: import a file, step through it, keep where all vertices are.
+"""A program for a Python with bpy: import a file, step through it, store all positions.
 
     python positions_in_blender.py FILE POSITIONS.npz FPS FRAMES
 
-Positions have the axes of the file (y up) and are in metres, shape (FRAMES, V, 3) for each mesh; of
-a mesh that changes, (V, 3) for each frame, called MESH/FRAME.
+Positions have the axes of the file (y up) and are in metres, shape (FRAMES, V, 3) for each mesh; a
+mesh that changes has arrays (V, 3), named MESH/FRAME.
 """
 
 import sys
@@ -16,7 +16,7 @@ source, output, frames_per_second, frame_count = sys.argv[1:]
 suffix = Path(source).suffix
 bpy.ops.wm.read_factory_settings(use_empty=True)
 scene = bpy.context.scene
-scene.render.fps = int(frames_per_second)  # before the import: it turns seconds into frames
+scene.render.fps = int(frames_per_second)  # before the import, which converts seconds to frames
 if suffix == ".glb":
     bpy.ops.import_scene.gltf(filepath=source)
 elif suffix == ".pc2":
@@ -39,7 +39,7 @@ for frame in range(int(frame_count)):
         mesh.vertices.foreach_get("co", points)
         matrix = np.array(item.evaluated_get(graph).matrix_world)
         x, y, z = (points.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]).T
-        name = item.name.partition(".")[0]  # Blender adds a number if an empty has the same name
+        name = item.name.partition(".")[0]  # Blender appends a number if an empty has the same name
         found.setdefault(name, []).append(np.column_stack([x, z, -y]))
 arrays = {}
 for name, shapes in found.items():

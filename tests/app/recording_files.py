@@ -1,4 +1,4 @@
-"""Files of recordings, written from the descriptions of their formats."""
+"""Recording files, written after the descriptions of their formats."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -20,14 +20,14 @@ ANGLES = (
 
 
 def has_note(notes: tuple[str, ...], words: str) -> bool:
-    """Whether a note has these words."""
+    """Whether a note contains these words."""
     return any(words in note for note in notes)
 
 
 def take_of(
     kind: str = "Live Link Face", *, seconds: float = 4.0, rate: float = 10.0, **channels: object
 ) -> Take:
-    """A take; each channel is given as one constant number, or as its values."""
+    """A take whose channels are given as constant numbers or as values."""
     times = np.arange(round(seconds * rate) + 1) / rate
     arrays = {
         name: np.broadcast_to(np.asarray(values, float), times.shape).copy()
@@ -37,7 +37,7 @@ def take_of(
 
 
 def table(columns: Columns) -> str:
-    """A table in text."""
+    """A table as text."""
     rows = zip(*columns.values(), strict=True)
     lines = [",".join(columns)]
     for row in rows:
@@ -47,18 +47,18 @@ def table(columns: Columns) -> str:
 
 
 def written(path: Path, columns: Columns) -> Path:
-    """The table in a file."""
+    """Write the table to a file; return its path."""
     path.write_text(table(columns), encoding="utf-8")
     return path
 
 
 def take_in(folder: Path, columns: Columns, *, rate: float | None = None) -> Take:
-    """The take of a table with these columns."""
+    """The take read from a table with these columns."""
     return read_take(written(folder / "take.csv", columns), rate=rate)
 
 
 def timecodes(frames: Sequence[float] | Array, rate: int = 60, start: int = 36_000) -> list[str]:
-    """`HH:MM:SS:FF.fff` of frames counted from `start` [s], .fff being parts of a frame."""
+    """`HH:MM:SS:FF.fff` for frames counted from `start` [s]; .fff are thousandths of a frame."""
     found = []
     for frame in frames:
         whole, part = divmod(round(float(frame) * 1000), 1000)
@@ -71,11 +71,11 @@ def timecodes(frames: Sequence[float] | Array, rate: int = 60, start: int = 36_0
 
 
 def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object] | Array]:
-    """A raw take of Live Link Face: a face looks around; its angles have a unit of `unit` radians.
+    """A raw take of Live Link Face: a face looks around; angles are in units of `unit` radians.
 
-    Eyes and shapes move as in the app: pitch = 0.61 down - 0.44 up, yaw = 0.62 in - 0.59 out of the
-    left eye, the opposite of the right eye [rad]; + is down and to the subject's right. The axes of
-    the eyeballs point 4 degrees outward from the gaze.
+    Eyes and shapes move as in the app: pitch = 0.61 down - 0.44 up, yaw = 0.62 in - 0.59 out for
+    the left eye, the opposite for the right eye [rad]; + is down and to the subject's right. The
+    axes of the eyeballs point 4 degrees outward from the gaze.
     """
     time = np.arange(count) / 60.0
     down = 0.3 * np.sin(3.0 * time)
@@ -102,7 +102,7 @@ def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object]
 
 
 def openface(count: int = 60) -> dict[str, Sequence[object] | Array]:
-    """OpenFace 2 with some of its columns: a face that smiles, turns, and looks up and down."""
+    """An OpenFace 2 table with some of its columns: a face smiles, turns, looks up and down."""
     time = np.arange(count) / 30.0
     turn = 0.3 * np.sin(time)  # to the subject's right
     return {
@@ -129,7 +129,7 @@ def openface(count: int = 60) -> dict[str, Sequence[object] | Array]:
 
 
 def pyfeat(count: int = 20) -> dict[str, Sequence[object] | Array]:
-    """py-feat 1: each frame of a film, no times, head angles in degrees."""
+    """A py-feat 1 table: every frame of a film, without times, head angles in degrees."""
     return {
         "frame": list(range(count)),
         "FaceRectX": np.full(count, 190.0),
@@ -146,7 +146,7 @@ def pyfeat(count: int = 20) -> dict[str, Sequence[object] | Array]:
 
 
 def pyfeat_2(count: int = 20) -> dict[str, Sequence[object] | Array]:
-    """py-feat 2: units and the shapes of MediaPipe, every other frame, head angles in radians."""
+    """A py-feat 2 table: units and shapes of MediaPipe, every other frame, angles in radians."""
     columns = pyfeat(count)
     columns |= {"frame": list(range(0, 2 * count, 2)), "AU06": np.full(count, 0.4)}
     columns |= {name: np.radians(columns[name]) for name in ("Pitch", "Roll", "Yaw")}

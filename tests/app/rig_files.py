@@ -1,4 +1,4 @@
-"""A typical head of a user: an OBJ with eyes, teeth, tongue, lashes, hair and shirt."""
+"""A user's typical head: an OBJ file with eyes, teeth, tongue, lashes, hair and shirt."""
 
 import json
 from pathlib import Path
@@ -11,11 +11,11 @@ from risorius.app.scenes import FaceScene
 CENTIMETRES = 0.1
 LIBRARY = "Farben für 頭.mtl"
 PICTURE = "Haut für 頭.png"
-FIRST = ("eyeball_left", "tongue")  # parts that come before the skin in the file
+FIRST = ("eyeball_left", "tongue")  # parts before the skin in the file
 
 
 def write_whole_head(folder: Path, scene: FaceScene) -> tuple[Path, Path, dict[str, slice]]:
-    """Write the built-in head with its parts, in centimetres; return the vertices of each part.
+    """Write the built-in head with its parts, in centimetres; return each part's vertices.
 
     The skin has texture coordinates, normals and a material with a picture.
     """

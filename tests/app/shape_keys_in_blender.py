@@ -1,8 +1,8 @@
-"""Run by a Python that has bpy: import an avatar, store the displacements of each shape key.
+"""A program for a Python with bpy: import an avatar, store each shape key's displacements.
 
     python shape_keys_in_blender.py AVATAR.glb KEYS.npz
 
-Arrays are called MESH/KEY, have shape (V, 3), Blender's axes (z up) and metres.
+Arrays are named MESH/KEY, and have shape (V, 3), Blender's axes (z up) and metres.
 """
 
 import sys
@@ -17,7 +17,7 @@ found = {}
 for item in bpy.context.scene.objects:
     if item.type != "MESH" or item.data.shape_keys is None:
         continue
-    mesh = item.name.partition(".")[0]  # Blender adds a number if an empty has the same name
+    mesh = item.name.partition(".")[0]  # Blender appends a number if an empty has the same name
     places = {}
     for key in item.data.shape_keys.key_blocks:
         places[key.name] = np.empty(3 * len(item.data.vertices), np.float32)

@@ -1,4 +1,4 @@
-"""Sounds that tests write for themselves."""
+"""Sounds that tests write."""
 
 import wave
 from pathlib import Path
@@ -11,7 +11,7 @@ RATE = 16_000  # [samples/s]
 
 
 def write_wav(path: Path, samples: npt.NDArray[np.float64], rate: int = RATE) -> Path:
-    """A WAV of samples from -1 to 1, (N,) or (N, C)."""
+    """Write a WAV file of samples from -1 to 1, (N,) or (N, C)."""
     whole = np.round(np.clip(samples, -1.0, 1.0) * 32_767).astype("<i2")
     with wave.open(str(path), "wb") as file:
         file.setnchannels(1 if whole.ndim == 1 else whole.shape[1])
@@ -22,7 +22,7 @@ def write_wav(path: Path, samples: npt.NDArray[np.float64], rate: int = RATE) ->
 
 
 def noise(seconds: float, rate: int = RATE, *, seed: int = 0) -> npt.NDArray[np.float64]:
-    """Noise that never repeats itself; below 4 kHz, because codecs keep that."""
+    """Noise without repetition, below 4 kHz, which codecs keep."""
     white = np.random.default_rng(seed).normal(0.0, 0.2, round(seconds * rate))
     low = scipy.signal.butter(4, 4000.0, fs=rate, output="sos")
     return np.asarray(scipy.signal.sosfilt(low, white))

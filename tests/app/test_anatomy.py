@@ -1,4 +1,4 @@
-"""Muscles and skull: sound surfaces that follow the face, under skin that becomes transparent."""
+"""Muscles and skull: valid surfaces that follow the face under translucent skin."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -27,20 +27,20 @@ BOTH = AnatomyView(STRUCTURES)
 
 @pytest.fixture(scope="module")
 def studio() -> Iterator[Capture]:
-    """A small picture of the built-in face, multisampled."""
+    """A small multisampled picture of the built-in face."""
     with Capture(FaceScene(), CaptureOptions(size=SIZE)) as opened:
         yield opened
 
 
 def picture(studio, anatomy, **style):
-    """The picture of the face in its present state."""
+    """The picture of the face in its current state."""
     options = replace(studio.options, anatomy=anatomy)
     studio.options = replace(options, style=render.Style(**style))
     return studio.draw_image().astype(int)
 
 
 def posed(scene, **pose):
-    """The face a second after its pose was set."""
+    """The face, one second after its pose was set."""
     scene.reset()
     scene.pose(pose)
     for _ in range(60):
@@ -56,7 +56,10 @@ def structures_of(studio, **pose):
 
 
 def check_surface(part):
-    """Check that a part is finite, closed (each edge used once each way), and has unit normals."""
+    """Check that a part is finite and closed, and has unit normals.
+
+    Closed means that each edge is used once in each direction.
+    """
     assert np.isfinite(part.vertices).all()
     assert np.isfinite(part.colours).all()
     assert 0.0 <= part.colours.min()
@@ -66,25 +69,25 @@ def check_surface(part):
     known, count = np.unique(edges, axis=0, return_counts=True)
     often = dict(zip(map(tuple, known.tolist()), count.tolist(), strict=True))
     unpaired = [edge for edge, times in often.items() if often.get(edge[::-1]) != times]
-    ends = part.vertices[np.array(unpaired, int).reshape(-1, 2)]  # of bands: drawn together
+    ends = part.vertices[np.array(unpaired, int).reshape(-1, 2)]  # ends of bands, drawn together
     assert np.abs(ends[:, 0] - ends[:, 1]).max(initial=0.0) < 1e-3
 
 
 @pytest.mark.slow
 def test_skin_that_hides_everything_is_drawn_as_ever(studio):
-    """With opacity 1, or with nothing beneath, every byte is that of the usual picture."""
+    """With opacity 1, or with no structures beneath, the picture has the usual bytes."""
     posed(studio.scene)
     usual = picture(studio, AnatomyView())
     assert np.array_equal(picture(studio, AnatomyView(STRUCTURES, 1.0)), usual)
     assert np.array_equal(picture(studio, AnatomyView((), 0.2)), usual)
     assert (picture(studio, BOTH) != usual).mean() > 0.3
-    assert np.array_equal(picture(studio, AnatomyView()), usual)  # and it leaves nothing behind
+    assert np.array_equal(picture(studio, AnatomyView()), usual)  # and leaves nothing behind
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("pose", [{}, {"joy": 1.0}, {"jaw_open": 1.0, "head_yaw": 0.6}])
 def test_surfaces_are_sound(studio, pose):
-    """At rest, in a smile, in a turned head that yawns."""
+    """Surfaces are valid at rest, in a smile, and in a turned head that yawns."""
     made = structures_of(studio, **pose)
     assert len(made) == 5
     for part in made:
@@ -93,13 +96,13 @@ def test_surfaces_are_sound(studio, pose):
 
 @pytest.mark.slow
 def test_muscles_swell_and_redden_as_they_contract():
-    """The zygomaticus in a smile is thicker in the middle, and redder, equally on both sides."""
+    """In a smile the zygomaticus is thicker in the middle, and redder, equally on both sides."""
     scene = posed(FaceScene())
     muscles = Muscles.of(scene.face)
     names = [name for name, _ in muscles.names]
 
     def belly(name):
-        """Area of the cross section in the middle [mm2], and its redness there."""
+        """The area [mm2] and the redness of the muscle's middle cross section."""
         first = names.index(name) * ROWS * AROUND + ROWS // 2 * AROUND
         ring = muscles.vertices[first : first + AROUND].astype(float)
         middle = ring - ring.mean(axis=0)
@@ -114,7 +117,7 @@ def test_muscles_swell_and_redden_as_they_contract():
     assert left[0] > 1.15 * at_rest[0]
     assert left[1] > 1.5 * at_rest[1]
     assert right == approx(left, rel=0.02)
-    late = Muscles.of(scene.face)  # made in the middle of a smile, they are the same
+    late = Muscles.of(scene.face)  # made during a smile, muscles are the same
     assert np.abs(late.vertices - muscles.vertices).max() < 0.05
     muscles.follow(posed(scene).face)
     assert belly("zygomaticus_major_left") == approx(at_rest, rel=0.01)
@@ -122,7 +125,10 @@ def test_muscles_swell_and_redden_as_they_contract():
 
 @pytest.mark.slow
 def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path):
-    """They lie inside it, a long head's skull is long, and the mandible goes down with the jaw."""
+    """A user's head has muscles and a skull inside its skin.
+
+    A long head's skull is long, and the mandible moves down with the jaw.
+    """
     head = fit_head(*stranger().write(tmp_path))
     longer = head.vertices * np.where(head.vertices[:, 2:] < 0.0, [1.0, 1.0, 1.25], 1.0)
     scene = FaceScene(replace(head, vertices=longer))
@@ -144,7 +150,7 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path):
 
 
 def test_the_coarse_head_has_muscles_and_a_skull():
-    """Its vertices differ from the built-in head's, but it names the same points."""
+    """The coarse head has muscles and a skull, because it has the same anatomical points."""
     scene = FaceScene(coarse_head())
     parts = {each.part.name: each.part for each in Anatomy(scene).dissect(BOTH).parts}
     low = scene.rest_positions.min(axis=0) - 12.0
@@ -157,7 +163,7 @@ def test_the_coarse_head_has_muscles_and_a_skull():
 
 @pytest.mark.slow
 def test_the_command_draws_anatomy(tmp_path):
-    """`--anatomy` opens the given side; a missing structure is reported in one line."""
+    """`--anatomy` opens the given side; an unknown structure is reported in one line."""
     always = ["capture", "--set", "AU12=1", "--size", "120x120", "--quiet"]
     plain = tmp_path / "plain.png"
     opened = tmp_path / "opened.png"
@@ -182,7 +188,10 @@ def test_the_command_draws_anatomy(tmp_path):
 
 @pytest.mark.parametrize(("pose", "view"), [({}, "-30,-10,1.3"), ({"surprise": 1.0}, "-12,0,2")])
 def test_the_whole_side_is_the_usual_picture(studio, pose, view):
-    """Seen from its own side, nothing comes through skin; the mouth is lined, lashes are there."""
+    """On the side that is not opened, the picture is the usual one.
+
+    No structure comes through the skin, the mouth is lined, and lashes are there.
+    """
     posed(studio.scene, **pose)
     camera, studio.camera = studio.camera, camera_for(studio.scene, view)
     usual = picture(studio, AnatomyView(), shadows=False)
@@ -198,7 +207,7 @@ def test_the_whole_side_is_the_usual_picture(studio, pose, view):
 
 
 def pixels_of(camera, points):
-    """Column and row in the picture of points of the world."""
+    """Column and row of points of the world in the picture."""
     matrix = np.asarray(camera.view_matrix()) @ np.asarray(
         camera.projection_matrix(SIZE[0] / SIZE[1])
     )
@@ -208,11 +217,14 @@ def pixels_of(camera, points):
 
 
 def test_a_mask_is_searched_for_a_neck_once(monkeypatch):
-    """A head without a neck searched for one in each frame: half a second for a dense scan."""
+    """A head without a neck searches for one once, not in each frame.
+
+    The search takes half a second for a dense scan.
+    """
     searched = []
 
     def no_sections(head):
-        """No sections, as for a mask."""
+        """Return no sections, as for a mask."""
         searched.append(head)
         return []
 

@@ -1,4 +1,4 @@
-"""`risorius batch`: lists are checked completely, lines are done once, and kills lose nothing."""
+"""`risorius batch`: complete checks of lists, each line done once, safe against kills."""
 
 import csv
 import os
@@ -30,7 +30,7 @@ MADE = ("joy", FILM, "fear.npz")
 
 @pytest.fixture(autouse=True)
 def scripts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A folder of scripts and a list, which is the test's working directory."""
+    """A folder of scripts and a list, as the test's working directory."""
     monkeypatch.chdir(tmp_path)
     for pose in POSES:
         Path(f"{pose}.toml").write_text(SCRIPT.format(0.5, pose))
@@ -43,7 +43,7 @@ def batch(*arguments):
 
 
 def rows():
-    """The rows of the summary, by line."""
+    """The rows of the summary, by line number."""
     with open("clips_logs/summary.csv", encoding="utf-8", newline="") as file:
         return {int(row["line"]): row for row in csv.DictReader(file)}
 
@@ -60,7 +60,7 @@ def contents(*names):
 
 
 def test_a_list_is_done_and_not_done_again():
-    """Every output is that of the command alone; --resume makes missing and older ones."""
+    """Every output equals that of the single command; --resume makes missing and outdated ones."""
     ended = batch("--jobs", "2")
     assert ended.exit_code == 0, ended.output
     assert "3 lines: 3 ok, 0 failed, 0 skipped; 33 frames" in ended.stdout
@@ -90,7 +90,7 @@ def test_a_list_is_done_and_not_done_again():
 
 
 def test_every_wrong_line_is_reported_and_nothing_is_done():
-    """One message for each, with its number; also for lines that conflict with each other."""
+    """Every wrong line is reported with its number, also lines in conflict; nothing is done."""
     Path("mine").mkdir()
     Path("mine/notes.txt").write_text("mine")
     Path("clips.txt").write_text(
@@ -134,7 +134,7 @@ def test_every_wrong_line_is_reported_and_nothing_is_done():
     ("text", "message"), [(None, "no such list"), ("# nothing\n\n", "has no command")]
 )
 def test_a_list_of_nothing(text, message):
-    """One line, exit code 2."""
+    """An empty list gives one line and exit code 2."""
     Path("clips.txt").unlink()
     if text is not None:
         Path("clips.txt").write_text(text)
@@ -142,14 +142,17 @@ def test_a_list_of_nothing(text, message):
 
 
 def test_jobs_and_scheduler_exclude_each_other():
-    """A cluster has a fixed number of workers."""
+    """Both options are refused together, because a cluster has a fixed number of workers."""
     message = refusal(batch("--jobs", "2", "--scheduler", "tcp://a:1"))
     assert "--jobs and --scheduler exclude each other" in message
 
 
 @pytest.mark.slow
 def test_what_fails_fails_alone():
-    """Exit code 1, the reason in one line and in the summary; --resume tries it again."""
+    """One line fails alone, with exit code 1 and its reason in one line and in the summary.
+
+    `--resume` tries it again.
+    """
     Path("silent.wav").write_text("no sound")
     Path("sadness.toml").write_text('sound = "silent.wav"\n' + SCRIPT.format(0.5, "sadness"))
     ended = batch("--jobs", "1")
@@ -165,13 +168,13 @@ def test_what_fails_fails_alone():
 
 @pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1:9", "foo://a:3", "tcp://a:99999"])
 def test_a_scheduler_that_is_not_there(address):
-    """An unreachable scheduler is reported in one line, at once."""
+    """An unreachable scheduler is reported in one line at once."""
     assert "no Dask scheduler answers there" in refusal(batch("--scheduler", address))
 
 
 @pytest.mark.slow
 def test_a_cluster_does_what_is_done_here(cluster):
-    """The files are the same; a line that fails there fails alone, with the same report."""
+    """Files made by a cluster are the same; a failing line fails alone, with the same report."""
     Path("sadness.toml").write_text("duration = [")
     ended = batch("--scheduler", cluster.scheduler_address)
     assert ended.exit_code == 1
@@ -192,13 +195,13 @@ def films(count):
 
 
 def begun(*arguments):
-    """The command as a process."""
+    """The command, started as a process."""
     words = ("-m", "risorius", "batch", "clips.txt", *arguments)
     return started(*words, stdout=subprocess.DEVNULL)
 
 
 def workers_of(process):
-    """The processes that work for this one."""
+    """The worker processes of this process."""
     found = []
     for file in Path(f"/proc/{process.pid}/task").glob("*/children"):
         with_any = file.read_text() if file.exists() else ""
@@ -212,7 +215,7 @@ linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks i
 @pytest.mark.slow
 @linux
 def test_killed_at_random_moments():
-    """A worker or the whole batch; --resume then makes the very bytes of an undisturbed run."""
+    """A worker or the whole batch is killed; --resume completes exactly the undisturbed bytes."""
     names = films(3)
     assert batch("--jobs", "2").exit_code == 0
     undisturbed = contents("made")

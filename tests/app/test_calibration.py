@@ -1,4 +1,4 @@
-"""Calibration of recordings: neutral faces, gains, the mirror; for takes and for single frames."""
+"""Calibration of recordings and single frames: neutral face, gains, mirroring."""
 
 import numpy as np
 import pytest
@@ -53,7 +53,7 @@ def test_a_face_that_never_moves_is_neutral_by_its_first_second(frame, method):
 
 
 def test_the_usual_neutral_face_spares_what_rests_at_nothing():
-    """A held blink, gaze or open jaw is not taken as the neutral face."""
+    """A held blink, gaze or open jaw is not subtracted as a part of the neutral face."""
     held = take_of(browDownLeft=0.3, jawOpen=0.3, mouthClose=0.2, eyeBlinkLeft=0.4, eyeLookInLeft=1)
     neutral = neutral_of(held)
     assert neutral == {"browDownLeft": approx(0.3)}

@@ -1,4 +1,4 @@
-"""The place of a camera, from a name or from numbers."""
+"""The place of a camera, given by a name or by numbers."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,10 @@ from .command_line import refusal, risorius
 
 
 def test_numbers_stand_around_the_middle_of_the_face(scene):
-    """Yaw and pitch in degrees about the landmarks, not about the skull; zoom 2 is half as far."""
+    """Yaw and pitch [degrees] turn about the landmarks, not the skull.
+
+    Zoom 2 halves the distance.
+    """
     camera = camera_for(scene, "-15,2,2.3")
     assert (camera.yaw, camera.pitch) == approx((-15.0, 2.0))
     assert camera.target == approx(scene.framing.focus)
@@ -22,7 +25,7 @@ def test_numbers_stand_around_the_middle_of_the_face(scene):
 
 
 def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene):
-    """A camera that is too near moves back; one that is farther away stays there."""
+    """A camera too near to show the whole scene moves back; one farther away stays."""
     near = whole_scene(scene, "0,0,4")
     far = whole_scene(scene, "0,0,0.2")
     for camera in (near, far, camera_for(scene, "150,5,1")):
@@ -38,7 +41,7 @@ def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene):
     "text", ["behind", "1", "1,2,3,4", "nan,0", "0,inf", "0,0,0", "0,0,-1", ""]
 )
 def test_what_no_camera_is(scene, text):
-    """Other names and numbers are refused with the allowed ones; no word means the usual view."""
+    """Unknown names and numbers are refused with the allowed ones; no word is the usual view."""
     if not text:
         assert camera_for(scene, text).yaw == camera_for(scene, DEFAULT_VIEW).yaw
         return
@@ -47,7 +50,10 @@ def test_what_no_camera_is(scene, text):
 
 
 def test_a_wrong_camera_or_sound_of_a_script_is_reported_with_its_name(tmp_path):
-    """Of many scripts one knows which to mend; a value of the command line needs no name."""
+    """A wrong camera or sound in a script is reported with the script's name.
+
+    A value from the command line needs no name.
+    """
     script = tmp_path / "mine.toml"
     target = tmp_path / "film.mp4"
     key = "duration = 0.1\n[[pose]]\ntime = 0.0\njoy = 1.0\n"

@@ -1,4 +1,4 @@
-"""Text on pictures is in its place, and nowhere else."""
+"""Text on pictures: it is drawn at its place, and nothing else changes."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ GREY = np.full((200, 400, 3), 128, np.uint8)
 
 
 def test_a_caption_for_each_half_and_a_line_between():
-    """Text in both outer corners, the line from top to bottom, the image left as it was."""
+    """Each half has text in its outer corner, with a line between; the image is unchanged."""
     halves = [(0, 0, 200, 200), (200, 0, 200, 200)]
     made = labels(["static", "kahler"], halves, has_bar=False)
     with_captions = captioned(GREY, made, [0, 200])
@@ -25,13 +25,13 @@ def test_a_caption_for_each_half_and_a_line_between():
 
 
 def test_a_caption_without_room_is_left_out():
-    """It would cover the other side, and the face."""
+    """A caption that would cover the other side and the face is left out."""
     made = labels(["static", "kahler"], [(0, 0, 30, 200), (30, 0, 370, 200)], has_bar=False)
     assert [x > 300 for x, _, _ in made] == [True]
 
 
 def test_the_bar_shows_the_colours_of_splits_from_one_to_six():
-    """At the upper right, each colour of the palette is above the one for fewer splits."""
+    """At the upper right, the bar has the palette's colours, from one split below to six above."""
     ((x, y, image),) = labels([], [(0, 0, 400, 200)], has_bar=True)
     assert x > 300
     assert y > 50
@@ -42,7 +42,7 @@ def test_the_bar_shows_the_colours_of_splits_from_one_to_six():
 
 
 def test_a_sheet_has_a_cell_for_each_pose():
-    """Row by row, pictures in their proportions, each with its name below."""
+    """A sheet has rows of pictures in their proportions, each with its pose's name below."""
     shades = [np.full((60, 80, 3), shade, np.uint8) for shade in (90, 140, 190)]
     sheet = contact_sheet(list(zip("abc", shades, strict=True)), columns=2, cell_width=160)
     row = 120 + LEAST_CAPTION

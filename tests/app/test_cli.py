@@ -1,4 +1,4 @@
-"""The command line: its outputs, and mistakes as one line with exit code 2."""
+"""The command line: outputs, and mistakes as one line with exit code 2."""
 
 from itertools import combinations
 from pathlib import Path
@@ -32,7 +32,7 @@ def smile(tmp_path: Path) -> Path:
 
 
 def test_a_script_becomes_a_film_and_a_sheet(smile, tmp_path):
-    """`capture --compare` writes a film of the script's length and a sheet of its named poses."""
+    """`capture --compare` writes a film as long as the script, and a sheet of its named poses."""
     film = tmp_path / "out.mp4"
     sheet = tmp_path / "out.png"
     said = succeeded(
@@ -45,7 +45,7 @@ def test_a_script_becomes_a_film_and_a_sheet(smile, tmp_path):
 
 
 def test_frames_and_one_picture(smile, tmp_path):
-    """A folder gets one file for each frame; a .png is the requested moment."""
+    """A folder gets one file per frame; a .png file has the requested moment."""
     frames = tmp_path / "frames"
     still = tmp_path / "still.png"
     size = ("--size", "160x120", "--quiet")
@@ -60,7 +60,7 @@ def test_frames_and_one_picture(smile, tmp_path):
 
 @pytest.mark.slow
 def test_frames_a_second_may_be_a_fraction(smile, tmp_path):
-    """Rates of television are exact: 24000/1001 is no rounded 23.976."""
+    """Television's rates are exact: 24000/1001 is not rounded to 23.976."""
     film = tmp_path / "film.mp4"
     succeeded("capture", smile, "-o", film, "--fps", "24000/1001", "--size", "64x36")
     about = next(imageio_ffmpeg.read_frames(str(film)))
@@ -76,7 +76,7 @@ def test_looks_and_refiners_side_by_side(smile, tmp_path):
         picture = tmp_path / "x.png"
         size = ("--size", f"{width}x120", "--quiet")
         said = succeeded("capture", smile, "-o", picture, *size, *options)
-        last = said.splitlines()[-1]  # before it there may be a note that kernels are compiled
+        last = said.splitlines()[-1]  # a note on compilation may come before
         return np.asarray(Image.open(picture)).astype(int), int(last.split()[1])
 
     alone = [
@@ -92,9 +92,9 @@ def test_looks_and_refiners_side_by_side(smile, tmp_path):
     both, most = drawn(4 * 160, *options)
     pictures = [picture for picture, _ in alone]
     seen = both[:76]  # above the captions
-    seen[:, [160, 320, 480]] = np.hstack(pictures)[:76, [160, 320, 480]]  # except lines between
+    seen[:, [160, 320, 480]] = np.hstack(pictures)[:76, [160, 320, 480]]  # except the lines between
     apart = np.abs(seen - np.hstack(pictures)[:76]).max(axis=2)
-    # The background is dithered; a sample may fall on either side of an edge.
+    # The background is dithered, and a sample may fall on either side of an edge.
     assert (apart > 2).mean() < 1e-4
     assert apart.max() <= 16
     for first, second in combinations(pictures, 2):
@@ -106,7 +106,7 @@ def test_looks_and_refiners_side_by_side(smile, tmp_path):
 
 
 def test_a_script_begins_in_its_first_pose(tmp_path):
-    """The first frame has the pose of time 0: on the face, and on the waving plane."""
+    """The first frame has the pose of time 0, on the face and on the waving plane."""
     path = tmp_path / "held.toml"
     for scene, pose in (("face", "joy = 1"), ("plane", "amplitude = 1")):
         path.write_text(f"scene = '{scene}'\nduration = 1\n[[pose]]\ntime = 0\n{pose}\n")
@@ -118,7 +118,7 @@ def test_a_script_begins_in_its_first_pose(tmp_path):
 
 
 def test_controls_lists_what_scripts_may_name():
-    """Muscles and the names of every layer appear, with limits and effects."""
+    """The list has muscles and names of every layer, with limits and effects."""
     output = succeeded("controls")
     for name in ("joy", "zygomaticus_major_left", "jaw_open", "viseme_aa", "AU12_left"):
         assert f"  {name}  " in output
@@ -126,7 +126,7 @@ def test_controls_lists_what_scripts_may_name():
 
 
 def test_a_pose_needs_no_script(tmp_path):
-    """`--set` holds controls of any layer; a bare name is at full value."""
+    """`--set` holds controls of any layer; a name without a value is set in full."""
     size = ("--size", "160x120", "--quiet")
     images = []
     for settings in (("jaw_open=0",), ("AU27",), ("AU27=1", "AU4_left=0.5")):
@@ -139,7 +139,7 @@ def test_a_pose_needs_no_script(tmp_path):
 
 @pytest.mark.slow
 def test_persons_and_lights_are_filmed(tmp_path):
-    """Persons and lights change the pictures, and give the same ones every time."""
+    """Persons and lights change the pictures, and the same ones give the same pictures."""
     seen = []
     for words in ("", "--head 3", "--style light=side", "--head ada", "--head 3"):
         asked = f"capture --set joy {words} --size 96x96 --quiet -o".split()
@@ -150,7 +150,7 @@ def test_persons_and_lights_are_filmed(tmp_path):
 
 
 def test_reproduce_table1(tmp_path):
-    """The paper's rows are beside ours, for face and plane."""
+    """For face and plane, the paper's rows are printed beside the measured ones."""
     result = risorius("reproduce", "table1", "--rounds", "3", "-o", tmp_path)
     assert result.exit_code in (0, 1), result.output  # 1 on a busy machine
     for words in ("face, the paper", "3120", "1.75", "plane, refinement alone", "1328", "c_rt"):

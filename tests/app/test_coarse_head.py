@@ -1,4 +1,4 @@
-"""The coarse head moves like the built-in one, and every look refines it without a crack."""
+"""The coarse head moves like the built-in one, and no look refines it with a crack."""
 
 from itertools import product
 from pathlib import Path
@@ -19,7 +19,7 @@ from risorius.assets.topology import boundary_loops
 from risorius.geometry.rays import crossings
 from tests.app.command_line import refusal, risorius, succeeded
 
-STEPS = 40  # steps of 1/60 s, after which a pose is reached
+STEPS = 40  # steps of 1/60 s until a pose is reached
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def scene():
 
 
 def held(scene, **pose):
-    """Positions of the vertices in a held pose, shape (V, 3) [mm]."""
+    """Positions [mm] of the vertices in a held pose, shape (V, 3)."""
     scene.reset()
     scene.pose(pose)
     for _ in range(STEPS):
@@ -44,12 +44,12 @@ def gap(scene, positions, upper, lower):
 
 
 def test_coarse_head_has_all_controls_of_the_built_in_one(scene):
-    """The same muscles, action units, expressions, visemes and shapes."""
+    """Both heads have the same muscles, action units, expressions, visemes and shapes."""
     assert scene.groups == FaceScene().groups
 
 
 def test_each_shape_moves_the_coarse_head_sanely(scene):
-    """All 52 of ARKit's move skin within reason, and both halves do the same."""
+    """All 52 ARKit shapes move skin by plausible amounts, equally on both halves."""
     shapes = scene.groups["ARKit shapes"]
     assert len(shapes) == 52
     rest = held(scene)
@@ -76,7 +76,7 @@ def test_even_poses_keep_the_coarse_head_even(scene):
 
 
 def test_lips_and_lids_of_the_coarse_head_close(scene):
-    """Lips lie on each other at rest and part with the jaw; lids meet in a blink."""
+    """Lips touch at rest and part with the jaw; lids meet in a blink."""
     middle_of_lips = (62, 66)
     rest = held(scene)
     assert gap(scene, rest, *middle_of_lips) < 1.0
@@ -87,7 +87,10 @@ def test_lips_and_lids_of_the_coarse_head_close(scene):
 
 
 def test_closed_lids_cover_the_eyes_by_every_look(scene):
-    """From in front, unrefined and refined, because the paper's rule draws lids apart."""
+    """Seen from the front, closed lids cover the eyes, unrefined and in every look.
+
+    The paper's rule pulls lids apart.
+    """
     shut = held(scene, blink=1.0)
     for look in (STATIC, "paper", "smooth"):
         refinement = Refinement(refiner=STATIC) if look == STATIC else Refinement(look)
@@ -102,7 +105,7 @@ def test_closed_lids_cover_the_eyes_by_every_look(scene):
 
 
 def test_smile_of_the_coarse_head_lifts_the_corners(scene):
-    """It lifts the corners of the mouth and moves them apart."""
+    """A smile lifts the corners of the mouth and moves them apart."""
     corners = scene.landmarks[[48, 54]]
     rest = held(scene)[corners]
     smile = held(scene, joy=1.0)[corners]
@@ -111,7 +114,7 @@ def test_smile_of_the_coarse_head_lifts_the_corners(scene):
 
 
 def test_refined_coarse_head_has_no_crack(scene):
-    """This holds for every look in the poses that bend it most; each makes more triangles."""
+    """In the poses that bend it most, no look has a crack, and each makes more triangles."""
     for look in PRESETS:
         refiner = refiner_for(scene, Refinement(look))
         for pose in ({}, {"joy": 1.0}, {"jaw_open": 1.0}, {"mouthPucker": 1.0}, {"fear": 1.0}):
@@ -122,7 +125,7 @@ def test_refined_coarse_head_has_no_crack(scene):
 
 
 def test_command_draws_the_coarse_head(tmp_path):
-    """`--head coarse` chooses it, and excludes landmarks of a file."""
+    """`--head coarse` draws the coarse head, and excludes landmarks of a file."""
     picture = tmp_path / "coarse.png"
     pose = ("--set", "joy", "--size", "64x48", "--quiet", "-o", picture)
     said = succeeded("capture", "--head", "coarse", "--refiner", "none", *pose)
@@ -133,7 +136,7 @@ def test_command_draws_the_coarse_head(tmp_path):
 
 
 def test_splits_beyond_rest_are_where_muscles_pull(scene):
-    """The look smooth splits at rest, which does not count; a kiss adds splits at the mouth."""
+    """The look smooth splits edges at rest; a kiss adds splits at the mouth only."""
     with render.open_offscreen((64, 64)) as surface:
         renderer = render.Renderer(surface)
         camera = camera_for(scene, None)
@@ -152,7 +155,10 @@ def test_splits_beyond_rest_are_where_muscles_pull(scene):
 
 
 def test_border_of_an_opened_mouth_is_refined(scene):
-    """The look smooth refines it: its edges turn, and otherwise the lower lip would stay a V."""
+    """The look smooth splits the border of an opened mouth, whose edges turn.
+
+    Otherwise the lower lip would be a V.
+    """
     refiner = refiner_for(scene, Refinement())
     refiner.refine(held(scene, jaw_open=1.0))
     loops = boundary_loops(scene.faces)
@@ -167,11 +173,14 @@ def test_border_of_an_opened_mouth_is_refined(scene):
 
 
 def test_demo_films_the_coarse_head_by_three_looks(monkeypatch):
-    """The films show it speaking, in clay and with wires; a sheet shows its expressions."""
+    """The demo films three looks of the coarse head speaking, in clay and with wires.
+
+    It also makes a sheet of expressions.
+    """
     drawn = []
 
     def note(script, options, **outputs):
-        """Note a call instead of drawing, which takes half a minute."""
+        """Record a call instead of drawing, which takes half a minute."""
         drawn.append((script.title, options, outputs))
         return 1
 

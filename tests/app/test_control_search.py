@@ -10,7 +10,7 @@ from risorius.app.viewer.session.document import SceneControls
 
 
 def rows_found(scene: FaceScene, words: str) -> Iterator[tuple[str, list[Row], list[Row]]]:
-    """Each group, with the rows that a search finds in it, and all of its rows."""
+    """For each group, the rows that a search finds and all its rows."""
     values = scene.limits.pose({})
     for title, names in SceneControls(scene).groups.items():
         rows = rows_of(tuple(names), values, linked=True)
@@ -18,7 +18,7 @@ def rows_found(scene: FaceScene, words: str) -> Iterator[tuple[str, list[Row], l
 
 
 def groups_found(scene: FaceScene, words: str) -> set[str]:
-    """The groups whose rows a search finds completely."""
+    """The groups of which a search finds all rows."""
     return {title for title, found, rows in rows_found(scene, words) if found == rows}
 
 
@@ -51,10 +51,10 @@ def test_plain_words_find_controls(scene, words, expected):
     ],
 )
 def test_words_of_the_trade_find_a_group(scene, words, group):
-    """An animator's word for a kind of control shows all of that kind."""
+    """An animator's word for a kind of control finds all controls of that kind."""
     assert group in groups_found(scene, words)
 
 
 def test_other_words_do_not(scene):
-    """A word without meaning finds nothing."""
+    """A meaningless word finds nothing."""
     assert not groups_found(scene, "carburettor")

@@ -1,4 +1,4 @@
-"""`risorius dataset`: a complete set of samples, with the same bytes for every way of making it."""
+"""`risorius dataset`: a complete set of samples, with the same bytes however it is made."""
 
 import csv
 import json
@@ -36,18 +36,18 @@ OPTIONS = (
 
 
 def run(folder, *options, count=COUNT):
-    """Run the command, in this process except for its workers."""
+    """Run the command in this process; its workers are other processes."""
     return risorius("dataset", "--count", count, "-o", folder, *OPTIONS, *options)
 
 
 def content(folder):
-    """All files of a folder."""
+    """The bytes of all files in a folder."""
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A set, made by two processes."""
+    """A set made by two processes."""
     folder = tmp_path_factory.mktemp("set") / "made"
     result = run(folder, "--jobs", "2")
     assert result.exit_code == 0, result.output
@@ -62,7 +62,7 @@ def samples(made: Path) -> list[dict[str, Any]]:
 
 
 def test_a_set_has_these_files_and_nothing_else(made, samples):
-    """No picture occurs twice, and no face."""
+    """A set has exactly these files, and no picture and no face twice."""
     message = {"README.md", "dataset.json", "index.csv"}
     assert set(content(made)) == message | {f"{k:06d}{end}" for k in range(COUNT) for end in ENDS}
     assert len({(made / f"{k:06d}.png").read_bytes() for k in range(COUNT)}) == COUNT
@@ -70,7 +70,7 @@ def test_a_set_has_these_files_and_nothing_else(made, samples):
 
 
 def test_a_sample_is_the_same_alone_and_after_others(made, tmp_path):
-    """It has the same bytes in another process, in another order."""
+    """A sample has the same bytes in another process and in another order."""
     request = request_of(made, seed=SEED, size=SIZE, passes=PASSES)
     studio = Studio(request)
     for index in (3, 0):
@@ -85,7 +85,7 @@ def test_a_sample_is_the_same_alone_and_after_others(made, tmp_path):
 
 
 def test_a_damaged_sample_is_made_anew(made, tmp_path):
-    """Labels are empty, or a picture is missing: afterwards the set is as before."""
+    """Samples with empty labels or a missing picture are made anew, with the same bytes."""
     folder = tmp_path / "damaged"
     shutil.copytree(made, folder)
     (folder / "000000.json").write_bytes(b"")
@@ -97,7 +97,7 @@ def test_a_damaged_sample_is_made_anew(made, tmp_path):
 
 
 def test_a_sample_counts_when_all_of_its_files_are_whole(made, tmp_path):
-    """If anything else is in the place of one of them, the sample does not count."""
+    """A sample with something else in the place of one file is not counted as complete."""
     labels = (made / "000001.json").read_bytes()
     picture = (made / "000001.png").read_bytes()
     instead = [
@@ -133,7 +133,7 @@ def test_a_sample_counts_when_all_of_its_files_are_whole(made, tmp_path):
 
 @pytest.mark.slow
 def test_a_set_can_be_made_longer(made, tmp_path):
-    """The result is the set that would have been made at once; it cannot be made shorter."""
+    """A set made longer equals one made at once; a set cannot be made shorter."""
     folder = tmp_path / "short"
     run(folder, count=2)
     assert "2 of them new" in run(folder, "--resume").output
@@ -143,7 +143,7 @@ def test_a_set_can_be_made_longer(made, tmp_path):
 
 
 def test_what_is_no_such_set_is_left_alone(made, tmp_path):
-    """One line reports it, and every file stays unchanged."""
+    """A folder with other content is reported in one line, and every file stays."""
     before = content(made)
     other = tmp_path / "other"
     other.mkdir()
@@ -163,7 +163,7 @@ def test_what_is_no_such_set_is_left_alone(made, tmp_path):
 
 @pytest.mark.slow
 def test_a_set_begins_anywhere(made, tmp_path):
-    """The samples are those of the set from 0 on, and the set can be completed to it."""
+    """A set may begin at any sample; it has the same samples, and can be completed from 0 on."""
     folder = tmp_path / "part"
     assert run(folder, "--first", 2, count=2).exit_code == 0
     for end in ENDS:
@@ -182,7 +182,7 @@ def test_a_set_ends_within_six_digits(tmp_path):
 
 
 def test_jobs_and_scheduler_exclude_each_other(tmp_path):
-    """A cluster has a fixed number of workers."""
+    """Both options are refused together, because a cluster has a fixed number of workers."""
     message = refusal(run(tmp_path, "--jobs", 2, "--scheduler", "tcp://a:1"))
     assert "--jobs and --scheduler exclude each other" in message
 
@@ -195,7 +195,7 @@ def test_two_cannot_make_one_set(made):
 
 
 def test_labels_agree_with_each_other(made, samples):
-    """Points in space, the camera, points in the picture, and the file of landmarks agree."""
+    """Points in space, camera, points in the picture, and the landmark file agree."""
     for sample in samples:
         camera = sample["camera"]
         landmarks = sample["landmarks"]
@@ -240,7 +240,7 @@ def test_the_card_lists_what_is_in_the_set(made, samples):
 
 @pytest.mark.slow
 def test_pictures_stand_behind_faces(tmp_path):
-    """Outside all classes the picture has exactly the one colour that was chosen."""
+    """Outside all classes the picture has exactly the chosen background colour."""
     pictures = tmp_path / "pictures"
     pictures.mkdir()
     PIL.Image.new("RGB", (100, 50), (10, 200, 30)).save(pictures / "green.png")
@@ -254,7 +254,7 @@ def test_pictures_stand_behind_faces(tmp_path):
         behind[name] = shot.image
         inner = is_behind[1:-1, 1:-1] & is_behind[2:, 1:-1] & is_behind[:-2, 1:-1]
         inner &= is_behind[1:-1, 2:] & is_behind[1:-1, :-2]
-        # Single strands may be thinner than the pixels that have a class.
+        # A single strand may be thinner than the pixels of its class.
         is_hair = shot.known.images["segmentation"] == Segment.HAIR
         inner &= ~binary_dilation(is_hair, iterations=3)[1:-1, 1:-1]
         assert inner.mean() > 0.2
@@ -266,7 +266,7 @@ def test_pictures_stand_behind_faces(tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("unit", load_table(None).units)
 def test_landmarks_move_further_the_more_of_a_unit(face, unit):
-    """The effect of a label is visible: the farthest landmark moves on by a tenth at every step."""
+    """With each step of a unit's label, the farthest landmark moves on by at least a tenth."""
     rest = face.rest_positions[face.landmarks]
     moved = []
     for value in (0.25, 0.5, 0.75, 1.0):
@@ -281,7 +281,7 @@ def test_landmarks_move_further_the_more_of_a_unit(face, unit):
 
 
 def apertures_of(face, pose):
-    """The label of mouth and eyes in a pose."""
+    """The labelled apertures of mouth and eyes in a pose."""
     face.reset()
     face.pose(pose)
     face.step(1.0)
@@ -292,14 +292,14 @@ def apertures_of(face, pose):
 
 @pytest.mark.parametrize("shut", ["AU17 AU15 AU4", "AU24", "AU28", "AU12", "AU43 AU6", "AU43 AU51"])
 def test_what_is_shut_has_no_aperture(face, shut):
-    """Lips rolled inward and squeezed lids have none, although landmarks lie 1 to 4 mm apart."""
+    """Rolled lips and squeezed lids have aperture 0, although landmarks are 1 to 4 mm apart."""
     found = apertures_of(face, dict.fromkeys(shut.split(), 1.0))
     assert found.pop("mouth") < 0.1
     assert all((value < 0.1) == ("AU43" in shut) for value in found.values())
 
 
 def test_apertures_grow_with_what_opens(face):
-    """They grow in proportion after lips and lids part, for each eye, at any turn of the head."""
+    """Apertures grow in proportion to the opening, for each eye and any turn of the head."""
     parted = [apertures_of(face, {"AU25": value})["mouth"] for value in (0.25, 0.5, 0.75, 1.0)]
     assert parted[0] < 0.3
     assert np.diff(parted) == approx(1.1, abs=0.3)
@@ -310,7 +310,7 @@ def test_apertures_grow_with_what_opens(face):
 
 
 def test_speech_is_reported_in_units(face):
-    """A viseme made of units gives these units; a unit that was set keeps its value."""
+    """Labels give speech as action units; a unit that was set keeps its value."""
     face.reset()
     face.pose({"viseme_SS": 0.5, "AU1_left": 0.3})
     units = {name: value for name, value in action_units(face).items() if value > 0.01}

@@ -1,4 +1,4 @@
-"""`risorius dataset --degrade`: blur, noise and JPEG, as labels report them."""
+"""`risorius dataset --degrade`: blur, noise and JPEG compression, with their labels."""
 
 import json
 
@@ -15,13 +15,13 @@ GREY = np.full((120, 120, 3), 128, np.uint8)
 
 
 def test_none_of_it_changes_nothing():
-    """Every byte stays the same."""
+    """With no degradation every byte stays the same."""
     image = np.random.default_rng(1).integers(0, 256, (30, 40, 3)).astype(np.uint8)
     assert np.array_equal(degraded(image, CLEAN), image)
 
 
 def test_noise_deviates_by_as_many_levels():
-    """Its deviation is in grey levels, for each channel separately, and the same for a seed."""
+    """Noise has the given deviation in grey levels in each channel, and follows the seed."""
     noisy = degraded(GREY, Degradation(0.0, 6.0, None, 5))
     assert noisy.std(axis=(0, 1)) == pytest.approx(6.0, rel=0.05)
     channels = noisy.reshape(-1, 3).astype(float)
@@ -31,17 +31,20 @@ def test_noise_deviates_by_as_many_levels():
 
 
 def test_blur_is_that_of_light():
-    """The middle of an edge has half of the light; two deviations away there is hardly any."""
+    """Blur is applied to linear light: the middle of an edge has half of the light.
+
+    Two deviations away hardly any light remains.
+    """
     image = np.zeros((9, 80, 3), np.uint8)
     image[:, 40:] = 255
     row = degraded(image, Degradation(3.0, 0.0, None, 5))[4, :, 0]
-    assert row[39:41].mean() == pytest.approx(188.0, abs=6.0)  # sRGB of half of the light
+    assert row[39:41].mean() == pytest.approx(188.0, abs=6.0)  # sRGB value of half the light
     assert row[40 - 10] < 10
     assert row[40 + 10] > 250
 
 
 def test_jpeg_is_unpacked_again():
-    """A lower quality differs more from the picture."""
+    """JPEG compression is decoded again; a lower quality differs more from the picture."""
     image = np.kron(np.random.default_rng(1).integers(0, 256, (16, 16, 3)), np.ones((4, 4, 1)))
     image = image.astype(np.uint8)
     errors = [
@@ -53,7 +56,10 @@ def test_jpeg_is_unpacked_again():
 
 @pytest.mark.slow
 def test_only_pictures_and_one_label_differ(tmp_path):
-    """Faces stay unchanged; rows of a table choose degradations, and the card names the option."""
+    """Only pictures and one label change; rows of a table choose degradations.
+
+    The data set's card names the option.
+    """
     table = tmp_path / "my.toml"
     table.write_text("[degradations]\nblurred = 1\nnoisy = 1\nnoise = [4, 4]\ncompressed = 0\n")
     options = ("--count", 1, "--size", "80x64", "--sample", table, "--quiet")

@@ -1,4 +1,4 @@
-"""Samples of a data set before anything is drawn: the table, and random choices from it."""
+"""Samples of a data set before drawing: the table, and random choices from it."""
 
 import itertools
 from dataclasses import replace
@@ -24,7 +24,7 @@ def limits() -> dict[str, tuple[float, float]]:
 
 
 def units_of(sample):
-    """The action units of a sample, both sides as one."""
+    """The action units of a sample, without sides."""
     names = {name for name in sample.controls if name.startswith("AU")}
     known = {name for row in paired_units() for name in (row, f"{row}_left", f"{row}_right")}
     return {name.rpartition("_")[0] if name in known - paired_units() else name for name in names}
@@ -32,7 +32,7 @@ def units_of(sample):
 
 @given(seed=st.integers(0, 2**32 - 1), index=st.integers(0, 999_999))
 def test_any_sample_is_a_face_that_can_be_made(limits, seed, index):
-    """Controls are within limits, exclude none of each other, and the camera is in its ranges."""
+    """Controls of any sample are within limits and compatible; the camera is in its ranges."""
     sample = draw(TABLE, seed, index)
     for name, value in sample.controls.items():
         low, high = limits[name]
@@ -40,7 +40,7 @@ def test_any_sample_is_a_face_that_can_be_made(limits, seed, index):
     units = units_of(sample)
     for pair in itertools.combinations(units, 2):
         assert frozenset(pair) not in TABLE.excluded.pairs
-    assert len(units) <= MOST_UNITS + 2  # units of an expression, and a blink
+    assert len(units) <= MOST_UNITS + 2  # the units of an expression, and a blink
     if sample.kind == "neutral":
         assert units <= {"AU45"}
     for name, (low, high) in vars(TABLE.camera).items():
@@ -58,7 +58,7 @@ def test_a_sample_follows_from_seed_and_number_alone(seed, index):
 
 @pytest.fixture(scope="module")
 def many() -> list[Sample]:
-    """Enough samples for shares: for a share of a third, the deviation is 0.01."""
+    """Samples enough that a share of a third has a standard deviation of 0.01."""
     return [draw(TABLE, 1, index) for index in range(2000)]
 
 
@@ -73,14 +73,17 @@ def test_kinds_and_units_come_as_often_as_the_table_says(many):
 
 
 def read(tmp_path, text):
-    """A table with this text."""
+    """Write a text to a file, and read it as a table."""
     file = tmp_path / "my.toml"
     file.write_text(text, encoding="utf-8")
     return load_table(file)
 
 
 def test_a_table_of_ones_own_replaces_sections(tmp_path):
-    """The printed table changes nothing; some sections keep rows that the own table leaves out."""
+    """The table that the command prints changes nothing.
+
+    A user's table replaces the sections in it; some sections keep missing rows.
+    """
     printed = risorius("dataset", "--sample-table").output
     assert read(tmp_path, printed) == TABLE
     own = read(tmp_path, "[units]\nAU12 = 1.0\n[kinds]\nunit = 1\n[persons]\ncount = 3\n")

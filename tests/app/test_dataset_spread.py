@@ -1,4 +1,4 @@
-"""A set in shards, and on a cluster: its bytes are those of a set from one process."""
+"""Sets in shards (tar files) and on a cluster: bytes equal those of one process."""
 
 import csv
 import io
@@ -36,7 +36,7 @@ KILLS = int(os.environ.get("KILLS", "3"))
 
 
 def request_for(folder: Path, shards: int | None = None) -> SetRequest:
-    """A small set in a folder."""
+    """The request of a small set in a folder."""
     return request_of(folder, seed=4, size=(48, 40), passes=("segmentation",), shards=shards)
 
 
@@ -50,7 +50,7 @@ def loose(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def packed(loose: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The same samples in shards; one is left over."""
+    """The same samples in shards, with one sample in the last."""
     folder = tmp_path_factory.mktemp("packed") / "set"
     folder.mkdir()
     for file in loose.glob("0*"):
@@ -69,7 +69,7 @@ def members(path):
 
 
 def test_shards_hold_the_files_of_the_set(loose, packed):
-    """WebDataset splits their names at the first dot; no other files are left."""
+    """WebDataset splits file names in shards at the first dot; no other files remain."""
     shards = [f"shard-{k:06d}{end}" for k in range(3) for end in (".tar", ".json")]
     assert {*content(packed)} == {"README.md", "dataset.json", "index.csv", *shards}
     found = {}
@@ -81,7 +81,7 @@ def test_shards_hold_the_files_of_the_set(loose, packed):
 
 
 def test_the_index_says_where_samples_are(loose, packed):
-    """The part of a tar file at offset and length is a tar file with this sample alone."""
+    """Offset and length in the index cut out a part that is a tar file with this sample alone."""
     with (packed / "index.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     for row in rows:
@@ -95,7 +95,7 @@ def test_the_index_says_where_samples_are(loose, packed):
 
 @pytest.mark.parametrize("kind", ["loose", "packed"])
 def test_the_reader_reads_both(loose, packed, kind):
-    """Pictures and labels of single files and of shards."""
+    """The reader returns pictures and labels from single files and from shards."""
     folder = {"loose": loose, "packed": packed}[kind]
     faces = Faces(folder)
     assert len(faces) == COUNT
@@ -115,7 +115,7 @@ def test_the_reader_reads_both(loose, packed, kind):
 
 
 def test_the_page_reads_a_set_as_it_says(loose, tmp_path):
-    """Its example lines run anywhere: with numpy and Pillow alone."""
+    """The page's example lines run in any folder, with numpy and Pillow alone."""
     page = (Path(__file__).parents[2] / "docs" / "dataset.md").read_text("utf-8")
     blocks = re.findall(r"(?:^    .*\n|^\n)+", page, re.MULTILINE)
     (block,) = [each for each in blocks if "risorius.faces" in each]
@@ -142,7 +142,7 @@ def test_the_page_reads_a_set_as_it_says(loose, tmp_path):
     ],
 )
 def test_a_damaged_shard_is_made_anew(packed, tmp_path, end):
-    """Its readable samples count; afterwards the set has the same bytes."""
+    """Readable samples of a damaged shard are kept, and the completed set has the same bytes."""
     folder = tmp_path / "set"
     shutil.copytree(packed, folder)
     shard = folder / "shard-000000.tar"
@@ -162,7 +162,7 @@ def test_a_damaged_shard_is_made_anew(packed, tmp_path, end):
 
 
 def test_a_shard_grows_with_its_set(loose, packed, tmp_path):
-    """The last shard is unpacked, and packed again with the new samples."""
+    """When a set is made longer, the last shard is unpacked, and packed with the new samples."""
     folder = SetFolder(tmp_path)
     for file in loose.glob("0*"):
         shutil.copy(file, tmp_path)
@@ -179,7 +179,7 @@ def test_a_shard_grows_with_its_set(loose, packed, tmp_path):
 
 
 def test_a_process_elsewhere_hands_samples_back(loose, tmp_path):
-    """A process that cannot see the set's folder returns the files as they would be there."""
+    """A process that cannot see the set's folder returns the bytes of its files."""
     brought = []
     make_samples(Share(request_for(tmp_path / "nowhere"), (1,), "seen-0"), brought.append)
     (sample,) = brought
@@ -194,14 +194,14 @@ def test_a_process_elsewhere_hands_samples_back(loose, tmp_path):
 
 
 def test_another_release_is_refused(tmp_path):
-    """Another release would draw other pictures."""
+    """A set of another release is refused, because its pictures would differ."""
     request = replace(request_for(tmp_path), version="0.0.1")
     with pytest.raises(UserError, match=r"the set needs 0\.0\.1; install the same"):
         make_samples(Share(request, (1,)), print)
 
 
 def test_persons_of_a_seed_are_nobody_elses():
-    """Their numbers are those of other commands, with the same shape and colours."""
+    """The persons of a seed have the numbers, shape and colours of other commands' persons."""
     table = load_table(None)
     persons = [{draw(table, seed, k).person for k in range(300)} for seed in (0, 1, 7)]
     assert all(len(some) > 100 for some in persons)
@@ -227,7 +227,7 @@ def test_persons_of_a_seed_are_nobody_elses():
     ],
 )  # fmt: skip
 def test_the_table_chooses_persons(tmp_path, text, is_so):
-    """By sex, age, tone and cut of hair."""
+    """A table chooses persons by sex, age, tone and haircut."""
     file = tmp_path / "my.toml"
     file.write_text(text, "utf-8")
     population = load_table(file).population
@@ -238,7 +238,7 @@ def test_the_table_chooses_persons(tmp_path, text, is_so):
 
 @pytest.mark.slow
 def test_a_cluster_hands_bytes_back(loose, cluster, tmp_path):
-    """This is for workers that do not see the folder."""
+    """Workers that cannot see the folder return the bytes of their samples."""
     folder = SetFolder(tmp_path / "set")
     (folder.path / UNFINISHED).mkdir(parents=True)
     share = Share(request_for(tmp_path / "nowhere"), (0, 1))
@@ -251,7 +251,7 @@ def test_a_cluster_hands_bytes_back(loose, cluster, tmp_path):
 
 @pytest.mark.slow
 def test_a_cluster_loses_nothing_with_its_workers(packed, tmp_path):
-    """Computers leave and join at random moments; the set has the same bytes."""
+    """When workers leave and join at random moments, the set has the same bytes."""
     distributed = pytest.importorskip("distributed")
     folder = tmp_path / "set"
     is_made = threading.Event()
@@ -262,7 +262,7 @@ def test_a_cluster_loses_nothing_with_its_workers(packed, tmp_path):
 
         def lose_computers() -> None:
             while not is_made.wait(0.05) and not any(folder.glob("[0-9]*.json")):
-                pass  # a worker is lost during work, however fast the machine is
+                pass  # a worker is lost during work, on any machine
             workers[0].kill()
             workers.append(joined(address))
             while len(workers) < 2 + KILLS and not is_made.wait(moments.uniform(8.0, 16.0)):
@@ -286,7 +286,7 @@ def test_a_cluster_loses_nothing_with_its_workers(packed, tmp_path):
 
 
 def joined(address):
-    """A process that works for the scheduler at an address."""
+    """A worker process of the scheduler at an address."""
     options = ("--nthreads", "1", "--no-nanny", "--no-dashboard")
     command = [sys.executable, "-m", "dask", "worker", address, *options]
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -1,4 +1,4 @@
-"""Heads with too many triangles: a simplified mesh is simulated, and their own triangles follow."""
+"""Heads with too many triangles: a simplified mesh is simulated, and their own follow."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ from tests.heads import stranger
 
 @pytest.fixture(scope="module")
 def dense() -> FaceScene:
-    """A head above the limit, which is set low here."""
+    """A head above the limit, which is lowered here."""
     other = stranger()
     colours = np.tile(np.array([180, 140, 120], np.uint8), (len(other.mesh.vertices), 1))
     mesh = Mesh(other.mesh.vertices, other.mesh.faces, colours=colours)
@@ -32,9 +32,9 @@ def dense() -> FaceScene:
 
 
 def test_its_own_triangles_are_drawn(dense):
-    """All triangles of the file are there, in their places, and few are simulated.
+    """All triangles of the file are drawn at their places, and fewer are simulated.
 
-    Those of a neck that fades come last.
+    Triangles of a fading neck come last.
     """
     other = stranger()
     drawn, of_file = (each[np.lexsort(each.T)] for each in (dense.faces, other.mesh.faces))
@@ -49,7 +49,10 @@ def test_its_own_triangles_are_drawn(dense):
 
 
 def test_it_follows_and_comes_back(dense):
-    """It smiles like the simulated mesh, its copy stays still, and it returns to rest."""
+    """The file's triangles smile like the simulated mesh; a copy stays still.
+
+    All return to rest.
+    """
     dense.reset()
     twin = dense.clone()
     dense.pose({"joy": 1.0, "jaw_open": 0.5})
@@ -66,7 +69,10 @@ def test_it_follows_and_comes_back(dense):
 
 
 def test_it_follows_when_somebody_looks(dense, monkeypatch):
-    """A frame of several steps moves the file's own vertices once, and a second look takes none."""
+    """After several steps, the file's vertices move once, when they are read.
+
+    A second reading moves nothing.
+    """
     moves = []
     evaluate = Embedding.evaluate
 
@@ -88,7 +94,10 @@ def test_it_follows_when_somebody_looks(dense, monkeypatch):
 
 
 def test_its_simplified_mesh_is_a_head(dense):
-    """It moves like the mesh under the dense skin, with the same picture in another layout."""
+    """The simplified mesh moves like the mesh below the dense skin.
+
+    It has the same picture in another layout.
+    """
     alone = FaceScene(simplified_head(dense.head))
     assert np.array_equal(alone.faces, dense.simulation.faces)
     for scene in (alone, dense):
@@ -110,7 +119,7 @@ def test_its_simplified_mesh_is_a_head(dense):
 
 
 def test_lips_keep_their_own_vertices(dense):
-    """An open mouth parts the lips: no vertex of one lip goes with the other."""
+    """An open mouth parts the lips, so no vertex of one lip follows the other."""
     dense.reset()
     dense.pose({"jaw_open": 1.0})
     for _ in range(30):
@@ -125,7 +134,7 @@ def test_lips_keep_their_own_vertices(dense):
 
 
 def test_a_fold_of_the_scan_stays_on_its_own_side():
-    """In a fold of a scan a vertex may face the wrong way; it moves with its neighbours."""
+    """A vertex in a fold of a scan may face the wrong way, but moves with its neighbours."""
     sheet, triangles = make_grid(4, 4, 8.0)
     gap = np.array([0.0, 0.0, 1.0])
     coarse = Mesh(
@@ -146,7 +155,7 @@ def test_a_fold_of_the_scan_stays_on_its_own_side():
 
 
 def growth(faces, positions, rest):
-    """Growth of the edge that grew most since rest [mm]."""
+    """The largest growth of an edge since rest [mm]."""
     lengths = [
         norm(points[faces] - points[np.roll(faces, 1, axis=1)], axis=2)
         for points in (positions, rest)

@@ -1,4 +1,4 @@
-"""`risorius doctor`: its verdict agrees with what works, whichever parts are missing."""
+"""`risorius doctor`: its verdict agrees with the commands, whichever parts are missing."""
 
 import itertools
 from pathlib import Path
@@ -14,7 +14,7 @@ from .command_line import risorius
 
 @pytest.fixture
 def ill(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> object:
-    """Makes a machine that lacks the given parts and has all others."""
+    """A function that makes a machine without the given parts."""
 
     def make(*missing):
         def probe(*, offscreen_only=False):
@@ -42,7 +42,7 @@ PARTS = ("offscreen", "window", "films")
 
 
 def test_every_command_is_said_to_work_or_not(ill):
-    """Without a screen, all commands work but those of the window."""
+    """Without a screen, all commands are reported to work except those of the window."""
     ill("window")
     said = next(line for line in ask().output.splitlines() if line.startswith("commands: "))
     able, _, unable = said.removeprefix("commands: ").partition(" work; ")
@@ -56,7 +56,7 @@ def test_every_command_is_said_to_work_or_not(ill):
     "missing", [each for count in range(4) for each in itertools.combinations(PARTS, count)]
 )
 def test_the_verdict_is_what_works(ill, missing):
-    """Each part, the summary and the exit code agree."""
+    """For each missing part, line, summary and exit code agree."""
     ill(*missing)
     result = ask()
     lines = dict(line.split(": ", 1) for line in result.output.splitlines() if ": " in line)
@@ -83,7 +83,7 @@ def test_the_verdict_is_what_works(ill, missing):
     ],
 )
 def test_refinement_on_the_card(able, is_software, message, monkeypatch):
-    """A line says whether kahler-gl would run, and where; without it nothing is missing."""
+    """A line reports whether kahler-gl would run, and on which card; its absence is no fault."""
     findings = [
         render.Finding(name, True, is_software=is_software, lends_gpu_streams=name in able)
         for name in ("offscreen", "window")
@@ -94,7 +94,7 @@ def test_refinement_on_the_card(able, is_software, message, monkeypatch):
 
 @pytest.mark.parametrize("missing", [(), ("offscreen",), ("window", "films")])
 def test_offscreen_alone(ill, missing):
-    """A command that was not asked for is reported neither as missing nor as there."""
+    """A part that was not asked for is reported neither as missing nor as present."""
     ill(*missing)
     result = ask("--offscreen")
     assert result.exit_code == (2 if "offscreen" in missing else 0)
@@ -105,7 +105,7 @@ def test_offscreen_alone(ill, missing):
 
 @pytest.mark.parametrize("program", ["exec sleep 100", "exec >&-; exit 3", None])
 def test_an_ffmpeg_that_does_not_answer(ill, tmp_path, monkeypatch, program):
-    """One that hangs, fails or does not exist counts as missing, without a long wait."""
+    """An ffmpeg that hangs, fails or does not exist counts as missing, without a long wait."""
     ill()
     monkeypatch.setattr(doctor, "PATIENCE", 0.3)
     fake = tmp_path / "ffmpeg"

@@ -40,7 +40,7 @@ with report_user_errors():
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with a script, the command's working directory."""
+    """A folder with a script, as the working directory."""
     monkeypatch.chdir(tmp_path)
     Path("plane.toml").write_text(SCRIPT)
     Path("face.toml").write_text(FACE)
@@ -54,7 +54,7 @@ def export(*arguments):
 
 @pytest.mark.parametrize("name", OUTPUTS)
 def test_every_format_is_written_and_leaves_nothing_else(name, folder):
-    """Files of the table of formats are beside the script, and may be written again."""
+    """Every format in the table is written, also a second time, without other files."""
     for _ in range(2):
         arguments = ("plane.toml", "--as", name, "-o", OUTPUTS[name], "--overwrite")
         result = export(*arguments)
@@ -70,7 +70,7 @@ def test_every_format_is_written_and_leaves_nothing_else(name, folder):
 
 
 def test_curves_need_muscles():
-    """A face has them; a plane is refused in one line, and no file is written."""
+    """Curves of a face are written; for a plane, which has no muscles, one line refuses them."""
     assert "take the scene face" in refusal(export("plane.toml", "-o", "x.csv"))
     assert not Path("x.csv").exists()
     result = export("face.toml", "-o", "x.csv")
@@ -79,14 +79,14 @@ def test_curves_need_muscles():
 
 
 def test_only_a_dense_head_has_a_simplified_mesh():
-    """The built-in head is simulated directly: one line says so, before anything is written."""
+    """The built-in head has no simplified mesh: one line says so before anything is written."""
     line = refusal(export("face.toml", "-o", "x.npz", "--simplified"))
     assert line.startswith("risorius: --simplified: this mesh is simulated as it is; leave it out")
     assert not Path("x.npz").exists()
 
 
 def test_files_of_somebody_else_stay(folder):
-    """Files beside the output, a head of the user's, and files in a folder stay."""
+    """Files beside the output, a user's head, and files in a folder stay."""
     Path("x.obj").write_text("mine")
     line = refusal(export("plane.toml", "-o", "x.pc2"))
     assert "x.obj: exists already, and x.pc2 needs a file of this name" in line
@@ -111,7 +111,7 @@ def test_files_of_somebody_else_stay(folder):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", OUTPUTS)
 def test_a_full_disk_is_one_line(name, folder):
-    """The system limits the size of files: one line reports it, and the old file stays."""
+    """If the system limits the size of files, one line reports it, and the old file stays."""
     output = Path(OUTPUTS[name])
     if output.suffix:
         output.write_text("mine")

@@ -1,4 +1,4 @@
-"""glTF files hold the whole clip: every vertex at every frame, read by other readers."""
+"""glTF files: every vertex at every frame of a clip, read by other readers."""
 
 import functools
 import io
@@ -29,7 +29,7 @@ from risorius.geometry.normals import vertex_normals
 from .command_line import positions_in_blender
 from .glb_player import Player
 
-NEAR = 0.1e-3  # [m] as the documentation promises
+NEAR = 0.1e-3  # [m], as documented
 SCRIPT = """
 title = "All that moves"
 [[pose]]
@@ -65,13 +65,13 @@ def clip() -> Clip:
 
 
 def written(clip, path):
-    """Write the clip; return the remark on it."""
+    """Write the clip; return the printed remark."""
     return write(clip, path, format_for(path, None), ExportRequest())
 
 
 @pytest.fixture(scope="module")
 def glb(clip: Clip, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Its file."""
+    """The clip's file."""
     path = tmp_path_factory.mktemp("glb") / "face.glb"
     remark = written(clip, path)
     assert remark.startswith("52 named targets and ")
@@ -82,7 +82,7 @@ def glb(clip: Clip, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def farthest(player, clip, name):
-    """Largest error of any vertex of a surface in any frame [m]."""
+    """The largest error of any vertex of a surface in any frame [m]."""
     surface = next(each for each in clip.surfaces if each.name == name)
     return max(
         float(norm(player.positions(name, frame) - surface.at(frame) / 1000.0, axis=1).max())
@@ -91,12 +91,12 @@ def farthest(player, clip, name):
 
 
 def test_every_vertex_is_where_the_clip_has_it(clip, glb):
-    """Skin, eyes, teeth and tongue, with the head turned, at every frame, in order."""
+    """Skin, eyes, teeth and tongue are exact in every frame, with a turned head."""
     player = Player(glb)
     assert {surface.name for surface in clip.surfaces} <= set(player.numbers)
     assert np.array_equal(player.times, clip.times.astype(np.float32))
     moved = np.ptp(np.stack([clip.skin.at(k) for k in range(clip.frame_count)]), axis=0)
-    assert moved.max() > 50.0  # mm: the check below would notice a face that stands still
+    assert moved.max() > 50.0  # [mm]: a face without motion would fail
     for surface in clip.surfaces:
         assert farthest(player, clip, surface.name) < NEAR, surface.name
         assert np.array_equal(
@@ -105,7 +105,7 @@ def test_every_vertex_is_where_the_clip_has_it(clip, glb):
 
 
 def test_normals_follow_the_motion(clip, glb):
-    """Engines add up normals: nearly everywhere the sums are those of the moved mesh."""
+    """Sums of morphed normals, as engines compute them, nearly equal the moved mesh's normals."""
     player = Player(glb)
     for frame in range(0, clip.frame_count, 4):
         shape = player.shape("skin", frame)
@@ -117,7 +117,7 @@ def test_normals_follow_the_motion(clip, glb):
 
 
 def test_the_mesh_at_rest_is_read_by_trimesh(clip, glb):
-    """A reader without morph targets shows the neutral face, in metres, with parts that fit."""
+    """A reader without morph targets shows the neutral face in metres, with fitting parts."""
     scene = trimesh.load_scene(glb, process=False)
     assert len(scene.geometry) == len(clip.surfaces)
     skin = scene.geometry["skin"]
@@ -130,7 +130,7 @@ def test_the_mesh_at_rest_is_read_by_trimesh(clip, glb):
 
 
 def test_the_file_is_as_validators_want_it(glb):
-    """Chunks, alignment, bounds, counts and weights; unit normals, and shares with the sum 1."""
+    """Chunks, alignment, bounds and counts are valid; weights have the sum 1, normals length 1."""
     data = glb.read_bytes()
     magic, version, length = struct.unpack_from("<4sII", data)
     assert (magic, version, length) == (b"glTF", 2, len(data))
@@ -185,7 +185,7 @@ def test_the_file_is_as_validators_want_it(glb):
 
 
 def test_the_texture_is_the_right_way_up(clip, glb):
-    """Each vertex finds the colour that it has in the scene: v runs down in glTF."""
+    """Each vertex has the texture colour of the scene, although v points down in glTF."""
     player = Player(glb)
     skin = clip.skin
     albedo = clip.scene.skin.albedo
@@ -209,9 +209,9 @@ def test_the_texture_is_the_right_way_up(clip, glb):
 
 
 def test_fine_shape_is_a_normal_map(clip, glb):
-    """Its normals are those of the slopes in the scene's map, in the frame of a triangle's texture.
+    """The normal map has the slopes of the scene's fine shape, in each triangle's texture frame.
 
-    trimesh finds both maps, too.
+    trimesh finds this map and the occlusion map.
     """
     skin = clip.skin
     fine = clip.scene.skin.fine_shape
@@ -231,7 +231,7 @@ def test_fine_shape_is_a_normal_map(clip, glb):
         slope = (fine.slopes[row, column] - 128.0) * fine.steepest / 127.0
         uv_steps = np.diff(uv, axis=0)
         if abs(np.linalg.det(uv_steps)) < 4.0 / size.prod():
-            continue  # smaller than a few texels: others may have drawn there
+            continue  # too few texels, which a neighbour may have drawn
         along, aside = np.linalg.solve(uv_steps, np.diff(points, axis=0))
         outward = np.cross(along, aside)
         normal = outward / norm(outward)
@@ -246,7 +246,7 @@ def test_fine_shape_is_a_normal_map(clip, glb):
 
 
 def test_vertex_colours_are_linear_light(clip, glb):
-    """glTF has linear colours: converted to sRGB, they are the painted colours of the eyes."""
+    """The file has linear colours: converted to sRGB, they are the eyes' painted colours."""
     painted = next(s.colours for s in clip.surfaces if s.name == "eyeball_left")
     assert painted is not None
     light = Player(glb).attribute("eyeball_left", "COLOR_0").astype(np.float64)
@@ -256,7 +256,7 @@ def test_vertex_colours_are_linear_light(clip, glb):
 
 
 def test_scenes_without_a_face_are_written_too(tmp_path):
-    """A sheet is written with its targets."""
+    """A scene without a face, such as a sheet, is written with morph targets."""
     text = 'scene = "plane"\n[[pose]]\ntime = 0\n[[pose]]\ntime = 0.6\namplitude = 1\nphase = 0.4\n'
     clip = record(parse_script(text, source="test"), None, 20.0, progress=False)
     assert written(clip, tmp_path / "sheet.glb").startswith("0 named targets and ")
@@ -267,7 +267,7 @@ def test_scenes_without_a_face_are_written_too(tmp_path):
 
 @pytest.mark.blender
 def test_blender_sees_the_same(clip, glb, tmp_path):
-    """Blender imports it and steps through it; each vertex is in the clip's place."""
+    """Blender imports the file, and has each vertex at its place in every frame."""
     found = positions_in_blender(glb, tmp_path, 24.0, clip.frame_count)
     with np.load(found) as positions:
         assert set(positions) >= {surface.name for surface in clip.surfaces}
@@ -279,7 +279,7 @@ def test_blender_sees_the_same(clip, glb, tmp_path):
 
 @pytest.mark.slow
 def test_what_targets_cannot_follow_is_reported(clip, tmp_path, monkeypatch):
-    """A clip that needs more targets than allowed is written, and the remaining error reported."""
+    """If a clip needs more targets than allowed, the remaining error is reported."""
     monkeypatch.setattr(gltf, "decompose", functools.partial(decompose, most=4))
     remark = written(clip, tmp_path / "rough.glb")
     player = Player(tmp_path / "rough.glb")
@@ -291,7 +291,10 @@ def test_what_targets_cannot_follow_is_reported(clip, tmp_path, monkeypatch):
 
 
 def test_targets_have_the_names_and_the_forms_of_an_avatar(clip, glb):
-    """ARKit's 52 are the rest shapes of single controls in the simulation; others hold the rest."""
+    """The first 52 targets have ARKit's names and the rest shape of each control.
+
+    The others are named as residuals.
+    """
     player = Player(glb)
     names = player.target_names("skin")
     assert tuple(names[:52]) == ARKIT
@@ -306,14 +309,14 @@ def test_targets_have_the_names_and_the_forms_of_an_avatar(clip, glb):
 
 
 def test_named_targets_alone_follow_the_motion(clip, tmp_path):
-    """Without residual targets, a line reports the error, and all weights are from 0 to 1."""
+    """Without residual targets, one line reports the error; all weights are from 0 to 1."""
     path = tmp_path / "named.glb"
     remark = write(clip, path, format_for(path, None), ExportRequest(named_only=True))
     player = Player(path)
     assert tuple(player.target_names("skin")) == ARKIT
     assert "52 named targets and 0 residual ones" in remark
-    assert 0.5 < 1000.0 * farthest(player, clip, "skin") < 8.0  # of 50 mm that the skin moves
-    # No shape of ARKit's moves the tongue but tongueOut.
+    assert 0.5 < 1000.0 * farthest(player, clip, "skin") < 8.0  # [mm], of 50 that the skin moves
+    # Only one ARKit shape moves the tongue: tongueOut.
     error = 1000.0 * farthest(player, clip, "tongue")
     assert f"at most {error:.2f} mm from the simulation (tongue)" in remark
     weights = player.weights("skin")
@@ -321,7 +324,7 @@ def test_named_targets_alone_follow_the_motion(clip, tmp_path):
 
 
 def test_weights_say_what_their_names_say(tmp_path):
-    """A take of ARKit's shapes comes back under their names, with the face's delay."""
+    """A take of ARKit shapes is written under the same names, with the face's delay."""
     script = parse_script(TAKE, source="test")
     path = tmp_path / "take.glb"
     written(record(script, None, 12.0, progress=False), path)
@@ -335,7 +338,10 @@ def test_weights_say_what_their_names_say(tmp_path):
 
 @pytest.mark.slow
 def test_our_own_file_is_a_head_to_fit(head, glb, tmp_path):
-    """Its hair is cards without a closed surface; the skin is fitted, and stays in place."""
+    """An exported file can be fitted as a head; cards of hair are left out.
+
+    The skin stays in place.
+    """
     marks = tmp_path / "own.json"
     marks.write_text(json.dumps((head.vertices[head.landmarks] / 1000.0).tolist()))
     fitted = fit_head(glb, marks)
@@ -344,7 +350,7 @@ def test_our_own_file_is_a_head_to_fit(head, glb, tmp_path):
 
 
 def test_folds_of_lids_are_in_the_normal_map():
-    """Wrinkles of a person that show at rest are exported, too: slopes and fine shape add up."""
+    """Folds of lids that show at rest are in the normal map, added to the fine shape."""
     person = person_called("maria")
     surface = MovingSurface(
         "skin", person.vertices, person.faces, uv=person.uv, face_uv=person.face_uv

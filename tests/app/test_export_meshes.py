@@ -26,9 +26,9 @@ from .command_line import positions_in_blender
 
 Points = npt.NDArray[np.float64]
 
-RATE = 24.0  # frames a second
+RATE = 24.0  # frames per second
 FRAMES = 8
-NEAR = 1e-3  # [mm] largest error of single precision at a head's size
+NEAR = 1e-3  # [mm], error of single precision at a head's size
 METRES = 0.001
 SCRIPT = """
 duration = 0.3
@@ -58,7 +58,7 @@ def written(clip, path, name=None, refinement=None):
 
 
 def whole(clip, frame):
-    """All vertices of a frame [mm], the skin's first."""
+    """All vertices of a frame [mm], beginning with the skin."""
     return np.concatenate([each.at(frame) for each in clip.surfaces])
 
 
@@ -69,7 +69,7 @@ def refined_skins(clip):
 
 
 def is_near(found, wanted, unit=1.0):
-    """Whether points, in a unit of this number of metres, are in the right places, in order."""
+    """Whether points equal the wanted ones in order; unit: metres per unit of the points."""
     points = np.asarray(found, np.float64)
     return points.shape == wanted.shape and float(np.abs(points / unit - wanted).max()) < NEAR
 
@@ -78,7 +78,7 @@ def is_near(found, wanted, unit=1.0):
 
 
 def usd_points(stage, name, frame):
-    """Places of a mesh's points in USD [mm]."""
+    """Points of a mesh in a USD stage [mm]."""
     prim = stage.GetPrimAtPath(f"/face/{name}")
     points = np.array(UsdGeom.Mesh(prim).GetPointsAttr().Get(frame), np.float64)
     matrix = np.array(UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(frame))
@@ -86,7 +86,7 @@ def usd_points(stage, name, frame):
 
 
 def test_usd_has_every_surface_in_every_frame(clip, tmp_path):
-    """Rate, unit, axis and frames of the stage; points to a thousandth of a millimetre."""
+    """The stage has the right rate, unit, axis and frames; points are exact to 0.001 mm."""
     stage = Usd.Stage.Open(str(written(clip, tmp_path / "face.usdz")))
     assert stage.GetTimeCodesPerSecond() == stage.GetFramesPerSecond() == RATE
     assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (0, FRAMES - 1)
@@ -105,7 +105,7 @@ def test_usd_has_every_surface_in_every_frame(clip, tmp_path):
 
 
 def test_usd_has_the_texture_and_colours(clip, tmp_path):
-    """Coordinates of each corner, a picture in the package, and colours of light on parts."""
+    """The package has texture coordinates of each corner, the picture, and linear part colours."""
     path = written(clip, tmp_path / "face.usdz")
     stage = Usd.Stage.Open(str(path))
     skin = stage.GetPrimAtPath("/face/skin")
@@ -127,7 +127,7 @@ def test_usd_has_the_texture_and_colours(clip, tmp_path):
 
 
 def test_usd_is_sound(clip, tmp_path):
-    """Pixar's own validators report nothing about the package."""
+    """Pixar's validators report nothing about the package."""
     validation = pytest.importorskip("pxr.UsdValidation")
     try:
         validators = validation.ValidationRegistry().GetOrLoadAllValidators()
@@ -140,7 +140,7 @@ def test_usd_is_sound(clip, tmp_path):
 
 
 def test_usd_has_the_refined_skin(clip, tmp_path):
-    """Each frame has its own triangles, with normals and coordinates for every point."""
+    """Each frame has its own triangles, with normals and texture coordinates for every point."""
     path = written(clip, tmp_path / "fine.usdz", refinement=REFINED)
     stage = Usd.Stage.Open(str(path))
     mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/face/skin"))
@@ -164,7 +164,7 @@ def test_usd_has_the_refined_skin(clip, tmp_path):
 
 
 def vtk_steps(path):
-    """Time and PolyData of each step, as VTK reads them."""
+    """Time and PolyData of each step, as read by VTK."""
     reader = vtkHDFReader()
     steps = []
     reader.SetFileName(str(path))
@@ -181,7 +181,7 @@ def vtk_steps(path):
 
 
 def test_vtkhdf_has_every_frame(clip, tmp_path):
-    """VTK finds times, points, triangles and attributes; the triangles are stored once."""
+    """VTK reads times, points, triangles and attributes; the triangles are stored once."""
     path = written(clip, tmp_path / "face.vtkhdf")
     steps = vtk_steps(path)
     assert np.allclose([time for time, _ in steps], np.arange(FRAMES) / RATE)
@@ -191,7 +191,7 @@ def test_vtkhdf_has_every_frame(clip, tmp_path):
         assert is_near(points, whole(clip, frame))
         lengths = norm(vtk_to_numpy(data.GetPointData().GetArray("Normals")), axis=1)
         assert np.allclose(lengths, 1.0, atol=1e-5)
-        if vtkVersion().GetVTKVersion() >= "9.5":  # VTK takes its lighting from that
+        if vtkVersion().GetVTKVersion() >= "9.5":  # from this version on, VTK's lighting uses it
             assert data.GetPointData().GetNormals() is not None
         moved = vtk_to_numpy(data.GetPointData().GetArray("displacement"))
         assert np.abs(moved - (whole(clip, frame) - rest)).max() < NEAR
@@ -211,13 +211,13 @@ def test_vtkhdf_has_every_frame(clip, tmp_path):
 
 
 def obj_rows(path, name):
-    """The numbers of all lines of a kind in an OBJ."""
+    """The numbers in all lines of one kind in an OBJ file."""
     lines = path.read_text().splitlines()
     return np.array([line.split()[1:] for line in lines if line.startswith(f"{name} ")], float)
 
 
 def test_pc2_moves_the_mesh_beside_it(clip, tmp_path):
-    """It follows the published layout: a header of 32 bytes, then little-endian floats, metres."""
+    """A PC2 file has a header of 32 bytes, then little-endian floats in metres, as published."""
     data = written(clip, tmp_path / "face.pc2").read_bytes()
     head = struct.unpack("<12siiffi", data[:32])
     vertices = len(whole(clip, 0))
@@ -235,7 +235,7 @@ def test_pc2_moves_the_mesh_beside_it(clip, tmp_path):
 
 
 def triangles_in(path):
-    """Corners and normals of all triangles in an OBJ, shape (F, 3, 3), in their order."""
+    """Corners and normals of all triangles in an OBJ file, in order, shape (F, 3, 3)."""
     lines = [line.split()[1:] for line in path.read_text().splitlines() if line.startswith("f ")]
     corners = np.array([[corner.split("/") for corner in line] for line in lines], int) - 1
     return obj_rows(path, "v")[corners[..., 0], :3], obj_rows(path, "vn")[corners[..., 2]]
@@ -244,7 +244,7 @@ def triangles_in(path):
 @pytest.mark.slow
 @pytest.mark.parametrize("refinement", [None, REFINED], ids=["mesh", "refined"])
 def test_sequences_have_every_frame(clip, tmp_path, refinement):
-    """Frames are numbered in order; triangles are those of the clip, and lit from outside."""
+    """Frames are numbered in order; triangles are those of the clip, lit from outside."""
     folder = written(clip, tmp_path / "frames", "obj", refinement)
     meshes = sorted(folder.glob("*.obj"))
     assert [each.stem for each in meshes] == [f"frame_{n:05d}" for n in range(FRAMES)]
@@ -264,7 +264,10 @@ def test_sequences_have_every_frame(clip, tmp_path, refinement):
 
 
 def test_an_obj_keeps_the_vertices_of_the_mesh(clip, tmp_path):
-    """V vertices in their order, coordinates apart, colours behind them, a group for each part."""
+    """An OBJ file has V vertices in order, with colours, and a group for each part.
+
+    Texture coordinates have their own numbers.
+    """
     folder = written(clip, tmp_path / "frames", "obj")
     path = folder / f"frame_{FRAMES - 1:05d}.obj"
     rows = obj_rows(path, "v")
@@ -287,7 +290,7 @@ def test_an_obj_keeps_the_vertices_of_the_mesh(clip, tmp_path):
 
 
 def test_npz_has_all_of_a_clip(clip, tmp_path):
-    """Every surface can be put together from the arrays alone."""
+    """The arrays alone are enough to rebuild every surface."""
     with np.load(written(clip, tmp_path / "face.npz")) as arrays:
         assert np.array_equal(arrays["positions"], clip.skin.shapes)
         assert np.array_equal(arrays["times"], clip.times)
@@ -307,7 +310,7 @@ def test_npz_has_all_of_a_clip(clip, tmp_path):
 @pytest.mark.blender
 @pytest.mark.parametrize("name", ["face.usdz", "fine.usdz", "face.pc2"])
 def test_blender_sees_the_same(clip, tmp_path, name):
-    """Blender imports it and steps through it; each vertex is in the clip's place."""
+    """Blender imports the file, and has each vertex at its place in every frame."""
     is_fine = name.startswith("fine")
     path = written(clip, tmp_path / name, refinement=REFINED if is_fine else None)
     found = positions_in_blender(path, tmp_path, RATE, FRAMES)

@@ -1,4 +1,4 @@
-"""Files with the refined skin: one topology in all frames, read back by other readers."""
+"""Files with the refined skin: one topology in all frames, read by other readers."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -47,23 +47,23 @@ def refined(clip: Clip) -> RefinedClip:
 
 
 def written(refined, path):
-    """Write the clip; the remark on it."""
+    """Write the clip; return the printed remark."""
     return write(refined.clip, path, format_for(path, None), ExportRequest(progress=False))
 
 
 def test_one_topology_that_no_frame_is_finer_than(clip, refined):
-    """The skin has the triangles that any frame needs, and is near the frames that change."""
+    """The skin has all triangles that any frame needs, and is near each frame's own refinement."""
     counts = [len(mesh.triangles) for mesh in clip.refined(Refinement("paper"))]
     assert (refined.fewest, refined.most) == (min(counts), max(counts))
     assert len(clip.skin.faces) < max(counts) <= len(refined.clip.skin.faces)
     assert 0.0 < refined.mean < 0.2
-    # The paper's rule moves vertices of long edges by millimetres where one of them is split.
+    # Where the paper's rule splits a long edge, it moves both its vertices by millimetres.
     assert refined.mean < refined.farthest < 10.0
     assert str(len(refined.clip.skin.faces)) in refined.words
 
 
 def test_frames_are_those_of_a_refiner_with_the_same_splits(clip, refined):
-    """Vertices and normals are the refiner's own in every frame; parts stay unchanged."""
+    """Vertices and normals of every frame equal the refiner's; parts are unchanged."""
     scene = clip.scene
     changing = refine.create(
         "kahler", scene.faces, scene.rest_positions, scene.skin.uv, scene.skin.face_uv
@@ -89,7 +89,7 @@ def test_frames_are_those_of_a_refiner_with_the_same_splits(clip, refined):
 
 
 def test_gltf_plays_the_refined_skin(refined, tmp_path):
-    """Morph targets and the head's bone bring the refined vertices within a tenth of a mm."""
+    """Morph targets and the head's bone place refined vertices within a tenth of a millimetre."""
     path = tmp_path / "face.glb"
     remark = written(refined, path)
     assert remark is not None and "at most 0." in remark
@@ -115,7 +115,7 @@ def test_gltf_plays_the_refined_skin(refined, tmp_path):
 
 
 def test_usd_stores_the_triangles_once(refined, tmp_path):
-    """Triangles are the same at all times, points move."""
+    """Triangles are stored once, points for each time."""
     path = tmp_path / "face.usdz"
     written(refined, path)
     stage = Usd.Stage.Open(str(path))
@@ -127,7 +127,7 @@ def test_usd_stores_the_triangles_once(refined, tmp_path):
 
 
 def test_arrays_and_point_caches_have_the_refined_vertices(refined, tmp_path):
-    """`positions` of npz has all refined vertices; a point cache has them first."""
+    """In npz, `positions` has all refined vertices; a point cache begins with them."""
     path = tmp_path / "face.npz"
     written(refined, path)
     with np.load(path) as arrays:
@@ -141,7 +141,7 @@ def test_arrays_and_point_caches_have_the_refined_vertices(refined, tmp_path):
 
 @pytest.mark.parametrize("look", ["paper", "smooth"])
 def test_a_pose_that_is_held(look):
-    """All frames have the same triangles, and rest has others; the file has those of the frames."""
+    """A held pose has its own triangles, other than rest, in all frames and in the file."""
     held = "duration = 0.2\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
     scene = FaceScene()
     scene.pose({"joy": 1.0})
@@ -156,7 +156,7 @@ def test_a_pose_that_is_held(look):
 
 
 def test_a_refiner_that_never_changes_needs_no_splits(clip):
-    """Uniform Loop has the same triangles in all frames by itself."""
+    """Uniform Loop has the same triangles in all frames, so it needs no splits of the clip."""
     uniform = with_refined_skin(clip, Refinement(refiner="loop"))
     assert len(uniform.clip.skin.faces) == 4 * len(clip.skin.faces)
     assert uniform.words == f"refined skin of {4 * len(clip.skin.faces)} triangles"
@@ -176,7 +176,7 @@ def test_a_refiner_that_never_changes_needs_no_splits(clip):
     ],
 )
 def test_mistakes_are_reported(name, request_, error, tmp_path: Path):
-    """A format that cannot hold other triangles, or has no mesh, is refused in one line."""
+    """A format without a mesh, or limited to the base triangles, is refused in one line."""
     path = tmp_path / name
     with pytest.raises(UserError, match=error):
         check_request(path, format_for(path, None), request_)

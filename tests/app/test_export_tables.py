@@ -1,4 +1,4 @@
-"""Exported curves: our readers of recordings read them, and the face moves in the same way."""
+"""Exported curves: read by the readers of recordings, they move the face equally."""
 
 import csv
 
@@ -12,7 +12,7 @@ from risorius.app.playback import LEAD, Playback
 from risorius.app.recordings.reading import read_take
 from risorius.app.script.script_file import parse_script
 
-RATE = 60.0  # frames a second
+RATE = 60.0  # frames per second
 SHAPES = """
 duration = 1.4
 [[pose]]
@@ -34,7 +34,7 @@ head_roll = 0.3
 time = 1.2
 browInnerUp = 0.5
 """
-AS_IT_IS = Playback(neutral="none", gains=("eyeBlink*=1",))  # a face that needs no calibration
+AS_IT_IS = Playback(neutral="none", gains=("eyeBlink*=1",))  # for a face that needs no calibration
 
 
 def script_of(text):
@@ -43,7 +43,7 @@ def script_of(text):
 
 
 def table(clip, path):
-    """The columns of the CSV that a clip was written to; a timecode as seconds."""
+    """The columns of the CSV file of a clip; the timecode as seconds."""
     write(clip, path, format_for(path, None), ExportRequest(progress=False))
     with path.open(newline="") as file:
         names, *rows = csv.reader(file)
@@ -59,20 +59,20 @@ def table(clip, path):
 
 
 def replayed(path, scene, playback):
-    """The clip that a recording makes."""
+    """The clip made from a recording."""
     script, _ = read_performance(path, playback, scene.limits)
     return record(script, scene, RATE, progress=False)
 
 
 def apart(first, second):
-    """Distance between two clips: largest, and root mean square [mm]."""
+    """Distance between two clips [mm]: largest, and root mean square."""
     count = min(first.frame_count, second.frame_count)
     off = np.linalg.norm(first.skin.shapes[:count] - second.skin.shapes[:count], axis=2)
     return float(off.max()), float(np.sqrt((off**2).mean()))
 
 
 def test_arkit_plays_the_same_again(scene, tmp_path):
-    """A script of ARKit's shapes, eyes and head: the replay is less than half a millimetre off."""
+    """A replayed script of ARKit shapes, eyes and head is off by less than 0.5 mm."""
     clip = record(script_of(SHAPES), scene, RATE, progress=False)
     path = tmp_path / "take.csv"
     table(clip, path)
@@ -92,7 +92,7 @@ def test_arkit_plays_the_same_again(scene, tmp_path):
 
 
 def test_arkit_shows_set_values(scene, tmp_path):
-    """They are the script's own values, with the delay of the muscles; header of Live Link Face."""
+    """The file has the script's values, delayed like muscles, with Live Link Face's header."""
     clip = record(script_of(SHAPES), scene, RATE, progress=False)
     columns = table(clip, tmp_path / "take.csv")
     names = list(columns)
@@ -110,7 +110,7 @@ def test_arkit_shows_set_values(scene, tmp_path):
 
 
 def test_expressions_become_shapes(scene, tmp_path):
-    """Controls that are not shapes are solved for, and the result looks the same."""
+    """Controls other than shapes are approximated by shapes, and the result looks the same."""
     text = "duration = 0.6\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\njoy = 1.0\n"
     clip = record(script_of(text), scene, RATE, progress=False)
     path = tmp_path / "take.csv"

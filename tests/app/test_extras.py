@@ -1,4 +1,4 @@
-"""Without extras: pictures are drawn, and a missing library is named with its remedy."""
+"""An installation without extras: pictures are drawn; a missing library gives one line."""
 
 import json
 import os
@@ -43,7 +43,7 @@ ask([], main)
 
 
 def plain(*words, folder, code=RUN):
-    """The command, as installed by `pip install risorius` alone."""
+    """The command as installed by `pip install risorius`."""
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
     return subprocess.run(
         [sys.executable, "-c", WITHOUT + code, *words],
@@ -52,7 +52,7 @@ def plain(*words, folder, code=RUN):
 
 
 def each_of(*commands, folder):
-    """Exit codes and error lines of commands, run one after the other in one process."""
+    """Exit codes and error lines of commands, run in order in one process."""
     (folder / "take.csv").write_text("time,jawOpen\n0,0\n0.1,0.5\n0.2,0\n")
     (folder / "list.txt").write_text("export --set joy -o joy.npz\n")
     ended = plain(*commands, folder=folder, code=EACH)
@@ -64,7 +64,7 @@ def each_of(*commands, folder):
 
 
 def test_a_picture_needs_no_extra(tmp_path):
-    """A glTF file needs none, either."""
+    """Pictures and glTF files need no extra."""
     picture = "capture --set joy -o joy.png --size 64x48 --quiet"
     ended = each_of(picture, "export --set joy -o joy.glb --quiet", folder=tmp_path)
     assert [code for code, _ in ended] == [0, 0], ended
@@ -73,7 +73,7 @@ def test_a_picture_needs_no_extra(tmp_path):
 
 
 def test_help_needs_no_extra(tmp_path):
-    """This is the help of the command and of each command below it."""
+    """The help of the command, and of each command below it, needs no extra."""
     ended = plain(folder=tmp_path, code=EVERY_HELP)
     assert ended.returncode == 0, ended.stderr
     lines = [line.rstrip() for line in ended.stdout.splitlines()]
@@ -82,7 +82,10 @@ def test_help_needs_no_extra(tmp_path):
 
 
 def test_the_doctor_says_what_is_missing(tmp_path):
-    """It also says what installs it; without extras there are pictures, but no films or window."""
+    """The doctor reports what each missing extra installs.
+
+    Without extras it reports pictures, but neither films nor a window.
+    """
     ended = plain("doctor", folder=tmp_path)
     assert ended.returncode == 1, ended.stderr
     lines = dict(line.split(": ", 1) for line in ended.stdout.splitlines() if ": " in line)
@@ -95,7 +98,7 @@ def test_the_doctor_says_what_is_missing(tmp_path):
 
 
 def test_what_is_missing_is_named(tmp_path):
-    """One line names it, with the command that installs it; no files are left."""
+    """One line names the missing extra and the command that installs it; no file remains."""
     missing = {
         "view": "window",
         "replay take.csv --quiet": "window",
@@ -116,7 +119,7 @@ def test_what_is_missing_is_named(tmp_path):
 
 
 def test_extras_bring_what_they_are_named_for():
-    """`all` also contains every extra that a user of the program may want."""
+    """Extras install what they are named for; `all` has every extra of a program's user."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extras = project["optional-dependencies"]
     packages = {"pxr": "usd-core", "imgui_bundle": "imgui-bundle", "pythonosc": "python-osc"}

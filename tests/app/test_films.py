@@ -27,7 +27,7 @@ SMALL = CaptureOptions(size=(64, 48), samples=0)
 
 
 def numbered_frames():
-    """Pictures of a bar that moves one step to the right with each picture."""
+    """Pictures of a bar that moves one step to the right in each picture."""
     frames = []
     for number in range(COUNT):
         frame = np.full((HEIGHT, WIDTH, 3), 60, np.uint8)
@@ -54,27 +54,27 @@ def decoded(path, size):
 
 
 def seconds_of(path):
-    """Length of a film."""
+    """The duration of a film [s]."""
     if path.suffix not in (".gif", ".webp"):
         return float(imageio_ffmpeg.count_frames_and_secs(str(path))[1])
     total = 0.0
     with PIL.Image.open(path) as film:
         for number in range(getattr(film, "n_frames", 1)):
             film.seek(number)
-            film.load()  # only then Pillow knows the duration of a WebP's picture
+            film.load()  # before this, Pillow does not know durations in a WebP file
             total += film.info["duration"] / 1000.0
     return total
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
 def test_frames_are_in_order_and_complete(tmp_path, suffix):
-    """Each kind of film, of an odd size, gives back every picture, at its time."""
+    """Each kind of film, of an odd size, returns every picture at its time."""
     path = tmp_path / f"film{suffix}"
     frames = numbered_frames()
     with outputs.film(path, (WIDTH, HEIGHT), RATE) as add:
         for frame in frames:
             add(frame)
-    is_even = suffix == ".mp4"  # H.264 needs even sizes, so the last column and row are removed
+    is_even = suffix == ".mp4"  # H.264 needs even sizes, so the last row and column are cut
     size = (WIDTH - is_even, HEIGHT - is_even)
     found = decoded(path, size)
     assert len(found) == COUNT
@@ -86,7 +86,10 @@ def test_frames_are_in_order_and_complete(tmp_path, suffix):
 
 
 def test_a_gif_is_not_asked_for_frames_that_players_slow_down(tmp_path):
-    """Frames last two hundredths of a second or more; a shorter time is refused in one line."""
+    """Frames of a GIF last at least two hundredths of a second; less is refused in one line.
+
+    Players slow down shorter frames.
+    """
     with (
         pytest.raises(UserError, match=r"film.gif: can have at most 50 frames a second, but"),
         outputs.film(tmp_path / "film.gif", (96, 64), 60.0),
@@ -98,7 +101,7 @@ def test_a_gif_is_not_asked_for_frames_that_players_slow_down(tmp_path):
 @pytest.mark.parametrize("samples", [0, 4])
 @pytest.mark.parametrize("colour", [(255, 255, 255), (0, 0, 0), (0, 177, 64)])
 def test_a_transparent_picture_lies_over_any_colour(samples, colour):
-    """Over white, black and green it equals the picture drawn before that colour: no fringe."""
+    """Over white, black and green, a transparent picture equals the opaque one, without fringe."""
     flat = tuple(part / 255.0 for part in colour)
     background = render.Background(flat, flat)
     pictures = []
@@ -136,7 +139,7 @@ def test_backgrounds_by_name(tmp_path, word, corner):
         assert picture.getpixel((0, 0)) == corner
 
 
-# Drawn by several processes
+# Several drawing processes.
 
 
 def several(count, monkeypatch):
@@ -146,7 +149,7 @@ def several(count, monkeypatch):
 
 @pytest.mark.slow
 def test_a_range_is_a_part_of_the_film_whoever_draws(tmp_path, monkeypatch):
-    """The frames of a part are those of the whole film, from one process and from several."""
+    """Frames of a range equal those of the whole film, from one process and from several."""
     text = "duration = 0.5\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.5\njoy = 1.0\n"
     script = parse_script(text, source="smile.toml")
     whole = CaptureOptions((96, 72), 10.0)

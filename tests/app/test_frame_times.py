@@ -1,4 +1,4 @@
-"""The times of frames that the window shows."""
+"""The times of frames shown in the window."""
 
 import time
 
@@ -8,7 +8,10 @@ from risorius.app.viewer.session.physics import FrameTimes
 
 
 def test_phases_and_frames_agree():
-    """They describe the same frames; pauses do not count, and another scene begins anew."""
+    """Times of phases and of frames describe the same frames; pauses are not counted.
+
+    A new scene begins with empty times.
+    """
     times = FrameTimes()
     for elapsed in (0.0, 0.02, 0.02, 0.02):
         times.next_frame(elapsed)
@@ -17,7 +20,7 @@ def test_phases_and_frames_agree():
         with times.timed("draw"):
             time.sleep(0.005)
     times.next_frame(0.02)
-    for _ in range(5):  # nothing is done
+    for _ in range(5):  # pauses
         times.next_frame(2.0)
     assert list(times.whole)[-4:] == [approx(20.0)] * 4
     assert times.frame == approx(20.0)

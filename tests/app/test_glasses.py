@@ -1,4 +1,4 @@
-"""Glasses and collars of persons in pictures of a few pixels."""
+"""Glasses and collars of persons, a few pixels wide."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from risorius.assets.identities import COLLARS
 
 @pytest.mark.slow
 def test_rims_are_not_dashed_by_highlights():
-    """A rim of one or two pixels has no row of light dots, whatever its normals are."""
+    """A rim of one or two pixels has no row of light dots, for any normals."""
     studio = Studio(request_of(Path(), seed=21, size=(192, 192), passes=("segmentation",)))
     shot = studio.shoot(2)
     assert shot.known.labels["person"]["glasses"] == "rectangular"
@@ -26,7 +26,7 @@ def test_rims_are_not_dashed_by_highlights():
 @pytest.mark.slow
 @pytest.mark.parametrize("collar", COLLARS)
 def test_rows_of_the_table_choose_collars(tmp_path: Path, collar: str):
-    """The column has one collar for all; its label is written, and its class is clothing."""
+    """A row of the table gives every person this collar, with its label and class clothing."""
     table = tmp_path / "collars.toml"
     table.write_text(f"[collars]\n{collar} = 1.0\n[masks]\nnone = 1.0\n")
     size = (160, 160)

@@ -14,11 +14,11 @@ from risorius.render import renderer
 from risorius.render.stream import MeshBuffers
 
 SIZE = (480, 360)
-HEIGHT = 105.0  # [mm] height of the picture
+HEIGHT = 105.0  # height of the picture [mm]
 
 
 def forehead(scene):
-    """Brightness of pixels around the hairline, (H, W); top row first."""
+    """Brightness of pixels around the hairline, (H, W), top row first."""
     scene.reset()
     nasion = scene.rest_positions[scene.landmarks[27]]
     camera = render.OrbitCamera.framing(scene.rest_positions)
@@ -34,7 +34,7 @@ def forehead(scene):
 
 @pytest.mark.parametrize("person", [None, 40])
 def test_the_front_is_no_saw_and_throws_no_hard_patch(scene, person):
-    """Its edge varies little from pixel to pixel, and the forehead below is clean."""
+    """The hairline varies little from pixel to pixel, and throws no hard shadow below."""
     light = forehead(scene if person is None else FaceScene(person_called(person)))
     columns = slice(160, 320)
     skin = np.median(light[240:280, columns])
@@ -47,7 +47,7 @@ def test_the_front_is_no_saw_and_throws_no_hard_patch(scene, person):
 
 
 def test_no_dots_lie_along_the_front():
-    """Smooth edges do not spread dark pixels of dense hair into the hem, which fades by itself."""
+    """Smoothing spreads no dark pixels of dense hair into the hem, which fades anyway."""
     scene = FaceScene(person_called(40))
     front = slice(100, 250), slice(250, 470)
     pictures = []
@@ -59,7 +59,10 @@ def test_no_dots_lie_along_the_front():
 
 
 def test_a_forehead_with_raised_brows_stays_below_hair():
-    """It bulges by 2 mm there, and came through the edge of hair beside the face."""
+    """With raised brows the forehead, which bulges by 2 mm, does not come through hair.
+
+    It came through the edge of hair beside the face.
+    """
     scene = FaceScene(person_called(64))
     pictures = []
     for strength in (0.0, 1.0):
@@ -69,20 +72,23 @@ def test_a_forehead_with_raised_brows_stays_below_hair():
         with Capture(scene, CaptureOptions(size=(500, 500))) as capture:
             pictures.append(capture.draw_image()[60:150, 150:350].astype(np.float64).mean(axis=2))
     calm, raised = pictures
-    dark = 90.0  # levels: her hair has less, her skin more
+    dark = 90.0  # levels: hair is darker, skin is lighter
     assert 0.2 < (calm < dark).mean() < 0.8
     assert np.count_nonzero((calm < dark) & (raised > dark)) < 60
 
 
 @pytest.mark.parametrize("person", [None, 12, 71])
 def test_skin_below_dense_hair_is_not_shaded(person, monkeypatch):
-    """Short, hanging and tied hair look the same; from behind half of the skin is left out."""
+    """Skin below dense hair is not shaded: from behind, half of the skin is left out.
+
+    Short, hanging and tied hair look the same as with all skin shaded.
+    """
     scene = FaceScene() if person is None else FaceScene(person_called(person))
     counts = []
     draw = MeshBuffers.draw
 
     def counted(stream, *how):
-        """Count the pixels that a drawing shades."""
+        """Count the pixels that are shaded in a drawing."""
         query = stream.context.query(samples=True)
         with query:
             draw(stream, *how)

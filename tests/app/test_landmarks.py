@@ -1,4 +1,4 @@
-"""Landmarks in pictures: on visible borders, and those of the jaw on its outline."""
+"""Landmarks in pictures: on visible borders; those of the jaw lie on its outline."""
 
 from collections.abc import Iterator
 
@@ -26,7 +26,7 @@ LEFT_JAW = slice(8, 17)
 
 
 class Portrait:
-    """A face drawn from some view, with its classes and landmarks."""
+    """A face drawn from a view, with its classes and landmarks."""
 
     def __init__(self, studio: Capture, yaw: float = 0.0, pitch: float = 0.0) -> None:
         scene = studio.scene
@@ -40,7 +40,7 @@ class Portrait:
         self.found = landmarks_in(scene.face, camera, drawn["depth"])
         self.labels = labels_of(scene, studio.camera, SIZE, drawn["depth"])
         far = camera.to_camera(self.found.points)[:, 2]
-        self.millimetres = far / camera.intrinsics[0, 0]  # of a pixel at each landmark
+        self.millimetres = far / camera.intrinsics[0, 0]  # size of a pixel at each landmark
 
     def away(self, numbers, segments):
         """Distances of landmarks from the nearest pixel of some classes [mm]."""
@@ -64,14 +64,17 @@ class Portrait:
 
 @pytest.fixture(scope="module", params=["built-in", 3, 8])
 def studio(request: pytest.FixtureRequest) -> Iterator[Capture]:
-    """Faces before a camera."""
+    """A capture of the built-in face, and of two persons."""
     face = FaceScene() if request.param == "built-in" else FaceScene(person_called(request.param))
     with Capture(face, CaptureOptions(size=SIZE)) as opened:
         yield opened
 
 
 def test_mesh_picture_and_label_agree(studio):
-    """Corners of eyes and mouth, ends of brows, and the border of the red, within 1.5 mm."""
+    """Eye and mouth corners, brow ends and the border of the red agree within 1.5 mm.
+
+    Mesh, picture and label are compared.
+    """
     portrait = Portrait(studio)
     pixels = portrait.found.pixels
     for numbers, segment in (
@@ -93,11 +96,14 @@ def test_mesh_picture_and_label_agree(studio):
 
 
 def test_the_jaw_lies_on_the_outline_that_is_seen(studio):
-    """In front on both sides, turned on the far side; the points on the bone do not slide."""
+    """Jaw landmarks lie on the visible outline: on both sides in front, else on the far side.
+
+    Points on the bone do not slide.
+    """
     face = [Segment.SKIN, Segment.NOSE, Segment.TOP_LIP, Segment.BOTTOM_LIP]
-    chin = range(6, 11)  # with a soft edge; the throat has the tone of the skin
+    chin = range(6, 11)  # a soft edge, because the throat has the tone of the skin
     sides = [number for number in range(17) if number not in chin]
-    steepest = 2.5  # [mm] beside an ear, which has no sharp border at its root
+    steepest = 2.5  # [mm] beside an ear, whose root has no sharp border
     portrait = Portrait(studio)
     assert (portrait.off_border(sides, face) < steepest).all()
     for yaw, far in ((-35.0, [12, 13, 14]), (35.0, [2, 3, 4])):
@@ -110,7 +116,7 @@ def test_the_jaw_lies_on_the_outline_that_is_seen(studio):
 
 
 def test_an_outline_without_hair_over_it_is_visible(scene):
-    """All of it is visible in front; a turned head hides none of the far side."""
+    """Jaw landmarks on an outline without hair are visible, in front and on the far side."""
     scene.reset()
     with Capture(scene, CaptureOptions(size=SIZE)) as opened:
         assert Portrait(opened).found.visible[:17].all()
@@ -118,7 +124,7 @@ def test_an_outline_without_hair_over_it_is_visible(scene):
 
 
 def test_points_of_the_jaw_are_spread_evenly(studio):
-    """They are spaced as by annotators, from the height of the eyes to the chin."""
+    """Jaw landmarks are spaced evenly, as by annotators, from the eyes' height to the chin."""
     portrait = Portrait(studio)
     pixels = portrait.found.pixels
     for side in (RIGHT_JAW, LEFT_JAW):
@@ -129,7 +135,7 @@ def test_points_of_the_jaw_are_spread_evenly(studio):
 
 
 def test_an_outline_ends_at_one_height_of_the_head(studio):
-    """It is the height of the outer eye corners, also for cameras above or below."""
+    """Jaw landmarks begin at the height of the outer eye corners, for any height of the camera."""
     for pitch in (-20.0, 0.0, 20.0):
         points = Portrait(studio, pitch=pitch).found.points
         above = points[[0, 16], 1] - points[[36, 45], 1]
@@ -137,7 +143,7 @@ def test_an_outline_ends_at_one_height_of_the_head(studio):
 
 
 def test_a_head_of_ones_own_keeps_its_marks(tmp_path):
-    """They stay where the owner put them; the jaw's slide over the surface."""
+    """On a user's head, landmarks stay where they were placed; those of the jaw slide."""
     scene = FaceScene(fit_head(*stranger().write(tmp_path)))
     with Capture(scene, CaptureOptions(size=SIZE)) as opened:
         portrait = Portrait(opened)

@@ -1,4 +1,7 @@
-"""The life of a face without input: how often, how far, repeatable, and below all other motion."""
+"""The life of a face without input: how often and how far it moves, and its repeatability.
+
+Every other motion has priority.
+"""
 
 import numpy as np
 import pytest
@@ -22,13 +25,13 @@ NOBODY = frozenset[str]()
 
 
 def lids_gap(scene):
-    """Opening of the right eye in the middle of its lids [mm]."""
+    """The opening of the right eye in the middle of its lids [mm]."""
     points = scene.positions[scene.landmarks]
     return float((points[[37, 38]] - points[[41, 40]])[:, 1].mean())
 
 
 def pupils(scene):
-    """Present place and direction of each eyeball, by side."""
+    """The current place and direction of each eyeball, by side."""
     bones = scene.bone_transforms()
     found = {}
     for eye in scene.head.eyes:
@@ -40,7 +43,7 @@ def pupils(scene):
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_eyes_blink_as_often_as_people_do_at_rest(seed):
-    """17 a minute (Bentivoglio et al. 1997), and never two at once."""
+    """Eyes blink 17 times a minute (Bentivoglio et al. 1997), and blinks never overlap."""
     waits = np.diff(life_blinks(Life(seed), 300.0))
     assert 15.0 < len(waits) / 5.0 < 19.0
     assert waits.min() > 0.5
@@ -50,19 +53,19 @@ def test_eyes_blink_as_often_as_people_do_at_rest(seed):
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_eyes_are_with_the_viewer_most_of_the_time(seed):
-    """Glances go over the viewer's face, at times beside it, and return within some seconds."""
+    """Eyes look at the viewer's face most of the time; glances beside it last some seconds."""
     life = Life(seed)
     off = []
     for time in np.arange(0.0, 600.0, 0.1):
         eyes = life.parts(time)["eyes"]
         off.append(EYE_RANGE * np.hypot(eyes["gaze_horizontal_left"], eyes["gaze_vertical_left"]))
-    assert max(off[:13]) == 0.0  # at the start straight at the viewer
+    assert max(off[:13]) == 0.0  # straight at the viewer at the start
     assert 0.03 < np.mean(np.array(off) > 3.0) < 0.2
     assert max(off) < 12.5
 
 
 def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene):
-    """Lids meet although the simulation is delayed; they move down faster than up."""
+    """Lids meet although the simulation is delayed, and close faster than they open."""
     life = Life(0)
     gaps = []
     start = life_blinks(life)[0]
@@ -87,7 +90,7 @@ def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene):
 
 
 def life_blinks(life, seconds=30.0):
-    """Times when lids begin to shut in the first seconds of a life."""
+    """The times in the first seconds of a life at which lids begin to close."""
     frames = range(round(60.0 * seconds))
     drawn = [0.0, *(life.parts(frame / 60.0)["lids"][f"{LID}_left"] for frame in frames)]
     return [frame / 60.0 for frame in frames if drawn[frame + 1] == 1.0 > drawn[frame]]
@@ -95,17 +98,17 @@ def life_blinks(life, seconds=30.0):
 
 @pytest.mark.parametrize("view", ["front", "three-quarter", "-20,15", "40,-10"])
 def test_both_eyes_meet_the_camera(scene, view):
-    """Each looks at it with an invisible error (2 degrees), and the head turns with them."""
+    """Both eyes look at the camera within 2 degrees, which is invisible; the head turns, too."""
     eye = camera_for(scene, view).eye
     _look(scene, eye)
     assert _off(scene, eye) < 1.5
     left, right = (pupils(scene)[side][1] for side in ("left", "right"))
-    assert left[0] < right[0]  # they converge
+    assert left[0] < right[0]  # the eyes converge
     scene.reset()
 
 
 def _off(scene, viewer):
-    """Angle between a point and the gaze of the eye that misses it most [degrees]."""
+    """The angle [degrees] between a point and the gaze of the eye that misses it more."""
     off = []
     for centre, way in pupils(scene).values():
         there = (viewer - centre) / np.linalg.norm(viewer - centre)
@@ -114,7 +117,10 @@ def _off(scene, viewer):
 
 
 def test_who_stands_aside_is_not_followed(scene):
-    """In profile, and from behind, the face looks straight ahead; no motion jumps on the way."""
+    """With the camera in profile or behind, the face looks straight ahead.
+
+    Its motion never jumps on the way.
+    """
     for view in ("profile", "180,0", "0,80"):
         parts = looking_at(scene.face, camera_for(scene, view).eye)
         assert all(value == 0.0 for part in parts.values() for value in part.values())
@@ -136,7 +142,10 @@ def _look(scene, viewer):
 
 
 def test_what_others_move_is_left_to_them(scene):
-    """All related controls are left, too: one lid means both, one direction of gaze both eyes."""
+    """Controls moved by a script are left alone, with all related controls.
+
+    One lid stands for both lids, one direction of gaze for both eyes.
+    """
     viewer = np.array([100.0, 0.0, 900.0])
     idle = Idle(scene)
     whole = idle.beneath(NOBODY, viewer, 5.6)
@@ -155,7 +164,7 @@ def test_what_others_move_is_left_to_them(scene):
 
 
 def test_a_speaking_head_nods(scene):
-    """By at most two degrees, however wide the mouth; not if others move the head."""
+    """A speaking head nods by at most two degrees, unless a script moves the head."""
     viewer = np.array([100.0, 0.0, 900.0])
     idle = Idle(scene)
     silent = idle.beneath(NOBODY, viewer, 5.6)
@@ -169,7 +178,10 @@ def test_a_speaking_head_nods(scene):
 
 @pytest.mark.slow
 def test_a_recording_without_a_head_lives(tmp_path):
-    """Its film blinks and nods by default; not with a head, nor with --not-alive."""
+    """A film of a recording without head motion blinks and nods by default.
+
+    With head motion, or with --not-alive, it does not.
+    """
     silent = {"jawOpen": 0.4}
     for name, channels, options, lives in (
         ("alone", silent, (), True),
@@ -191,7 +203,7 @@ def test_a_recording_without_a_head_lives(tmp_path):
 
 @pytest.mark.slow
 def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone():
-    """A control that a script names is the script's for the whole film; life moves the others."""
+    """A film with life repeats exactly, and leaves all controls named by the script alone."""
     keys = (Key(0.0, 0.0), Key(2.9, 0.0), Key(3.0, 0.4))
     script = Script(
         "smile", 3.0, "here", tracks={"AU12": Channel.of(keys), "AU1": Channel.of(keys)}

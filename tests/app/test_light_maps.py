@@ -1,4 +1,4 @@
-"""Maps of light from files: Radiance HDR, OpenEXR, and what is refused."""
+"""Light maps from files: Radiance HDR, OpenEXR, and refused files."""
 
 import json
 import shutil
@@ -31,14 +31,14 @@ def pixels():
 
 
 def rgbe(light):
-    """Shared exponents, (H, W, 4)."""
+    """Pixels with shared exponents (RGBE), (H, W, 4)."""
     _, exponent = np.frexp(light.max(axis=-1))
     mantissa = light * np.ldexp(256.0, -exponent)[..., None]
     return np.concatenate([mantissa, exponent[..., None] + 128], axis=-1).astype(np.uint8)
 
 
 def packed(lines):
-    """Channel by channel, with equal values as a run."""
+    """RGBE rows compressed channel by channel, with equal values as a run."""
     found = b""
     for line in lines:
         found += bytes([2, 2, 0, len(line)])
@@ -57,7 +57,7 @@ def packed(lines):
 
 
 def _write_openexr(path, size):
-    """The upper left part of the sky, with an alpha."""
+    """Write the upper left part of the sky, with an alpha channel."""
     module = pytest.importorskip("OpenEXR")
     rows, columns = size
     light = pixels()[:rows, :columns].astype(np.float32)
@@ -69,7 +69,7 @@ def _write_openexr(path, size):
 
 
 def _count_calls(monkeypatch, owner, name, count):
-    """Count a function's arguments before each call."""
+    """Call `count` with a function's arguments before each call of the function."""
     function = getattr(owner, name)
 
     def counted(*given, **named):
@@ -81,7 +81,7 @@ def _count_calls(monkeypatch, owner, name, count):
 
 @pytest.mark.parametrize("is_packed", [True, False])
 def test_radiance_is_read(tmp_path, is_packed):
-    """Packed by runs or not, up to the precision of its bytes."""
+    """Radiance files are read with and without runs, to the precision of their bytes."""
     path = tmp_path / "sky.hdr"
     content = rgbe(pixels())
     path.write_bytes(HEAD + (packed(content) if is_packed else content.tobytes()))
@@ -90,7 +90,7 @@ def test_radiance_is_read(tmp_path, is_packed):
 
 
 def test_openexr_is_read(tmp_path):
-    """Channels R, G and B are read, whichever others there are."""
+    """Channels R, G and B are read, whatever other channels there are."""
     path = tmp_path / "sky.exr"
     _write_openexr(path, (32, 64))
     assert_allclose(read_light_map(path).radiance[::4, ::4], pixels(), rtol=1e-3)
@@ -111,7 +111,7 @@ def test_openexr_is_read(tmp_path):
     ],
 )
 def test_others_are_refused_in_one_line(tmp_path, name, content, message):
-    """The line has the file's name and the allowed kinds."""
+    """Other files are refused in one line with the file's name and the allowed kinds."""
     path = tmp_path / name
     path.write_bytes(content)
     with pytest.raises(UserError, match=message) as raised:
@@ -121,7 +121,7 @@ def test_others_are_refused_in_one_line(tmp_path, name, content, message):
 
 @pytest.mark.parametrize("size", ["Y 99999 +X 65535", "Y 16383 +X 32767"])
 def test_a_header_reserves_no_memory(tmp_path, size):
-    """A wrong size, or one larger than the file can hold, is refused before memory is reserved."""
+    """A size that is wrong, or larger than the file, is refused before memory is reserved."""
     path = tmp_path / "sky.hdr"
     path.write_bytes(HEAD.replace(b"Y 32 +X 64", size.encode()))
     tracemalloc.start()
@@ -129,11 +129,11 @@ def test_a_header_reserves_no_memory(tmp_path, size):
         read_light_map(path)
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert most < 2**29  # a little more than the largest allowed file
+    assert most < 2**29  # slightly more than the largest allowed file
 
 
 def test_openexr_is_not_read_into_memory_first(tmp_path, monkeypatch):
-    """The library reads the file; before it, only the first bytes are read."""
+    """Only the first bytes are read before the library reads the OpenEXR file."""
     path = tmp_path / "sky.exr"
     _write_openexr(path, (32, 64))
     read = []
@@ -143,7 +143,7 @@ def test_openexr_is_not_read_into_memory_first(tmp_path, monkeypatch):
 
 
 def test_a_size_of_openexr_is_refused_by_its_header(tmp_path):
-    """This is as for Radiance."""
+    """A wrong size in the header of an OpenEXR file is refused, as in a Radiance file."""
     path = tmp_path / "sky.exr"
     _write_openexr(path, (32, 32))
     with pytest.raises(UserError, match="has 32 x 32 pixels"):
@@ -152,7 +152,7 @@ def test_a_size_of_openexr_is_refused_by_its_header(tmp_path):
 
 @pytest.mark.slow
 def test_maps_of_a_set_are_read_once(tmp_path, monkeypatch):
-    """Each of 10 is read once, however many samples use it; its light is found once per sample."""
+    """Each of 10 maps is read once for all samples; its light is computed once per sample."""
     for number in range(10):
         (tmp_path / f"{number}.hdr").write_bytes(HEAD + rgbe(pixels()).tobytes())
     (tmp_path / "folder.hdr").mkdir()
@@ -172,7 +172,7 @@ def test_maps_of_a_set_are_read_once(tmp_path, monkeypatch):
 
 
 def test_every_map_of_a_folder_is_checked(tmp_path):
-    """By its header, before any sample is drawn."""
+    """The header of every map in a folder is checked before any sample is drawn."""
     (tmp_path / "a.hdr").write_bytes(HEAD + rgbe(pixels()).tobytes())
     (tmp_path / "b.hdr").write_bytes(b"nothing")
     with pytest.raises(UserError, match=r"b\.hdr: cannot be read as a map of light"):
@@ -181,7 +181,10 @@ def test_every_map_of_a_folder_is_checked(tmp_path):
 
 @pytest.mark.slow
 def test_a_set_is_lit_by_files(tmp_path):
-    """One of them lights each sample, turned, and is its background; labels report it."""
+    """A map from the folder lights each sample, rotated, and is its background.
+
+    Labels report the map.
+    """
     maps = tmp_path / "maps"
     maps.mkdir()
     (maps / "sky.hdr").write_bytes(HEAD + rgbe(pixels()).tobytes())
@@ -197,7 +200,7 @@ def test_a_set_is_lit_by_files(tmp_path):
 
 @pytest.fixture(scope="module")
 def map_ahead():
-    """A dark spot straight behind the head, a grey world, and white behind the viewer."""
+    """A grey world with a dark spot behind the head, and white behind the viewer."""
     radiance = np.full((64, 128, 3), 0.3)
     radiance[28:36, 62:66] = 0.0
     radiance[:, :32] = 1.0
@@ -214,7 +217,7 @@ def _painted(background, lens=40.0):
 
 
 def test_what_lies_behind_is_the_middle_of_the_map(map_ahead):
-    """It is out of focus, and moves to the right if the map is turned so."""
+    """The middle of the map is behind the head, out of focus; it follows the map's rotation."""
     rows = [_painted(map_ahead.background(turn))[30] for turn in (0.0, 12.0)]
     assert abs(int(rows[0].argmin()) - 40) <= 3
     assert rows[1].argmin() > rows[0].argmin() + 8
@@ -222,7 +225,7 @@ def test_what_lies_behind_is_the_middle_of_the_map(map_ahead):
 
 
 def test_a_longer_lens_shows_less_of_the_map(map_ahead):
-    """A spot is twice as wide if the lens shows half as much."""
+    """A spot is twice as wide through a lens that shows half as much."""
     behind = map_ahead.background()
     wide, near = (
         (picture[30] < picture[30].max() - 20).sum()
@@ -232,14 +235,14 @@ def test_a_longer_lens_shows_less_of_the_map(map_ahead):
 
 
 def test_a_map_is_seen_as_bright_as_it_is(map_ahead):
-    """A place of the map has its own light, exposed like the scene, by the screen's curve."""
+    """A place of the map is as bright as its light, exposed and tone-mapped like the scene."""
     painted = _painted(map_ahead.background(exposure=2.0))
     assert_allclose(painted[5, 5], 255.0 * to_screen(0.6), atol=2)
 
 
 @pytest.mark.parametrize("lit", ["file", "name"])
 def test_capture_shows_the_map_behind(tmp_path, lit):
-    """The map is a file, or one of ours by name; without a map one line says what to add."""
+    """The map may be a file, or a built-in one by name; without one, one line says what to add."""
     path = tmp_path / "sky.hdr"
     path.write_bytes(HEAD + rgbe(pixels()).tobytes())
     light = ("--light", path) if lit == "file" else ("--style", "light=room")

@@ -1,4 +1,4 @@
-"""A face driven by a sender: sockets on loopback, calibration, and rest without a sender."""
+"""A live face driven by a sender: sockets on loopback, calibration, rest without a sender."""
 
 import socket
 import time
@@ -28,7 +28,7 @@ APPLY = "/VMC/Ext/Blend/Apply"
 
 
 class Clock:
-    """A clock that only moves when it is set."""
+    """A clock that advances only when it is set."""
 
     def __init__(self):
         self.now = 100.0
@@ -57,7 +57,7 @@ class Wire:
         assert until(lambda: self.face.received == wanted)
 
     def take(self, *packets, seconds=0.0):
-        """Send packets, and let the face take them after this time."""
+        """Send packets, and let the face read them after this time."""
         self.send(*packets)
         self.pass_time(seconds)
 
@@ -67,13 +67,13 @@ class Wire:
         self.face.advance(seconds)
 
     def close(self):
-        """Close both."""
+        """Close the face and the socket."""
         self.face.close()
         self._socket.close()
 
 
 def until(condition, seconds=10.0):
-    """Wait until a condition is true, or too long."""
+    """Wait until a condition is true, up to a limit."""
     end = time.monotonic() + seconds
     while not condition() and time.monotonic() < end:
         time.sleep(0.001)
@@ -82,14 +82,14 @@ def until(condition, seconds=10.0):
 
 @pytest.fixture
 def wire(request: pytest.FixtureRequest) -> Iterator[Wire]:
-    """A face of the test's protocol; Live Link Face by default."""
+    """A live face with the protocol of the test, by default Live Link Face."""
     opened = Wire(getattr(request, "param", "livelink"))
     yield opened
     opened.close()
 
 
 def test_a_frame_leads_the_controls(wire):
-    """Shapes become controls, with slightly stronger blinks; the line names the sender."""
+    """Shapes become controls, with slightly stronger blinks, and a line names the sender."""
     assert wire.face.state is State.WAITING
     assert wire.face.presence == 0.0
     wire.take(live_link({"JawOpen": 0.5, "EyeBlinkLeft": 0.5, "HeadYaw": -0.3927}, subject="Ada"))
@@ -107,7 +107,10 @@ def test_a_frame_leads_the_controls(wire):
 
 
 def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire):
-    """The presence falls to 0 in small steps, and grows again when packets resume."""
+    """Without packets, the face's presence falls to 0 in small steps within a second.
+
+    It rises again when packets resume.
+    """
     frame = live_link({"JawOpen": 0.5})
     wire.take(frame)
     for _ in range(30):
@@ -127,7 +130,7 @@ def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire):
     steps = [before - after for before, after in pairwise(presences)]
     assert min(steps) >= 0.0
     assert max(steps) < 0.08
-    assert wire.face.controls()["jawOpen"] == 0.5  # its value before it fades away
+    assert wire.face.controls()["jawOpen"] == 0.5  # the value before fading
     wire.take(frame, seconds=1.0 / 60.0)
     assert 0.0 < wire.face.presence < 0.1
     wire.take(frame, seconds=EASING_IN)
@@ -135,7 +138,7 @@ def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire):
 
 
 def test_a_sender_that_sees_no_face_lets_go_of_ours(wire):
-    """Packets without values are no lost signal, but the face eases to rest."""
+    """Packets without values are no lost signal, but the face returns to rest."""
     wire.take(live_link({"JawOpen": 0.5}))
     wire.take(live_link(None), seconds=0.1)
     assert wire.face.state is State.NO_FACE
@@ -147,7 +150,7 @@ def test_a_sender_that_sees_no_face_lets_go_of_ours(wire):
 
 
 def test_calibrating_takes_the_neutral_face_away(wire):
-    """It takes the median of half a second, which a blink within this time does not change."""
+    """Calibration subtracts the median of half a second, which a blink does not change."""
     neutral = {"BrowDownLeft": 0.3, "HeadPitch": 0.2}
     wire.take(live_link(neutral))
     wire.face.calibrate()
@@ -167,7 +170,7 @@ def test_calibrating_takes_the_neutral_face_away(wire):
 
 
 def test_gains_and_mirror_may_be_given_from_the_start():
-    """They work as for recordings; mistakes are reported before the program listens."""
+    """Gains and mirroring work as for recordings; wrong ones are refused before listening."""
     listening = Listening("livelink", port=0, gains=("jawOpen=2", "mouth*=0.5"), mirror=True)
     face = LiveFace(listening)
     try:
@@ -183,7 +186,7 @@ def test_gains_and_mirror_may_be_given_from_the_start():
 
 @pytest.mark.parametrize("wire", ["vmc"], indirect=True)
 def test_what_is_not_named_keeps_its_value(wire):
-    """A sender may send only the values that have changed."""
+    """Values missing in a packet stay as they were, because a sender may send changes only."""
     wire.take(vmc({"jawOpen": 0.5, "cheekPuff": 0.3}))
     wire.take(vmc({"jawOpen": 0.2}))
     channels = wire.face.channels
@@ -193,7 +196,7 @@ def test_what_is_not_named_keeps_its_value(wire):
 
 @pytest.mark.parametrize("wire", ["vmc"], indirect=True)
 def test_parts_of_a_frame_count_together(wire):
-    """No control moves before Apply, and the window is not woken."""
+    """No control moves, and the window does not wake, before the message Apply."""
     wire.take(osc((VALUE, "jawOpen", 0.5), (VALUE, "eyeBlinkLeft", 0.6)))
     assert wire.face.state is State.WAITING
     assert not wire.face.channels
@@ -211,13 +214,16 @@ def test_parts_of_a_frame_count_together(wire):
     ["192.0.2.1", "nobody.invalid", "x" * 300, "é" * 70 + ".de", "::1", "<broadcast>", ""],
 )
 def test_an_address_of_another_computer_is_refused(address):
-    """Only own addresses can be listened on; an empty one must not mean all of them."""
+    """Listening on another computer's address is refused.
+
+    An empty address must not mean all addresses.
+    """
     with pytest.raises(UserError, match=r"cannot listen|write a computer's name"):
         Receiver(Listening("livelink", address, 0)).close()
 
 
 def test_only_the_address_given_is_listened_on():
-    """By default no other computer can send anything."""
+    """By default the port is open on the loopback address only."""
     for kind in PROTOCOLS:
         assert Listening(kind).address == LOOPBACK
     receiver = Receiver(Listening("livelink", port=0))

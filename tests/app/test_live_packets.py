@@ -36,7 +36,7 @@ def channels_of(frame):
 
 
 def test_a_live_link_packet_has_a_name_and_every_shape_in_its_place():
-    """Each of the 52 in turn has its value alone, including left and right of jaw and mouth."""
+    """Each of the 52 shapes alone has its value, with left and right of jaw and mouth correct."""
     for name, shape in zip(LIVE_LINK, SHAPES, strict=False):
         frame = parse_live_link(live_link({name: 0.75}, subject="Ada"))
         channels = channels_of(frame)
@@ -47,13 +47,16 @@ def test_a_live_link_packet_has_a_name_and_every_shape_in_its_place():
 
 
 def test_live_link_angles_are_radians_to_the_right_and_down():
-    """They become degrees to the subject's left and up; eyes that look ahead point outward."""
+    """Radians to the right and down become degrees to the subject's left and up.
+
+    The eyeballs' axes point outward when eyes look ahead.
+    """
     angles = {"HeadYaw": 0.5, "HeadPitch": -0.25, "LeftEyePitch": 0.61, "RightEyeYaw": -0.62}
     channels = channels_of(parse_live_link(live_link(angles)))
     assert channels["head_yaw"] == approx(-math.degrees(0.5))
     assert channels["head_pitch"] == approx(math.degrees(0.25))
     assert channels["eye_pitch_left"] == approx(-math.degrees(0.61))
-    # The right eye looks in, to the subject's left, as far as its shape goes: 35 degrees and more.
+    # The right eye looks fully inward, to the subject's left: 35 degrees or more.
     assert channels["eye_yaw_right"] == approx(math.degrees(0.62), abs=5.0)
     ahead = {"LeftEyeYaw": -0.07, "RightEyeYaw": 0.07}
     channels = channels_of(parse_live_link(live_link(ahead)))
@@ -62,7 +65,7 @@ def test_live_link_angles_are_radians_to_the_right_and_down():
 
 
 def test_without_a_face_live_link_sends_no_values():
-    """The count is 0, or nothing follows it, or it is missing."""
+    """Without a face, the count is 0 or missing, or nothing follows it; no values are read."""
     packet = live_link(None)
     for cut in (packet, packet[:-1] + b"\x3d", packet[:-1]):
         frame = parse_live_link(cut)
@@ -71,7 +74,7 @@ def test_without_a_face_live_link_sends_no_values():
 
 
 def test_nonsense_among_values_is_left_out():
-    """NaN, a shape far from 0 and 1, and an angle over half a turn are left out; 1.2 is noise."""
+    """NaN, shapes far outside 0 to 1, and angles over half a turn are left out; 1.2 is noise."""
     odd = {"JawOpen": -9.8e5, "MouthPucker": 1.2, "CheekPuff": math.nan, "TongueOut": math.inf}
     odd |= {"HeadYaw": 9.8e5, "HeadPitch": math.nan}
     channels = channels_of(parse_live_link(live_link(odd)))
@@ -80,7 +83,7 @@ def test_nonsense_among_values_is_left_out():
 
 
 def test_other_versions_and_every_torn_packet_are_none():
-    """A packet cut anywhere is refused, except where values may be missing."""
+    """A packet cut at any byte, or of another version, is refused, where values must follow."""
     assert parse_live_link(live_link({}, version=5)) is None
     packet = GOOD["livelink"]
     values = len(packet) - 4 * 61
@@ -90,7 +93,7 @@ def test_other_versions_and_every_torn_packet_are_none():
 
 
 def test_a_name_is_shown_only_as_far_as_it_can_be():
-    """Control characters and very long texts do not get into the window."""
+    """Control characters and very long names are not shown in the window."""
     frame = parse_live_link(live_link({}, subject="A\x1b[2J\n" + 300 * "x"))
     assert frame.subject.isprintable()
     assert len(frame.subject) <= 40
@@ -103,7 +106,7 @@ def test_a_name_is_shown_only_as_far_as_it_can_be():
     "spelled", [str, str.upper, str.lower, lambda name: name[0].upper() + name[1:]]
 )
 def test_vmc_shapes_come_by_name_however_they_are_spelled(spelled):
-    """All 52, in capital and small letters."""
+    """All 52 shapes are read in capital and small letters."""
     assert callable(spelled)
     sent = {spelled(name): 0.01 * index for index, name in enumerate(SHAPES)}
     frame = parse_vmc(vmc(sent))
@@ -116,18 +119,21 @@ def test_vmc_shapes_come_by_name_however_they_are_spelled(spelled):
     [((0, 1, 0), "head_yaw", -1.0), ((1, 0, 0), "head_pitch", -1.0), ((0, 0, 1), "head_roll", 1.0)],
 )
 def test_vmc_bones_turn_in_unitys_axes(axis, angle, sign):
-    """They are left-handed: about y to the right, about x down, about z to the left shoulder."""
+    """Unity's axes are left-handed: about y to the right, x down, z to the left shoulder."""
     half = math.radians(10.0)
     turn = [math.sin(half) * each for each in axis]
     frame = parse_vmc(osc((BONE, "Head", 0.0, 0.0, 0.0, *map(float, turn), math.cos(half))))
     channels = channels_of(frame)
-    assert frame is not None and frame.is_complete  # no shapes need an Apply
+    assert frame is not None and frame.is_complete  # without shapes no Apply is needed
     assert channels[angle] == approx(sign * 20.0, abs=1e-4)
     assert sum(abs(value) for value in channels.values()) == approx(20.0, abs=1e-3)
 
 
 def test_vmc_head_turns_on_its_neck_and_eyes_turn_apart():
-    """Two bones of 10 degrees make 20; each eye has its own; bones without a turn do not count."""
+    """Two bones of 10 degrees turn the head by 20; each eye has its own bone.
+
+    Bones without rotation are ignored.
+    """
     tenth = (0.0, math.sin(math.radians(5.0)), 0.0, math.cos(math.radians(5.0)))
     none = (0.0, 0.0, 0.0, 0.0)
     place = (0.0, 1.5, 0.0)
@@ -146,13 +152,13 @@ def test_vmc_head_turns_on_its_neck_and_eyes_turn_apart():
 
 @pytest.mark.parametrize("size", [-4, -8, -(2**31), 2**31 - 1, 5])
 def test_a_bundle_with_a_wrong_length_is_none(size):
-    """A reader that trusts a negative length would loop for ever."""
+    """A bundle with a negative length is refused, because reading it could loop for ever."""
     inner = osc((APPLY,))[16:]
     assert parse_vmc(b"#bundle\0" + struct.pack(">Qi", 1, size) + inner) is None
 
 
 def test_bundles_in_bundles_end_somewhere():
-    """Three levels are read, a thousand are refused."""
+    """Three nested bundles are read, a thousand are refused."""
     packet = vmc({"JawOpen": 0.5})
     for _ in range(3):
         packet = b"#bundle\0" + struct.pack(">Qi", 1, len(packet)) + packet
@@ -163,7 +169,7 @@ def test_bundles_in_bundles_end_somewhere():
 
 
 def test_messages_that_we_do_not_read_are_passed_over(caplog):
-    """Other addresses, other values and unknown types are ignored, without a line in the log."""
+    """Other addresses, values and unknown types are ignored, without a line in the log."""
     packet = osc(("/VMC/Ext/OK", 1), (VALUE, 3, "JawOpen"), (VALUE, "JawOpen", 0.5), (APPLY,))
     assert channels_of(parse_vmc(packet)) == {"jawOpen": 0.5}
     assert parse_vmc(b"/VMC/Ext/Blend/Val\0\0,zz\0") is None
@@ -171,11 +177,11 @@ def test_messages_that_we_do_not_read_are_passed_over(caplog):
     assert not caplog.records
 
 
-# All of them
+# All protocols
 
 
 def test_what_is_sent_is_what_is_read(generator):
-    """A packet from our sender contains every shape and angle."""
+    """A packet of the project's sender has every shape and angle when it is read."""
     shapes = {name: float(generator.random()) for name in ARKIT}
     angles = {name: float(generator.uniform(-40.0, 40.0)) for name in (*HEAD_ANGLES, *EYE_ANGLES)}
     packet = packet_of({**shapes, **angles}, subject="x", frame=1)
@@ -199,7 +205,7 @@ def is_sound(frame):
 @pytest.mark.parametrize("kind", KINDS)
 @given(data=st.data())
 def test_hypothesis_finds_no_packet_that_does_harm(kind, data):
-    """Packets are good ones with a piece replaced by any bytes, or by any text."""
+    """Good packets with a part replaced by random bytes or text do no harm."""
     good = GOOD[kind]
     begin = data.draw(st.integers(0, len(good)))
     end = data.draw(st.integers(begin, len(good)))

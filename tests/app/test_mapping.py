@@ -1,4 +1,4 @@
-"""From channels of a recording to controls of the face."""
+"""Mapping of a recording's channels to controls of the face."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,10 @@ def test_angles_become_shares_of_what_neck_and_eyes_can():
 
 
 def test_eyes_move_by_their_angles_or_else_by_their_shapes():
-    """Each eye and each direction is separate; an angle that is always 0 was not measured."""
+    """Each eye moves by its angles, or by its shapes where an angle is always 0.
+
+    An angle that is always 0 was not measured.
+    """
     shapes = {"eyeLookInLeft": 0.5, "eyeLookUpLeft": 0.2, "eyeLookInRight": 0.1, "jawOpen": 0.1}
     measured = {"eye_yaw_left": -3.0, "eye_pitch_left": 0.0, "eye_yaw_right": np.array([0.0, 2.0])}
     assert set(chosen({**shapes, **measured})) == {

@@ -1,4 +1,4 @@
-"""Masks of persons: what they hide, and that faces do not pierce them."""
+"""Masks of persons: what they hide, and that no face pierces them."""
 
 from pathlib import Path
 
@@ -30,7 +30,7 @@ POSES = {
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [7, 12])
 def test_lips_stay_behind_a_mask(number):
-    """No lip is visible in any pose from any side, and landmarks of lips and chin are hidden."""
+    """No lip is visible in any pose or view, and landmarks of lips and chin are hidden."""
     person = make_person(sample_identity(number))
     scene = FaceScene(wearing(person, shirt="blue", cover="blue"))
     surface = render.open_offscreen(SIZE, samples=1)
@@ -58,7 +58,7 @@ def test_lips_stay_behind_a_mask(number):
 
 @pytest.mark.slow
 def test_rows_of_the_table_choose_masks(tmp_path: Path):
-    """The column has a mask for all; its class and its label are written."""
+    """A row of the table gives every person this mask, with its class and label."""
     table = tmp_path / "masked.toml"
     table.write_text("[masks]\nwhite = 1.0\n")
     request = request_of(tmp_path, seed=3, size=SIZE, passes=("segmentation",), sample=table)
@@ -71,7 +71,7 @@ def test_rows_of_the_table_choose_masks(tmp_path: Path):
 
 @pytest.mark.parametrize(("number", "frame"), [(3, "round"), (12, "oval"), (19, "rectangular")])
 def test_glasses_stand_before_a_mask(number, frame):
-    """Their rims do not sink into the sheet over the nose."""
+    """The rims of glasses do not sink into the mask over the nose."""
     person = make_person(sample_identity(number))
     worn = wearing(person, shirt="blue", frame=frame, cover="blue").parts
     parts = {part.name: part for part in worn}

@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_a_studio_forgets_the_persons_before(tmp_path):
-    """Thirty samples of about as many persons take less than 15 MB, a tenth of their buffers."""
+    """Thirty samples of about thirty persons take less than 15 MB, a tenth of their buffers."""
     request = request_of(tmp_path, seed=3, size=(96, 96), passes=("segmentation",))
     studio = Studio(request)
     for index in range(12):
@@ -43,10 +43,10 @@ for _ in range(36):
 
 
 def test_captures_that_are_opened_and_closed_take_no_memory():
-    """The least memory while the last of a hundred are made is as at the start.
+    """The least memory during the last of a hundred captures equals that at the start.
 
-    Memory goes up and down by tens of megabytes, because drivers release pictures late. A separate
-    process makes the captures: pictures of other tests would be released in it just as late.
+    Memory varies by tens of megabytes, because drivers release pictures late. A separate process
+    makes the captures, because pictures of other tests would also be released in it.
     """
     command = [sys.executable, "-c", CAPTURES]
     printed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout

@@ -19,7 +19,7 @@ def test_a_mouth_gets_darker_toward_the_back(face):
     lower = {part.name: part.colours for part in shown}["teeth_lower"]
     given = {part.name: part for part in head}["teeth_lower"]
     red, _, blue = (lower / given.colours)[given.vertices[:, 2].argmin()]
-    assert blue < 0.72 and blue < 0.92 * red  # grey ones look like one broken tooth
+    assert blue < 0.72 and blue < 0.92 * red  # grey edges would look like a broken tooth
     tongue = next(part for part in shown if part.name == "tongue")
     light = tongue.colours.mean(axis=1)
     depth = tongue.vertices[:, 2]
@@ -28,7 +28,7 @@ def test_a_mouth_gets_darker_toward_the_back(face):
 
 
 def test_a_tongue_has_a_groove_a_pale_coat_and_red_edges(face):
-    """It must not look like an egg in one tone."""
+    """The tongue has a groove, a pale coat and red edges, instead of a single tone."""
     tongue = next(part for part in face.parts if part.name == "tongue")
     rest = next(part for part in face.head.parts if part.name == "tongue")
     depth = rest.vertices[:, 2].max() - rest.vertices[:, 2]
@@ -42,5 +42,5 @@ def test_a_tongue_has_a_groove_a_pale_coat_and_red_edges(face):
     ]
     assert redness[0] > 1.15 * redness[1]
     assert tongue.shine > rest.shine
-    assert (tongue.unlit[:, 0] / tongue.unlit[:, 1]).mean() < 1.8  # flesh, not bubble gum
+    assert (tongue.unlit[:, 0] / tongue.unlit[:, 1]).mean() < 1.8  # not too pink
     assert tongue.unlit[:, 0].mean() < 0.68

@@ -1,4 +1,4 @@
-"""The mouth's inside stays inside: in turned heads, with open jaws, on masks."""
+"""The walls of the mouth stay inside it: in turned heads, with open jaws, on masks."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -33,7 +33,7 @@ TURNS = tuple(
 
 @pytest.fixture(scope="module")
 def renderer() -> Iterator[render.Renderer]:
-    """A frame for small pictures."""
+    """A renderer of small pictures."""
     with render.open_offscreen(SIZE, samples=1) as surface:
         yield render.Renderer(surface)
 
@@ -49,7 +49,7 @@ class Sitter:
         self.passes = Passes(self.pipeline, self.drawn)
 
     def outside_lips(self, yaw, pitch):
-        """Number of pixels that show the mouth's inside outside of the outline of the lips."""
+        """The number of pixels outside the lips' outline that show the mouth's inside."""
         scene = self.scene
         camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
         camera.orbit(yaw, pitch)
@@ -60,20 +60,23 @@ class Sitter:
         outline = places[ConvexHull(places).vertices]
         lips = PIL.Image.new("1", SIZE)
         PIL.ImageDraw.Draw(lips).polygon([tuple(place) for place in outline.tolist()], fill=1)
-        within = binary_dilation(np.asarray(lips))  # by the pixel that contains the outline
+        within = binary_dilation(np.asarray(lips))  # larger by the pixel of the outline
         return int(((classes == Segment.MOUTH_INTERIOR) & ~within).sum())
 
 
 @pytest.mark.slow
 def test_nothing_of_the_mouth_pierces_the_throat(renderer):
-    """Thirty persons turn their heads to the limits, with jaws shut, open and aside, from below."""
+    """For thirty persons with turned heads, no wall of the mouth pierces the throat.
+
+    Heads turn to their limits, jaws are shut, open and aside, and the camera looks from below.
+    """
     found = {}
     for number in (*range(28), 63, 189):
         sitter = Sitter(FaceScene(make_person(sample_identity(number))), renderer)
         for k, jaw in enumerate(JAWS):
             sitter.scene.reset()
             for turn in (TURNS[(number + k) % 8], TURNS[(number + k + 3) % 8]):
-                # As far as the limits, and as far as somebody turns who looks around.
+                # At the limits, and half way, as a person who looks around.
                 for share in (1.0, 0.5):
                     pose = {name: share * value for name, value in turn.items()}
                     sitter.scene.pose({**jaw, **pose})
@@ -85,7 +88,7 @@ def test_nothing_of_the_mouth_pierces_the_throat(renderer):
 
 
 def mask(lowest):
-    """The front of the built-in head, without neck and ears: cut along the jaw, `lowest` [mm]."""
+    """The front of the built-in head without neck and ears, cut along the jaw at `lowest` [mm]."""
     head = assets.load("head")
     _, y, z = head.vertices[head.faces].mean(axis=1).T
     jaw = lowest + 0.5 * np.maximum(70.0 - z, 0.0)
@@ -98,7 +101,7 @@ def mask(lowest):
 
 
 def seen_from_in_front(sitter, pitches):
-    """Pixels of the mouth's inside beside the lips, for each view with any."""
+    """For each view, the pixels beside the lips that show the mouth's inside, if any."""
     views = product((-80.0, -40.0, 0.0, 40.0, 80.0), pitches)
     counts = {view: sitter.outside_lips(*view) for view in views}
     return {view: count for view, count in counts.items() if count}
@@ -109,7 +112,7 @@ def seen_from_in_front(sitter, pitches):
 def test_nothing_hangs_below_a_mask(renderer, lowest):
     """A skin without a neck hides the inside of its mouth, at rest and with an open jaw.
 
-    Its inside is only visible from below, if the jaw is open.
+    The inside is visible from below only, if the jaw is open.
     """
     sitter = Sitter(FaceScene(mask(lowest)), renderer)
     assert seen_from_in_front(sitter, (-10.0, 0.0, 20.0)) == {}
@@ -119,24 +122,24 @@ def test_nothing_hangs_below_a_mask(renderer, lowest):
 
 
 def test_a_mask_has_no_neck_that_fades():
-    """Its border goes around the face, so no part of its chin may be transparent."""
+    """The border of a mask surrounds the face, so that no part of its chin is transparent."""
     assert mask(-118.0).fade() is None
 
 
 def lower_edge(walls):
-    """Present places of the wall vertices that follow the mandible most."""
+    """Current places of the wall vertices that follow the mandible most."""
     return walls.vertices[walls.shares > 0.9]
 
 
 def test_walls_stretch_with_the_jaw(face):
-    """Their edge follows the mandible, their root the skull; at rest the array is the same."""
+    """The walls' edge follows the mandible and their root the skull; at rest nothing changes."""
     face.reset()
     walls = next(part for part in face.parts if isinstance(part, MouthWalls))
     rest = walls.vertices
     edge = lower_edge(walls)
     face.pose({"head_yaw": 0.8, "head_pitch": -0.5})
     face.step(0.5)
-    assert face.parts and walls.vertices is rest  # a bone carries them
+    assert face.parts and walls.vertices is rest  # moved by a bone only
     face.pose({"jaw_open": 1.0})
     face.step(0.8)
     assert face.parts
@@ -156,7 +159,10 @@ def test_walls_stretch_with_the_jaw(face):
 
 
 def test_walls_end_above_the_chin(face):
-    """Skin below the chin does not follow the head fully; a deeper wall would pierce it."""
+    """Walls end above the chin, because skin below it does not follow the head fully.
+
+    A deeper wall would pierce that skin.
+    """
     for head in (face.head, make_person(sample_identity(63)), make_person(sample_identity(6))):
         chin = head.vertices[head.landmarks[8], 1]
         walls = [part.vertices for part in head.parts if part.name.startswith("oral_cavity")]

@@ -1,4 +1,4 @@
-"""Names of files: those that are not UTF-8, and outputs at the place of a symbolic link."""
+"""File names that are not UTF-8, and outputs in place of symbolic links."""
 
 import csv
 import json
@@ -38,14 +38,14 @@ def take(path):
 
 
 def pose(path, *more):
-    """A pose held for a fifth of a second; more: lines at the head of its file."""
+    """A script of a pose held for a fifth of a second; more: lines at its beginning."""
     lines = (*more, "duration = 0.2", "[[pose]]", "time = 0.0", "jaw_open = 0.5")
     path.write_text("\n".join(lines), "utf-8")
     return path
 
 
 def test_names_as_text():
-    """Bytes that are not UTF-8 are escaped, and all others stay."""
+    """Bytes that are not UTF-8 are escaped; all other characters stay."""
     assert as_text(Path(f"/a/{RAW}.csv")) == f"/a/{SHOWN}.csv" == in_one_line(f"/a/{RAW}.csv")
     assert as_text("schöner & größer \\ 笑") == "schöner & größer \\ 笑"
     as_text("\ud800 alone").encode()
@@ -53,7 +53,10 @@ def test_names_as_text():
 
 @needs_bytes
 def test_a_recording_with_such_a_name_becomes_a_script(tmp_path):
-    """Its title and preface are text; it is also written under such a name, and read again."""
+    """A recording with such a name becomes a script with a title and preface in UTF-8.
+
+    A script can also be written under such a name, and read again.
+    """
     recording = take(tmp_path / f"{RAW}.csv")
     script = tmp_path / f"{RAW}.toml"
     output = succeeded("convert", recording, "-o", script)
@@ -68,7 +71,10 @@ def test_a_recording_with_such_a_name_becomes_a_script(tmp_path):
 
 @needs_bytes
 def test_a_script_names_no_such_sound(tmp_path):
-    """TOML is UTF-8, so one line says which file must be renamed."""
+    """A script cannot name such a sound, because TOML is UTF-8.
+
+    One line names the file to rename.
+    """
     script = Script("a", 1.0, source="a", poses=(Pose(0.0),), sound=tmp_path / f"{RAW}.wav")
     with pytest.raises(UserError, match=r"l\\xe4cheln.wav: a script cannot name .* rename it"):
         save_script(tmp_path / "a.toml", script)
@@ -81,7 +87,7 @@ def test_a_script_names_no_such_sound(tmp_path):
 @pytest.mark.parametrize("end", [".pc2", ".usdz", ".glb", ".vtkhdf", ".npz", ".csv"])
 @pytest.mark.parametrize("where", ["name", pytest.param("folder", marks=pytest.mark.slow)])
 def test_motion_with_such_a_name_is_exported(where, end, tmp_path):
-    """The file, its folder, or its source may have such a name."""
+    """Motion is exported to files and folders, and from sources, with such names."""
     script = pose(tmp_path / f"{RAW}.toml")
     folder = tmp_path / (RAW if where == "folder" else "folder")
     target = folder / f"{'plain' if where == 'folder' else RAW}{end}"
@@ -104,7 +110,10 @@ def test_motion_with_such_a_name_is_exported(where, end, tmp_path):
 
 @needs_bytes
 def test_pictures_with_such_a_name_have_their_passes(tmp_path):
-    """This includes EXR files, although their library accepts no such name."""
+    """Pictures with such names have their passes, also EXR files.
+
+    The EXR library itself accepts no such name.
+    """
     OpenEXR = pytest.importorskip("OpenEXR")  # noqa: N806 - a module
     script = pose(tmp_path / "pose.toml")
     picture = tmp_path / RAW / f"{RAW}.png"
@@ -119,7 +128,7 @@ def test_pictures_with_such_a_name_have_their_passes(tmp_path):
 @pytest.mark.slow
 @needs_bytes
 def test_sets_and_lists_with_such_names(tmp_path):
-    """Their own texts are UTF-8: card, labels, the table of results."""
+    """Texts of sets and lists with such names are UTF-8: card, labels, table of results."""
     backgrounds = tmp_path / f"{RAW}_pictures"
     backgrounds.mkdir()
     PIL.Image.new("RGB", (80, 64), (20, 90, 60)).save(backgrounds / f"{RAW}.png")
@@ -157,7 +166,7 @@ def test_sets_and_lists_with_such_names(tmp_path):
     ],
 )
 def test_such_a_name_is_reported_in_one_line(words, tmp_path, monkeypatch):
-    """This holds for missing files, and for words with no meaning."""
+    """Missing files with such names, and meaningless words, are reported in one line."""
     monkeypatch.chdir(tmp_path)
     line = refusal(risorius(*(word.replace("NAME", RAW) for word in words)))
     assert "cheln" in line
@@ -166,13 +175,13 @@ def test_such_a_name_is_reported_in_one_line(words, tmp_path, monkeypatch):
 
 @pytest.fixture
 def secret(tmp_path: Path) -> Path:
-    """A file of the user's own, and the folder `shared` with links to it made by others."""
+    """A user's file, and a folder `shared`, in which others made links to it."""
     kept = tmp_path / "mine" / "secret"
     kept.parent.mkdir()
     kept.write_text("mine")
     shared = tmp_path / "shared"
     shared.mkdir()
-    shared.chmod(0o1777)  # like /tmp
+    shared.chmod(0o1777)  # as /tmp
     names = ("face.png", "face.json", "face.toml", "face.csv", "face.npz", "face.obj", "face.pc2")
     for name in (*names, "face.mtl", "face_skin.png", "face.mp4"):
         (shared / name).symlink_to(kept)
@@ -182,13 +191,13 @@ def secret(tmp_path: Path) -> Path:
 
 
 def check_untouched(secret):
-    """Check that it is unchanged, and alone in its folder."""
+    """Check that the file is unchanged, and alone in its folder."""
     assert secret.read_text() == "mine"
     assert [*secret.parent.iterdir()] == [secret]
 
 
 def test_an_output_takes_the_place_of_a_link(secret, tmp_path):
-    """The target of the link stays unchanged, or missing."""
+    """An output replaces a link; the target of the link stays unchanged, or missing."""
     shared = tmp_path / "shared"
     grey = np.full((8, 8, 3), 128, np.uint8)
     for name in ("face.png", "nowhere.png"):
@@ -207,7 +216,10 @@ def test_an_output_takes_the_place_of_a_link(secret, tmp_path):
 
 @pytest.mark.slow
 def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(secret, tmp_path):
-    """In a folder that others may write: pictures and their labels, scripts, motion, films."""
+    """Commands follow no link that stands in place of an output in a shared folder.
+
+    Outputs are pictures with labels, scripts, motion and films.
+    """
     shared = tmp_path / "shared"
     script = pose(tmp_path / "pose.toml")
     recording = take(tmp_path / "take.csv")
@@ -227,7 +239,7 @@ def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(secret, tmp
 
 @pytest.mark.slow
 def test_frames_and_samples_follow_no_link(secret, tmp_path):
-    """This also holds for pictures in existing folders, and unfinished samples of a set."""
+    """Frames in existing folders, and unfinished samples of a set, follow no links."""
     shared = tmp_path / "shared"
     script = pose(tmp_path / "pose.toml")
     frames = shared / "frames"
@@ -249,7 +261,7 @@ def test_frames_and_samples_follow_no_link(secret, tmp_path):
 
 
 def test_a_link_is_no_way_around_what_is_read(tmp_path):
-    """An output that would replace an input is refused under any name."""
+    """An output that would replace an input is refused, whatever link names either."""
     real, link, other = (tmp_path / name for name in ("real.toml", "link.toml", "other.toml"))
     real.write_text("mine")
     link.symlink_to(real)

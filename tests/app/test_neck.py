@@ -1,4 +1,4 @@
-"""The end of a head's neck: only it fades, wherever jaw and head go."""
+"""The end of a head's neck: only this end fades, wherever jaw and head move."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -27,19 +27,19 @@ POSES = (
 
 @pytest.fixture(scope="module")
 def renderer() -> Iterator[render.Renderer]:
-    """A frame for small pictures."""
+    """A renderer of small pictures."""
     with render.open_offscreen(SIZE, samples=1) as surface:
         yield render.Renderer(surface)
 
 
 @pytest.fixture(scope="module")
 def short_necked() -> FaceScene:
-    """The built-in head with a quarter of its neck, cut off without a shirt, like a user's head."""
+    """The built-in head with a quarter of its neck, cut off without a shirt, as a user's head."""
     return with_short_neck(forward=0.0)
 
 
 def with_short_neck(forward: float) -> FaceScene:
-    """A scene of such a head, whose neck comes this far forward [mm] below the chin."""
+    """A scene of such a head; below the chin its neck is moved forward by this distance [mm]."""
     head = assets.load("head")
     vertices = head.vertices.copy()
     below = np.minimum(vertices[:, 1] - vertices[head.landmarks[8], 1], 0.0)
@@ -49,7 +49,7 @@ def with_short_neck(forward: float) -> FaceScene:
 
 
 class Sitter:
-    """A scene before a camera, drawn by one refiner."""
+    """A scene before a camera, drawn with one refiner."""
 
     def __init__(self, scene, renderer, refiner):
         self.pipeline = Pipeline(scene, renderer)
@@ -62,9 +62,9 @@ class Sitter:
         return self.pipeline.renderer.surface.read().astype(int)
 
     def whole_skin(self, camera):
-        """For each pixel the triangle of the scene whose outer side it shows if that never fades.
+        """The scene's triangle at each pixel, if its outer side is visible and it never fades.
 
-        -1 for all others, (H, W).
+        -1 at all other pixels; shape (H, W).
         """
         frame = self.pipeline.frame_of(camera, STYLE, self.viewport)
         found = self.pipeline.renderer.read(frame)
@@ -80,10 +80,9 @@ class Sitter:
 @pytest.mark.parametrize("refiner", [None, "none"])
 @pytest.mark.parametrize("pose", POSES)
 def test_an_open_chin_does_not_fade_beside_a_short_neck(short_necked, renderer, pose, refiner):
-    """Jaw and mouth have the same colours as in a head that does not fade.
+    """An open chin beside a short neck has the same colours as without a fade.
 
-    Once the fade was fixed in space, and a nodding head lost its chin when the chin sank below the
-    edge of its neck.
+    Once the fade was fixed in space, so that a chin that sank below the neck's edge vanished.
     """
     scene = short_necked
     scene.reset()
@@ -92,7 +91,7 @@ def test_an_open_chin_does_not_fade_beside_a_short_neck(short_necked, renderer, 
     fade = scene.skin.fade
     edge = scene.positions[fade[:, 0] <= 0.0, 1].max()
     jaw = scene.landmarks[4:13]
-    assert scene.positions[scene.landmarks[8], 1] < edge  # the case: a chin below the edge
+    assert scene.positions[scene.landmarks[8], 1] < edge  # the chin is below the edge
     for yaw, pitch in ((0.0, 0.0), (0.0, -40.0), (50.0, -20.0)):
         camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
         camera.orbit(yaw, pitch)
@@ -112,12 +111,12 @@ def test_an_open_chin_does_not_fade_beside_a_short_neck(short_necked, renderer, 
 
 @pytest.fixture(scope="module")
 def thick_necked() -> FaceScene:
-    """A head with a short neck that comes forward, so that the chin of a nod goes into it."""
+    """A head with a short neck so far forward that the chin of a nod enters it."""
     return with_short_neck(forward=60.0)
 
 
 def test_a_faded_neck_makes_no_hole_in_a_mouth(thick_necked, renderer):
-    """A nod with an open jaw takes the front of a neck into the mouth; the mouth stays dark."""
+    """When a nod with an open jaw moves the neck's front into the mouth, the mouth stays dark."""
     thick_necked.reset()
     thick_necked.pose({"jaw_open": 1.0, "head_pitch": -1.0})
     thick_necked.step(0.6)

@@ -1,4 +1,4 @@
-"""The light in eyes and mouth in a picture."""
+"""Light in eyes and mouth in a picture."""
 
 import numpy as np
 from pytest import approx
@@ -16,7 +16,7 @@ AREA = (0, 0, *SIZE)
 
 
 def close_picture(scene, pose, landmarks, height):
-    """Brightness of pixels, (H, W), and their classes, near the middle of some landmarks."""
+    """Brightness (H, W) and classes of pixels in a picture centred on some landmarks."""
     scene.reset()
     scene.pose(pose)
     scene.step(SETTLING)
@@ -34,7 +34,7 @@ def close_picture(scene, pose, landmarks, height):
 
 
 def test_rims_run_through_the_landmarks(scene):
-    """Corners of eyes and mouth, and the middles of the lips, are points of the rims."""
+    """Corners of eyes and mouth, and middles of lips, are points of the openings' rims."""
     scene.reset()
     marks = scene.face.marked
     rims = rims_of(marks, 12)
@@ -49,7 +49,7 @@ def test_rims_run_through_the_landmarks(scene):
 
 
 def test_lids_take_light_from_the_eyeball(scene, monkeypatch):
-    """Below the upper lid and in the corners the eye is darker, but not in its middle."""
+    """The eye is darker below the upper lid and in the corners, but not in its middle."""
     shown, classes = close_picture(scene, {"surprise": 1.0}, range(42, 48), 40.0)
     monkeypatch.setattr(scene, "rims", lambda point_count: {})
     in_the_open, _ = close_picture(scene, {"surprise": 1.0}, range(42, 48), 40.0)
@@ -64,7 +64,7 @@ def test_lids_take_light_from_the_eyeball(scene, monkeypatch):
 
 
 def test_disgust_shows_no_scraps_of_gums(scene):
-    """The visible gap between lips is dark, because no light gets there."""
+    """In disgust the visible gap between the lips is dark, because little light reaches it."""
     light, classes = close_picture(scene, {"disgust": 1.0}, range(48, 68), 60.0)
     in_mouth = light[classes == Segment.MOUTH_INTERIOR]
     lips = light[(classes == Segment.TOP_LIP) | (classes == Segment.BOTTOM_LIP)]
@@ -73,7 +73,7 @@ def test_disgust_shows_no_scraps_of_gums(scene):
 
 
 def test_teeth_in_a_smile_are_darker_under_the_lip(scene):
-    """A row of teeth is not equally white: it is bright in its middle, darker beside and above."""
+    """In a smile the row of teeth is bright in its middle, and darker beside and above."""
     light, classes = close_picture(scene, {"joy": 1.0}, range(60, 68), 30.0)
     rows, columns = np.nonzero(classes == Segment.MOUTH_INTERIOR)
     middle = int(np.median(columns)) + 8  # beside the line between the incisors

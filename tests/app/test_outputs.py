@@ -1,4 +1,4 @@
-"""Outputs are complete or missing."""
+"""Outputs: complete or missing."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ GREY = np.full((64, 96, 3), 128, np.uint8)
 
 
 def test_a_broken_film_leaves_the_old_one(tmp_path):
-    """If the program fails in the middle, the user's earlier file is untouched."""
+    """If the program fails while a film is written, the user's earlier film stays."""
     path = tmp_path / "film.mp4"
     path.write_bytes(b"mine")
     with (
@@ -24,7 +24,10 @@ def test_a_broken_film_leaves_the_old_one(tmp_path):
 
 
 def test_frames_in_a_folder(tmp_path):
-    """Numbered pictures; among other things only when asked, and then only frames give way."""
+    """Frames are numbered pictures in an empty folder.
+
+    With --overwrite other content is accepted, and only earlier frames are removed.
+    """
     target = tmp_path / "frames"
     with outputs.folder(target, overwrite=False) as add:
         add(GREY)
@@ -43,7 +46,7 @@ def test_frames_in_a_folder(tmp_path):
 
 
 def test_broken_frames_leave_the_folder_as_it_was(tmp_path):
-    """If the program fails in the middle, old frames stay, and a new folder is removed."""
+    """If the program fails while frames are written, old frames stay; a new folder is removed."""
     for name in ("old", "new"):
         if name == "old":
             with outputs.folder(tmp_path / name, overwrite=False) as add:
@@ -71,7 +74,7 @@ def test_broken_frames_leave_the_folder_as_it_was(tmp_path):
     ],
 )
 def test_a_film_that_ffmpeg_does_not_finish(tmp_path, monkeypatch, program, message):
-    """If ffmpeg is missing, stops, or fails at the end, it is reported, and the old film stays."""
+    """If ffmpeg is missing, stops, or fails at the end, one line reports it; the old film stays."""
     fake = tmp_path / "ffmpeg"
     film = tmp_path / "films" / "film.mp4"
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(fake))

@@ -32,7 +32,7 @@ def passes_of(studio, wanted):
 
 
 def posed(studio, controls):
-    """The face of a studio, resting in a pose."""
+    """The face of a studio after it settled in a pose."""
     face = studio.scene
     face.reset()
     face.pose(controls)
@@ -42,21 +42,21 @@ def posed(studio, controls):
 
 @pytest.fixture(scope="module")
 def studio(scene: FaceScene) -> Iterator[Capture]:
-    """A square picture of the face with the usual refinement."""
+    """A studio that draws square pictures of the face with the usual refinement."""
     with Capture(scene, CaptureOptions(size=SIZE, camera="front")) as opened:
         yield opened
 
 
 @pytest.fixture(scope="module")
 def plain(scene: FaceScene) -> Iterator[Capture]:
-    """A square picture of the face without refinement."""
+    """A studio that draws square pictures of the face without refinement."""
     options = CaptureOptions(size=SIZE, camera="front", refinement=Refinement(refiner="none"))
     with Capture(scene, options) as opened:
         yield opened
 
 
 def seen_from(studio, yaw=0.0, pitch=0.0):
-    """Draw the face in its present state from a view."""
+    """Draw the face in its current state from a view."""
     studio.camera = render.OrbitCamera.framing(studio.scene.framing.extent)
     studio.camera.orbit(yaw, pitch)
     studio.draw_image()
@@ -64,7 +64,7 @@ def seen_from(studio, yaw=0.0, pitch=0.0):
 
 
 def first_hits(points, faces, eye, ways):
-    """Number of the first triangle on each ray, and its distance, (n, 2), from all triangles.
+    """Number of the first triangle on each ray, and its distance, (n, 2), over all triangles.
 
     Source: Möller and Trumbore 1997; -1 and infinity for no triangle.
     """
@@ -89,7 +89,7 @@ def first_hits(points, faces, eye, ways):
 
 @pytest.mark.parametrize("yaw", [0.0, 70.0])
 def test_triangles_and_depth_are_those_that_rays_hit(plain, yaw):
-    """At 400 places of the unrefined mesh, more than 99 in 100 hit the same triangle."""
+    """At 400 pixels of the unrefined mesh, more than 99 % have the triangle hit by their ray."""
     scene = posed(plain, EXPRESSIONS["smile"])
     camera = seen_from(plain, yaw, 5.0)
     found = passes_of(plain, ["depth", "triangle"])
@@ -127,7 +127,7 @@ def test_nothing_parts_and_skin_differ(studio):
 
 
 def test_splits_are_those_of_the_triangle_that_is_seen(studio):
-    """They are those that the refiner reports."""
+    """The splits at a pixel are those that the refiner reports for the visible triangle."""
     posed(studio, EXPRESSIONS["smile"])
     seen_from(studio)
     found = passes_of(studio, ["triangle", "splits"])
@@ -139,7 +139,7 @@ def test_splits_are_those_of_the_triangle_that_is_seen(studio):
 
 
 def test_classes_are_the_subjects_own_sides_and_mirror(studio):
-    """From the front, right of the subject is left in the picture; a picture of rest is even."""
+    """The subject's right is left in a picture from the front, and a face at rest is symmetric."""
     posed(studio, {})
     seen_from(studio)
     classes = passes_of(studio, ["segmentation"])["segmentation"]
@@ -157,7 +157,7 @@ def test_classes_are_the_subjects_own_sides_and_mirror(studio):
 
 
 def test_an_open_mouth_has_an_inside(studio):
-    """It is between the lips, and missing if they are closed; closed lids hide the eyes."""
+    """Pixels of the mouth's inside appear between open lips only; closed lids hide the eyes."""
     found = {}
     for name, controls in (("open", {"jaw_open": 0.9}), ("shut", {"AU43": 1.0})):
         posed(studio, controls)
@@ -172,15 +172,15 @@ def test_an_open_mouth_has_an_inside(studio):
 @pytest.mark.parametrize("expression", list(EXPRESSIONS))
 @pytest.mark.parametrize("view", [(0.0, 0.0), (-40.0, 10.0), (65.0, -15.0)])
 def test_landmarks_lie_on_the_depth_map(studio, expression, view):
-    """All visible ones are within 2 mm, and half of them within half a millimetre.
+    """Visible landmarks are within 2 mm of the depth map, half of them within 0.5 mm.
 
-    Those of the jaw lie where the skin bends away from the camera (test_landmarks.py).
+    Landmarks of the jaw lie where the skin bends away from the camera (test_landmarks.py).
     """
     scene = posed(studio, EXPRESSIONS[expression])
     camera = seen_from(studio, *view)
     depth = passes_of(studio, ["depth"])["depth"]
     found = landmarks_in(scene.face, camera, depth)
-    assert found.visible.sum() >= 28  # in profile half of the lower lip hides the other
+    assert found.visible.sum() >= 28  # in profile half of the lower lip is hidden by the other half
     visible = np.flatnonzero(found.visible[JAW_COUNT:]) + JAW_COUNT
     columns, rows = np.floor(found.pixels[visible]).astype(int).T
     off = np.abs(depth[rows, columns] - camera.to_camera(found.points[visible])[:, 2])
@@ -189,7 +189,7 @@ def test_landmarks_lie_on_the_depth_map(studio, expression, view):
 
 
 def test_pupils_are_hidden_by_lids_and_everything_by_the_frame(studio):
-    """A closed eye has no visible pupil; landmarks beside the picture are not visible."""
+    """Closed eyes have no visible pupils, and landmarks outside the frame are not visible."""
     for controls, is_seen in (({}, True), ({"AU43": 1.0}, False)):
         scene = posed(studio, controls)
         camera = seen_from(studio)

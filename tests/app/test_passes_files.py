@@ -1,4 +1,4 @@
-"""Files of `capture --passes`: read as other programs do, complete or missing."""
+"""Files of `capture --passes`: readable by other programs, complete or missing."""
 
 import json
 from pathlib import Path
@@ -25,18 +25,18 @@ AU12 = 1.0
 
 
 def channels_of(path):
-    """All channels of an OpenEXR file, read by its own library."""
+    """All channels of an OpenEXR file, read by the library of the format."""
     with OpenEXR.File(str(path), separate_channels=True) as file:
         return {name: np.array(channel.pixels) for name, channel in file.channels().items()}
 
 
 def names_in(folder):
-    """The names of all files of a folder."""
+    """The names of all files in a folder."""
     return sorted(path.name for path in folder.iterdir())
 
 
 def test_every_frame_has_its_passes_beside_it(tmp_path):
-    """Five files for each frame, of one picture; passes agree with each other and the numbers."""
+    """Each frame has five files with the same picture, and their numbers agree."""
     script = tmp_path / "smile.toml"
     frames = tmp_path / "frames"
     script.write_text(SMILE)
@@ -56,7 +56,7 @@ def test_every_frame_has_its_passes_beside_it(tmp_path):
     assert 400.0 < depth.max() < 1500.0
     assert triangle.min() == -1
     assert 1500 < triangle.max() < 2030
-    assert (channels["normal.Z"][depth > 0.0] < 0.0).mean() > 0.98  # folds tilt them
+    assert (channels["normal.Z"][depth > 0.0] < 0.0).mean() > 0.98  # folds tilt some normals
     classes = np.asarray(Image.open(f"{stem}_seg.png"))
     assert classes.dtype == np.uint8
     assert np.array_equal(classes > 0, depth > 0.0)
@@ -77,7 +77,7 @@ def test_every_frame_has_its_passes_beside_it(tmp_path):
 
 
 def test_only_what_is_asked_for_is_written(tmp_path):
-    """One picture with classes alone has no OpenEXR file, and no landmarks in its numbers."""
+    """A picture with classes alone has no OpenEXR file, and no landmarks in its numbers."""
     target = tmp_path / "deep" / "joy.png"
     succeeded(*CAPTURE, "--set", "joy", "--passes", "segmentation", "-o", target)
     assert names_in(target.parent) == ["joy.json", "joy.png", "joy_seg.png"]
@@ -86,7 +86,7 @@ def test_only_what_is_asked_for_is_written(tmp_path):
 
 @pytest.mark.slow
 def test_the_colours_are_those_without_passes(tmp_path):
-    """They are equal to the last byte, and so are the passes of two runs."""
+    """Colours are the same to the last byte with passes and without; two runs are equal, too."""
     for name, passes in (("a", ("--passes", ALL)), ("b", ("--passes", ALL)), ("c", ())):
         assert (
             risorius(*CAPTURE, "--set", "joy", *passes, "-o", tmp_path / f"{name}.png").exit_code
@@ -98,7 +98,10 @@ def test_the_colours_are_those_without_passes(tmp_path):
 
 
 def test_no_input_is_written_over(tmp_path):
-    """For a recording take.json and a picture take.png, the numbers would replace the recording."""
+    """For a recording take.json and a picture take.png, the numbers' file is refused.
+
+    It would replace the recording.
+    """
     recording = tmp_path / "take.json"
     recording.write_text("[]")
     result = risorius(*CAPTURE, recording, "--passes", "depth", "-o", tmp_path / "take.png")

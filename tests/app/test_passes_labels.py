@@ -18,7 +18,7 @@ ANGLES = {"yaw": st.floats(-180.0, 180.0), "pitch": st.floats(-89.0, 89.0)}
 
 
 def camera_at(yaw, pitch):
-    """A camera at the head's height, not in its middle."""
+    """A camera at the head's height, beside its middle."""
     camera = render.OrbitCamera.framing(np.array([[-80.0, -160.0, -90.0], [80.0, 130.0, 120.0]]))
     camera.orbit(yaw, pitch)
     camera.pan(0.1, -0.05)
@@ -28,7 +28,7 @@ def camera_at(yaw, pitch):
 @settings(max_examples=60, deadline=None)
 @given(size=SIZES, **ANGLES)
 def test_points_are_projected_where_opengl_draws_them(size, yaw, pitch):
-    """K, R and t agree with the matrices of the shaders, from the upper left corner."""
+    """K, R and t agree with the shaders' matrices; pixels count from the upper left corner."""
     camera, (width, height) = camera_at(yaw, pitch), size
     points = np.random.default_rng(1).uniform(-80.0, 80.0, (20, 3))
     labels = CameraLabels.of(camera, size)
@@ -45,7 +45,7 @@ def test_points_are_projected_where_opengl_draws_them(size, yaw, pitch):
 @settings(max_examples=25, deadline=None)
 @given(yaw=st.floats(-80.0, 80.0), pitch=st.floats(-60.0, 60.0))
 def test_a_head_at_rest_is_turned_as_the_camera_is_not(scene, yaw, pitch):
-    """A camera on the subject's left sees it turned to its right, one above sees it bowed."""
+    """A camera at the subject's left measures a head turned right; from above, a bowed head."""
     scene.reset()
     camera = camera_at(yaw, pitch)
     size = (640, 480)
@@ -64,9 +64,10 @@ def test_a_head_at_rest_is_turned_as_the_camera_is_not(scene, yaw, pitch):
 
 
 def test_angles_are_those_that_the_head_was_turned_by(face):
-    """Before a camera in front: left, up, to the left shoulder, singly and all at once.
+    """For a camera in front, the angles are those to which the head was turned.
 
-    The axes of the turn are found by landmarks, 2 degrees off those of the scene.
+    They are to the left, up, and to the left shoulder, alone and together. The head's axes are
+    found by landmarks, and are 2 degrees off those of the scene.
     """
     names = ("yaw", "pitch", "roll")
 
@@ -87,7 +88,7 @@ def test_angles_are_those_that_the_head_was_turned_by(face):
 
 
 def test_eyes_look_where_they_were_set(face):
-    """For each eye in the scene: straight ahead at rest, to the subject's left is x, up is y."""
+    """Gaze of each eye in the scene: straight ahead at rest; x to the subject's left, y up."""
     face.reset()
     assert np.allclose(gaze(face.face, "right"), [0.0, 0.0, 1.0])
     face.pose({"gaze_horizontal_left": 1.0, "gaze_vertical_right": 1.0})
@@ -99,7 +100,10 @@ def test_eyes_look_where_they_were_set(face):
 
 
 def test_labels_hold_what_was_set_and_what_it_moves(face):
-    """Controls and activations other than 0, and plain numbers that JSON can store."""
+    """Labels have the controls that were set, and activations other than 0.
+
+    All are plain numbers that JSON can store.
+    """
     face.reset()
     face.pose({"AU12_left": 0.5})
     face.step(0.5)

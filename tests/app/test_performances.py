@@ -1,4 +1,4 @@
-"""Recordings as scripts: on time, in few keys, with a report; and the commands that read them."""
+"""Recordings as scripts: on time, in few keys, with a report; commands that read them."""
 
 from functools import partial
 
@@ -30,7 +30,7 @@ def wave():
 
 
 def written(folder, seconds=1.0):
-    """A recording in a file: a smile begins and a head turns to its right."""
+    """Write a recording in which a smile begins and the head turns to its right."""
     times = np.arange(round(seconds * RATE) + 1) / RATE
     path = folder / "take.csv"
     rows = [f"{t:.4f},{t / seconds:.4f},{20.0 * t / seconds:.4f},7" for t in times]
@@ -49,7 +49,10 @@ def test_the_lead_shifts_what_is_played(lead, moment):
 
 
 def test_the_usual_lead_is_what_the_skin_is_late(face):
-    """A jaw that opens in a wave is open at the recorded moment, within a frame."""
+    """With the default lead, a jaw that opens in waves is open on time, within a frame.
+
+    The skin lags behind the controls by this lead.
+    """
     scene = face
     take = take_of(jawOpen=0.6 * wave())
     lips = scene.landmarks[[62, 66]]
@@ -130,7 +133,7 @@ def test_what_a_file_seems_to_be_is_what_the_error_speaks_of(tmp_path, name, con
 @pytest.mark.parametrize(
     ("channel", "degrees", "axis", "towards"),
     [
-        ("head_yaw", 20.0, 2, 0),  # the face turns to the subject's left, which is +x
+        ("head_yaw", 20.0, 2, 0),  # the face turns to the subject's left (+x)
         ("head_pitch", 20.0, 2, 1),  # the face turns up
         ("head_roll", 20.0, 1, 0),  # the crown moves to the left shoulder
         ("eye_yaw_left", 15.0, 2, 0),
@@ -138,7 +141,10 @@ def test_what_a_file_seems_to_be_is_what_the_error_speaks_of(tmp_path, name, con
     ],
 )
 def test_angles_turn_head_and_eyes_as_they_were_recorded(face, channel, degrees, axis, towards):
-    """So many degrees, to the subject's left, up, and to the left shoulder; no other bone's."""
+    """Recorded angles turn only the recorded bone by the same angle.
+
+    Angles are to the subject's left, up, and to the left shoulder.
+    """
     bones = {"eye_yaw_left": "eye_left", "eye_pitch_right": "eye_right"}
     script, _ = script_of(take_of(**{channel: degrees}), Playback(neutral="none"), face.limits)
     face.reset()

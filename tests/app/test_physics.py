@@ -1,4 +1,4 @@
-"""When the window's face is at rest, so that it is drawn in full and the window sleeps."""
+"""The face of a window is recognised as at rest, so that the window can sleep."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from risorius.app.viewer.session.session import Session
 
 @pytest.mark.parametrize("control", ["anger", "mentalis", "joy"])
 def test_a_held_pose_comes_to_rest(face, control):
-    """This includes lips in contact that always tremble by some thousandths of a millimetre."""
+    """A held pose comes to rest, also if lips in contact tremble by some thousandths of a mm."""
     session = Session(face, script_for(None, "face"))
     physics = Physics(session, FrameTimes())
     session.set(control, 1.0)

@@ -1,4 +1,4 @@
-"""Figure 1 as a whole: a refiner from outside fits in, and the mesh stays unchanged."""
+"""The paper's Figure 1 as a whole: an external refiner fits in, and the mesh is unchanged."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -26,7 +26,7 @@ def surface() -> Iterator[Any]:
 
 
 def image(pipeline, drawn):
-    """The picture of a scene, by one refiner."""
+    """The picture of a scene with one refiner."""
     surface = pipeline.renderer.surface
     camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="front")
     pipeline.draw(camera, render.Style(), [Viewport(drawn, (0, 0, *SIZE))])
@@ -34,7 +34,7 @@ def image(pipeline, drawn):
 
 
 def test_the_mesh_and_the_simulation_never_notice(surface):
-    """The simulation has the same bytes in each step with and without refinement."""
+    """The simulation has the same bytes in each step with refinement and without."""
     scenes = [FaceScene(), FaceScene()]
     renderer = render.Renderer(surface)
     for scene, name in zip(scenes, ("none", "kahler"), strict=True):
@@ -51,7 +51,7 @@ def test_the_mesh_and_the_simulation_never_notice(surface):
 
 
 def test_refined_and_static_agree_where_nothing_moved(surface):
-    """By the paper's criterion the refined picture at rest is the static one, pixel for pixel."""
+    """By the paper's criterion, the refined picture at rest equals the static one exactly."""
     pipeline = Pipeline(FaceScene(), render.Renderer(surface))
     asked = Refinement(refiner="none"), Refinement("paper")
     assert np.array_equal(*(image(pipeline, pipeline.bind(each)) for each in asked))
@@ -60,7 +60,7 @@ def test_refined_and_static_agree_where_nothing_moved(surface):
 @pytest.mark.parametrize(("first", "settling"), [(0.0, 0.0), (0.5, SETTLING)])
 @pytest.mark.parametrize("rate", [24.0, 30.0])
 def test_a_film_takes_as_long_as_its_script(first, settling, rate):
-    """Time in the scene equals the time between frames, and each frame has its pose."""
+    """The scene's time equals the time between frames, and each frame has its pose."""
     text = f"[[pose]]\ntime = 0\namplitude = {first}\n[[pose]]\ntime = 0.5\namplitude = 1\n"
     script = parse_script(text, source="wave")
     options = CaptureOptions(size=SIZE, samples=0, frames_per_second=rate)

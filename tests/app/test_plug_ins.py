@@ -157,7 +157,7 @@ everywhere = theirs_for_a_test:Everywhere
 
 @pytest.fixture(autouse=True)
 def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Install the package, in the way of pip, and remove it afterwards."""
+    """Install the package as pip does, and remove it afterwards."""
     site = tmp_path / "site"
     notes = site / "theirs-1.0.dist-info"
     notes.mkdir(parents=True)
@@ -173,7 +173,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def capture(folder: Path, *options: str) -> Result:
-    """Draw the head at rest by these options."""
+    """Draw the head at rest with these options."""
     still = ("--set", "joy=0", "--size", "64x48")
     return risorius("capture", "-o", folder / "rest.png", *still, *options)
 
@@ -181,7 +181,7 @@ def capture(folder: Path, *options: str) -> Result:
 @pytest.mark.parametrize(
     ("options", "count"),
     [
-        (["--option", "criterion=everywhere"], 12180),  # blended, so six of each triangle
+        (["--option", "criterion=everywhere"], 12180),  # blended: six subtriangles per triangle
         (["--option", "criterion=everywhere", "--option", "scheme=straight"], 8120),
         (["--refiner", "half"], 1015),
         (["--refiner", "half", "--option", "share=0.1"], 203),
@@ -205,12 +205,12 @@ def test_all_kinds_are_drawn(tmp_path, options, count):
     ],
 )
 def test_what_is_of_no_use_is_reported_in_one_line(tmp_path, options, text):
-    """A wrong name is reported with the right ones, and a broken package with its reason."""
+    """A wrong name is reported with the correct ones, a broken package with its reason."""
     assert text in refusal(capture(tmp_path, *options))
 
 
 def test_they_are_offered():
-    """The window and the doctor list them beside the built-in ones."""
+    """The window and the doctor list plug-ins beside the built-in refiners."""
     assert "straight" in mechanism.choices_of("scheme")
     assert "everywhere" in mechanism.choices_of("criterion")
     lines = risorius("doctor").output.splitlines()
@@ -236,7 +236,7 @@ BROKEN = {
 
 
 def chosen(name: str) -> tuple[str, ...]:
-    """Options that choose one of the broken plug-ins."""
+    """The options that choose a broken plug-in."""
     if "scheme" in name:
         return ("--option", name, "--option", "criterion=normal")
     return ("--option", name) if "=" in name else ("--refiner", name)
@@ -244,18 +244,18 @@ def chosen(name: str) -> tuple[str, ...]:
 
 @pytest.mark.parametrize("name", BROKEN)
 def test_an_error_in_one_is_reported_with_its_name(tmp_path, name):
-    """Any error at any time is one line, in pictures and in motion."""
+    """Any error of a plug-in is one line with its name, in pictures and in motion."""
     draw = ("capture", "-o", tmp_path / "face.png", "--size", "64x48")
     move = ("export", "-o", tmp_path / "face.vtkhdf", "--refined", "--fps", "5")
     for words in (draw, move):
-        if name == "empty" and words is move:  # it asks for no room
+        if name == "empty" and words is move:  # an export asks it for no memory
             continue
         assert BROKEN[name] in refusal(risorius(*words, "--set", "joy", *chosen(name)))
     assert not [item for item in tmp_path.iterdir() if item.name.startswith("face")]
 
 
 def test_the_traceback_is_there_for_whoever_asks(tmp_path, monkeypatch):
-    """RISORIUS_DEBUG=1 prints it before the line, and the exit code stays."""
+    """RISORIUS_DEBUG=1 prints the traceback before the line, and the exit code stays."""
     monkeypatch.setenv("RISORIUS_DEBUG", "1")
     for name in ("criterion=unborn", "lost", "gone"):
         result = capture(tmp_path, *chosen(name))
@@ -268,7 +268,7 @@ def test_the_traceback_is_there_for_whoever_asks(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_one_in_other_processes(tmp_path, monkeypatch):
-    """Samples of a set, frames of a film and lines of a list are made there, with the same line."""
+    """Worker processes report the same line: for samples, frames of a film, lines of a list."""
     sample = ("dataset", "--count", "1", "-o", tmp_path / "set", "--size", "64x64", "--quiet")
     assert BROKEN["lost"] in refusal(risorius(*sample, "--refiner", "lost"))
     still = ("--set", "joy", "--size", "64x48", *chosen("criterion=moody"))
@@ -290,7 +290,10 @@ def test_one_in_other_processes(tmp_path, monkeypatch):
 @pytest.mark.window
 @pytest.mark.skipif("DISPLAY" not in os.environ, reason="needs a display; `make test` brings one")
 def test_a_window_that_is_opened_with_a_broken_one_says_so(tmp_path):
-    """The window closes; a plug-in that fails after the face moves does not end an open window."""
+    """A window opened with a broken plug-in closes with its line.
+
+    A plug-in that fails after the face moves does not end an open window.
+    """
     view = ("view", "--size", "300x200")
     assert BROKEN["criterion=unborn"] in refusal(risorius(*view, *chosen("criterion=unborn")))
     assert BROKEN["lost"] in refusal(risorius(*view, *chosen("lost")))

@@ -1,4 +1,4 @@
-"""Looks: every refiner draws each on every scene, and the look paper follows the paper's rule."""
+"""Looks: every refiner draws each look on every scene; the look paper is the paper's rule."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -29,7 +29,7 @@ def surface() -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def scenes() -> dict[str, Scene]:
-    """Every scene, moved."""
+    """Every scene, with moved vertices."""
     built = {name: build() for name, build in SCENES.items()}
     for name, scene in built.items():
         scene.pose(MOVED[name])
@@ -41,7 +41,7 @@ def scenes() -> dict[str, Scene]:
 @pytest.mark.parametrize("look", PRESETS)
 @pytest.mark.parametrize("name", SCENES)
 def test_every_look_is_drawn_by_every_refiner(surface, scenes, name, look, refiner):
-    """It is drawn on every scene, without a crack, and visibly."""
+    """Each look is drawn by every refiner on every scene, visibly, without a crack."""
     scene = scenes[name]
     refinement = Refinement(look, refiner)
     pipeline = Pipeline(scene, render.Renderer(surface))
@@ -58,7 +58,10 @@ def test_every_look_is_drawn_by_every_refiner(surface, scenes, name, look, refin
 
 
 def test_the_papers_look_is_the_papers_rule(scenes):
-    """On the face it makes the triangles of `kahler` without options; smooth makes more."""
+    """On the face, the look paper makes the triangles of `kahler` without options.
+
+    The look smooth makes more.
+    """
     face = scenes["face"]
     skin = face.skin
     plain = refine.create("kahler", face.faces, face.rest_positions, skin.uv, skin.face_uv)
@@ -72,11 +75,14 @@ def test_the_papers_look_is_the_papers_rule(scenes):
 
 @pytest.mark.usefixtures("own_refiners")
 def test_a_comparison_is_of_looks_and_refiners():
-    """Both are in their order; a refiner gets the options of the look, also one of a plug-in."""
+    """A comparison lists looks and refiners in order; a refiner gets the options of the look.
+
+    The refiner may be a plug-in.
+    """
     refine.refiners.register("far", refine.PassThrough)
     shown = Refinement("paper", "kahler", {"blend": True})
     assert parse_comparison("none,smooth,far", shown) == (
         Refinement("paper", "none"), Refinement("smooth"), Refinement("paper", "far"),
     )  # fmt: skip
     assert parse_comparison(None, shown) == ()
-    assert parse_comparison("paper", shown) == (Refinement("paper"),)  # unchanged
+    assert parse_comparison("paper", shown) == (Refinement("paper"),)  # the current look stays

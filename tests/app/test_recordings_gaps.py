@@ -1,4 +1,4 @@
-"""Gaps and the order of time: for any rows of a reader, a Take keeps its promises."""
+"""Gaps in recordings, and the order of time: for any rows, a Take is valid."""
 
 import math
 
@@ -16,7 +16,7 @@ moments = st.one_of(st.integers(-3, 40).map(lambda number: number / 8.0), st.jus
 
 @given(st.lists(st.tuples(moments, odd, odd), min_size=1, max_size=30))
 def test_any_rows(rows):
-    """Times rise from 0, no value is missing, and none is outside the range of the given ones."""
+    """Times rise from 0, no value is missing, and all are within the range of given values."""
     times, jaw, smile = np.array(rows).T
     channels = {"jawOpen": jaw, "mouthSmileLeft": smile}
     try:
@@ -36,7 +36,10 @@ def test_any_rows(rows):
 
 
 def test_rows_are_put_in_the_order_of_their_times():
-    """Of two with one time the first counts; a time years away is none of this take."""
+    """Rows are sorted by time; of two at one time the first counts.
+
+    A time years away is not part of the take.
+    """
     times = np.array([0.2, 0.0, 0.1, 0.1, np.nan, 0.3, 1e9])
     take = whole_take("any", "x", times, {"jawOpen": np.arange(7) / 10.0})
     assert take.times == approx([0.0, 0.1, 0.2, 0.3])
@@ -45,7 +48,7 @@ def test_rows_are_put_in_the_order_of_their_times():
 
 
 def test_a_pose_is_held_and_left_at_the_end_of_the_gap():
-    """Half a second without a face at 10 frames a second, exact to the digit."""
+    """A gap holds the pose, and returns to motion at its end: 0.5 s at 10 frames/s, exactly."""
     values = np.array([0.2, 0.4, np.nan, np.nan, np.nan, np.nan, 1.0, 1.0])
     take = whole_take("any", "x", np.arange(8) / 10.0, {"jawOpen": values})
     expected = [0.2, 0.4, 0.4, 0.4, 0.6, 0.8, 1.0, 1.0]
@@ -53,7 +56,7 @@ def test_a_pose_is_held_and_left_at_the_end_of_the_gap():
 
 
 def test_a_slow_recording_has_no_holes():
-    """Two frames a second are far apart, but no face is missing."""
+    """At two frames per second, times are far apart, but no face is missing."""
     take = whole_take("any", "x", np.arange(8) / 2.0, {"jawOpen": np.arange(8) / 8.0})
     assert len(take.times) == 8
     assert not take.notes

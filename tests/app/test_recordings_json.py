@@ -1,4 +1,4 @@
-"""Takes in JSON: shapes as written by MediaPipe and pages that use it, and speech as visemes."""
+"""Takes in JSON: shapes from MediaPipe and pages with it, and speech as visemes."""
 
 import json
 
@@ -16,19 +16,19 @@ NAMES = [name for name in sorted(ARKIT) if name != "tongueOut"]
 
 
 def written(path, document):
-    """The document in a file that counts as a recording."""
+    """Write the document to a file with the name of a recording; return its path."""
     path.write_text(json.dumps(document))
     assert is_recording(path)
     return path
 
 
 def take_in(folder, document):
-    """The take of the document."""
+    """The take read from the document."""
     return read_take(written(folder / "take", document))
 
 
 def categories(jaw, key="category_name", as_text=False):
-    """The landmarker's answer for one face."""
+    """MediaPipe's face landmarker result for one face."""
     scores = {name: jaw if name == "jawOpen" else 0.125 for name in ("_neutral", *NAMES)}
     return [
         {"index": number, "score": str(score) if as_text else score, key: name, "displayName": ""}
@@ -39,7 +39,7 @@ def categories(jaw, key="category_name", as_text=False):
 @pytest.mark.parametrize("key", ["category_name", "categoryName"])
 @pytest.mark.parametrize("as_text", [False, True])
 def test_one_picture(key, as_text, tmp_path):
-    """Both spellings of keys, scores as numbers and as texts; `_neutral` is not a shape."""
+    """Both spellings of keys, and scores as numbers or texts, are read; `_neutral` is ignored."""
     take = take_in(tmp_path, categories(0.75, key, as_text))
     assert take.kind == "MediaPipe JSON"
     assert take.duration == 0.0
@@ -89,14 +89,17 @@ DOCUMENTS = {
 
 @pytest.mark.parametrize("kind", DOCUMENTS)
 def test_a_film(kind, tmp_path):
-    """The take is the same for all ways to pack frames."""
+    """The take is the same however frames are packed."""
     take = take_in(tmp_path, DOCUMENTS[kind])
     assert take.channels["jawOpen"] == approx(JAW)
     assert take.times == approx(np.arange(4) / 30.0)
 
 
 def test_what_stands_in_columns_beside_shapes(tmp_path):
-    """The head turns, rows without a face are found, and unknown columns are listed."""
+    """Columns beside shapes turn the head and mark rows without a face.
+
+    Unknown columns are listed.
+    """
     columns = ["jawOpen", "faceDetected", "headYaw", "mood"]
     rows = [[jaw, row != 1, 10.0 * row, 0.5] for row, jaw in enumerate(JAW)]
     over_time = dict(zip(columns, map(list, zip(*rows, strict=True)), strict=True))
@@ -117,7 +120,7 @@ def test_frames_without_a_face(tmp_path):
 
 
 def test_several_faces(tmp_path):
-    """The first face is taken; another cannot be chosen."""
+    """With several faces the first is used; another one cannot be chosen."""
     frames = [{"faceBlendshapes": [categories(0.2), categories(0.6)]} for _ in range(3)]
     path = written(tmp_path / "take", frames)
     assert read_take(path).channels["jawOpen"] == approx([0.2] * 3)
@@ -145,7 +148,7 @@ def test_the_matrix_of_the_head(layout, tmp_path):
 
 
 def test_the_nod_and_tilt_of_a_matrix(tmp_path):
-    """Up is up, and a tilt to the left shoulder is positive; x is to the subject's left, y up."""
+    """A nod up and a tilt to the left shoulder are positive; x is to the subject's left, y up."""
     up = np.radians(10.0)
     tilt = np.radians(15.0)
     nod = np.array([[1, 0, 0], [0, np.cos(up), np.sin(up)], [0, -np.sin(up), np.cos(up)]])
@@ -166,18 +169,18 @@ def test_the_nod_and_tilt_of_a_matrix(tmp_path):
      '{"jawOpen": ' + "9" * 5000 + "}"],
 )  # fmt: skip
 def test_json_of_something_else(text, tmp_path):
-    """One line names the fault."""
+    """JSON with other content is refused in one line with the fault."""
     path = tmp_path / "take"
     path.write_text(text)
     with pytest.raises(UserError, match="take"):
         read_take(path)
 
 
-# Visemes
+# Visemes.
 
 
 def tracks():
-    """A word of OpenFaceFX: silence, aa, PP, oh, silence; each moment is shared out."""
+    """A word in OpenFaceFX's format: silence, aa, PP, oh, silence, with overlapping weights."""
     keys = {
         "sil": [[0.0, 0.44], [0.2, 0.0], [0.8, 0.0], [1.0, 0.44]],
         "aa": [[0.0, 0.3], [0.2, 0.8], [0.4, 0.4], [0.6, 0.1]],
@@ -192,7 +195,7 @@ def tracks():
 
 
 def test_tracks_of_visemes(tmp_path):
-    """Its I, O, U are our ih, oh, ou; lips meet where they should, and silence is silent."""
+    """Its I, O, U become ih, oh, ou; lips meet at PP, and silence moves nothing."""
     take = take_in(tmp_path, tracks())
     assert take.kind == "Viseme tracks"
     assert take.is_calibrated
@@ -210,7 +213,7 @@ def test_tracks_of_visemes(tmp_path):
     "keys", [3, [1], [[0.0]], [["a", 1]], [[0.0, None]], [[0, True]], [{"time": 0}], [[1e300, 0]]]
 )
 def test_wrong_keys(keys, tmp_path):
-    """The channel is named."""
+    """The message names the channel of wrong keys."""
     document = {"channels": [{"name": "aa", "keys": [[0, 1]]}, {"name": "PP", "keys": keys}]}
     path = tmp_path / "take"
     path.write_text(json.dumps(document))
@@ -222,7 +225,7 @@ CUES = [(0.0, "X"), (0.4, "A"), (0.5, "D"), (1.0, "F"), (1.4, "X")]
 
 
 def test_mouth_shapes_of_rhubarb(tmp_path):
-    """Each shape holds, and changes into the next around the given moment."""
+    """Each mouth shape holds, and changes to the next around its start."""
     ends = [start for start, _ in CUES[1:]] + [1.6]
     cues = [
         {"start": start, "end": end, "value": value}

@@ -1,4 +1,4 @@
-"""Takes of Live Link Face: times, names, units and signs are found from the file's content."""
+"""Takes of Live Link Face: times, names, units and signs are found from the content."""
 
 import math
 
@@ -13,7 +13,7 @@ from .recording_files import ANGLES, has_note, live_link, take_in, timecodes, wr
 
 
 def test_a_raw_take(tmp_path):
-    """All 52 shapes and seven angles have their values, in degrees with our signs."""
+    """All 52 shapes and seven angles have their values, in degrees with the project's signs."""
     columns = live_link()
     take = take_in(tmp_path, columns)
     assert take.kind == "Live Link Face"
@@ -36,7 +36,7 @@ def test_a_raw_take(tmp_path):
 
 @pytest.mark.parametrize("name", ["take.csv", "take.toml", "take", "take.json"])
 def test_the_name_of_the_file_does_not_count(name, tmp_path):
-    """The content of a file decides its kind."""
+    """The kind of a file is found from its content, not its name."""
     path = written(tmp_path / name, live_link())
     assert is_recording(path)
     assert read_take(path).kind == "Live Link Face"
@@ -44,7 +44,7 @@ def test_the_name_of_the_file_does_not_count(name, tmp_path):
 
 @pytest.mark.parametrize("left_out", [("TongueOut",), (), ("TongueOut", *ANGLES), ANGLES])
 def test_fewer_columns(left_out, tmp_path):
-    """60, 61, 51 and 52 columns; a missing column is no channel."""
+    """Files of 60, 61, 51 and 52 columns are read; a missing column gives no channel."""
     columns = {name: values for name, values in live_link().items() if name not in left_out}
     take = take_in(tmp_path, columns)
     assert ("tongueOut" in take.channels) == ("TongueOut" not in left_out)
@@ -52,7 +52,7 @@ def test_fewer_columns(left_out, tmp_path):
 
 
 def test_values_that_are_none(tmp_path):
-    """A value like -9.8e5 is not a measurement; frames beside it count, and 1.2 does."""
+    """A value such as -9.8e5 is no measurement; other values of its frame, and 1.2, count."""
     columns = live_link()
     jaw = np.full(120, 0.5)
     jaw[7] = -9.8e5
@@ -65,7 +65,7 @@ def test_values_that_are_none(tmp_path):
 
 @pytest.mark.parametrize(("name", "unit"), [("radians", 1.0), ("degrees", math.pi / 180.0)])
 def test_units_of_angles(name, unit, tmp_path):
-    """Their size shows the unit, because no head turns by more than a quarter of a circle."""
+    """The unit of angles is found from their size: no head turns by over 90 degrees."""
     take = take_in(tmp_path, live_link(unit=unit))
     assert has_note(take.notes, f"taken for {name}")
     known = live_link()
@@ -75,7 +75,7 @@ def test_units_of_angles(name, unit, tmp_path):
 
 
 def test_axes_of_the_eyeballs(tmp_path):
-    """The app's axes point 4 degrees outward from the gaze; a face must not squint outward."""
+    """Axes of eyeballs, 4 degrees outward from the gaze, are corrected, or a face would squint."""
     take = take_in(tmp_path, live_link())
     left = take.channels["eye_yaw_left"]
     right = take.channels["eye_yaw_right"]
@@ -86,7 +86,7 @@ def test_axes_of_the_eyeballs(tmp_path):
 
 
 def test_angles_that_are_switched_off(tmp_path):
-    """The app writes 0 if the head's rotation is off; the head is then not held at 0."""
+    """If all head angles are 0, the app did not record them, and the head is free."""
     off = {name: np.zeros(120) for name in ("HeadYaw", "HeadPitch", "HeadRoll")}
     take = take_in(tmp_path, live_link() | off)
     assert "head_yaw" not in take.channels
@@ -95,7 +95,7 @@ def test_angles_that_are_switched_off(tmp_path):
 
 
 def test_a_calibrated_take(tmp_path):
-    """A calibrated take has brows and a nose at rest; a raw one never has."""
+    """A take is recognised as calibrated if brows and nose are 0 at rest, unlike in a raw take."""
     columns = live_link()
     shapes = {name[0].upper() + name[1:] for name in ARKIT}
     calibrated = {
@@ -106,7 +106,7 @@ def test_a_calibrated_take(tmp_path):
     assert not read_take(written(tmp_path / "raw.csv", columns)).is_calibrated
 
 
-# Times
+# Times.
 
 
 def take_of(path, codes, rate=None):
@@ -121,7 +121,7 @@ def take_of(path, codes, rate=None):
 
 
 def test_the_fraction_of_a_frame(tmp_path):
-    """If frames are a little slower than 60 a second, the fraction gives the time of each."""
+    """At slightly less than 60 frames per second, the fraction gives each frame's exact time."""
     frames = 37.867 + 1.003 * np.arange(400)
     times, notes = take_of(tmp_path, timecodes(frames))
     assert times == approx(1.003 * np.arange(400) / 60.0, abs=1e-4)
@@ -129,13 +129,13 @@ def test_the_fraction_of_a_frame(tmp_path):
 
 
 def test_a_rate_that_the_user_knows(tmp_path):
-    """It takes precedence over an inferred one."""
+    """A rate given by the user has priority over one found."""
     times, _ = take_of(tmp_path, timecodes(np.arange(10)), rate=30.0)
     assert times[-1] == approx(9 / 30.0)
 
 
 def test_midnight(tmp_path):
-    """Time goes on after 23:59:59."""
+    """Time continues after 23:59:59."""
     codes = [code[:-4] for code in timecodes(np.arange(60), 60, start=86_399)]
     codes += [code[:-4] for code in timecodes(np.arange(60), 60, start=0)]
     times, _ = take_of(tmp_path, codes)
@@ -143,7 +143,7 @@ def test_midnight(tmp_path):
 
 
 def test_thousandths(tmp_path):
-    """Some programs write thousandths of a second in the place of frames."""
+    """Thousandths of a second in place of frame numbers are recognised."""
     codes = [f"10:00:{n // 25:02}:{n % 25 * 40:03}" for n in range(100)]
     times, _ = take_of(tmp_path, codes)
     assert times == approx(np.arange(100) / 25.0, abs=1e-9)

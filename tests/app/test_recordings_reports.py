@@ -1,4 +1,4 @@
-"""What reports say of a recording: only true statements, and all that was left out."""
+"""Reports on recordings: only true statements, and everything that was left out."""
 
 import json
 
@@ -16,7 +16,7 @@ CUES = [(0.0, 0.1, "X"), (0.1, 0.2, "B"), (0.2, 2.2, "A"), (2.2, 2.3, "D"), (2.3
 
 
 def rhubarb(path, sound=None):
-    """Rhubarb's output for these cues; one of them holds for two seconds."""
+    """Rhubarb's output for these cues; one cue lasts two seconds."""
     metadata = {"duration": 3.0}
     if sound is not None:
         metadata["soundFile"] = sound
@@ -26,13 +26,13 @@ def rhubarb(path, sound=None):
 
 
 def lines_of(path):
-    """The report of a recording."""
+    """The lines of the report on a recording."""
     take = read_take(path)
     return "\n".join(report_of(take, calibration_for(take)).lines)
 
 
 def test_cues_are_keys(tmp_path):
-    """A held mouth shape is not a gap in the recording, and keys have no rate."""
+    """A held mouth shape is not reported as a gap, and keys have no rate."""
     report = lines_of(rhubarb(tmp_path / "take.json"))
     assert "keys in 3.00 s" in report
     assert "a second" not in report
@@ -40,7 +40,7 @@ def test_cues_are_keys(tmp_path):
 
 
 def test_keys_of_visemes_far_apart(tmp_path):
-    """Between two keys a track is straight, however far apart they are."""
+    """Between two keys a track of a viseme is straight, however far apart they are."""
     keys = [[0.0, 0.0], [0.1, 0.0], [0.2, 0.0], [0.3, 0.0], [4.3, 0.9]]
     path = tmp_path / "take.json"
     path.write_text(json.dumps({"channels": [{"name": "aa", "keys": keys}]}))
@@ -50,14 +50,14 @@ def test_keys_of_visemes_far_apart(tmp_path):
 
 
 def script_of(path):
-    """The script that plays a recording."""
+    """The script made from a recording."""
     script, _ = read_performance(path)
     return script
 
 
 @pytest.mark.parametrize("name", ["voice.wav", "sounds/voice.wav", "C:\\takes\\voice.wav", "full"])
 def test_the_sound_of_rhubarb(name, tmp_path):
-    """The analysed sound file is played: from its old place, or beside the recording."""
+    """The analysed sound file is played, from its old place or beside the recording."""
     sound = tmp_path / ("sounds/voice.wav" if name == "sounds/voice.wav" else "voice.wav")
     sound.parent.mkdir(exist_ok=True)
     sound.write_bytes(b"RIFF")
@@ -67,14 +67,14 @@ def test_the_sound_of_rhubarb(name, tmp_path):
 
 
 def test_a_sound_that_is_gone(tmp_path):
-    """It is named, and the mouth moves without it."""
+    """A missing sound is named, and the mouth moves without it."""
     path = rhubarb(tmp_path / "take.json", "gone.wav")
     assert script_of(path).sound is None
     assert "The sound file 'gone.wav' is not there; --sound names another." in lines_of(path)
 
 
 def test_time_stamps_of_no_use(tmp_path):
-    """They exist, so no line says that times are missing."""
+    """Unusable time stamps are reported, but not as missing times."""
     report = lines_of(written(tmp_path / "take.csv", openface() | {"timestamp": [0.0] * 60}))
     assert "The time stamps do not rise, and were not used." in report
     assert "Instead 30 frames a second were assumed." in report
@@ -82,7 +82,7 @@ def test_time_stamps_of_no_use(tmp_path):
 
 
 def test_one_of_a_kind(tmp_path):
-    """One place, one row, one cell and one value are named in the singular."""
+    """A single place, row, cell or value is reported in the singular."""
     times = [*np.arange(30) / 30.0, *(3.0 + np.arange(30) / 30.0)]
     jaw = [0.5] * 60
     times[5] = ""
@@ -96,7 +96,7 @@ def test_one_of_a_kind(tmp_path):
 
 
 def test_all_notes_are_shown(tmp_path):
-    """There may be any number of them."""
+    """Any number of notes is printed."""
     columns = openface() | {"timestamp": [0.0] * 60, "frame": list(range(0, 120, 2))}
     columns["AU12_r"] = ["wide", *([2.0] * 59)]
     columns["success"] = [*([1] * 50), *([0] * 10)]

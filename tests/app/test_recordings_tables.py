@@ -16,7 +16,7 @@ COLUMNS = {"timestamp": np.arange(180) / 60.0, "jawOpen": JAW, "mouthSmile_L": J
 
 
 def cells(columns=COLUMNS):
-    """The header and the rows."""
+    """The cells of the header and of the rows."""
     return list(csv.reader(io.StringIO(table(columns))))
 
 
@@ -37,7 +37,7 @@ def german(quoting=csv.QUOTE_MINIMAL, separator=";"):
 
 
 def of_r():
-    """The output of R's write.csv: a column of row names, and quotes around all names."""
+    """The table as written by R's write.csv: a column of row names, quotes around all names."""
     header, *rows = cells()
     lines = [",".join(f'"{name}"' for name in ("", *header))]
     lines += [",".join((f'"{number}"', *row)) for number, row in enumerate(rows, 1)]
@@ -45,7 +45,7 @@ def of_r():
 
 
 def aligned(*, has_row_names=False):
-    """The table in columns of one width, as by pandas' `to_string`."""
+    """The table in columns of equal width, as by pandas' `to_string`."""
     rows = [[str(number), *row] for number, row in enumerate(cells(), -1)]
     rows[0][0] = ""
     begin = 0 if has_row_names else 1
@@ -53,7 +53,7 @@ def aligned(*, has_row_names=False):
 
 
 def of_r_table():
-    """The output of R's write.table: row names without a name above."""
+    """The table as written by R's write.table: row names without a header."""
     return of_r().replace('"",', "", 1)
 
 
@@ -93,7 +93,7 @@ TEXTS = {
 
 @pytest.mark.parametrize("kind", TEXTS)
 def test_layouts(kind, tmp_path):
-    """For all separators and quotes, times and values are the same; the guess is reported."""
+    """With all separators and quotes, times and values are the same, and the guess is reported."""
     make, note = TEXTS[kind]
     path = tmp_path / "take.csv"
     path.write_text(make(), encoding="utf-8")
@@ -107,7 +107,7 @@ def test_layouts(kind, tmp_path):
 
 
 def test_a_separator_in_a_name(tmp_path):
-    """The delimiter must also separate the rows; names keep other separators in quotes."""
+    """The delimiter also separates the rows; in quoted names, other separators are text."""
     path = tmp_path / "take.csv"
     path.write_text("head|jawOpen,head|mouthClose\n0.1,0.2\n0.2,0.3\n")
     assert read_take(path).channels.keys() == {"jawOpen", "mouthClose"}
@@ -121,14 +121,14 @@ def test_a_separator_in_a_name(tmp_path):
     "text", ["jawOpen = 0.5\nmouthClose = 0.2\n", "jawOpen is a shape\nand so is mouthClose\n"]
 )
 def test_words_are_no_table(text, tmp_path):
-    """Blanks only separate cells above numbers."""
+    """Blanks separate cells only if the cells are numbers."""
     path = tmp_path / "notes"
     path.write_text(text)
     assert not is_recording(path)
 
 
 def test_a_plain_table_needs_no_word(tmp_path):
-    """Commas, points and UTF-8 are not reported as guesses."""
+    """Commas, decimal points and UTF-8, the usual form, are not reported."""
     path = tmp_path / "take.csv"
     path.write_text(table(COLUMNS), encoding="utf-8-sig")
     assert read_take(path).notes == ()
@@ -151,7 +151,7 @@ def test_encodings(codec, name, tmp_path):
 
 
 def test_json_in_utf_16(tmp_path):
-    """Encodings are the same for all kinds of files."""
+    """JSON files may have the encodings of tables."""
     path = tmp_path / "take.json"
     path.write_text('[{"jawOpen": 0.1}, {"jawOpen": 0.5}]', encoding="utf-16")
     assert is_recording(path)
@@ -161,7 +161,7 @@ def test_json_in_utf_16(tmp_path):
 
 
 def test_a_quoted_text_beside_numbers(tmp_path):
-    """A separator, a line end and a doubled quote in a cell belong to its text."""
+    """A separator, a line end and a doubled quote in a quoted cell belong to its text."""
     path = tmp_path / "take.csv"
     path.write_text('time,note,jawOpen\n0,"a, b",0.1\n0.1,"one\ntwo",0.2\n0.2,"""c""",0.3\n')
     take = read_take(path)
@@ -171,7 +171,7 @@ def test_a_quoted_text_beside_numbers(tmp_path):
 
 @pytest.mark.parametrize("is_first", [True, False])
 def test_a_quote_that_is_not_closed(tmp_path, is_first):
-    """Its own row is lost and no other, and the line is reported, also if two are open."""
+    """An unclosed quote loses its own row only, and its line is reported, also for two."""
     path = tmp_path / "take.csv"
     broken = '0.1,"0.2\n' if is_first else '"0.1,0.2\n'
     path.write_text(f'time,"jawOpen"\n0,0.1\n{broken}0.2,0.3\n0.3,"0.4\n0.4,0.5\n')
@@ -192,7 +192,7 @@ def test_a_quote_that_is_not_closed(tmp_path, is_first):
     ],
 )
 def test_a_column_that_stands_twice(header, note, tmp_path):
-    """The first counts, and this is reported."""
+    """Of two columns with one name the first counts, and this is reported."""
     path = tmp_path / "take.csv"
     path.write_text(f"{header}\n0,0.1,0.9\n0.1,0.2,0.8\n")
     take = read_take(path)

@@ -1,4 +1,4 @@
-"""Recordings as text: encodings, line ends, comments, rows that do not belong there."""
+"""Recordings as text: encodings, line ends, comments, and foreign rows."""
 
 import math
 import os
@@ -16,7 +16,7 @@ COLUMNS = {"time": np.arange(6) / 30.0, "jawOpen": np.arange(6) / 10.0, "AU4": n
 
 
 def check(path):
-    """Check that the table above is in the file; return its notes."""
+    """Check that the file has the table above; return the take's notes."""
     assert is_recording(path)
     take = read_take(path)
     assert take.channels["jawOpen"] == approx(COLUMNS["jawOpen"], abs=1e-6)
@@ -27,7 +27,7 @@ def check(path):
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
 def test_encodings(encoding, tmp_path):
-    """With or without a byte order mark, a name beyond ASCII stays unchanged."""
+    """With a byte order mark or without, a name beyond ASCII is read correctly."""
     path = tmp_path / "take.csv"
     text = table({"Stimmung für später": [1] * 6} | COLUMNS)
     path.write_bytes(text.encode(encoding))
@@ -54,7 +54,7 @@ def test_line_ends(ending, tmp_path):
     ids=["empty lines", "comment", "blanks", "comma at the end"],
 )
 def test_odd_tables(change, tmp_path):
-    """Additions of spreadsheets and scripts are ignored."""
+    """Lines that spreadsheets and scripts add are ignored."""
     path = tmp_path / "take.csv"
     assert callable(change)
     path.write_text(change(table(COLUMNS)))
@@ -62,7 +62,7 @@ def test_odd_tables(change, tmp_path):
 
 
 def test_a_torn_last_row(tmp_path):
-    """It is left out and reported."""
+    """An incomplete last row is left out and reported."""
     path = tmp_path / "take.csv"
     path.write_text(table(COLUMNS) + "0.2,0.6")
     assert has_note(check(path), "The last row, line 8, is torn")
@@ -78,7 +78,7 @@ def test_a_torn_last_row(tmp_path):
     ],
 )
 def test_what_is_no_recording(content, words, tmp_path):
-    """One line names the kind of the file, and the known kinds."""
+    """Another file is refused in one line with its kind, and the accepted kinds."""
     path = tmp_path / "take.csv"
     path.write_bytes(content)
     with pytest.raises(UserError, match=words):
@@ -95,7 +95,7 @@ def test_no_file(tmp_path):
 
 
 def test_a_huge_file(tmp_path):
-    """It is refused by its size, not read."""
+    """A huge file is refused by its size, without reading."""
     path = tmp_path / "take.csv"
     with path.open("wb") as file:
         file.truncate(2**40)
@@ -105,7 +105,7 @@ def test_a_huge_file(tmp_path):
 
 @pytest.mark.parametrize("rate", [0.0, -1.0, 1e9, math.nan])
 def test_a_rate_that_is_none(rate, tmp_path):
-    """The limits are named."""
+    """An invalid rate is refused, and the message has the limits."""
     with pytest.raises(UserError, match="1 to 1000"):
         take_in(tmp_path, live_link(), rate=rate)
 
@@ -121,7 +121,7 @@ def test_a_rate_that_is_none(rate, tmp_path):
     ],
 )
 def test_files_of_ours_are_no_recordings(text, tmp_path):
-    """Scripts, landmarks and heads are not taken as recordings, because their content differs."""
+    """Scripts, landmarks and heads are not read as recordings, because of their content."""
     path = tmp_path / "take.csv"
     path.write_text(text)
     assert not is_recording(path)

@@ -1,4 +1,4 @@
-"""Times of rows: timecode of any rate, clocks, time stamps; and `--rate` with them."""
+"""Times of rows: timecode of any rate, clocks, time stamps, and `--rate` with each."""
 
 import datetime
 import json
@@ -15,20 +15,20 @@ JAW = np.linspace(0.0, 0.9, 90)
 
 
 def take_of(folder, cells, *, name="time", rate=None):
-    """The take of a table with these times above an opening jaw."""
+    """The take of a table with these times and an opening jaw."""
     columns = {name: [f'"{cell}"' for cell in cells], "jawOpen": np.linspace(0, 0.9, len(cells))}
     return read_take(written(folder / "take.csv", columns), rate=rate)
 
 
 def timecode(frame, base, *, separator=":", start=36000):
-    """The label of a frame that is counted from `start` [s]."""
+    """The timecode of a frame counted from `start` [s]."""
     second, number = divmod(frame, base)
     second += start
     return f"{second // 3600 % 24:02}:{second // 60 % 60:02}:{second % 60:02}{separator}{number:02}"
 
 
 def drop_frame(frame, base, separator=";"):
-    """The label of a frame by SMPTE's rule: all minutes but every tenth skip numbers."""
+    """The drop-frame timecode (SMPTE): every minute except each tenth skips two numbers."""
     dropped = base // 15
     tens, rest = divmod(frame, 600 * base - 9 * dropped)
     minutes = max(rest - dropped, 0) // (60 * base - dropped)
@@ -38,7 +38,7 @@ def drop_frame(frame, base, separator=";"):
 @pytest.mark.parametrize("base", [24, 25, 30, 48, 50, 60, 72, 75, 90, 100, 120, 144, 240])
 @pytest.mark.parametrize("step", [1, 2])
 def test_any_timecode(base, step, tmp_path):
-    """Three seconds stay three seconds, even if only every other frame has a row."""
+    """Three seconds last three seconds, even if only every other frame has a row."""
     frames = range(0, 3 * base, step)
     cells = [timecode(frame, base) for frame in frames]
     for rate in (None, float(base), 30.0, base / step):
@@ -48,14 +48,14 @@ def test_any_timecode(base, step, tmp_path):
 
 @pytest.mark.parametrize(("rate", "base"), [(23.976, 24), (29.97, 30), (47.952, 48), (59.94, 60)])
 def test_the_true_rate_of_timecode(rate, base, tmp_path):
-    """A rate that is a thousandth below the count is the camera's real rate."""
+    """A `--rate` a thousandth below timecode's rate is taken as the camera's real rate."""
     cells = [timecode(frame, base) for frame in range(3 * base)]
     take = take_of(tmp_path, cells, name="Timecode", rate=rate)
     assert take.duration == approx((3 * base - 1) / rate)
 
 
 def test_a_rate_that_timecode_contradicts(tmp_path):
-    """It is not used, and this is reported."""
+    """A `--rate` that contradicts the timecode is not used, and this is reported."""
     cells = [timecode(frame, 60) for frame in range(0, 240, 2)]
     take = take_of(tmp_path, cells, name="Timecode", rate=30.0)
     assert take.duration == approx(238 / 60.0)
@@ -65,7 +65,7 @@ def test_a_rate_that_timecode_contradicts(tmp_path):
 @pytest.mark.parametrize("separator", [";", ":"])
 @pytest.mark.parametrize("base", [30, 60, 120])
 def test_drop_frame(base, separator, tmp_path):
-    """Over eleven minutes there is no jump at skipped numbers, and the true rate counts."""
+    """Over eleven minutes, skipped numbers cause no jump, and the real rate is used."""
     frames = np.arange(700 * base // 5) * 5
     cells = [drop_frame(int(frame), base, separator) for frame in frames]
     take = take_of(tmp_path, cells, name="Timecode")
@@ -82,7 +82,7 @@ def test_colons_that_drop_nothing(start, step, tmp_path):
 
 
 def test_a_semicolon_that_drops_nothing(tmp_path):
-    """Numbers that drop-frame timecode skips show that it is not drop-frame."""
+    """With a semicolon, timecode that has the skipped numbers is not drop-frame."""
     frames = range(0, 2100)
     cells = [timecode(frame, 30, separator=";", start=0) for frame in frames]
     take = take_of(tmp_path, cells, name="Timecode")
@@ -91,7 +91,7 @@ def test_a_semicolon_that_drops_nothing(tmp_path):
 
 @pytest.mark.parametrize("base", [24, 25, 30, 48, 60])
 def test_frames_behind_a_point(base, tmp_path):
-    """Two digits that never reach 60 count frames; hundredths of a second do reach 60."""
+    """Two digits after the point that never reach 60 are frames; others are hundredths."""
     frames = range(3 * base)
     cells = [timecode(frame, base, separator=".") for frame in frames]
     take = take_of(tmp_path, cells, name="Timecode")
@@ -101,7 +101,7 @@ def test_frames_behind_a_point(base, tmp_path):
 
 
 def test_rows_that_share_a_frame_of_timecode(tmp_path):
-    """60 rows a second with timecode of 30 frames are 60 a second."""
+    """60 rows per second with timecode of 30 frames are read as 60 per second."""
     cells = [timecode(row // 2, 30) for row in range(180)]
     take = take_of(tmp_path, cells, name="Timecode")
     assert take.times == approx(np.arange(180) / 60.0)
@@ -109,7 +109,7 @@ def test_rows_that_share_a_frame_of_timecode(tmp_path):
 
 
 def clock(form):
-    """A label of seconds, by strftime with {ms} for milliseconds."""
+    """A time formatted by strftime, with {ms} for milliseconds."""
     start = datetime.datetime(2024, 5, 1, 12, 0, 0)
 
     def label(seconds):
@@ -120,12 +120,12 @@ def clock(form):
 
 
 def timedelta_of_pandas(seconds):
-    """A time delta as pandas prints it."""
+    """A time delta as printed by pandas."""
     return f"0 days 00:00:{seconds:09.6f}"
 
 
 def timedelta_from_below(seconds):
-    """As pandas prints a time delta that begins a second before 0."""
+    """A time delta as printed by pandas, from a second before 0."""
     if seconds < 1.0:
         return f"-1 days +23:59:{59 + seconds:09.6f}"
     return f"0 days 00:00:{seconds - 1.0:09.6f}"
@@ -163,7 +163,7 @@ CLOCKS = {
 
 @pytest.mark.parametrize("kind", CLOCKS)
 def test_clocks_and_stamps(kind, tmp_path):
-    """90 frames last 89 / 30 s for all forms of times, in tables and in JSON."""
+    """90 frames last 89 / 30 s in all forms of times, in tables and in JSON."""
     times = np.arange(90) / 30.0
     cells = [CLOCKS[kind](float(time)) for time in times]
     for rate in (None, 30.0):
@@ -178,7 +178,7 @@ def test_clocks_and_stamps(kind, tmp_path):
 
 @pytest.mark.parametrize("form", ["%H:%M:%S.{ms}", "%Y-%m-%d %H:%M:%S.{ms}"])
 def test_a_clock_over_midnight(form, tmp_path):
-    """Time goes on, with and without a date."""
+    """Time continues after midnight, with a date and without."""
     times = np.arange(90) / 30.0
     take = take_of(tmp_path, [clock(form)(43_199.0 + float(time)) for time in times])
     assert take.times == approx(times, abs=2e-3)
@@ -197,21 +197,21 @@ def test_a_clock_over_midnight(form, tmp_path):
     ],
 )
 def test_names_of_times(name, step, seconds, tmp_path):
-    """A name may say the unit."""
+    """The name of a time column may state its unit."""
     take = take_of(tmp_path, [f"{step * row:.6f}" for row in range(90)], name=name)
     assert take.times == approx(seconds * np.arange(90), abs=1e-5)
     assert not take.unknown
 
 
 def test_a_clock_of_whole_seconds(tmp_path):
-    """Rows of one second are spread over it."""
+    """Rows with the same whole second are spread over this second."""
     take = take_of(tmp_path, [f"12:00:{row // 30:02}" for row in range(90)])
     assert take.times == approx(np.arange(90) / 30.0)
     assert has_note(take.notes, "spread evenly")
 
 
 def test_times_that_cannot_be_read(tmp_path):
-    """The column is named, and frames are played one by one."""
+    """A column of unreadable times is named, and frames are played at a fixed rate."""
     take = take_of(tmp_path, ["half past: ten"] * 90)
     assert take.duration == approx(89 / 30.0)
     assert has_note(take.notes, "The times in 'time' cannot be read, and were not used")

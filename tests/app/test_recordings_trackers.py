@@ -9,11 +9,11 @@ from risorius.app.recordings.reading import read_take
 
 from .recording_files import has_note, openface, pyfeat, pyfeat_2, table, take_in, written
 
-# OpenFace
+# OpenFace.
 
 
 def test_openface(tmp_path):
-    """Units are from 0 to 5, or presence without intensity, and angles have our signs."""
+    """Units are from 0 to 5, or detections without intensity; angles have the project's signs."""
     columns = openface()
     take = take_in(tmp_path, columns)
     assert take.kind == "OpenFace 2"
@@ -50,7 +50,10 @@ def test_openface_sees_the_gaze_from_the_camera(tmp_path):
 
 
 def test_openface_1(tmp_path):
-    """No face_id, no gaze_angle, blanks before names; gaze from the vectors of both eyes."""
+    """OpenFace 1 files are read: no face_id or gaze_angle, blanks before names.
+
+    Gaze is computed from the vectors of both eyes.
+    """
     columns = openface()
     for name in ("face_id", "gaze_angle_x", "gaze_angle_y"):
         del columns[name]
@@ -70,7 +73,7 @@ def test_openface_1(tmp_path):
 
 @pytest.mark.parametrize(("unit", "name"), [(1e3, "milli"), (1e6, "micro"), (1e9, "nano")])
 def test_stamps_in_other_units(unit, name, tmp_path):
-    """Time stamps are in seconds, milliseconds, microseconds or nanoseconds, by their steps."""
+    """Time stamps in s, ms, us or ns are recognised by their steps."""
     columns = openface()
     columns["timestamp"] = [round(stamp * unit) for stamp in np.arange(60) / 30.0]
     take = take_in(tmp_path, columns)
@@ -79,7 +82,7 @@ def test_stamps_in_other_units(unit, name, tmp_path):
 
 
 def test_no_face_at_all(tmp_path):
-    """There is nothing to play."""
+    """A recording without any face is refused."""
     path = written(tmp_path / "take.csv", openface() | {"success": [0] * 60})
     with pytest.raises(UserError, match="no frame shows a face"):
         read_take(path)
@@ -102,7 +105,7 @@ def test_rows_of_nan(tmp_path):
 
 
 def test_several_faces(tmp_path):
-    """The face in most rows is taken, or the chosen one."""
+    """With several faces, the one in most rows is used, or the chosen one."""
     one = openface()
     other = openface(20)
     rows = table(one).splitlines() + table(other | {"face_id": [3] * 20}).splitlines()[1:]
@@ -120,7 +123,7 @@ def test_several_faces(tmp_path):
 
 
 def test_pyfeat_1(tmp_path):
-    """Frames are the times; the head's angles are degrees, + up, right, left shoulder."""
+    """Frame numbers are the times; head angles are degrees, + up, right, left shoulder."""
     take = take_in(tmp_path, pyfeat())
     assert take.kind == "py-feat 1"
     assert not take.unknown
@@ -133,7 +136,7 @@ def test_pyfeat_1(tmp_path):
 
 
 def test_pyfeat_2(tmp_path):
-    """Every other frame; radians; shapes count, and only those units that shapes lack."""
+    """Rows are every other frame, angles radians; units count only where shapes are missing."""
     take = take_in(tmp_path, pyfeat_2())
     assert take.kind == "py-feat 2"
     assert not take.unknown
@@ -150,7 +153,7 @@ def test_pyfeat_2(tmp_path):
 
 
 def test_pyfeat_names_persons(tmp_path):
-    """Its faces are called Person_0 and so on, and their rows alternate."""
+    """Faces named Person_0 and so on, in alternating rows, are separated."""
     columns = pyfeat_2(20)
     columns["Identity"] = ["Person_0", "Person_1"] * 10
     columns["frame"] = np.repeat(np.arange(10), 2).tolist()
@@ -159,7 +162,7 @@ def test_pyfeat_names_persons(tmp_path):
     assert take.channels["jawOpen"] == approx(np.linspace(0.0, 0.5, 20)[1::2], abs=1e-6)
 
 
-# Named columns
+# Named columns.
 
 
 @pytest.mark.parametrize(
@@ -169,7 +172,7 @@ def test_pyfeat_names_persons(tmp_path):
      " mouthSmileLeft ", "Mouth Smile Left"],
 )  # fmt: skip
 def test_spellings_of_a_shape(spelled, tmp_path):
-    """Capitals, underscores, blanks, and text before the last dot do not count."""
+    """Capitals, underscores, blanks, and text before the last dot make no difference."""
     columns = {"time": np.arange(5) / 30.0, spelled: np.arange(5) / 10.0}
     take = take_in(tmp_path, columns)
     assert take.channels.keys() == {"mouthSmileLeft"}
@@ -187,7 +190,7 @@ def test_spellings_of_a_shape(spelled, tmp_path):
     ],
 )
 def test_spellings_of_units_and_visemes(spelled, meant, tmp_path):
-    """`_R` is the right side if there is a left one."""
+    """`_R` means the right side if there is a left side."""
     columns = {name: np.full(3, 0.1 + place / 10.0) for place, name in enumerate(spelled)}
     take = take_in(tmp_path, columns)
     assert {name: values[0] for name, values in take.channels.items()} == approx(
@@ -197,7 +200,7 @@ def test_spellings_of_units_and_visemes(spelled, meant, tmp_path):
 
 @pytest.mark.parametrize("largest", [1.0, 5.0])
 def test_units_of_action_units(largest, tmp_path):
-    """0 to 1, and 0 to 5 (A to E)."""
+    """Action units may be from 0 to 1, or from 0 to 5 (A to E)."""
     columns = {"t": np.arange(11) / 30.0, "AU12": np.linspace(0.0, largest, 11)}
     take = take_in(tmp_path, columns)
     assert take.channels["AU12"] == approx(np.linspace(0.0, 1.0, 11))
@@ -205,7 +208,7 @@ def test_units_of_action_units(largest, tmp_path):
 
 
 def test_a_table_of_something_else(tmp_path):
-    """A table of unknown columns gives another message than no table."""
+    """A table of unknown columns has another message than a file without a table."""
     path = written(tmp_path / "take.csv", {"date": ["x"] * 3, "price": [1.0] * 3})
     with pytest.raises(UserError, match=r"no column is known \('date', 'price'.*Live Link Face"):
         read_take(path)

@@ -1,4 +1,4 @@
-"""Units of values, flags of rows without a face, heads beside shapes: in tables and in JSON."""
+"""Units of values, flags of rows without a face, head angles: in tables and in JSON."""
 
 import json
 
@@ -22,7 +22,7 @@ FRAMES = [
 
 
 def of_table(folder, columns):
-    """The take of a table with these columns behind times."""
+    """The take of a table with these columns beside times."""
     return read_take(written(folder / "take.csv", {"timestamp": TIMES, **columns}))
 
 
@@ -62,7 +62,7 @@ UNITS = {
 
 @pytest.mark.parametrize("kind", UNITS)
 def test_units(kind, tmp_path):
-    """A channel's peak is its share of the greatest value; a guess is reported."""
+    """Values are shares of the unit's maximum; a guessed unit is reported."""
     columns, channel, peak, note = UNITS[kind]
     take = of_table(tmp_path, columns)
     assert take.channels.keys() == {channel}
@@ -72,7 +72,7 @@ def test_units(kind, tmp_path):
 
 
 def test_stray_values_are_no_percent(tmp_path):
-    """A few wrong values leave the others unchanged."""
+    """A few stray values do not turn the others into per cent."""
     jaw = RISE.copy()
     jaw[[20, 70]] = 80.0
     take = of_table(tmp_path, {"jawOpen": jaw})
@@ -81,7 +81,7 @@ def test_stray_values_are_no_percent(tmp_path):
 
 
 def lost_columns(value):
-    """A face whose brows and nose rest at 0.4, and `value` in all shapes of rows 60 to 99."""
+    """Columns of a face with brows and nose at 0.4 at rest, and `value` in rows 60 to 99."""
     lost = (np.arange(COUNT) >= 60) & (np.arange(COUNT) < 100)
     shapes = {name: np.where(lost, value, 0.4 + 0.02 * RISE) for name in RESTING}
     return {"jawOpen": np.where(lost, value, 0.2 + 0.5 * RISE), **shapes}, lost
@@ -103,7 +103,10 @@ def lost_columns(value):
 )
 @pytest.mark.parametrize("is_json", [False, True])
 def test_rows_without_a_face(flag, seen, unseen, is_json, tmp_path):
-    """Zeros are not rest: the pose is held, the neutral face is known, nothing is calibrated."""
+    """Rows of zeros without a face hold the pose, and are not taken as the neutral face.
+
+    The take is not recognised as calibrated.
+    """
     columns, lost = lost_columns(0.0)
     if flag:
         columns[flag] = [unseen if each else seen for each in lost]
@@ -125,14 +128,14 @@ def test_rows_without_a_face(flag, seen, unseen, is_json, tmp_path):
 
 @pytest.mark.parametrize("flag", ["faceDetected", "BlendShapeCount"])
 def test_a_frozen_face(flag, tmp_path):
-    """Values that a tracker repeats without a face do not count."""
+    """Values that a tracker repeats without a face are ignored."""
     columns, lost = lost_columns(0.9)
     take = of_table(tmp_path, columns | {flag: np.where(lost, 0, 52).tolist()})
     assert take.channels["browDownLeft"].max() < 0.5
 
 
 def test_zeros_of_a_calibrated_face_are_rest(tmp_path):
-    """A face that often is at 0 is really at rest there."""
+    """If a face is often at 0, zeros are its rest."""
     shapes = {name: np.maximum(RISE - 0.5, 0.0) for name in RESTING}
     take = of_table(tmp_path, shapes)
     assert take.is_calibrated
@@ -140,11 +143,11 @@ def test_zeros_of_a_calibrated_face_are_rest(tmp_path):
 
 
 YAW = 20.0 * np.sin(TIMES + 0.1)
-TURNS = Rotation.from_euler("y", YAW[:, None], degrees=True)  # y is up, so that + is to the left
+TURNS = Rotation.from_euler("y", YAW[:, None], degrees=True)  # y is up: + is to the left
 
 
 def heads():
-    """Layout -> values of each frame, their key, and the sign of yaw in it."""
+    """For each layout: values of the frames, their key, and the sign of yaw."""
     quaternions = TURNS.as_quat()
     return {
         "degrees": ([{"yaw": y, "pitch": 1.0, "roll": 0.5} for y in YAW], "headRotation", -1.0),
@@ -170,7 +173,7 @@ def test_heads_beside_shapes(layout, tmp_path):
 
 @pytest.mark.parametrize("value", [[1.0, 20.0, 3.0], {"x": 1.0, "y": 20.0, "z": 3.0}, "left"])
 def test_heads_that_are_not_clear(value, tmp_path):
-    """Numbers without names are left out, and this is reported."""
+    """Head angles without names are left out, and this is reported."""
     take = of_json(tmp_path, [{**frame, "headRotation": value} for frame in FRAMES])
     assert "head_yaw" not in take.channels
     assert take.unknown == ("headrotation",)
@@ -222,7 +225,7 @@ def test_what_json_says_besides(tmp_path):
 
 @pytest.mark.parametrize("form", ["{:.1f}%", "{:.1f} %"])
 def test_percent_signs_in_cells(form, tmp_path):
-    """A half is a half, whichever column has the sign, also for a face that moves little."""
+    """Cells with a per cent sign are divided by 100 in any column, also for small values."""
     values = np.linspace(0.0, 0.02, 30).round(3)
     rows = [[form.format(100.0 * value), form.format(20.0 + 75.0 * (value > 0.01)), "0.5"]
             for value in values]  # fmt: skip

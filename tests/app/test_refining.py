@@ -1,4 +1,4 @@
-"""The options of refiners: read from their declarations, for any version of numpy."""
+"""Options of refiners, read from their declarations, with any version of numpy."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from risorius.app.scenes import PlaneScene
 
 @pytest.mark.usefixtures("own_refiners")
 def test_only_switches_numbers_and_words_are_options():
-    """An array that may also be a bool, as numpy 2.2 declares them, is no switch."""
+    """An array that may also be a bool, as numpy 2.2 declares arrays, is no switch."""
 
     def declared(
         faces: npt.ArrayLike,
@@ -38,7 +38,7 @@ def test_only_switches_numbers_and_words_are_options():
 
 
 def test_what_may_be_left_open_is_a_choice():
-    """Words stand for values; another value, or a number in place of a switch, is refused."""
+    """Texts stand for values; another value, or a number for a switch, is refused."""
     options = options_of("kahler", "normal")
     choices = {name: dict(each.choices) for name, each in options.items() if each.choices}
     assert choices == {
@@ -58,11 +58,14 @@ def test_what_may_be_left_open_is_a_choice():
 
 @pytest.mark.parametrize("criterion", ["rest", "silhouette", "displacement+rest", "normal"])
 def test_levels_and_thresholds_of_criteria(criterion):
-    """Every criterion has its own, by its name; a lower level limits the splits of each edge."""
+    """Each criterion has its own levels and thresholds, addressed by its name.
+
+    Fewer levels limit how often an edge is split.
+    """
     plane = PlaneScene()
     plane.pose({"amplitude": 1.0, "phase": 0.3})
     plane.step(0.5)
-    view = refine.View([1e6, 1e5, 0.0])  # along the plane: all of it is outline
+    view = refine.View([1e6, 1e5, 0.0])  # along the plane: all edges are at the outline
     options = options_of("kahler", criterion)
     wholes = {"scheme": "cubic", "criterion": criterion}
     for part in criterion.split("+"):
@@ -85,7 +88,7 @@ def test_levels_and_thresholds_of_criteria(criterion):
 
 
 def test_options_of_criteria_that_do_not_fit():
-    """An option for an unused or unknown criterion, and a value beyond its range, are refused."""
+    """Options of an unused or unknown criterion, and values out of range, are refused."""
     plane = PlaneScene()
     for options, wanted in (
         ({"rest.levels": 1}, "unknown option rest.levels; it takes .*normal.levels"),

@@ -1,4 +1,4 @@
-"""Avatars move like the simulation: named shapes, on the vertices of the file."""
+"""Avatars move like the simulation, by named shapes on the vertices of the file."""
 
 import json
 import re
@@ -39,7 +39,7 @@ SEEN = 0.02  # [mm], an invisible distance
 
 @pytest.fixture(scope="module")
 def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The built-in head's avatar."""
+    """The avatar of the built-in head."""
     path = tmp_path_factory.mktemp("rig") / "head.glb"
     output = succeeded("rig", "-o", path)
     assert "52 shapes" in output
@@ -49,7 +49,10 @@ def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_shapes_are_where_the_simulation_rests(built_in, face):
-    """ARKit's 52 in Apple's order; each moves the skin as the control at 1 does."""
+    """The avatar has ARKit's 52 shapes in Apple's order.
+
+    Each moves the skin like its control at 1.
+    """
     player = Player(built_in)
     shapes = player.shapes("skin")
     assert tuple(shapes) == ARKIT
@@ -61,7 +64,7 @@ def test_shapes_are_where_the_simulation_rests(built_in, face):
 
 
 def test_an_avatar_of_ours_needs_no_landmarks(built_in, face):
-    """It is known by its vertices, although seams of the texture double some."""
+    """The project's own avatar is recognised by its vertices, although seams double some."""
     mesh = read_mesh(built_in)
     known = recognised(mesh)
     assert known.name == "the built-in head"
@@ -70,7 +73,7 @@ def test_an_avatar_of_ours_needs_no_landmarks(built_in, face):
 
 
 def test_shares_of_bones_stay_within_their_limits(face):
-    """A share that rounding left above 1 becomes 1: validators refuse values below 0."""
+    """A bone weight rounded above 1 becomes 1; otherwise another would be below 0, an error."""
     surface = MovingSurface("skin", face.rest_positions, face.faces)
     none = np.zeros((0, *surface.rest.shape))
     normals = vertex_normals(surface.rest, surface.faces)
@@ -85,7 +88,7 @@ def test_shares_of_bones_stay_within_their_limits(face):
 
 
 def test_mouth_close_shuts_an_open_jaw(built_in, face):
-    """It is added to jawOpen, as defined by ARKit."""
+    """mouthClose is added to jawOpen, as ARKit defines it."""
     shapes = Player(built_in).shapes("skin")
     shut = (shapes["jawOpen"] + shapes["mouthClose"]) / METRES + face.rest_positions
     upper, lower = face.landmarks[[62, 66]]
@@ -95,7 +98,7 @@ def test_mouth_close_shuts_an_open_jaw(built_in, face):
 
 
 def test_parts_have_the_shapes_that_move_them(built_in):
-    """Lower teeth and tongue go with the jaw by its shape; hair has none; eyes are nodes."""
+    """Lower teeth and tongue have the shape of the jaw, hair has none, eyes are nodes."""
     player = Player(built_in)
     assert tuple(player.shapes("teeth_lower")) == ARKIT
     lowered = player.shapes("teeth_lower")["jawOpen"][:, 1]
@@ -106,24 +109,24 @@ def test_parts_have_the_shapes_that_move_them(built_in):
     nodes = {node["name"]: node for node in document(built_in)["nodes"]}
     turns = nodes["eye_left"]["extras"]["rotations"]
     assert set(turns) == {f"eyeLook{way}Left" for way in ("Up", "Down", "In", "Out")}
-    assert turns["eyeLookDownLeft"][0] > 0.2  # forward over the x axis
+    assert turns["eyeLookDownLeft"][0] > 0.2  # forward about the x axis
 
 
 @pytest.mark.blender
 def test_blender_has_the_shapes_by_name(built_in, tmp_path):
-    """Shape keys with ARKit's names each move the vertices as in the file."""
+    """In Blender, each shape key with an ARKit name moves the vertices as in the file."""
     found = shape_keys_in_blender(built_in, tmp_path)
     shapes = Player(built_in).shapes("skin")
     with np.load(found) as keys:
         assert set(shapes) <= {name.partition("/")[2] for name in keys}
         for name, shape in shapes.items():
-            # Blender's axes: z up.
+            # Blender's axes have z up.
             x, y, z = shape.T
             assert np.abs(keys[f"skin/{name}"] - np.column_stack([x, -z, y])).max() < 1e-5, name
 
 
 def test_most_of_a_shape_takes_no_room(built_in):
-    """Vertices that stand still are not stored."""
+    """Shapes store moved vertices only."""
     found = document(built_in)
     targets = [
         found["accessors"][target["POSITION"]]
@@ -139,7 +142,7 @@ def test_most_of_a_shape_takes_no_room(built_in):
 
 @dataclass(frozen=True)
 class Whole:
-    """A head with parts, its avatar and the printed report."""
+    """A head with parts, its avatar, and the printed report."""
 
     mesh: Path
     places: dict[str, slice]
@@ -149,7 +152,7 @@ class Whole:
 
 @pytest.fixture(scope="module")
 def whole(scene: FaceScene, tmp_path_factory: pytest.TempPathFactory) -> Whole:
-    """The avatar of an OBJ."""
+    """The avatar of an OBJ file."""
     folder = tmp_path_factory.mktemp("whole")
     mesh, landmarks, places = write_whole_head(folder, scene)
     output = succeeded("rig", mesh, "--landmarks", landmarks, "-o", folder / "whole.glb")
@@ -157,7 +160,7 @@ def whole(scene: FaceScene, tmp_path_factory: pytest.TempPathFactory) -> Whole:
 
 
 def test_a_file_keeps_its_vertices_in_their_order(whole):
-    """All of them and all triangles are there, with texture coordinates, material and picture."""
+    """All vertices and triangles are in order, with texture coordinates, material and picture."""
     mesh = read_mesh(whole.mesh)
     player = Player(whole.avatar)
     points = player.attribute("head", "POSITION")
@@ -177,7 +180,10 @@ def test_a_file_keeps_its_vertices_in_their_order(whole):
 
 
 def test_each_piece_of_a_file_moves_as_what_it_is(whole, face):
-    """Teeth move with the jaw, lashes with the lids, the tongue out; hair and body stand still."""
+    """Teeth move with the jaw, lashes with the lids, the tongue comes out.
+
+    The rest stands still.
+    """
     shapes = {
         name: 100.0 * each / 10.0 for name, each in Player(whole.avatar).shapes("head").items()
     }
@@ -196,11 +202,11 @@ def test_each_piece_of_a_file_moves_as_what_it_is(whole, face):
     assert "body or clothes, still" in whole.lines
     skin = rest_in(face, {"jawOpen": 1.0}).skin - face.rest_positions
     off = np.abs(own["skin"]["jawOpen"] - skin)
-    assert np.median(off) < 0.5  # its organs were fitted again
+    assert np.median(off) < 0.5  # the parts were fitted again
 
 
 def test_eyeballs_of_a_file_become_nodes(whole, face):
-    """Each is at the centre of its ball; the file's unit becomes metres at the root."""
+    """Each eyeball is a node at the centre of its ball; the root scales the unit to metres."""
     nodes = {node["name"]: node for node in document(whole.avatar)["nodes"]}
     for eye in face.head.eyes:
         centre = 10.0 * np.array(nodes[f"eye_{eye.name}"]["translation"])
@@ -210,14 +216,14 @@ def test_eyeballs_of_a_file_become_nodes(whole, face):
 
 
 def test_the_file_is_read_by_trimesh(whole):
-    """Another reader finds the head, at the same size."""
+    """trimesh reads the avatar at the same size."""
     scene = trimesh.load_scene(whole.avatar, process=False)
     assert 0.3 < scene.extents[1] < 0.8
 
 
 @pytest.mark.slow
 def test_an_option_corrects_what_a_piece_is(whole, tmp_path):
-    """With another option, eyes turn by the shapes."""
+    """With an option that corrects the role of pieces, eyes turn by the shapes."""
     landmarks = whole.mesh.with_suffix(".json")
     path = tmp_path / "other.glb"
     given = ("--piece", "tongue=hair", "--eyes", "targets", "--shapes", "expressions,arkit")
@@ -229,7 +235,10 @@ def test_an_option_corrects_what_a_piece_is(whole, tmp_path):
 
 
 def test_correctives_make_sums_come_true(tmp_path, face):
-    """They are shapes of pairs, times the product of both weights; the file says so."""
+    """Correctives are shapes of pairs, weighted by the product of both weights.
+
+    The file stores this rule, and the sum equals both shapes simulated together.
+    """
     path = tmp_path / "head.glb"
     succeeded("rig", "-o", path, "--correctives", 2, "--quiet")
     found = document(path)
@@ -247,7 +256,7 @@ def test_correctives_make_sums_come_true(tmp_path, face):
 
 
 def test_what_is_printed_of_sums_has_the_correctives(face):
-    """The table of pairs describes the file: a pair with a shape of its own has no error."""
+    """In the printed table of pairs, a pair with a corrective has no error."""
     pair = ("jawOpen", "mouthPucker")
     rest = rest_in(face, {})
     poses = {name: (rest_in(face, {name: 1.0}), rest) for name in pair}
@@ -259,7 +268,7 @@ def test_what_is_printed_of_sums_has_the_correctives(face):
 
 @pytest.mark.slow
 def test_a_take_shows_how_far_sums_are_off(tmp_path, face):
-    """A take of one shape has no error; if two are at 1, the line has the error of the pair."""
+    """A take of one shape has no error; with two shapes at 1 the line has the pair's error."""
     take = tmp_path / "take.toml"
     still = 'title = "Still"\nduration = 1.0\n[[pose]]\ntime = 0.0\n'
     off = {}
@@ -280,7 +289,7 @@ def test_a_take_shows_how_far_sums_are_off(tmp_path, face):
     assert "correctives: jawOpen_mouthPucker" in result.output
     assert "jawOpen + mouthPucker: at most 0.0 mm" in result.output
     (first, *_) = document(path)["meshes"][0]["extras"]["correctives"]
-    assert first["product"] == ["jawOpen", "mouthPucker"]  # chosen by the take, which plays them
+    assert first["product"] == ["jawOpen", "mouthPucker"]  # selected by the take
     line = next(line for line in result.output.splitlines() if "Still" in line)
     assert float(re.search(r"at most (\d+\.\d) mm", line)[1]) < 0.3 * both
     words = ("--shapes", "units", "--take", take)
@@ -289,7 +298,7 @@ def test_a_take_shows_how_far_sums_are_off(tmp_path, face):
 
 @pytest.mark.slow
 def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
-    """A mesh with too many triangles for simulation has shapes on all of its own vertices."""
+    """A mesh with too many triangles to simulate has shapes on all its own vertices."""
     monkeypatch.setattr(simplifying, "MOST_SIMULATED", 5000)
     monkeypatch.setattr(simplifying, "SIMPLIFIED", 4000)
     fine = stranger(1)
@@ -311,7 +320,7 @@ def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
 
 @pytest.fixture(scope="module")
 def copied(scene, tmp_path_factory):
-    """A GLB with its own bones, shapes and motion, marked with extras; and its avatar."""
+    """A GLB with bones, shapes, motion and extras, and its avatar."""
     folder = tmp_path_factory.mktemp("glb")
     own = folder / "own.glb"
     words = ("--set", "joy=0.5", "--fps", 5, "--quiet")
@@ -335,7 +344,7 @@ def copied(scene, tmp_path_factory):
 
 
 def test_a_glb_comes_back_as_it_was(copied):
-    """Nodes, skins, materials, extras, extensions and all data are there; shapes are appended."""
+    """Nodes, skins, materials, extras, extensions and data are kept; shapes are appended."""
     own, path = copied
     before = document(own)
     after = document(path)
@@ -354,21 +363,21 @@ def test_a_glb_comes_back_as_it_was(copied):
 
 
 def test_shapes_of_a_glb_are_those_of_the_simulation(copied, face):
-    """This holds under bones, and for vertices that the file doubles along seams."""
+    """Shapes equal the simulation's, also under bones and for vertices doubled at seams."""
     player = Player(copied[1])
     shapes = player.shapes("skin")
-    # The file has shapes of these names, so others follow ours.
+    # The file has shapes with the same names, so these names differ.
     assert tuple(shapes)[-52:] == tuple(f"{name}.risorius" for name in ARKIT)
     moved = rest_in(face, {"jawOpen": 1.0}).skin - face.rest_positions
     opened = shapes["jawOpen.risorius"]
     assert np.median(np.abs(opened / METRES - moved)) < 0.5
     assert opened[:, 1].min() < -0.02
-    # Lower teeth hang on a node of the mandible, which stands still.
+    # Lower teeth are children of a mandible node, which stands still.
     assert player.shapes("teeth_lower")["jawOpen"][:, 1].max() < -0.005
 
 
 def test_motion_of_a_glb_goes_on(copied):
-    """Its weights are unchanged; those of the new shapes are 0."""
+    """The file's animation is unchanged, with weights of 0 for the added shapes."""
     own, path = copied
     before = Player(own)
     after = Player(path)
@@ -378,7 +387,7 @@ def test_motion_of_a_glb_goes_on(copied):
 
 
 def test_a_folder_of_objs_keeps_the_lines_of_the_file(whole, tmp_path):
-    """One for each shape, the same vertices in order; only lines of moved vertices change."""
+    """Each shape has an OBJ with the same vertices; only lines of moved vertices differ."""
     landmarks = whole.mesh.with_suffix(".json")
     folder = tmp_path / "shapes"
     output = succeeded("rig", whole.mesh, "--landmarks", landmarks, "--as", "obj", "-o", folder)
@@ -402,7 +411,7 @@ def test_a_folder_of_objs_keeps_the_lines_of_the_file(whole, tmp_path):
 
 
 def test_wrong_options_are_refused(whole, tmp_path):
-    """In one line with the allowed values."""
+    """A wrong option is refused in one line with the allowed values."""
     landmarks = whole.mesh.with_suffix(".json")
     unknown, _ = stranger().write(whole.mesh.parent)
     head = (whole.mesh, "--landmarks", landmarks)
@@ -419,7 +428,7 @@ def test_wrong_options_are_refused(whole, tmp_path):
 
 
 def test_a_ball_is_found_where_it_is():
-    """Half of it is enough; a part that is not a ball does not change the guess."""
+    """Half a ball is enough to find it; other parts do not change the result."""
     points = 12.0 * ball(3).vertices + (30.0, 1.0, 70.0)
     front = points[points[:, 2] > 68.0]
     centre, radius = sphere_of(front, np.array([31.0, 0.0, 72.0]), 11.0)
@@ -431,7 +440,10 @@ def test_a_ball_is_found_where_it_is():
 
 @pytest.mark.parametrize("change", ["moved", "fewer"])
 def test_a_file_that_changed_since_it_was_read_is_refused(tmp_path, change):
-    """The window makes an avatar long after reading the head; vertex numbers may differ."""
+    """A file changed after it was read is refused, because vertex numbers may differ.
+
+    The window makes avatars long after reading.
+    """
     brought = stranger()
     mesh, marks = brought.write(tmp_path)
     head = fit_head(mesh, marks)

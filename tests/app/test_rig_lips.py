@@ -1,4 +1,4 @@
-"""A head with sealed lips: cut along its landmarks, and written with a few vertices more."""
+"""A head with sealed lips: cut along its landmarks, and written with some added vertices."""
 
 import json
 from dataclasses import replace
@@ -23,13 +23,16 @@ LOWER = 66
 
 @pytest.fixture(scope="module")
 def shut() -> Stranger:
-    """The built-in head, sealed [mm]."""
+    """The built-in head with sealed lips [mm]."""
     return sealed()
 
 
 @pytest.mark.slow
 def test_an_avatar_keeps_what_fills_its_mouth_and_eyes(tmp_path):
-    """All vertices and triangles stay in the file's order; the filling moves with the lips."""
+    """An avatar keeps the triangles that fill mouth and eyes, in the file's order.
+
+    The filling moves with the lips.
+    """
     mask = masked()
     mesh, marks = mask.write(tmp_path)
     path = tmp_path / "avatar.glb"
@@ -43,7 +46,7 @@ def test_an_avatar_keeps_what_fills_its_mouth_and_eyes(tmp_path):
 
 
 def write_glb(shut, folder):
-    """The sealed head as a GLB; its halves have separate vertices on the seam."""
+    """Write the sealed head as a GLB whose halves have separate vertices at the seam."""
     vertices = shut.mesh.vertices
     faces = shut.mesh.faces
     is_left = vertices[faces, 0].mean(axis=1) > 0.0
@@ -65,7 +68,10 @@ def write_glb(shut, folder):
 
 
 def test_sealed_lips_are_cut_and_part(shut, tmp_path):
-    """A line has the number of doubled vertices; an open jaw parts them, and the corners hold."""
+    """A line has the number of doubled vertices; with an open jaw the cut lips part.
+
+    The corners stay together.
+    """
     head = fit_head(*shut.write(tmp_path))
     (note,) = head.notes
     added = len(head.vertices) - len(shut.mesh.vertices)
@@ -84,7 +90,10 @@ def test_sealed_lips_are_cut_and_part(shut, tmp_path):
 
 
 def test_a_cut_runs_along_edges_of_the_mesh(shut):
-    """This holds in any unit; both lips keep all triangles, and no other vertex is doubled."""
+    """The cut follows edges in any unit; both lips keep all triangles.
+
+    No other vertex is doubled.
+    """
     mesh = shut.mesh
     tiny = replace(mesh, vertices=METRES * mesh.vertices)
     cut = lip_cut(tiny, shut.landmarks, tiny.vertices[shut.landmarks])
@@ -100,7 +109,7 @@ def test_a_cut_runs_along_edges_of_the_mesh(shut):
 
 
 def test_skin_across_an_open_mouth_is_not_cut(shut):
-    """Lips that are apart are not sealed; the owner must remove the filling."""
+    """Lips that are apart are not sealed: the user must remove the triangles between them."""
     places = shut.mesh.vertices[shut.landmarks]
     places[61:64, 1] += 5.0
     places[65:68, 1] -= 5.0
@@ -108,7 +117,7 @@ def test_skin_across_an_open_mouth_is_not_cut(shut):
 
 
 def test_a_fault_of_a_cut_head_names_the_cut(shut, tmp_path):
-    """Skin over an eye is found after the lips are cut: the message names both."""
+    """Skin over an eye, found after the lips were cut, is reported together with the cut."""
     landmarks = shut.landmarks
     covered = Stranger(closed(shut.mesh, landmarks[42:48]), landmarks)
     with pytest.raises(AssetError, match=r"lips were sealed: .*; but the left eye has no opening"):
@@ -116,12 +125,15 @@ def test_a_fault_of_a_cut_head_names_the_cut(shut, tmp_path):
 
 
 def test_a_cut_takes_the_vertices_of_the_mesh_that_is_cut(shut, tmp_path):
-    """Not those of a try before it, where vertices of a seam across the lips are apart."""
+    """The cut uses vertices of the mesh it cuts, not those of an earlier attempt.
+
+    In the earlier attempt vertices of a seam across the lips were separate.
+    """
     path, marks, doubled, _ = write_glb(shut, tmp_path)
     numbers = shut.landmarks.copy()
     other = np.flatnonzero((doubled == doubled[numbers[UPPER]]).all(axis=1))[-1]
     assert other != numbers[UPPER]
-    thin_lip = 51  # a landmark of the upper lip's outer border, on a lip without height
+    thin_lip = 51  # outer border of an upper lip without height
     numbers[thin_lip] = other
     marks.write_text(json.dumps({"landmarks": numbers.tolist()}))
     head = fit_head(path, marks)
@@ -132,7 +144,7 @@ def test_a_cut_takes_the_vertices_of_the_mesh_that_is_cut(shut, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["obj", "glb"])
 def test_an_avatar_has_the_files_vertices_and_few_more(shut, tmp_path, kind):
-    """The file's vertices come first, with their attributes; jawOpen parts the doubled ones."""
+    """The file's vertices come first with their attributes, and jawOpen parts the doubled ones."""
     if kind == "glb":
         mesh, marks, own, uv = write_glb(shut, tmp_path)
         unit = METRES
@@ -155,7 +167,7 @@ def test_an_avatar_has_the_files_vertices_and_few_more(shut, tmp_path, kind):
         if kind == "glb":
             coordinates = player.attribute("head", "TEXCOORD_0")
             assert np.abs(uv[same] - coordinates[place]).sum(axis=1).min() < 1e-6
-    if kind == "glb":  # a scalar, as Blender writes users' attributes
+    if kind == "glb":  # a scalar, as in Blender's user attributes
         mask = player.attribute("head", "_MASK").ravel()
         assert len(mask) == len(points)
         assert np.abs(mask[: len(own)] - np.linspace(0.0, 1.0, len(own))).max() < 1e-6
@@ -167,9 +179,9 @@ def test_an_avatar_has_the_files_vertices_and_few_more(shut, tmp_path, kind):
 
 
 def write_polygons(shut, mesh):
-    """The sealed head as an artist has it: quads where two triangles make one, and groups.
+    """Write the sealed head as artists do: quads where two triangles make one, and groups.
 
-    Triangles behind the ears and the last vertex are another group, whose numbers count back.
+    Triangles behind the ears and the last vertex form another group with negative numbers.
     """
     faces = shut.mesh.faces.tolist()
     vertices = shut.mesh.vertices
@@ -206,7 +218,7 @@ def write_polygons(shut, mesh):
 
 
 def polygons_of(path):
-    """The corners of the polygons of an OBJ with absolute numbers."""
+    """The corners of an OBJ's polygons as absolute numbers."""
     lines = path.read_text().splitlines()
     rows = [line.split()[1:] for line in lines if line.startswith("f ")]
     return [[int(corner.split("/")[0]) - 1 for corner in row] for row in rows]
@@ -214,7 +226,7 @@ def polygons_of(path):
 
 @pytest.mark.slow
 def test_a_folder_of_objs_has_the_cut(shut, tmp_path):
-    """All files have the same vertices, with the file's first, and its polygons and groups."""
+    """All OBJ files have the same vertices, polygons and groups, with the file's vertices first."""
     mesh, marks = shut.write(tmp_path)
     quads = write_polygons(shut, mesh)
     folder = tmp_path / "shapes"
@@ -229,7 +241,7 @@ def test_a_folder_of_objs_has_the_cut(shut, tmp_path):
     expected = {tuple(sorted(corners)) for corners in cut.faces.tolist()}
     assert {tuple(sorted(corners)) for corners in neutral.faces.tolist()} == expected
     kept = [corners for corners in polygons_of(folder / "neutral.obj") if len(corners) == 4]
-    assert len(quads) - 20 < len(kept) < len(quads)  # some are crossed
+    assert len(quads) - 20 < len(kept) < len(quads)  # the cut crosses some
     lines = (folder / "neutral.obj").read_text().splitlines()
     assert [line for line in lines if line[:2] not in ("v ", "f ")] == [
         line for line in mesh.read_text().splitlines() if line[:2] not in ("v ", "f ")

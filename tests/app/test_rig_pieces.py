@@ -18,22 +18,22 @@ Faces = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Maker:
-    """Makes pieces about the built-in head [mm]: places and triangles."""
+    """A maker of pieces for the built-in head [mm]: vertices and triangles."""
 
     scene: FaceScene
 
     def landmark(self, number: int) -> Points:
-        """Place of a landmark."""
+        """The place of a landmark."""
         place: Points = self.scene.rest_positions[self.scene.landmarks[number]]
         return place
 
     def part(self, name: str) -> tuple[Points, Faces]:
-        """A part of the head itself."""
+        """A part of the built-in head."""
         part = next(each for each in self.scene.parts if each.name == name)
         return np.array(part.vertices, np.float64), np.array(part.faces, np.int64)
 
     def shell(self, chosen: npt.NDArray[np.bool_], off: float) -> tuple[Points, Faces]:
-        """A piece at this distance outside of chosen skin."""
+        """A piece at this distance outside selected skin."""
         points = self.scene.rest_positions
         faces = self.scene.faces
         used, number = np.unique(faces[chosen[faces].all(axis=1)], return_inverse=True)
@@ -41,7 +41,7 @@ class Maker:
         return points[used] + off * normals[used], number.reshape(-1, 3)
 
     def ball(self, side: str, share: float, forward: float) -> tuple[Points, Faces]:
-        """A ball in an eye: `share` of the eye's radius, moved forward by `forward` of it."""
+        """A ball in an eye with this share of its radius, moved forward by shares of the radius."""
         eye = next(each for each in self.scene.face.head.eyes if each.name == side)
         ball = trimesh.creation.icosphere(subdivisions=2, radius=share * eye.radius)
         centre = eye.centre + np.array([0.0, 0.0, forward * eye.radius])
@@ -60,7 +60,7 @@ def beard(maker: Maker) -> tuple[Points, Faces]:
 
 
 def sideburns(maker: Maker) -> tuple[Points, Faces]:
-    """A full beard: from the ears to the chin, without the lips."""
+    """A full beard from the ears to the chin, without the lips."""
     points = maker.scene.rest_positions
     is_lip = (np.abs(points[:, 0]) < 27.0) & (points[:, 1] < maker.landmark(33)[1] - 4.0)
     is_lip &= points[:, 1] > maker.landmark(57)[1] - 3.0
@@ -69,7 +69,7 @@ def sideburns(maker: Maker) -> tuple[Points, Faces]:
 
 
 def bow_tie(maker: Maker) -> tuple[Points, Faces]:
-    """A knot that touches the throat, below the chin and in front of the jaw."""
+    """A knot that touches the throat below the chin, in front of the jaw."""
     points = maker.scene.rest_positions
     chin = maker.landmark(8)
     throat = points[(points[:, 1] < chin[1] - 40.0) & (np.abs(points[:, 0]) < 15.0)]
@@ -80,7 +80,7 @@ def bow_tie(maker: Maker) -> tuple[Points, Faces]:
 
 
 def glasses(maker: Maker) -> tuple[Points, Faces]:
-    """Two rims and a bridge before the eyes; the bridge touches the nose."""
+    """Two rims and a bridge in front of the eyes; the bridge touches the nose."""
     ring = trimesh.creation.torus(22.0, 1.2, 24, 6)
     rims = []
     for side in ("left", "right"):
@@ -103,7 +103,7 @@ def deep_tongue(maker: Maker) -> tuple[Points, Faces]:
 
 
 def incisor(maker: Maker) -> tuple[Points, Faces]:
-    """A separate upper tooth, with a long root."""
+    """An upper tooth with a long root, as a piece of its own."""
     points, _ = maker.part("teeth_upper")
     front = points[points[:, 2].argmax()]
     tooth = trimesh.creation.box((8.0, 30.0, 6.0)).subdivide().subdivide()
@@ -140,13 +140,13 @@ def pieces_with(scene: FaceScene, own: tuple[Points, Faces], name: str = "") -> 
 
 @pytest.mark.parametrize("case", CASES)
 def test_a_piece_is_taken_for_what_it_is(face, case):
-    """Eyes in layers, teeth with roots, a tongue into the throat, a beard, glasses."""
+    """Roles are found for layered eyes, rooted teeth, a deep tongue, a beard and glasses."""
     make, role = CASES[case]
     assert {piece.role for piece in pieces_with(face, make(Maker(face)))} == {role}
 
 
 def test_lines_have_the_names_of_the_file(face):
-    """A piece, a few pieces and many with one role have the names of the file's objects."""
+    """Lines have the file's object names, for one piece, a few, or many with one role."""
     (piece,) = pieces_with(face, Maker(face).part("tongue"), "Tongue")
     (line,) = described([piece])
     assert line.startswith("piece 1 (Tongue): ") and line.endswith("tongue, bends")
@@ -157,7 +157,7 @@ def test_lines_have_the_names_of_the_file(face):
 
 
 def test_an_option_names_pieces_by_number_or_name():
-    """It means all of a name; an unknown name or number is refused in one line."""
+    """A name selects all pieces with it; an unknown name or number is refused in one line."""
     middle = np.zeros(3)
     pieces = [FilePiece(n, np.arange(4), "hair", middle, name) for n, name in enumerate("abba", 1)]
     roles = [piece.role for piece in corrected(pieces, ["a=on_skin", "2-3=body", "3=tongue"])]

@@ -1,4 +1,4 @@
-"""Scenes: values are kept within limits, the plane waves, the face follows controls."""
+"""Scenes: values stay within limits, the plane waves, the face follows controls."""
 
 from dataclasses import replace
 
@@ -27,7 +27,7 @@ from .recording_files import take_of
 @given(value=st.floats(-2.9, 2.9), gain=st.floats(0.0, 9.0))
 @settings(max_examples=20, deadline=None)
 def test_a_value_beyond_its_limits_is_cut_off_from_each_door(scene, value, gain):
-    """From a script, a hand, a recording and a live face; but only after all are added."""
+    """Values from scripts, sliders, recordings and live faces are limited after their sum."""
     limits = scene.limits
     rest = scene.limits.pose({})
     frame = dict[str, float]()
@@ -52,7 +52,7 @@ def test_a_value_beyond_its_limits_is_cut_off_from_each_door(scene, value, gain)
 
 
 def test_the_plane_waves():
-    """154 triangles; the wave moves vertices along the normal only, and returns exactly to rest."""
+    """The plane has 154 triangles, moves along its normal only, and returns exactly to rest."""
     plane = PlaneScene()
     assert len(plane.faces) == 154
     plane.pose({"amplitude": 1.0, "phase": 0.25})
@@ -65,7 +65,7 @@ def test_the_plane_waves():
 
 
 def test_the_face_takes_controls_of_every_layer(face):
-    """A pose may mix layers; the next pose replaces it; an unknown name is refused."""
+    """A pose may mix layers, the next pose replaces it, and an unknown name is refused."""
     with pytest.raises(UserError, match="there is no control called 'c'"):
         face.pose({"c": 1.0})
     assert len(face.expressions) >= 9
@@ -77,7 +77,7 @@ def test_the_face_takes_controls_of_every_layer(face):
 
 
 def test_a_long_step_is_divided(face):
-    """A film at one frame a second moves the face like steps of a sixtieth."""
+    """A step of a second moves the face like sixty steps of a sixtieth."""
     face.pose({"joy": 1.0})
     face.step(1.0)
     coarse = face.positions.copy()
@@ -89,7 +89,7 @@ def test_a_long_step_is_divided(face):
 
 
 def test_the_face_is_round_at_rest(face):
-    """The outline of the crown, from the side, has no sharp corners, and there are no cracks."""
+    """From the side, the outline of the crown has no sharp corner, and there is no crack."""
     highest = {}
     for name in PRESETS:
         refiner = refiner_for(face, Refinement(name))
@@ -99,7 +99,7 @@ def test_the_face_is_round_at_rest(face):
         crown = outline[outline[:, 0] > 0.65 * outline[:, 0].max() + 0.35 * outline[:, 0].min()]
         around = crown - [crown[:, 0].min(), crown[:, 1].mean()]
         crown = crown[np.argsort(np.arctan2(*around.T))]
-        # Distance of each point from the line between its neighbours.
+        # The distance of each point from the line between its neighbours.
         chords = crown[2:] - crown[:-2]
         aside = (crown[1:-1] - crown[:-2]) @ [[0, 1], [-1, 0]]
         heights = (aside * chords).sum(axis=1) / np.linalg.norm(chords, axis=1)

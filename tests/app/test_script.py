@@ -33,7 +33,7 @@ joy = [ { time = 0.0, value = 0.25 } ]
 
 
 def test_poses_and_tracks_add_up():
-    """Poses interpolate, a control that no pose names is zero, tracks are added."""
+    """Poses interpolate, tracks are added, and a control that no pose names is zero."""
     script = parse_script(HELLO, source="hello.toml")
     assert script.at(1.5) == approx({"joy": 0.75, "jaw_open": 0.25, "blink": 0.0})
     assert script.at(2.0) == approx({"joy": 1.25, "jaw_open": 0.5, "blink": 1.0})
@@ -43,7 +43,7 @@ def test_poses_and_tracks_add_up():
 
 
 def test_lines_are_keys_as_tables_are():
-    """A track of lines and one of tables mean the same; only the default easing differs."""
+    """A track of lines equals a track of tables; only the default easing differs."""
     lines = parse_script("[tracks]\njoy = '''\n0 0.5\n 1.5  1 hold\n\n2 -0\n'''", source="s")
     tables = parse_script(
         "[tracks]\njoy = [{ time = 0, value = 0.5, easing = 'linear' },"
@@ -58,7 +58,7 @@ def test_lines_are_keys_as_tables_are():
 
 @st.composite
 def channels(draw):
-    """Channels with few and many keys, with one easing and all of them."""
+    """Channels with few and many keys, with one easing and with all."""
     times = draw(
         st.lists(st.floats(0.0, LARGEST), unique=True, min_size=1, max_size=60).map(sorted)
     )
@@ -72,7 +72,7 @@ def channels(draw):
 
 @given(tracks=st.dictionaries(st.text(max_size=5), channels(), max_size=3))
 def test_what_is_written_reads_back(tracks):
-    """To the last digit and in order, for tracks as tables and as lines."""
+    """A written script reads back to the last digit and in order, for both forms of tracks."""
     script = Script("t", 1.0, "t", poses=(Pose(0.0),), tracks=tracks)
     read = parse_script(script_text(script), source="t")
     assert read == script
@@ -82,7 +82,7 @@ def test_what_is_written_reads_back(tracks):
 
 @given(channel=channels(), data=st.data())
 def test_a_channel_has_the_values_of_its_keys(channel, data):
-    """At a key it has the key's value; between two keys it follows their easing."""
+    """At a key the channel has the key's value, and between two keys it follows their easing."""
     keys = channel.keys
     assert channel == Channel.of(keys)
     assert len(channel) == len(keys)
@@ -98,7 +98,7 @@ def test_a_channel_has_the_values_of_its_keys(channel, data):
 
 @given(channel=channels(), start=st.floats(0.0, LARGEST), span=st.floats(1e-3, 1e4))
 def test_a_drawn_curve_is_what_is_played(channel, start, span):
-    """For few keys each point of the outline has the played value, and no key is left out."""
+    """Each point of the drawn curve has the played value; with few keys, each key is drawn."""
     times, values = channel.outline(start, start + span, 40)
     keys = [time for time in channel.times.tolist() if start <= time <= start + span]
     if len(keys) <= 40:
@@ -115,7 +115,7 @@ def test_a_drawn_curve_is_what_is_played(channel, start, span):
     name=st.sampled_from([*easing_names()]).filter(lambda name: name != "hold"),
 )
 def test_easings_are_hermite_curves(fraction, name):
-    """Each is the cubic from 0 to 1 with the slopes of its name; words are slopes, too."""
+    """Each easing is the cubic from 0 to 1 with the slopes of its name; names are slopes, too."""
     easing = easing_named(name)
     assert easing_named(easing.name) == easing
     curve = scipy.interpolate.CubicHermiteSpline([0.0, 1.0], [0.0, 1.0], easing.slopes)
@@ -133,7 +133,7 @@ def test_easings_are_hermite_curves(fraction, name):
     ],
 )
 def test_words_for_easings_keep_their_formulas(name, formula):
-    """A script moves as the page on scripts describes, at one time and at many."""
+    """Named easings follow the formulas of the page on scripts, at one time and at many."""
     fractions = np.linspace(0.0, 1.0, 41)
     found = [EASINGS[name].of(each) for each in fractions.tolist()]
     assert found == approx(formula(fractions), abs=1e-12)
@@ -144,7 +144,7 @@ def test_words_for_easings_keep_their_formulas(name, formula):
 
 @given(fraction=st.floats(0.0, 1.0), name=st.sampled_from([*easing_names()]))
 def test_easings_stay_between_the_keys(fraction, name):
-    """Every easing goes from 0 to 1 and never leaves that range."""
+    """Every easing goes from 0 to 1, and stays within this range."""
     ease = easing_named(name).of
     assert ease(0.0) == 0.0
     assert ease(1.0) == 1.0
@@ -155,12 +155,12 @@ def test_easings_stay_between_the_keys(fraction, name):
     ("word", "names"), [("smile", "joy or AU12"), ("frowning", "anger or sadness or AU4")]
 )
 def test_an_everyday_word_finds_its_control(word, names):
-    """No control has this name, and none is spelled like it."""
+    """An everyday word that is no control's name suggests the control it means."""
     assert f"did you mean {names}" in refusal(risorius("capture", "--set", word, "-o", "x.png"))
 
 
 def test_a_lone_pose_is_held_for_a_second():
-    """A first script has one pose at 0 s; its duration is not written."""
+    """A script with one pose at 0 s lasts a second, and its duration is not written."""
     script = parse_script("[[pose]]\ntime = 0\njoy = 1.0", source="one.toml")
     assert script.duration == 1.0
     assert [pose.values for pose in script.poses] == [{"joy": 1.0}]
@@ -207,7 +207,7 @@ def test_unknown_names_get_a_suggestion():
     ],
 )
 def test_values_out_of_limits_are_named(text, message):
-    """A value too high or too low is reported with the control, the time and its limits."""
+    """A value beyond the limits is reported with the control, the time and the limits."""
     script = parse_script(text, source="bad.toml")
     with pytest.raises(UserError, match=message):
         script.check({"joy": (0.0, 1.0), "jaw": (-1.0, 1.0)})
@@ -229,7 +229,7 @@ def test_missing_and_unreadable_files(tmp_path):
 
 
 def test_a_misspelt_file_names_the_one_beside_it(tmp_path):
-    """A missing script is answered with the most similar name in its folder, if there is one."""
+    """For a missing script, the message has the most similar name in its folder, if any."""
     (tmp_path / "smile.toml").write_text("[tracks]\njoy = [{ time = 1, value = 1 }]\n")
     with pytest.raises(UserError, match=r"tml: no such script; did you mean .*smile\.toml\?"):
         load_script(tmp_path / "smile.tml")
@@ -238,7 +238,7 @@ def test_a_misspelt_file_names_the_one_beside_it(tmp_path):
 
 
 def test_names_are_reported_on_one_line():
-    """Terminal codes and line ends are escaped; long names are shortened."""
+    """Terminal codes and line ends are escaped, and long names are shortened."""
     for name, shown in (
         ("a\\nrisorius: b", r"a\nrisorius: b"),
         ("\\u001b[2J", r"\x1b[2J"),

@@ -1,4 +1,4 @@
-"""Places of keys as arrays: they do the same as sets and loops over keys."""
+"""Places of keys as arrays, compared with sets and loops over keys."""
 
 import numpy as np
 from hypothesis import given
@@ -9,14 +9,14 @@ from risorius.app.script.easings import EASINGS
 from risorius.app.script.keyframes import POSES, places_of
 from risorius.app.script.places import KeyPlace, Places
 
-TIMES = st.integers(0, 40).map(lambda step: step / 8.0)  # few values, so that keys often meet
+TIMES = st.integers(0, 40).map(lambda step: step / 8.0)  # few values, so that keys often coincide
 TRACKS = st.sampled_from([POSES, "joy", "blink"])
 PLACES = st.frozensets(st.builds(KeyPlace, TRACKS, TIMES))
 EASING = st.sampled_from(sorted(EASINGS))
 
 
 def keys():
-    """Keys of one track, in the order of time."""
+    """Keys of one track, in order of time."""
     key = st.builds(Key, TIMES, st.floats(0.0, 1.0), EASING)
     each_once = st.lists(key, min_size=1, max_size=12, unique_by=lambda each: each.time)
     return each_once.map(lambda found: sorted(found, key=lambda each: each.time))
@@ -32,7 +32,7 @@ def scripts(draw):
 
 @given(places=PLACES, ends=st.tuples(TIMES, TIMES).map(sorted), reach=st.floats(0.0, 2.0))
 def test_places_in_a_stretch_and_near(places, ends, reach):
-    """Keys between two times, and the nearest to one."""
+    """Keys between two times, and the key nearest to a time, are found as by a loop."""
     first, last = ends
     chosen = Places.of(*places)
     assert chosen.between(first, last) == {each for each in places if first <= each.time <= last}
@@ -47,7 +47,7 @@ def test_places_in_a_stretch_and_near(places, ends, reach):
 
 @given(script=scripts(), places=PLACES, steps=st.integers(-9, 9), are_copies=st.booleans())
 def test_keys_arrive_as_one_by_one(script, places, steps, are_copies):
-    """Moved or copied keys only change their time, and replace other keys there."""
+    """Moved and copied keys change only their time, and replace other keys there."""
     places &= places_of(script)
     shift = max(steps / 8.0, -min((place.time for place in places), default=0.0))
     before = dict(keyed_by_place(script))
@@ -64,7 +64,7 @@ def test_keys_arrive_as_one_by_one(script, places, steps, are_copies):
 
 @given(script=scripts(), places=PLACES, easing=EASING)
 def test_keys_go_and_are_eased_as_one_by_one(script, places, easing):
-    """Only the chosen keys; tracks without a chosen key are shared by both scripts."""
+    """Only chosen keys are deleted or eased; tracks without them are shared by both scripts."""
     chosen = Places.of(*places)
     before = dict(keyed_by_place(script))
     eased = keyframes.eased(script, chosen, easing)
@@ -82,7 +82,7 @@ def test_keys_go_and_are_eased_as_one_by_one(script, places, easing):
 
 @given(script=scripts(), time=TIMES)
 def test_the_next_key(script, time):
-    """Forward and back, among the keys of all tracks; without another key the time stays."""
+    """The next key, forward or back, is among keys of all tracks; without one the time stays."""
     times = {place.time for place in places_of(script)}
     assert keyframes.time_beyond(script, time, 1) == min(
         (t for t in times if t > time), default=time
@@ -93,7 +93,7 @@ def test_the_next_key(script, time):
 
 
 def keyed_by_place(script):
-    """Each key without its time, by its place, for poses and tracks."""
+    """Pairs of a key's place and the key without its time, for poses and tracks."""
     found = []
     for pose in script.poses:
         found.append((KeyPlace(POSES, pose.time), (pose.values, pose.name, pose.easing)))

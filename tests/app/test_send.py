@@ -1,4 +1,4 @@
-"""`risorius send`: packets leave in the recording's own time, and the values arrive unchanged."""
+"""`risorius send`: packets leave in the recording's own time, with unchanged values."""
 
 import socket
 from collections.abc import Iterator
@@ -52,7 +52,7 @@ def test_a_take_comes_in_as_it_went_out(heard):
 
 
 def test_a_recording_comes_along(monkeypatch, tmp_path, heard):
-    """Without a file, an installed recording is sent; it speaks and blinks."""
+    """Without a file, an installed recording is sent, which speaks and blinks."""
     monkeypatch.chdir(tmp_path)
     sent = []
     monkeypatch.setattr(Sender, "play", lambda _, take, **__: sent.append(take))
@@ -64,16 +64,16 @@ def test_a_recording_comes_along(monkeypatch, tmp_path, heard):
 
 
 class Stopped(Exception):  # noqa: N818, what ends the test is no error
-    """The end of the test's time."""
+    """Raised at the end of the test's time."""
 
 
 def clock_until(end):
-    """A clock, a sleep that moves it and ends the test, and the slept times."""
+    """A clock, a sleep that advances it and ends the test, and the slept times."""
     now = [0.0]
     slept = []
 
     def sleep(seconds):
-        """Move the clock."""
+        """Advance the clock."""
         slept.append(seconds)
         now[0] += seconds
         if now[0] > end:
@@ -83,7 +83,7 @@ def clock_until(end):
 
 
 def test_a_take_keeps_its_time_and_may_go_round(heard):
-    """A frame leaves when it is due; in a loop the first follows the last like any other."""
+    """A frame is sent when it is due; in a loop, the first follows the last like any other."""
     clock, sleep, slept = clock_until(0.5)
     take = take_of(jawOpen=[0.0, 0.5, 1.0])
     with (
@@ -97,7 +97,7 @@ def test_a_take_keeps_its_time_and_may_go_round(heard):
 
 
 def test_a_take_without_anything_to_send_is_refused():
-    """One line reports it, with the file."""
+    """A take without known channels is refused in one line with the file."""
     with (
         Sender(LOOPBACK, None, "test") as sender,
         pytest.raises(UserError, match=r"test\.csv: test has no values to send"),
@@ -106,7 +106,7 @@ def test_a_take_without_anything_to_send_is_refused():
 
 
 def test_the_command_sends_a_file(tmp_path, heard):
-    """It prints what it sends, and where."""
+    """The command prints the recording's name and the address."""
     file = tmp_path / "take.csv"
     file.write_text("time,jawOpen,AU38\n0.0,0.5,0.1\n0.05,0.25,0.2\n")
     port = heard.getsockname()[1]

@@ -1,4 +1,4 @@
-"""The fine shape of the skin: in both sides of a comparison, in passes, and on persons."""
+"""Fine shape of the skin: in comparisons, in passes, and on persons."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ SIZE = (400, 300)
 
 
 def images(scene):
-    """Static beside refined, with the maps and without, (2, H, W, 3); and normals of the latter."""
+    """Static beside refined, with maps and without, (2, H, W, 3); normals with maps, too."""
     scene.reset()
     options = CaptureOptions(
         size=SIZE, camera="0,0,0.8", beside=(Refinement(refiner="none"),), captions=False
@@ -31,7 +31,7 @@ def images(scene):
 
 
 def test_both_sides_wear_it(scene):
-    """Static and refined skin change equally, and so do passes' normals; the background stays."""
+    """Maps change static and refined skin equally, and normals of passes; the background stays."""
     (shown, plain), normals = images(scene)
     changed = np.abs(shown - plain).max(axis=2) > 3
     static, refined = (half.mean() for half in np.split(changed, 2, axis=1))

@@ -1,4 +1,4 @@
-"""Lashes and tears follow the skin in all its motion."""
+"""Lashes and tears follow every motion of the skin."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ POSES = (
 
 
 def attached(scene):
-    """Parts that are attached to its skin."""
+    """Parts attached to the skin."""
     return [part for part in scene.parts if isinstance(part, SkinPart)]
 
 
@@ -32,7 +32,7 @@ def attached(scene):
     st.lists(st.floats(-50.0, 50.0), min_size=3, max_size=3),
 )
 def test_a_skin_that_only_moves_takes_them_along(scene, turn, shift):
-    """A turn and a shift of the whole skin move them; a motion of their bone does not."""
+    """A rotation and shift of the whole skin moves the parts; their bone's motion does not."""
     turned = Rotation.from_rotvec(turn)
     skin = turned.apply(np.array(scene.rest_positions)) + shift
     bone = np.eye(4)
@@ -48,7 +48,7 @@ def test_a_skin_that_only_moves_takes_them_along(scene, turn, shift):
 
 
 def test_slivers_carry_nothing(scene):
-    """Needles of 1 mm and 1e-11 mm right at the roots, possible in files, change no lash."""
+    """Slivers of 1 mm and 1e-11 mm at the roots, possible in files, change no lash."""
     skin = np.array(scene.rest_positions)
     for part in assets.load("head").parts:
         if part.roots is not None:
@@ -67,7 +67,7 @@ def test_slivers_carry_nothing(scene):
 
 @pytest.mark.parametrize("pose", POSES, ids=lambda pose: next(iter(pose)))
 def test_they_stay_on_lids_that_move(scene, pose):
-    """Roots stay within a millimetre of the skin, lashes keep their length and the eye free."""
+    """Roots stay within a millimetre of the skin; lashes keep their length, outside the eye."""
     scene.reset()
     scene.pose({name: value for name, value in pose.items() if name in scene.limits})
     for _ in range(40):

@@ -1,4 +1,4 @@
-"""Edges that kernels smooth are those that the passes of a graphics card smooth."""
+"""Edges smoothed by kernels on the processor equal those smoothed by a graphics card."""
 
 from collections.abc import Iterator
 
@@ -21,7 +21,7 @@ CAMERAS = ("front", "20,-60", "-30,10,6")
 
 @pytest.fixture(scope="module")
 def studio() -> Iterator[Capture]:
-    """Two heads side by side, at a size that no tile divides."""
+    """Two heads side by side, in a size that is no multiple of a tile."""
     options = CaptureOptions(
         size=(405, 231), beside=(Refinement(refiner=STATIC),), captions=False, samples=4
     )
@@ -33,10 +33,10 @@ def studio() -> Iterator[Capture]:
 
 @pytest.fixture
 def share_off(studio, monkeypatch):
-    """A function of a camera, a style and an anatomy: how many pixels differ visibly."""
+    """A function of camera, style and anatomy, for the share of visibly different pixels."""
 
     def measured(camera="front", style=None, anatomy=None):
-        """The share of pixels that differ by more than 8 levels, and of those that are smoothed."""
+        """Shares of pixels that differ by over 8 levels: between both mixers, and by smoothing."""
         view = camera if isinstance(camera, render.OrbitCamera) else None
         studio.camera = view or camera_for(studio.scene, camera)
         style = style or studio.options.style
@@ -59,7 +59,7 @@ def share_off(studio, monkeypatch):
 
 
 class NotSmooth:
-    """A mixer that leaves edges as they are."""
+    """A mixer that does not smooth edges."""
 
     target = None
 
@@ -70,7 +70,10 @@ class NotSmooth:
 @pytest.mark.parametrize("camera", CAMERAS)
 @pytest.mark.parametrize("pose", POSES)
 def test_a_face_has_the_same_edges(studio, share_off, camera, pose):
-    """From everywhere, close by, with eyes and mouth open or shut; hair and lips, too."""
+    """A face has the same edges from everywhere, with eyes and mouth open or shut.
+
+    Hair and lips are included.
+    """
     known = studio.scene.limits
     studio.scene.reset()
     studio.scene.pose({name: value for name, value in pose.items() if name in known})
@@ -90,7 +93,7 @@ def test_a_face_has_the_same_edges(studio, share_off, camera, pose):
     ],
 )
 def test_every_style_has_the_same_edges(studio, share_off, style):
-    """Triangles that are surfaces of their own, normals that nobody needs, and no background."""
+    """Every style has the same edges: flat triangles, unused normals, no background."""
     studio.scene.reset()
     off, smoothed = share_off("20,-60", style)
     assert off < 3e-4
@@ -99,7 +102,7 @@ def test_every_style_has_the_same_edges(studio, share_off, style):
 
 @pytest.mark.parametrize("side", ["both", "left"])
 def test_opened_skin_has_the_same_edges(studio, share_off, side):
-    """Muscles under skin that lets them through, and skull under skin that is cut."""
+    """Opened skin has the same edges: muscles below translucent skin, skull below cut skin."""
     studio.scene.reset()
     seen = AnatomyView(("muscles", "skull"), side=side)
     off, smoothed = share_off("front", anatomy=seen)
@@ -108,7 +111,7 @@ def test_opened_skin_has_the_same_edges(studio, share_off, side):
 
 
 def test_triangles_reach_behind_the_eye(studio, share_off):
-    """A camera at the cheek, with a part of the head beside and behind it."""
+    """Edges are the same with the camera at the cheek, and a part of the head behind it."""
     studio.scene.reset()
     camera = camera_for(studio.scene, "-30,10")
     camera.distance = 0.12 * camera.scene_radius

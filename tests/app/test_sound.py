@@ -1,4 +1,4 @@
-"""Sound files: read, named by scripts, heard in films, drawn at every zoom, played in step."""
+"""Sound files: read, named by scripts, in films, drawn at every zoom, played in time."""
 
 import os
 import shutil
@@ -33,7 +33,7 @@ FRAME = 1.0 / 30.0  # [s]
 
 
 def lag(heard, source):
-    """Delay of one sound within another that contains it [s]."""
+    """The delay of a sound within another sound that contains it [s]."""
     first, second = (each.samples[:, 0].astype(float) for each in (heard, source))
     length = len(first) + len(second)
     spectrum = np.fft.rfft(first, length) * np.conj(np.fft.rfft(second, length))
@@ -41,11 +41,11 @@ def lag(heard, source):
     return (best if best < len(first) else best - length) / heard.rate
 
 
-# Files
+# Files.
 
 
 def test_a_wav_is_read_to_the_sample(tmp_path):
-    """At the usual rate nothing changes, with one channel or two; more become two."""
+    """At the usual rate samples are unchanged; one channel stays, more than two become two."""
     for sides in (1, 2):
         samples = np.stack([noise(0.5, 48_000, seed=seed) for seed in range(sides)], axis=1)
         sound = load_sound(write_wav(tmp_path / "a b, ü.wav", samples, 48_000))
@@ -58,7 +58,7 @@ def test_a_wav_is_read_to_the_sample(tmp_path):
 
 @pytest.mark.parametrize("rate", [8_000, 22_050, 44_100])
 def test_other_rates_are_in_step(tmp_path, rate):
-    """A sound of another rate has the same length, and all of it keeps its time."""
+    """A sound of another rate has the same length, and every part stays at its time."""
     source = noise(1.0, 48_000)
     write_wav(tmp_path / "high.wav", source, 48_000)
     low = scipy.signal.resample(source, rate)
@@ -68,7 +68,10 @@ def test_other_rates_are_in_step(tmp_path, rate):
 
 
 def test_what_is_no_sound_is_reported_in_one_line(tmp_path):
-    """Missing, empty, damaged, mute, a folder, a pipe: the line has the fault and the remedy."""
+    """An unreadable sound is reported in one line with the fault and the remedy.
+
+    Missing, empty, damaged, silent, a folder, a pipe.
+    """
     (tmp_path / "text.wav").write_text("no sound")
     (tmp_path / "empty.wav").touch()
     write_wav(tmp_path / "mute.wav", np.zeros(0))
@@ -89,11 +92,11 @@ def test_what_is_no_sound_is_reported_in_one_line(tmp_path):
             load_sound(tmp_path / "pipe.wav")
 
 
-# Scripts
+# Scripts.
 
 
 def test_a_script_names_its_sound_as_seen_from_itself(tmp_path):
-    """From any working directory: a path relative to the script, or a whole path."""
+    """A script's sound is found from any working directory, by relative or absolute path."""
     for name in ("speech.wav", "sounds/speech.wav", "../speech.wav", str(tmp_path / "speech.wav")):
         script = parse_script(f"sound = '{name}'\n{POSE}", source=str(tmp_path / "deep" / "s.toml"))
         assert script.sound == Path(os.path.normpath(tmp_path / "deep" / name))
@@ -104,7 +107,7 @@ def test_a_script_names_its_sound_as_seen_from_itself(tmp_path):
 
 
 def test_a_project_stays_together(tmp_path):
-    """A script saved elsewhere finds its sound; so does a project that was moved as a whole."""
+    """A script saved elsewhere finds its sound, and so does a project moved as a whole."""
     home = tmp_path / "home"
     (home / "sounds").mkdir(parents=True)
     sound = home / "sounds" / "a.wav"
@@ -123,13 +126,13 @@ def test_a_project_stays_together(tmp_path):
     assert found == tmp_path / "moved" / "sounds" / "a.wav"
 
 
-# Films
+# Films.
 
 
 @pytest.mark.parametrize("suffix", HEARD)
 @pytest.mark.parametrize(("seconds", "rate"), [(2.0, 48_000), (0.6, 22_050)])
 def test_a_film_is_heard_in_step(tmp_path, suffix, seconds, rate):
-    """Its first frame is at the first sample; a longer sound is cut, a shorter one cuts nothing."""
+    """A film's first frame is at the first sample; a longer sound is cut, a shorter one kept."""
     source = write_wav(tmp_path / "noise.wav", noise(seconds, rate), rate)
     film = tmp_path / f"film{suffix}"
     with outputs.film(film, (64, 48), 30.0, Heard(source, 1.0)) as add:
@@ -144,7 +147,7 @@ def test_a_film_is_heard_in_step(tmp_path, suffix, seconds, rate):
 
 
 def test_capture_takes_the_sound_of_script_and_option(tmp_path, monkeypatch):
-    """--sound overrides the script's own; pictures are silent, and only films have the option."""
+    """--sound overrides the script's sound; only films have sound and accept the option."""
     monkeypatch.chdir(tmp_path)
     write_wav(tmp_path / "own.wav", noise(0.4))
     write_wav(tmp_path / "other.wav", noise(0.4, seed=1))
@@ -169,11 +172,11 @@ def test_capture_takes_the_sound_of_script_and_option(tmp_path, monkeypatch):
     assert not (tmp_path / "gone.mp4").exists()
 
 
-# Playing
+# Playing.
 
 
 class HandDevice:
-    """A device that requests samples when a test says so, by a clock of the test."""
+    """A device that requests samples on the test's call, with the test's clock."""
 
     def __init__(self):
         self.running = False
@@ -190,7 +193,7 @@ class HandDevice:
     close = stop
 
     def ask(self, count):
-        """The next frames, (count, C)."""
+        """Request the next frames, (count, C)."""
         return np.asarray(self._samples.send(count))
 
 
@@ -199,7 +202,7 @@ COUNT = round(player.PERIOD * 48_000)
 
 @pytest.fixture
 def device(monkeypatch: pytest.MonkeyPatch) -> HandDevice:
-    """The device that players find."""
+    """The device that players use."""
     hand_device = HandDevice()
     monkeypatch.setattr(player, "open_device", lambda rate, channels: hand_device)
     return hand_device
@@ -213,7 +216,7 @@ def ramp(seconds):
 
 @pytest.mark.parametrize("speed", [0.25, 1.0, 2.0])
 def test_a_player_gives_the_sound_from_the_place_on(device, speed):
-    """At each speed the samples are those of the time; after the end there is silence."""
+    """At each speed samples are those of the current time; after the end there is silence."""
     played = Player(ramp(2.0), clock=lambda: device.now)
     played.play(1.0, speed)
     first = device.ask(COUNT)
@@ -244,9 +247,9 @@ def test_a_player_gives_the_sound_from_the_place_on(device, speed):
 @pytest.mark.parametrize("pace", [0.99, 1.0, 1.01])
 @pytest.mark.parametrize("frames_per_second", [12.0, 60.0, 144.0])
 def test_the_picture_keeps_to_the_sound(device, pace, frames_per_second, monkeypatch):
-    """Over a minute they differ by less than a frame, for any clock of the device.
+    """Over a minute picture and sound differ by less than a frame, for any clock of the device.
 
-    pace: seconds of the device for one of ours. The steps of physics are the window's own.
+    pace: seconds of the device per second of the window, whose physics steps are unchanged.
     """
     played = []
 
@@ -263,7 +266,7 @@ def test_the_picture_keeps_to_the_sound(device, pace, frames_per_second, monkeyp
     clock = Clock()
     soundtrack.refresh()
     session.toggle_playing()
-    soundtrack.elapsed(0.0)  # playback starts, and the device fills its buffer
+    soundtrack.elapsed(0.0)  # playback starts: the device fills its buffer
     for _ in range(player.PERIODS):
         device.ask(COUNT)
     due = player.PERIOD / pace

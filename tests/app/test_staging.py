@@ -1,4 +1,4 @@
-"""Folders for files in the making: removed after the work, and cleaned up if it was killed."""
+"""Working folders: removed after the work, and cleaned up after a kill."""
 
 import os
 import shutil
@@ -12,7 +12,7 @@ from risorius.app.staging import StagingFolder, is_staging_folder, sweep
 
 
 def made_old(folder):
-    """Set the last change of a folder to more than a day ago."""
+    """Set a folder's modification time to more than a day ago."""
     when = time.time() - staging.OLD - 60.0
     for path in (*folder.rglob("*"), folder):
         os.utime(path, (when, when), follow_symlinks=False)
@@ -21,14 +21,14 @@ def made_old(folder):
 
 @pytest.fixture
 def killed(tmp_path: Path) -> Path:
-    """A folder left by a process that was killed while making a film."""
+    """A folder left by a process that was killed while writing a film."""
     (path := tmp_path / ".risorius-0123456789ab").mkdir(mode=0o700)
     (path / "film.mp4").write_bytes(b"half")
     return path
 
 
 def test_a_folder_is_gone_after_the_work(tmp_path):
-    """It is removed however the work ends."""
+    """The folder is removed however the work ends."""
     with StagingFolder(tmp_path) as folder:
         (folder / "x").touch()
         assert is_staging_folder(folder)
@@ -39,7 +39,7 @@ def test_a_folder_is_gone_after_the_work(tmp_path):
 
 
 def test_what_a_killed_process_left_is_swept_away(killed):
-    """The next process that works there removes it, but not a film that still grows."""
+    """The next process removes a killed process's folder, but not one with a growing film."""
     made_old(killed)
     (killed / "film.mp4").write_bytes(b"more")
     sweep(killed.parent)
@@ -59,7 +59,7 @@ def test_what_a_killed_process_left_is_swept_away(killed):
     ],
 )
 def test_nothing_else_is_swept_away(killed, change):
-    """Another name, a link or a file stays."""
+    """Folders with other names, links and files stay."""
     folder = killed.parent
     change(killed)
     made_old(folder)

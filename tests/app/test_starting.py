@@ -1,4 +1,4 @@
-"""Imports of commands: no more than their work needs, so that they start at once."""
+"""Imports of commands: only those their work needs, so that commands start quickly."""
 
 import os
 import subprocess
@@ -14,7 +14,7 @@ print("loaded:", *sys.modules)
 
 
 def loaded_by(*words, cache):
-    """The packages that a command loads, ours as two words; `cache`: folder of compiled code."""
+    """Packages that a command imports, the project's as two words; `cache`: compiled code."""
     result = subprocess.run(
         [sys.executable, "-c", PROGRAM, *words],
         env={**os.environ, "NUMBA_CACHE_DIR": str(cache)},
@@ -28,21 +28,21 @@ def loaded_by(*words, cache):
 
 
 def test_help_loads_no_library_but_click(tmp_path):
-    """Modules that compute nothing print the help of all commands, and of one."""
+    """The help of all commands, and of each, imports no library but click."""
     slow = {"PIL", "moderngl", "numba", "numpy", "pydantic", "risorius.assets", "scipy", "tqdm"}
     for words in (("--help",), ("capture", "--help"), ("reproduce", "--help")):
         assert not loaded_by(*words, cache=tmp_path) & slow, words
 
 
 def test_controls_compiles_nothing(tmp_path):
-    """The list of controls needs a head and its rig: no picture, no refiner, no simulation."""
+    """The list of controls reads a head and its rig: no picture, refiner or simulation."""
     drawing = {"PIL", "moderngl", "glfw", "risorius.render", "risorius.refine", "trimesh"}
     assert not loaded_by("controls", cache=tmp_path) & drawing
     assert not list(tmp_path.rglob("*.nbc"))
 
 
 def test_doctor_simulates_nothing(tmp_path):
-    """A report on the machine needs OpenGL and the names of refiners: no head, no script."""
+    """The report on the machine needs OpenGL and names of refiners: no head, no script."""
     loaded = loaded_by("doctor", cache=tmp_path)
     assert not loaded & {"risorius.sim", "risorius.assets", "pydantic", "trimesh"}
     assert not list(tmp_path.rglob("*.nbc"))

@@ -1,4 +1,4 @@
-"""The command as a process: stopped by signals and closed terminals."""
+"""The command as a process that is stopped by signals and closed terminals."""
 
 import os
 import signal
@@ -13,10 +13,10 @@ SLOW = ("capture", "--scene", "face", "--size", "320x240")
 
 
 def is_there(folder, pattern):
-    """Whether a file with this name is anywhere in the folder."""
+    """Whether a file with this name is in the folder or below."""
     try:
         return any(folder.glob(pattern))
-    except FileNotFoundError:  # a folder inside was removed during the search
+    except FileNotFoundError:  # a folder was removed during the search
         return False
 
 
@@ -25,14 +25,17 @@ def is_there(folder, pattern):
 @pytest.mark.parametrize(
     ("output", "pattern", "number"),
     [
-        ("film.mp4", "*", signal.SIGINT),  # the output's folder is tested: OpenGL starts next
+        ("film.mp4", "*", signal.SIGINT),  # the output's folder is checked; OpenGL starts next
         ("film.mp4", "**/film.mp4", signal.SIGHUP),
         ("frames", "*", signal.SIGHUP),
         ("frames", "**/*.png", signal.SIGINT),
     ],
 )
 def test_nothing_half_written_is_left(tmp_path, output, pattern, number):
-    """Ctrl-C, or a closed terminal, at the start of a film or frames and while they are written."""
+    """Ctrl-C or a closed terminal, at the start or while files are written, leaves no file.
+
+    Outputs are a film and frames.
+    """
     words = ("-m", "risorius", *SLOW, "-o", tmp_path / output, "--quiet")
     process = started(*words, start_new_session=True)
     while process.poll() is None and not is_there(tmp_path, pattern):
@@ -48,7 +51,7 @@ def test_nothing_half_written_is_left(tmp_path, output, pattern, number):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
 def test_a_film_can_be_stopped_while_it_is_finished(tmp_path):
-    """Ctrl-C after all frames are sent, while ffmpeg still works, ends it without a film."""
+    """Ctrl-C while ffmpeg finishes, after all frames were sent, leaves no film."""
     slow = tmp_path / "slow_ffmpeg"
     slow.write_text("#!/bin/sh\ncat > /dev/null\ntouch $0.has_all\nexec sleep 100\n")
     slow.chmod(0o755)

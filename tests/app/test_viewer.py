@@ -1,4 +1,4 @@
-"""The real window, driven by real mouse and key events: sliders, skin, picture, questions."""
+"""The window, driven by real mouse and key events: sliders, skin, picture, questions."""
 
 import os
 import subprocess
@@ -38,7 +38,7 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
 
 def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer):
-    """Search the jaw and drag its slider: vertices move; Ctrl+Z closes the mouth again."""
+    """Search for the jaw and drag its slider: vertices move; Ctrl+Z closes the mouth."""
     show_controls(viewer, "jaw open")
     drag_and_release(viewer, middle(viewer, "jaw_open"), (60, 0))
     clear_search(viewer)
@@ -52,7 +52,7 @@ def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer):
 
 
 def test_a_number_can_be_typed(viewer):
-    """A double click turns a slider into a text field; its menu sets it back to 0."""
+    """A double click turns a slider into a text field; its menu resets it to 0."""
     show_controls(viewer, "jaw open")
     click(viewer, "jaw_open", times=2)
     press_keys(viewer, "ctrl+a")
@@ -67,7 +67,7 @@ def test_a_number_can_be_typed(viewer):
 
 
 def test_linked_sides_move_together(viewer):
-    """One slider sets both sides; unlinked, each has its own."""
+    """One slider sets both linked sides; unlinked, each side has its own slider."""
     session = viewer.session
     show_controls(viewer, "zygom maj")
     left = "zygomaticus_major_left"
@@ -82,7 +82,7 @@ def test_linked_sides_move_together(viewer):
 
 
 def test_keys_show_expressions_and_refinement(viewer):
-    """1 shows the first expression, 1 again the neutral face; R switches refined triangles."""
+    """1 shows the first expression, 1 again the neutral face; R switches refinement."""
     press_keys(viewer, "1")
     assert viewer.session.is_alone(next(iter(viewer.session.scene.expressions)))
     assert until(viewer, lambda: moved(viewer) > 3.0)
@@ -96,7 +96,7 @@ def test_keys_show_expressions_and_refinement(viewer):
 
 
 def test_keys_change_the_picture(viewer):
-    """W, C, T, D and F2, for the theme, each change the picture, and back."""
+    """W, C, T, D and F2 (for the theme) change the picture, and change it back."""
     viewer.session.toggle_alone("disgust")
     settle(viewer)
     assert until(viewer, lambda: viewer.schedule.is_idle)
@@ -115,7 +115,7 @@ def test_keys_change_the_picture(viewer):
 
 
 def test_the_mouse_orbits_and_the_wheel_zooms(viewer):
-    """The right button turns the camera anywhere, the left beside the face; F frames again."""
+    """The right button orbits from anywhere, the left beside the face; F frames the face."""
     view = viewer.face.view.camera.view_matrix().copy()
     for button, place in ((3, nose(viewer)), (1, on_screen(viewer, SIZE[0] - 20, 100))):
         drag_and_release(viewer, place, (-80, 20), button=button)
@@ -127,7 +127,7 @@ def test_the_mouse_orbits_and_the_wheel_zooms(viewer):
 
 @pytest.mark.parametrize("number", [30, 54, 19, -1])
 def test_the_wheel_zooms_to_the_mouse(viewer, number):
-    """The point under it, on skin or beside it, stays there while zooming in and out again."""
+    """The point below the mouse, on skin or beside it, stays there while zooming in and out."""
     camera = viewer.face.view.camera
     scene = viewer.session.scene
     camera.orbit(20.0, -10.0)
@@ -144,7 +144,7 @@ def test_the_wheel_zooms_to_the_mouse(viewer, number):
 
 
 def test_the_skin_is_dragged_and_swings_back(viewer):
-    """With Ctrl, a drag moves the tip of the nose; released, it is soon back."""
+    """Ctrl and a drag move the tip of the nose; released, it swings back soon."""
     xdotool(viewer, "keydown", "ctrl")
     drag(viewer, nose(viewer), (40, 30))
     assert until(viewer, lambda: moved(viewer) > 4.0)
@@ -154,7 +154,7 @@ def test_the_skin_is_dragged_and_swings_back(viewer):
 
 
 def test_a_hovered_expression_lights_its_muscles(viewer):
-    """Joy lights both sides equally; a kiss lights the lips and not the forehead."""
+    """Hovering joy highlights muscles of both sides; a kiss the lips' but not the forehead's."""
     xdotool(viewer, "mousemove", *middle(viewer, "show joy"))
     pulled = [f"{MAJOR}_{side}" for side in ("left", "right")]
     assert until(viewer, lambda: pulled[0] in viewer.face.view.pointed)
@@ -174,7 +174,7 @@ def test_a_hovered_expression_lights_its_muscles(viewer):
 
 
 def test_a_look_is_chosen(viewer):
-    """In the panel, by the menu and by its key; it undoes changes of the previous look."""
+    """A look is chosen in the panel, by menu and by key; it resets options of the last look."""
     viewer.session.toggle_alone("disgust")
     click(viewer, "tab Mechanism")
     display = viewer.settings.display
@@ -209,7 +209,7 @@ def test_a_look_is_chosen(viewer):
 
 
 def test_unsaved_work_is_asked_for(viewer):
-    """Closing with a pose made by hand asks; "back" keeps the pose, "on" closes."""
+    """Closing with a pose set by hand asks; "back" keeps the pose, "on" closes."""
     viewer.session.set("jaw_open", 0.5)
     press_keys(viewer, "ctrl+q")
     assert viewer.context.question.is_open
@@ -224,7 +224,7 @@ def test_unsaved_work_is_asked_for(viewer):
 
 
 def test_an_idle_window_rests(viewer):
-    """Without input neither physics nor the scene is computed again."""
+    """Without input, neither physics nor the scene is computed."""
     assert until(viewer, lambda: viewer.schedule.is_idle)
     times = {name: list(column) for name, column in viewer.context.times.milliseconds.items()}
     settle(viewer)
@@ -235,7 +235,10 @@ def test_an_idle_window_rests(viewer):
 
 @pytest.mark.slow
 def test_the_window_remembers(tmp_path):
-    """`risorius replay --once` plays and ends; size and looks come back, a broken file does not."""
+    """`risorius replay --once` plays and ends; size and looks are restored.
+
+    A broken settings file is ignored.
+    """
     script = tmp_path / "short.toml"
     script.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\njoy = 1.0\n")
     environment = {**os.environ, "XDG_CONFIG_HOME": str(tmp_path)}
@@ -263,20 +266,20 @@ def test_the_window_remembers(tmp_path):
     assert settings.recent == [str(script)]
     assert settings.display == Display(look="paper", wireframe=True)
     assert replayed().display == settings.display
-    assert replayed("--look", "smooth").display == Display()  # asked for, though it is the first
+    assert replayed("--look", "smooth").display == Display()  # chosen, though the default
 
 
 MAJOR = "zygomaticus_major"
 
 
 def landmark(viewer, number):
-    """A landmark of the face, on the screen."""
+    """Screen coordinates of a landmark."""
     scene = viewer.session.scene
     return seen_at(viewer, scene.positions[scene.head.landmarks[number]])
 
 
 def test_pulled_skin_stays_where_muscles_hold_it(viewer):
-    """Pull the left corner of the mouth up and out: it stays where it is seen; Ctrl+Z undoes."""
+    """The left corner of the mouth, pulled up and out, stays there; Ctrl+Z undoes the pull."""
     session = viewer.session
     viewer.settings.is_linked = False
     seen = [session.scene.positions.copy()]
@@ -305,7 +308,7 @@ def test_pulled_skin_stays_where_muscles_hold_it(viewer):
 
 
 def pulled_corner(viewer, by, steps):
-    """Draw a corner of the mouth up and out in so many steps, let go, undo; what was solved."""
+    """Pull a corner of the mouth up and out in some steps, release, undo; return the muscles."""
     session = viewer.session
     xdotool(viewer, "mousemove", *landmark(viewer, 54), "mousedown", 1)
     for _ in range(steps):
@@ -322,7 +325,7 @@ def pulled_corner(viewer, by, steps):
 
 
 def test_a_corner_drawn_up_and_out_smiles_at_any_speed(viewer):
-    """Slow or at once, near or far, the same muscle smiles; the line stays during the drag."""
+    """Slow or at once, near or far, the same muscle smiles; its name is shown during the drag."""
     found = [pulled_corner(viewer, 60, steps) for steps in (6, 1, 1)]
     assert found[0].keys() == {f"{MAJOR}_left", f"{MAJOR}_right"}
     assert min(found[0].values()) > 0.9
@@ -332,7 +335,10 @@ def test_a_corner_drawn_up_and_out_smiles_at_any_speed(viewer):
 
 @pytest.mark.slow
 def test_a_pull_is_the_same_beside_busy_processes(viewer):
-    """Short and far, slow and at once: muscles go as far as on an idle machine; far is a smile."""
+    """Beside busy processes, muscles move as far as on an idle machine; a far pull is a smile.
+
+    Pulls are short and far, slow and at once.
+    """
     far = pulled_corner(viewer, 60, 6)
     quiet = pulled_corner(viewer, 12, 6)
     assert 0.2 < max(quiet.values()) < 0.95
@@ -352,7 +358,10 @@ def test_a_pull_is_the_same_beside_busy_processes(viewer):
 
 
 def test_the_muscle_under_the_mouse_shows_softly(viewer):
-    """Over the skin its fibres light up, fainter than those of a control; beside it none does."""
+    """Fibres of the muscle below the mouse light up, fainter than those of a control.
+
+    Beside the skin none does.
+    """
     xdotool(viewer, "mousemove", *landmark(viewer, 54))
     view = viewer.face.view
     assert until(viewer, lambda: view.hovered is not None)
@@ -362,7 +371,7 @@ def test_the_muscle_under_the_mouse_shows_softly(viewer):
 
 
 def test_a_click_shows_the_muscle_in_the_panel(viewer):
-    """Its group opens, and the panel scrolls to its slider."""
+    """A click opens the muscle's group, and scrolls the panel to its slider."""
     viewer.context.wanted_tab = "Live"
     x, y = landmark(viewer, 54)
     xdotool(viewer, "mousemove", x + 15, y - 15, "click", 1)

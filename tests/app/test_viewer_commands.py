@@ -63,7 +63,7 @@ def desk(session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> D
 
 
 def test_a_bad_file_is_reported_and_survived(desk, tmp_path):
-    """Nonsense gives one line, and the present script stays."""
+    """An unreadable file gives one line, and the current script stays."""
     before = desk.session.script
     bad = tmp_path / "bad.toml"
     bad.write_text(POSE.replace("jaw_open", "no_such_muscle"))
@@ -81,13 +81,13 @@ def test_a_bad_file_is_reported_and_survived(desk, tmp_path):
 
 
 def test_saving_asks_where_it_did_not_open(desk, tmp_path):
-    """New and built-in scripts ask for a name; a file changed by others is not lost."""
+    """New and built-in scripts ask for a name; a file changed by others is not overwritten."""
     taken = tmp_path / "script.toml"
     taken.write_text("precious")
     desk.scripts.new()
     desk.session.set_key()
     desk.save()
-    assert desk.files.request.confirmed() is None  # the name exists already, as a line says
+    assert desk.files.request.confirmed() is None  # the name exists, and a line says so
     assert "is there already" in desk.files.request.complaint
     assert taken.read_text() == "precious"
     desk.files.request = None
@@ -107,7 +107,10 @@ def test_saving_asks_where_it_did_not_open(desk, tmp_path):
 
 
 def test_the_sound_is_kept_with_the_script(desk, tmp_path):
-    """The file names it, undo and the menu remove it, and a lost file is reported once."""
+    """The script's file names the sound; undo and the menu remove it.
+
+    A lost sound file is reported once.
+    """
     session = desk.session
     soundtrack = Soundtrack(session)
     script = tmp_path / "s.toml"
@@ -121,7 +124,7 @@ def test_the_sound_is_kept_with_the_script(desk, tmp_path):
     assert 'sound = "noise.wav"' in script.read_text()
 
     def is_there() -> bool:
-        """Whether the window has it now."""
+        """Whether the window has the sound now."""
         soundtrack.refresh()
         return soundtrack.sound is not None
 
@@ -150,7 +153,7 @@ def times(session):
 
 
 def test_delete_and_paste(session):
-    """Selected keys are pasted at the playhead, and deleted; both can be undone."""
+    """Selected keys are pasted at the playhead and deleted; both can be undone."""
     selection = KeySelection(session)
     selection.places = Places.of(KeyPlace(POSES, 1.0))
     session.seek(2.0)
@@ -171,7 +174,10 @@ def test_delete_and_paste(session):
 
 
 def test_a_script_moves_the_face_alone(session):
-    """During play and at the place where it stops; after its end the face has its own life."""
+    """A script alone moves the face during play and where it stops.
+
+    After the script's end the face has its own life.
+    """
     life = IdleLife(session, lambda: True, lambda: np.array([0.0, 0.0, 500.0]))
     assert life.is_on
     session.toggle_playing()
@@ -185,7 +191,10 @@ def test_a_script_moves_the_face_alone(session):
 
 
 def test_live_leads_controls_it_names_and_sliders_keep_the_rest(session):
-    """A slider of a live control has its own value again after the live face ends."""
+    """A live face leads the controls it names; sliders move the others.
+
+    When the live face ends, its controls have their sliders' values again.
+    """
     session.set("jawOpen", 0.2)
     session.set("AU9", 0.3)
     session.live_override.take({"jawOpen": 0.8}, 1.0)
@@ -208,7 +217,7 @@ def listening(session: Session) -> Iterator[LiveCommands]:
 
 
 def test_a_port_that_is_taken_is_refused(session, listening):
-    """A line names it, and no face is listened to."""
+    """A port in use is refused in one line with its number, and nothing is received."""
     other = LiveCommands(session, lambda: None, lambda: None)
     other.wanted = Listening("livelink", port=listening.face.port)
     with pytest.raises(UserError, match="cannot listen"):

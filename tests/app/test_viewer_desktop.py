@@ -1,4 +1,4 @@
-"""The window on the desktop: its first picture, hidden panels, minimised, the first size."""
+"""The window on the desktop: first picture, hidden panels, minimised, first size."""
 
 import contextlib
 import os
@@ -43,21 +43,21 @@ def ask_to_close(window):
 
 
 def windows_of(process, screen):
-    """Windows on the screen that a process has opened."""
+    """Windows on the screen opened by a process."""
     number = screen.get_atom("_NET_WM_PID")
     for window in screen.screen().root.query_tree().children:
-        with contextlib.suppress(XError):  # it has closed meanwhile
+        with contextlib.suppress(XError):  # closed meanwhile
             owner = window.get_full_property(number, X.AnyPropertyType)
             if owner is not None and owner.value[0] == process.pid:
                 yield window
 
 
 def first_pictures(process):
-    """Pictures of the window of a starting process, again and again, (H, W, 3)."""
+    """Yield pictures of the window of a starting process, (H, W, 3)."""
     screen = display.Display()
     while process.poll() is None:
         for window in windows_of(process, screen):
-            with contextlib.suppress(XError):  # it is not visible yet
+            with contextlib.suppress(XError):  # not visible yet
                 size = window.get_geometry()
                 read = window.get_image(0, 0, size.width, size.height, X.ZPixmap, 0xFFFFFFFF)
                 pixels = np.frombuffer(read.data, np.uint8).reshape(size.height, size.width, 4)
@@ -67,7 +67,7 @@ def first_pictures(process):
 
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Callable[[], subprocess.Popen[bytes]]]:
-    """Start `risorius view` as on a machine without compiled code."""
+    """A function that starts `risorius view` as on a machine without compiled code."""
     begun = []
     folders = {"XDG_CONFIG_HOME": tmp_path / "config", "NUMBA_CACHE_DIR": tmp_path / "compiled"}
     environment = {**os.environ, **{name: str(path) for name, path in folders.items()}}
@@ -85,7 +85,7 @@ def start(tmp_path: Path) -> Iterator[Callable[[], subprocess.Popen[bytes]]]:
 
 
 def test_a_line_is_seen_before_anything_is_compiled(start, tmp_path):
-    """The first start reports its progress, and closes when asked."""
+    """The first start reports its progress before compilation, and closes on request."""
     process = start()
     wanted = [
         picture((640, 400), 15.0, THEMES["light"], text).astype(int)
@@ -107,7 +107,7 @@ def test_a_line_is_seen_before_anything_is_compiled(start, tmp_path):
 
 @pytest.mark.slow
 def test_a_plane_has_no_settings_of_a_face():
-    """They are in no panel or menu; settings for all scenes are there."""
+    """With the plane, settings of a face are in no panel or menu; those of all scenes are."""
     with Viewer(script_for(None, "plane"), SIZE, Display()) as viewer:
         for tab, there, missing in (
             ("Face", {"search", "Neutral"}, {"Mirror", "Link sides", "tab Live", "menu Live"}),

@@ -1,4 +1,4 @@
-"""File > Export, driven with mouse and keys: films, motion, progress, cancel, errors."""
+"""File > Export with mouse and keys: films, motion, progress, cancel, errors."""
 
 import signal
 from collections.abc import Iterator
@@ -37,12 +37,12 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
 SCRIPT = "duration = 0.5\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.5\nname = 'j'\njoy = 1.0\n"
 SMALL = (160, 120)
-LONG = 120.0  # [s] limit for an export, which starts a new process
+LONG = 120.0  # [s] limit for an export, which starts a process
 
 
 @pytest.fixture(autouse=True)
 def _at_first(viewer: Viewer, tmp_path: Path, calm: None) -> Iterator[None]:
-    """A script of half a second, few small pictures, in the test's folder."""
+    """Start with a script of half a second, few small pictures, in the test's folder."""
     open_script(viewer, SCRIPT)
     viewer.settings.export = ExportChoices("frames", size=SMALL, rate=12.0)
     yield
@@ -57,7 +57,7 @@ def open_script(viewer, text):
 
 
 def finish(viewer, *key):
-    """Open the dialog, accept its present choices, and wait until the file is written."""
+    """Open the dialog, accept its current choices, and wait until the file is written."""
     press_keys(viewer, *(key or ("F10",)))
     assert until(viewer, lambda: "export: begin" in viewer.gui.places)
     begin(viewer)
@@ -66,7 +66,7 @@ def finish(viewer, *key):
 
 
 def begin(viewer, name=""):
-    """Go on to the file chooser, and accept its suggested name, or give another."""
+    """Continue to the file chooser, and accept its suggested name or give another."""
     click(viewer, "export: begin")
     assert viewer.files.is_waiting
     if name:
@@ -76,13 +76,13 @@ def begin(viewer, name=""):
 
 
 def pictures(folder):
-    """All pictures of a folder, in order, (N, H, W, 3 or 4)."""
+    """All pictures in a folder, in order, (N, H, W, 3 or 4)."""
     files = sorted(folder.glob("*.png"))
     return np.stack([np.asarray(Image.open(file)) for file in files]).astype(int)
 
 
 def test_a_film_is_that_of_capture(viewer, tmp_path):
-    """`capture` writes the same frames with the same options; the face is unchanged."""
+    """The film has the frames of `capture` with the same options; the face is unchanged."""
     scene = viewer.session.scene
     viewer.face.view.camera = camera_for(scene, "three-quarter")
     viewer.settings.display.light = "side"
@@ -106,7 +106,7 @@ def test_a_film_is_that_of_capture(viewer, tmp_path):
 
 @pytest.mark.slow
 def test_motion_is_exported_by_the_same_dialog(viewer, tmp_path):
-    """It is the file of `risorius export`, under the typed name."""
+    """The same dialog writes the file of `risorius export`, under the typed name."""
     press_keys(viewer, "ctrl+e")
     click(viewer, "Write")
     click(viewer, "Write: Motion: numpy arrays (.npz)")
@@ -121,7 +121,7 @@ def test_motion_is_exported_by_the_same_dialog(viewer, tmp_path):
 
 @pytest.mark.slow
 def test_the_window_lives_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatch):
-    """The face responds while a film is made; cancel leaves no file and no part of one."""
+    """The face responds during an export; cancel leaves neither a file nor a part of one."""
     monkeypatch.setattr(workers, "GRACE", LONG)
     viewer.settings.export.kind = "mp4"
     open_script(viewer, SCRIPT.replace("0.5", "600.0"))
@@ -135,7 +135,7 @@ def test_the_window_lives_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatc
     assert "mp4 is being written" in viewer.messages.text
     assert not viewer.surface.should_close
     process = job.task._pool._workers[0].process
-    process.send_signal(signal.SIGSTOP)  # it takes time to end
+    process.send_signal(signal.SIGSTOP)  # it needs time to end
     click(viewer, "export: stop")
     press_keys(viewer, "2")
     assert viewer.session.is_alone("sadness")
@@ -149,7 +149,7 @@ def test_the_window_lives_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatc
 
 @pytest.mark.parametrize("kind", ["mp4", "npz"])
 def test_a_bad_folder_is_one_line(viewer, kind):
-    """The error appears at once, and all choices are still there for another try."""
+    """A wrong folder is reported at once, and all choices stay for another try."""
     viewer.settings.export.kind = kind
     press_keys(viewer, "F10")
     begin(viewer, "/proc/none/moved")
@@ -162,7 +162,7 @@ def test_a_bad_folder_is_one_line(viewer, kind):
 
 @pytest.mark.parametrize("words", ["blendshape", "morph", "shape key", "ARKit", "avatar", "gltf"])
 def test_search_finds_the_avatar(viewer, words):
-    """Each of several usual words shows a button that asks for the avatar's file."""
+    """Each usual word finds a button for the avatar's file."""
     show_controls(viewer, words)
     click(viewer, "found Avatar ...")
     assert viewer.files.is_waiting
@@ -172,7 +172,7 @@ def test_search_finds_the_avatar(viewer, words):
 
 
 def test_search_finds_films_and_motion(viewer):
-    """The endings of their files show a button that opens the dialog."""
+    """File suffixes find a button that opens the export dialog."""
     for words in ("mp4", "usd"):
         show_controls(viewer, words)
         click(viewer, "found Film, pictures or motion ...")
@@ -183,7 +183,10 @@ def test_search_finds_films_and_motion(viewer):
 
 @pytest.mark.slow
 def test_a_head_of_the_user_becomes_an_avatar(viewer, tmp_path):
-    """File > Export > Avatar writes the file's vertices with ARKit's 52, and shows the progress."""
+    """File > Export > Avatar writes the file's vertices with ARKit's 52 shapes.
+
+    The window shows the progress.
+    """
     before = viewer.session.scene
     mesh, marks = stranger().write(tmp_path)
     put(viewer, mesh, marks)

@@ -43,7 +43,7 @@ POSE = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
 
 
 def test_files_can_be_dropped_onto_the_window(viewer, tmp_path):
-    """A script, then a pose with a difficult name, from another program, by the X protocol."""
+    """Another program drops a script, and a pose with a difficult name, by the X protocol."""
     script = tmp_path / "smile.toml"
     pose = tmp_path / "schöner & 50% größer.toml"
     script.write_text(SCRIPT)
@@ -61,7 +61,7 @@ def test_files_can_be_dropped_onto_the_window(viewer, tmp_path):
 
 
 def test_the_chooser_walks_through_folders(viewer, tmp_path):
-    """Into a folder, up again, and a script opened by a double click."""
+    """The chooser enters a folder, goes up again, and opens a script by a double click."""
     (tmp_path / "takes").mkdir()
     (tmp_path / "takes" / "smile.toml").write_text(SCRIPT)
     (tmp_path / "picture.png").write_bytes(b"")
@@ -76,7 +76,7 @@ def test_the_chooser_walks_through_folders(viewer, tmp_path):
     assert viewer.session.script.duration == 2.0
     assert not viewer.files.is_waiting
     press_keys(viewer, "ctrl+o")
-    assert "file smile.toml" in viewer.gui.places  # it begins in the last folder
+    assert "file smile.toml" in viewer.gui.places  # starts in the last folder
     press_keys(viewer, "Escape")
     assert not viewer.files.is_waiting
 
@@ -104,7 +104,7 @@ def test_the_chooser_replaces_nothing_unasked(viewer, tmp_path):
 
 
 def test_closing_while_recording_saves_it_first(viewer, tmp_path):
-    """The answer Save stores the recording in a file and then closes."""
+    """Answering Save stores the recording in a file, and then closes the window."""
     press_keys(viewer, "ctrl+r")
     viewer.session.set("jaw_open", 0.6)
     assert until(viewer, lambda: viewer.session.recorded_seconds > 0.3)
@@ -120,7 +120,7 @@ def test_closing_while_recording_saves_it_first(viewer, tmp_path):
 
 
 def title_of(viewer):
-    """The title that the desktop shows above the window."""
+    """The title above the window on the desktop."""
     settle(viewer)
     command = ["xdotool", "search", "--onlyvisible", "--name", "^Risorius: "]
     window = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()[-1]
@@ -154,7 +154,7 @@ def test_saving_goes_to_the_known_file(viewer, tmp_path):
 
 
 def test_examples_are_opened_by_the_menu(viewer):
-    """*File > Examples* has the installed scripts; the chosen one is then in the timeline."""
+    """*File > Examples* has the installed scripts, and opens one in the timeline."""
     click(viewer, "menu File")
     click(viewer, "menu File: Examples")
     click(viewer, "menu File: Speech")
@@ -164,7 +164,7 @@ def test_examples_are_opened_by_the_menu(viewer):
 
 @pytest.mark.slow
 def test_a_head_and_a_script_are_dropped_together(viewer, tmp_path):
-    """The face changes, and the script plays on it; unsaved work is still there."""
+    """A dropped head and script: the face changes, the script plays, unsaved work stays."""
     session = viewer.session
     before = session.scene
     mesh, landmarks = stranger().write(tmp_path)
@@ -198,7 +198,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer, tmp_path):
 
 
 def test_a_head_is_opened_by_the_menu(viewer, tmp_path):
-    """The dialog asks for the mesh; its own landmarks are beside it; each kind is listed alone."""
+    """The dialog opens a mesh with the landmarks beside it; each kind of file is listed alone."""
     before = viewer.session.scene
     mesh, landmarks = stranger().write(tmp_path)
     landmarks = landmarks.rename(tmp_path / "stranger.landmarks.json")
@@ -214,16 +214,16 @@ def test_a_head_is_opened_by_the_menu(viewer, tmp_path):
 
 
 def written(path):
-    """A table of a jaw that opens within a second, and of an unknown column."""
+    """Write a table of a jaw that opens within a second, and an unknown column."""
     rows = [f"{k / 30:.4f},{k / 60:.4f},7" for k in range(31)]
     path.write_text("\n".join(["time,jawOpen,mood", *rows]), encoding="utf-8")
     return path
 
 
 def test_a_recording_is_dropped_played_and_saved_as_a_script(viewer, tmp_path):
-    """The window names its kind, and first asks about unsaved work; saving asks for a name.
+    """A dropped recording's kind is named; unsaved work leads to a question first.
 
-    The recording itself is never written.
+    Saving asks for a name, because the recording itself is never overwritten.
     """
     session = viewer.session
     take = written(tmp_path / "take.csv")
@@ -251,7 +251,7 @@ LONG_SCRIPT = "duration = 8.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy =
 
 @pytest.fixture(params=["null device", "no device"])
 def has_device(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> bool:
-    """A device that plays into nothing, or no device."""
+    """A device that plays silently, or no device."""
     is_there = request.param == "null device"
     found = [pytest.importorskip("miniaudio").Backend.NULL] if is_there else []
     monkeypatch.setattr(player, "backends", lambda: found)
@@ -260,7 +260,7 @@ def has_device(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) 
 
 @pytest.fixture
 def sound(viewer: Viewer, tmp_path: Path) -> Iterator[Path]:
-    """Half a second of silence, then noise; not yet in the window."""
+    """A sound of half a second of silence, then noise; not yet in the window."""
     samples = np.concatenate([np.zeros(8_000), noise(2.5)])
     (tmp_path / "s.toml").write_text(LONG_SCRIPT)
     viewer.session.work.open(load_script(tmp_path / "s.toml"))
@@ -269,7 +269,10 @@ def sound(viewer: Viewer, tmp_path: Path) -> Iterator[Path]:
 
 
 def test_a_sound_is_dropped_and_played(viewer, sound, has_device):
-    """It gets its own row, plays and pauses with the script; without a device no error appears."""
+    """A dropped sound has its own row, and plays and pauses with the script.
+
+    Without a device no error appears.
+    """
     session = viewer.session
     before = viewer.face.timeline.height()
     put(viewer, sound)
@@ -293,7 +296,7 @@ def test_a_sound_is_dropped_and_played(viewer, sound, has_device):
 
 
 def test_the_waveform_is_seen_and_scrubs(viewer, sound, has_device):
-    """Silence is a line, noise is wide; a press in it goes to that time, as in the ruler."""
+    """Silence is drawn as a line, noise as a band; a press in it goes to that time."""
     put(viewer, sound)
     viewer.face.time_axis.show_whole()
     viewer.messages.text = ""
@@ -318,7 +321,10 @@ def test_the_waveform_is_seen_and_scrubs(viewer, sound, has_device):
 
 
 def test_a_name_that_is_no_utf8(viewer, tmp_path):
-    """Dropped, saved, chosen and opened again: shown with its bytes escaped, never changed."""
+    """A file name that is no UTF-8 is shown escaped, and never changed.
+
+    The file is dropped, saved, chosen and opened again.
+    """
     session = viewer.session
     script = Path(os.fsdecode(os.fsencode(tmp_path) + b"/l\xe4cheln.toml"))
     script.write_text(SCRIPT)
@@ -346,7 +352,7 @@ def test_a_name_that_is_no_utf8(viewer, tmp_path):
 
 @pytest.mark.slow
 def test_a_known_head_needs_no_marking(viewer, tmp_path):
-    """A mesh with the vertices of a known head is shown with its muscles, without landmarks."""
+    """A mesh with the vertices of a known head is shown with muscles, without landmarks."""
     before = viewer.session.scene
     head = coarse_head()
     known = replace(stranger(), mesh=Mesh(head.vertices, head.faces), landmarks=head.landmarks)
@@ -361,7 +367,7 @@ def test_a_known_head_needs_no_marking(viewer, tmp_path):
 
 @pytest.mark.slow
 def test_a_known_head_that_does_not_fit_is_marked(viewer, tmp_path, monkeypatch):
-    """A dropped mesh whose topology names wrong landmarks opens marking, and a line says why."""
+    """A mesh of a known topology with wrong landmarks opens marking, and a line says why."""
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     other = stranger()
     write_topology(tmp_path, other, landmarks=list(range(68)))

@@ -1,4 +1,4 @@
-"""Files that outlast the window: settings, and unsaved work, which the next window offers."""
+"""Files kept after the window: settings, and unsaved work, which the next window offers."""
 
 import errno
 import json
@@ -32,7 +32,7 @@ GOOD = {"theme": "dark", "zoom": 1.5, "folds": {"Jaw": True}, "display": {"wiref
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    """The path of settings, in a folder of their own."""
+    """The path of settings, in a separate folder."""
     return tmp_path / "viewer.json"
 
 
@@ -63,7 +63,7 @@ def test_settings_come_back(tmp_path):
     ],
 )
 def test_one_value_gives_way_alone(path, where, value):
-    """It is reported by its name, and gets its default; all others stay."""
+    """A wrong value is reported by name and gets its default; all others stay."""
     stored = json.loads(json.dumps(GOOD))
     *tables, name = where.split(".")
     table = stored
@@ -91,7 +91,7 @@ def test_one_value_gives_way_alone(path, where, value):
     [b"", b"not json", b"[]", b"\xff\xfe\x00", 100_000 * b'{"display":', b" " * (2**20 + 1)],
 )
 def test_a_file_of_no_use_is_reported(path, content):
-    """All settings have their defaults; a line says so; the next write makes the file valid."""
+    """An unreadable file gives defaults and a line; the next write makes the file valid."""
     path.write_bytes(content)
     settings, complaint = load_settings(path)
     assert settings == Settings()
@@ -106,7 +106,10 @@ def test_a_file_of_no_use_is_reported(path, content):
 @NEEDS_A_SCREEN[1]
 @pytest.mark.parametrize("name", ["theme", "display"])
 def test_no_settings_keep_the_window_shut(path, name):
-    """With all values wrong, or an option that a refiner refuses, it opens with a message."""
+    """With all values wrong, or with an option that a refiner refuses, the window opens.
+
+    A message reports the fault.
+    """
     wrong = {name: "zzz" for name in vars(Settings())}
     if name == "display":
         wrong = {name: {"options": {"kahler": {"threshold_once": "x"}}}}
@@ -124,7 +127,7 @@ def test_no_settings_keep_the_window_shut(path, name):
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
 def test_a_full_disk_is_reported_and_closes_the_window(path, monkeypatch, caplog):
-    """One line on the terminal; unsaved work is left to the next window, the settings stay."""
+    """A full disk gives one line on the terminal; unsaved work and settings are kept."""
     path.write_text('{"theme": "dark"}')
     viewer = Viewer(script_for(None, "face"), SIZE, settings_path=path)
     with viewer:
@@ -151,7 +154,7 @@ ROOT = Path(__file__).parents[2]
 
 
 class Clock:
-    """Time that passes when `now` is set."""
+    """A clock that advances when `now` is set."""
 
     now = 0.0
 
@@ -167,14 +170,14 @@ def clock() -> Clock:
 
 @pytest.fixture
 def recovery(session: Session, tmp_path: Path, clock: Clock) -> Iterator[Recovery]:
-    """The recovery of a window that is open."""
+    """The recovery of an open window."""
     made = Recovery(tmp_path, session, clock)
     yield made
     made.close()
 
 
 def watch(recovery, clock):
-    """Let enough time pass for a change to be written."""
+    """Advance time until a change is written."""
     recovery.watch()
     clock.now += INTERVAL
     recovery.watch()
@@ -193,14 +196,14 @@ def found_by_next(folder, session):
 
 
 def leave(folder, session):
-    """Leave unsaved work of a window that then ends."""
+    """Leave unsaved work of a window that ends."""
     recovery = Recovery(folder, session)
     recovery.save()
     recovery.close()
 
 
 def test_work_is_written_soon_and_goes_when_it_is_undone(session, recovery, clock, tmp_path):
-    """Nothing at first; a pose a moment later, even during a drag; nothing after undo."""
+    """A pose is written soon after it is set, also during a drag; undo removes the file."""
     recovery.watch()
     assert recovery.due_in() == float("inf")
     assert not stored(tmp_path)
@@ -218,7 +221,7 @@ def test_work_is_written_soon_and_goes_when_it_is_undone(session, recovery, cloc
 
 
 def test_all_of_it_comes_back(session, recovery, tmp_path):
-    """A script with the present recording, to each digit, with the comments at its head."""
+    """A script with its current recording is recovered to each digit, with its comments."""
     session.set("jaw_open", 0.25)
     session.set_key()
     session.set("jaw_open", 1.0 / 3.0)
@@ -234,7 +237,7 @@ def test_all_of_it_comes_back(session, recovery, tmp_path):
 
 
 def test_a_found_file_stays_and_is_found_once(session, tmp_path):
-    """Changes, saves and discards leave it, and so does a window with the plane."""
+    """A found file survives changes, saves and discards, and a window with the plane."""
     session.set("jaw_open", 0.4)
     leave(tmp_path, session)
     assert found_by_next(tmp_path, Session(PlaneScene(), script_for(None, "plane"))) is None
@@ -251,7 +254,7 @@ def test_a_found_file_stays_and_is_found_once(session, tmp_path):
 
 
 def test_a_folder_that_takes_nothing_is_reported_once(session, clock):
-    """A message says that work is not safe, and the window goes on."""
+    """A message says that work is not safe in a read-only folder, and the window continues."""
     recovery = Recovery(Path("/proc/none"), session, clock)
     session.set("jaw_open", 0.4)
     with pytest.raises(UserError, match=r"not kept safe: .*/proc/none"):
@@ -261,23 +264,23 @@ def test_a_folder_that_takes_nothing_is_reported_once(session, clock):
     recovery.close()
 
 
-# Real windows, real signals
+# Real windows, real signals.
 
 
 @pytest.fixture
 def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
-    """`risorius view`, with its own settings, and a face that was changed just now."""
+    """`risorius view` with its own settings, and a face changed just now."""
     process = subprocess.Popen(
         [sys.executable, "-m", "risorius", "view", "--size", "700x500"],
         cwd=ROOT, stderr=subprocess.PIPE, text=True,
         env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)}, start_new_session=True,
-        # Tests that run behind an `&` or `nohup` ignore signals, and so do their children.
+        # Tests started behind `&` or `nohup` ignore signals, and so do their children.
         preexec_fn=lambda: [signal.signal(n, signal.SIG_DFL) for n in (1, 2, 15)],
     )  # fmt: skip
     search = ["xdotool", "search", "--onlyvisible", "--name"]
 
     def is_posed() -> bool:
-        # Keys are lost until the window listens. The test waits for each answer: the next try
+        # Keys are lost until the window listens. The test waits for each answer: the next attempt
         # begins with "neutral", and a process that ended at that moment would leave no work to
         # recover.
         subprocess.run(["xdotool", "mousemove", "450", "200", "key", "n", "1", "m"], check=True)
@@ -304,7 +307,10 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
     "how", [pytest.param(signal.SIGHUP, marks=pytest.mark.slow), signal.SIGKILL]
 )
 def test_a_window_that_ended_is_recovered(at_work, tmp_path, how):
-    """It was stopped, or killed some seconds after the last change: a line names the file."""
+    """A window stopped, or killed some seconds after the last change, leaves its work.
+
+    The next window names the file in a line.
+    """
     folder = tmp_path / "risorius"
     if how == signal.SIGKILL:
         wait_for(lambda: stored(folder))
@@ -322,7 +328,10 @@ def test_a_window_that_ended_is_recovered(at_work, tmp_path, how):
 
 
 def test_pictures_of_persons_are_drawn_once(tmp_path, monkeypatch):
-    """They are stored for this version; those of another one are removed, broken ones ignored."""
+    """Pictures of persons are stored for this version; those of others are removed.
+
+    Broken ones are ignored.
+    """
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(portraits, "give_way", lambda _: None)
     stale = tmp_path / "risorius" / "portraits-0" / "coarse.png"

@@ -1,4 +1,4 @@
-"""Editing keys without a window: the effect of each change on a script, and on a session."""
+"""Edits of keys without a window: their effect on a script, and on a session."""
 
 import numpy as np
 import pytest
@@ -25,12 +25,12 @@ JOY = KeyPlace(POSES, 1.0)
 
 @pytest.fixture
 def hello() -> Script:
-    """Four poses, one of them with a name, and a blink."""
+    """Four poses, one with a name, and a blink."""
     return load_script(HELLO)
 
 
 def test_a_key_shows_just_the_face_that_was_set(hello, scene):
-    """At its time the script has the controls' values; the other poses stay."""
+    """At its time the new key has the controls' values; other poses stay."""
     limits = scene.limits
     wanted = limits.pose({"jaw_open": 0.4, "AU4_left": 0.2, "blink": 0.25})
     script = keyframes.keyed(hello, 2.12, wanted)
@@ -48,7 +48,7 @@ def test_a_key_shows_just_the_face_that_was_set(hello, scene):
 
 
 def test_a_key_in_a_recording(scene):
-    """In a script with tracks only, changed controls get a key; all do if none was changed."""
+    """In a script of tracks, changed controls get a key, or all if none was changed."""
     text = "[tracks]\njoy=[{time=0,value=0},{time=2,value=1,easing='linear'}]\n"
     script = parse_script(text + "jaw_open=[{time=0,value=0.5}]", source="take.toml")
     pose = scene.limits.pose
@@ -67,7 +67,7 @@ def test_a_key_in_a_recording(scene):
 
 
 def test_one_control_is_keyed_over_poses(hello, scene):
-    """A new track is 0 at the poses around the key; other controls and poses are unchanged."""
+    """A new track is 0 at the poses around its key; other controls and poses are unchanged."""
     wanted = scene.limits.pose({"jaw_open": 0.4})
     script = keyframes.keyed_alone(hello, 2.0, wanted, ["jaw_open"])
     assert script.poses == hello.poses
@@ -84,7 +84,7 @@ def test_one_control_is_keyed_over_poses(hello, scene):
 
 
 def test_a_key_at_a_pose_changes_that_pose(hello, scene):
-    """A control without a track goes into the pose; one with a track gets a key there."""
+    """At a pose, a control without a track is set in the pose, one with a track gets a key."""
     wanted = scene.limits.pose({"joy": 0.5, "blink": 0.75})
     script = keyframes.keyed_alone(hello, 1.0, wanted, ["joy", "blink"])
     assert [pose.time for pose in script.poses] == [pose.time for pose in hello.poses]
@@ -96,7 +96,7 @@ def test_a_key_at_a_pose_changes_that_pose(hello, scene):
 
 
 def test_a_blink_is_keyed_over_poses(session):
-    """Three keys of one control: the eye shuts and opens, and no other curve gets a key."""
+    """A blink is three keys of one control: the eye shuts and opens, other curves stay."""
     selection = KeySelection(session)
     before = session.script
     for time, value in ((2.0, 0.0), (2.2, 1.0), (2.4, 0.0)):
@@ -118,7 +118,7 @@ def test_a_blink_is_keyed_over_poses(session):
 
 
 def test_a_key_of_one_control_keeps_the_others_in_hand(session):
-    """*Key this* uses one control; another moved one stays as it is, without a key."""
+    """*Key this* keys one control; another moved control stays as it is, without a key."""
     selection = KeySelection(session)
     session.seek(2.0)
     session.set("jaw_open", 0.4)
@@ -133,7 +133,7 @@ def test_a_key_of_one_control_keeps_the_others_in_hand(session):
 
 
 def test_the_face_follows_an_edit_if_it_followed_the_script(session):
-    """If a key moves away from the playhead, the face follows; a pose by hand stays."""
+    """If a key moves away from the playhead, the face follows; a pose set by hand stays."""
     session.seek(1.0)
     assert session.values["joy"] == 1.0
     session.edit(keyframes.moved(session.script, Places.of(JOY), 0.5)[0])
@@ -144,7 +144,7 @@ def test_the_face_follows_an_edit_if_it_followed_the_script(session):
 
 
 def test_the_file_goes_with_its_script(session, tmp_path):
-    """Undo beyond the opening of another script restores the first one's file, too."""
+    """Undo beyond the opening of another script restores the first script's file, too."""
     own = session.file.path
     other = tmp_path / "other.toml"
     other.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")
@@ -162,7 +162,7 @@ def test_the_file_goes_with_its_script(session, tmp_path):
 
 
 def test_a_new_script_keeps_the_face(session):
-    """The pose made by hand becomes the new script's first key; undo restores the old script."""
+    """A pose set by hand becomes the new script's first key; undo restores the old script."""
     before = session.script
     session.set("jaw_open", 0.4)
     session.note()
@@ -176,7 +176,7 @@ def test_a_new_script_keeps_the_face(session):
 
 
 def test_a_new_script_asks_for_no_pose(session):
-    """The pose stays, still unsaved; a changed script leads to a question."""
+    """The pose stays unsaved in a new script; a changed script leads to a question."""
     question = Question(session)
     commands = ScriptCommands(session, FileDialogs(), question, lambda *_: None)
     session.set("jaw_open", 0.4)
@@ -193,7 +193,7 @@ def test_a_new_script_asks_for_no_pose(session):
 
 
 def test_losses_of_a_file_are_noticed(session):
-    """Changes by another program, and lost comments, are reported; a # in a title is not."""
+    """Changes by other programs and lost comments are reported; a # in a title is not."""
     path = session.file.path
     assert session.file.objection == ""
     session.work.save_script(path)
@@ -212,7 +212,7 @@ def test_losses_of_a_file_are_noticed(session):
 
 @given(amount=st.floats(-3.0, 3.0), choice=st.lists(st.booleans(), min_size=8, max_size=8))
 def test_raised_keys_stay_within_limits(amount, choice):
-    """Chosen keys go by the amount as far as they may, others and all times stay, and back."""
+    """Chosen keys are raised by the amount within limits; other keys and all times stay."""
     hello = load_script(HELLO)
     limits = Limits(dict.fromkeys(("joy", "jaw_open", "blink"), (0.0, 1.0)))
     everything = sorted(keyframes.places_of(hello))

@@ -15,7 +15,7 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
 
 def test_escape_closes_one_thing_after_another(viewer):
-    """Menus, lists, the menu of the timeline, dialogs."""
+    """Escape closes menus, lists, the timeline's menu and dialogs, one at a time."""
     click(viewer, "tab Mechanism")
     x, y = middle(viewer, "keys")
     places = viewer.gui.places
@@ -35,14 +35,17 @@ def test_escape_closes_one_thing_after_another(viewer):
 
 
 def test_each_command_has_its_own_name_and_keys(viewer):
-    """No two commands share a label or a key."""
+    """No two commands share a name or a key."""
     doing = [each for each in viewer.face.commands if each.submenu is None]
     for each in ([command.label for command in doing], [key for c in doing for key in c.keys]):
         assert len(each) == len({*each})
 
 
 def test_the_manual_is_read_and_searched(viewer):
-    """F1 opens all pages; links and Ctrl+F find their places; it gets all keys until it closes."""
+    """F1 opens all pages of the manual, in which links and Ctrl+F find their places.
+
+    The manual gets all keys until it closes.
+    """
     press_keys(viewer, "F1")
     manual = viewer.context.manual
     assert manual.is_open
@@ -66,7 +69,7 @@ def test_the_manual_is_read_and_searched(viewer):
 
 
 def test_all_keys_are_listed(viewer):
-    """*Help > Keys and mouse* shows a section for each menu, made from the commands."""
+    """*Help > Keys and mouse* has a section for each menu, made from the commands."""
     click(viewer, "menu Help")
     click(viewer, "menu Help: Keys and mouse")
     assert viewer.context.manual.is_open
@@ -87,7 +90,7 @@ def test_the_citation_is_copied(viewer):
 
 
 def test_recent_files_are_opened_again(viewer, tmp_path):
-    """The latest is first; a missing one is reported in one line."""
+    """The latest file is first; a missing one is reported in one line."""
     paths = [tmp_path / f"{name}.toml" for name in ("first", "second")]
     for path in paths:
         path.write_text("duration = 1.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")

@@ -1,4 +1,4 @@
-"""The face has a life in the window without input; a user or a script takes control of it."""
+"""The face moves without input in the window, until a user or a script controls it."""
 
 from collections.abc import Iterator
 
@@ -15,7 +15,7 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("alive")]
 
 @pytest.fixture
 def alive(viewer: Viewer, calm: None) -> Iterator[None]:
-    """Life is switched on for one test."""
+    """Switch life on for one test."""
     viewer.settings.is_alive = True
     viewer.face.life.note_input()
     yield
@@ -37,7 +37,7 @@ def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer):
 
 
 def test_a_key_switches_it_off_and_on(viewer):
-    """A lets the face come to rest, so the window sleeps; A again wakes it."""
+    """A stops the face, so that the window can sleep; A again wakes it."""
     assert until(viewer, lambda: moved(viewer) > 0.1)
     press_keys(viewer, "a")
     assert not viewer.settings.is_alive
@@ -50,7 +50,7 @@ def test_a_key_switches_it_off_and_on(viewer):
 
 
 def test_it_sleeps_when_nobody_is_there(viewer):
-    """After some minutes without input the window rests; a key wakes the face."""
+    """After some minutes without input the window sleeps; a key wakes the face."""
     viewer.face.life.after(SLEEP_DELAY, is_held=False)
     assert not viewer.face.life.is_on
     assert until(viewer, lambda: viewer.schedule.is_idle)

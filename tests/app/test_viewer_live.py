@@ -1,4 +1,4 @@
-"""A live face in the real window: it is driven by `risorius send`, and by real clicks."""
+"""A live face in the real window, driven by `risorius send` and by real clicks."""
 
 import subprocess
 import sys
@@ -22,13 +22,13 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "silent")]
 
 
 class FrameClock:
-    """Counts seconds as the window shows frames: a frame lasts a twentieth at most.
+    """A clock that counts the window's frames, each as a twentieth of a second at most.
 
-    So a slow machine loses no face and misses no event.
+    A slow machine therefore loses no face and misses no event.
     """
 
     def __init__(self, frame):
-        """frame: the window's own function, which draws a frame."""
+        """frame: the window's function that draws a frame."""
         self._frame = frame
         self._now = 0.0
         self._last = time.perf_counter()
@@ -54,7 +54,7 @@ def clock(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> FrameClock:
 
 @pytest.fixture
 def silent(viewer: Viewer, clock: FrameClock) -> Iterator[None]:
-    """Listen to no sender before and after."""
+    """Listen to no sender before and after the test."""
     viewer.context.live.stop()
     viewer.context.live.wanted = Listening("livelink", port=0)
     yield
@@ -71,7 +71,7 @@ def listen(viewer):
 
 @contextmanager
 def sending(face, file):
-    """Another process sends a recording to the window in a loop."""
+    """Send a recording to the window from another process, in a loop."""
     words = ["send", file, "--loop", "--port", face.port]
     process = subprocess.Popen(
         [sys.executable, "-m", "risorius", *map(str, words)], stdout=subprocess.DEVNULL
@@ -84,13 +84,13 @@ def sending(face, file):
 
 
 def hold(viewer, clock, seconds, **channels):
-    """Send the same face with every frame of the window, at least this time and until it leads."""
+    """Send the same face in every frame, for at least this time and until it leads."""
     face = viewer.context.live.face
     end = clock() + seconds
     with Sender(LOOPBACK, face.port, "Ada") as sender:
 
         def leads():
-            """Whether that is enough; otherwise send it once more."""
+            """Whether the face leads and the time is over; otherwise send once more."""
             is_enough = clock() >= end and face.presence == 1.0
             if not is_enough:
                 sender.send(channels)
@@ -100,7 +100,7 @@ def hold(viewer, clock, seconds, **channels):
 
 
 def write_take(file, **channels):
-    """A recording of two seconds in which the channels rise and stay."""
+    """Write a recording of two seconds in which the channels rise and stay."""
     lines = [",".join(("time", *channels))]
     for index in range(120):
         share = min(index / 30.0, 1.0)
@@ -111,7 +111,7 @@ def write_take(file, **channels):
 
 
 def test_a_recording_that_is_sent_moves_the_face(viewer, tmp_path):
-    """The mouth opens; when packets end it closes and the window is idle."""
+    """A sent recording opens the mouth; when packets end it closes and the window is idle."""
     face = listen(viewer)
     assert until(viewer, lambda: "live state" in viewer.gui.places)
     with sending(face, write_take(tmp_path / "take.csv", jawOpen=0.9, browInnerUp=0.5)):
@@ -128,7 +128,7 @@ def test_a_recording_that_is_sent_moves_the_face(viewer, tmp_path):
 
 
 def test_buttons_listen_calibrate_mirror_and_stop(viewer, clock):
-    """All are clicked in the panel; the calibrated neutral face no longer moves ours."""
+    """Buttons start, calibrate, mirror and stop; a calibrated neutral face moves nothing."""
     session = viewer.session
     click(viewer, "tab Live")
     click(viewer, "listen")
@@ -154,7 +154,7 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer, clock):
 
 
 def test_a_packet_wakes_an_idle_window(viewer):
-    """It sleeps without packets, and a packet wakes it at once."""
+    """The window sleeps without packets, and a packet wakes it at once."""
     face = listen(viewer)
     viewer.messages.text = ""
     assert until(viewer, lambda: viewer.schedule.is_idle)

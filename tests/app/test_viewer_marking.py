@@ -1,4 +1,4 @@
-"""Marking the 68 landmarks of a mesh: by real clicks in the window, and without one."""
+"""Marking of the 68 landmarks of a mesh: by clicks in the window, and without one."""
 
 import json
 import math
@@ -39,29 +39,29 @@ from .driving import (
     xdotool,
 )
 
-NEAR = 6.0 * METRES  # [m] the error of guesses for the built-in head's own shape
+NEAR = 6.0 * METRES  # [m], error of guesses on the built-in head's shape
 
 
 @pytest.fixture
 def mesh(tmp_path: Path) -> Path:
-    """A head in metres, z up."""
+    """A head in metres, with z up."""
     return stranger().write(tmp_path)[0]
 
 
 @pytest.fixture
 def marking(mesh: Path) -> Marking:
-    """Marking of the mesh, still empty."""
+    """The marking of the mesh, still empty."""
     return Marking(mesh, FileDialogs())
 
 
 def true_places():
-    """Places of its landmarks."""
+    """The places of its landmarks."""
     other = stranger()
     return other.mesh.vertices[other.landmarks]
 
 
 def mark_first(marking):
-    """Place the first five exactly, in the order of the questions."""
+    """Place the first five landmarks exactly, in the order of the questions."""
     for number in FIRST:
         assert marking.current == number
         marking.put(number, marking.placing.points(true_places()[number]))
@@ -75,7 +75,7 @@ def off(marking):
 
 
 def test_a_known_head_opens_without_marking(mesh, tmp_path, monkeypatch):
-    """`view --head MESH` fits it; if its landmarks do not fit, a line leads to marking."""
+    """`view --head MESH` fits a known head; if its landmarks do not fit, marking opens."""
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     opened = []
     monkeypatch.setattr(commands, "open_window", lambda *given, **_: opened.append(given))
@@ -94,7 +94,10 @@ def test_a_known_head_opens_without_marking(mesh, tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_half_done_marks_are_kept_and_continued(marking, tmp_path):
-    """null where nothing is marked: no head for `--landmarks`, but marking goes on from it."""
+    """Unmarked landmarks are saved as null; marking continues from such a file.
+
+    `--landmarks` refuses it.
+    """
     target = tmp_path / "half.json"
     for number in FIRST[:3]:
         marking.put(number, marking.placing.points(true_places()[number]))
@@ -119,7 +122,7 @@ def test_half_done_marks_are_kept_and_continued(marking, tmp_path):
     third.open(target)
     assert third.marks == again.marks and third.is_upright  # guessed points stay guessed
     third.undo()
-    assert not third.marks.places and not third.is_upright  # it may be turned again
+    assert not third.marks.places and not third.is_upright  # the head may be turned again
     third.undo(-1)
     assert third.marks == again.marks
     assert third.is_upright
@@ -144,7 +147,7 @@ def test_vertex_numbers_can_be_corrected(marking, tmp_path):
 
 
 def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path):
-    """The refusal comes before the user marks 68 points on it."""
+    """A mesh that cannot be a head is refused before the user marks 68 points."""
     mesh = tmp_path / "fan.obj"
     mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 2 0\nv 0 3 1\nf 1 2 3\nf 1 2 4\nf 2 1 5\n")
     with pytest.raises(UserError, match=r"fan\.obj: the mesh is not manifold"):
@@ -152,7 +155,7 @@ def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path):
 
 
 def test_pieces_beside_the_skin_may_be_anything(tmp_path):
-    """A card of hair without a proper surface does not prevent marking of the skin."""
+    """A card of hair without a valid surface does not prevent marking of the skin."""
     other = stranger()
     mesh = with_card(other.mesh)
     path, _ = other.write(tmp_path, vertices=mesh.vertices, faces=mesh.faces)
@@ -182,15 +185,15 @@ class TestInTheWindow:
         return viewer.marking_mode
 
     def place(self, viewer, point):
-        """Screen place of a point of the mesh."""
+        """Screen coordinates of a point of the mesh."""
         mode = self.mode(viewer)
         seen = mode.marking.placing.points(point[None])
         return on_screen(viewer, *places_in(mode.view.area, mode.view.camera, seen)[0])
 
     def face_it(self, viewer):
-        """Turn the camera to the face, which lies on its back: z is up in its file."""
+        """Turn the camera to the face, which lies on its back, because its file has z up."""
         mode = self.mode(viewer)
-        settle(viewer)  # the mesh gets its place in the window
+        settle(viewer)  # the mesh is placed in the window
         front = placing(dict(enumerate(true_places()))).inverse.vectors([0.0, 0.0, 1.0])
         x, y, z = mode.marking.placing.vectors(front)
         camera = mode.view.camera
@@ -207,7 +210,7 @@ class TestInTheWindow:
         assert until(viewer, lambda: self.mode(viewer).marking.marks.is_complete)
 
     def test_a_head_is_put_upright_before_anything_is_marked(self, viewer, mesh):
-        """Its file has z up; the mouse and one button turn it, and each turn can be undone."""
+        """A head with z up is turned by the mouse and a button; each turn can be undone."""
         drop(viewer, mesh)
         marking = self.mode(viewer).marking
         self.face_it(viewer)
@@ -232,7 +235,7 @@ class TestInTheWindow:
         assert axes() == approx(np.eye(3), abs=0.1)
 
     def test_a_mark_is_put_only_where_it_is_seen(self, viewer, mesh):
-        """A click into the open neck meets skin from behind: it is no mark, as a line says."""
+        """A click through the open neck onto the back of skin makes no mark, as a line says."""
         viewer.read(mesh)()
         mode = self.mode(viewer)
         mode.view.camera.orbit(180.0)
@@ -244,7 +247,7 @@ class TestInTheWindow:
         assert "There is no skin here" in viewer.messages.text
 
     def test_a_head_is_marked_from_the_first_click_to_the_picture(self, viewer, mesh, tmp_path):
-        """A drop, five clicks, one drag, undo and save; then capture reads the file."""
+        """A head is marked by a drop, five clicks, a drag, undo and save; capture draws it."""
         drop(viewer, mesh)
         marking = self.mode(viewer).marking
         self.mark_first(viewer)
@@ -268,7 +271,7 @@ class TestInTheWindow:
         assert number in marking.marks.by_hand
         press_keys(viewer, "Right")
         assert marking.current == ORDER[ORDER.index(number) + 1]
-        self.mode(viewer).view.camera.orbit(80.0, 0.0)  # this side view hides it
+        self.mode(viewer).view.camera.orbit(80.0, 0.0)  # hidden in this side view
         press_keys(viewer, "Left")
         settle(viewer)
         assert number == marking.current
@@ -282,7 +285,7 @@ class TestInTheWindow:
         assert len(viewer.session.scene.faces) == len(stranger().mesh.faces)
         image = tmp_path / "joy.png"
         marks = mesh.with_name("marked.json")
-        assert viewer.exporter.head.files == (mesh, marks)  # an avatar can be made of it
+        assert viewer.exporter.head.files == (mesh, marks)  # ready for an avatar
         options = ("--set", "joy", "--size", "160x160", "-o", image)
         words = ("capture", "--head", mesh, "--landmarks", marks, *options)
         result = CliRunner().invoke(command(), [str(word) for word in words])
@@ -291,11 +294,11 @@ class TestInTheWindow:
 
     @pytest.mark.slow
     def test_marks_are_not_lost_without_a_question(self, viewer, mesh):
-        """Leaving and closing ask, and so does a second mesh; saving as the answer goes on."""
+        """Leaving, closing and a second mesh ask before marks are lost; Save continues."""
         viewer.session.set("jaw_open", 0.5)
         viewer.read(mesh)()
         press_keys(viewer, "ctrl+w")
-        assert viewer.marking_mode is None  # nothing was marked, and the pose stays safe
+        assert viewer.marking_mode is None  # nothing was marked, and the pose is kept
         viewer.read(mesh)()
         self.mark_first(viewer)
         mode = viewer.marking_mode

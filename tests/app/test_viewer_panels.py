@@ -1,4 +1,4 @@
-"""The panels, by real events: search, comparisons, headings, small windows, dense screens."""
+"""Panels, by real events: search, comparisons, headings, small windows, dense screens."""
 
 import json
 import subprocess
@@ -47,7 +47,7 @@ def in_panel(viewer, *rows):
 
 
 def only_open(viewer, title):
-    """Fold all headings of the Mechanism panel but one, so that there is room for it."""
+    """Fold all headings of the Mechanism panel but one, to make room."""
     viewer.context.wanted_tab = "Mechanism"
     titles = ("Refinement", "Advanced", "Style", "Anatomy", "Milliseconds")
     viewer.settings.folds.update({each: each == title for each in titles})
@@ -55,7 +55,7 @@ def only_open(viewer, title):
 
 
 def seen_labels(viewer, page, origin):
-    """Whether each label of the window is in a picture with its lower left corner there."""
+    """Whether each label of the window is visible in a picture with its lower left corner."""
     seen = []
     for x, y, image in viewer.surface.labels:
         bottom = len(page) - (y - origin[1])
@@ -66,7 +66,10 @@ def seen_labels(viewer, page, origin):
 
 
 def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
-    """In the window and in a screenshot; none without a comparison or colours."""
+    """Both sides of a comparison have captions, and colours have a bar.
+
+    The window and a screenshot show them; without a comparison or colours there are none.
+    """
     assert not viewer.surface.labels
     only_open(viewer, "Style")
     click(viewer, "Colour by splits")
@@ -93,7 +96,7 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
 
 
 def test_any_look_stands_at_the_left(viewer):
-    """The mouse chooses it, beside the look at the right; the picture has both names."""
+    """The mouse chooses the left look of a comparison; the picture has both names."""
     viewer.settings.display = Display(compare="side by side")
     only_open(viewer, "Refinement")
     in_panel(viewer, ("Beside", "paper"))
@@ -108,7 +111,7 @@ def test_any_look_stands_at_the_left(viewer):
 
 
 def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
-    """Chosen by the mouse, it draws from the card, with the same picture; it can be set back."""
+    """The card's refiner, chosen by mouse, draws the same picture; it can be reset."""
     only_open(viewer, "Advanced")
     pictures = [viewer.context.stage.draw_image(viewer.face.view)]
     in_panel(viewer, ("Refiner", "kahler-gl"))
@@ -117,7 +120,7 @@ def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
     assert viewer.context.stage.refined.label == "kahler-gl"
     assert not viewer.messages.text
     assert np.array_equal(*pictures)
-    in_panel(viewer, ("scheme", "loop"))  # an option of its own, which is no part of the look
+    in_panel(viewer, ("scheme", "loop"))  # an option outside the look
     assert 'criterion "displacement" needs scheme="cubic"' in viewer.messages.text
     changed = viewer.settings.display
     click(viewer, "Reset all")
@@ -130,7 +133,7 @@ def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
 
 @pytest.mark.slow
 def test_persons_are_chosen_by_their_pictures(viewer):
-    """Each has its own picture, which a process draws; a click shows this person."""
+    """Each person has a picture, drawn by a process; a click shows this person."""
     viewer.context.wanted_tab = "Scene"
     click(viewer, "Person")
     people = [name for name in viewer.gui.places if name.startswith("Person: ")]
@@ -138,7 +141,7 @@ def test_persons_are_chosen_by_their_pictures(viewer):
     assert len(people) == 2 + len(NAMED) + 20
     portraits = viewer.context.portraits
     first = ("built-in", "coarse", "ada")
-    # The process has a low priority, so others run first.
+    # The process has low priority, so others run first.
     assert until(viewer, lambda: all(map(portraits.of, first)), 600.0)
     settle(viewer)
     shot = viewer.surface.read()
@@ -155,7 +158,7 @@ def test_persons_are_chosen_by_their_pictures(viewer):
 
 
 def test_pictures_of_persons_come_while_another_panel_is_open(viewer):
-    """They are received, and the window comes to rest."""
+    """Pictures of persons arrive while another panel is open, and the window becomes idle."""
     viewer.context.wanted_tab = "Scene"
     settle(viewer)
     viewer.context.wanted_tab = "Face"
@@ -165,7 +168,10 @@ def test_pictures_of_persons_come_while_another_panel_is_open(viewer):
 
 
 def test_the_scene_has_light_lens_and_hair(viewer):
-    """The mouse sets them; a reset of the mechanism keeps them, F restores only the lens."""
+    """The mouse sets light, lens and hair; a reset of the mechanism keeps all three.
+
+    F resets only the lens.
+    """
     viewer.context.wanted_tab = "Scene"
     settle(viewer)
     whole = viewer.context.stage.draw_image(viewer.face.view).astype(int)
@@ -195,7 +201,10 @@ def test_the_scene_has_light_lens_and_hair(viewer):
 
 
 def test_the_number_pad_looks_from_all_sides(viewer):
-    """Exactly, and about the same point from as far; Alt does where there is no number pad."""
+    """Keys of the number pad set exact views of the same point from the same distance.
+
+    Alt and a digit do the same without a number pad.
+    """
     camera = viewer.face.view.camera
     place = camera.distance, camera.target.tolist()
     for keys, yaw, pitch in (
@@ -214,7 +223,7 @@ def test_the_number_pad_looks_from_all_sides(viewer):
 
 
 def test_a_key_shows_the_muscles_as_capture_draws_them(viewer):
-    """U switches them on and off; afterwards the picture is as before."""
+    """U switches the muscles on and off; afterwards the picture is as before."""
     settle(viewer)
     usual = viewer.context.stage.draw_image(viewer.face.view).astype(int)
     press_keys(viewer, "u")
@@ -236,7 +245,7 @@ def test_a_key_shows_the_muscles_as_capture_draws_them(viewer):
 
 
 def test_headings_stay_folded(viewer):
-    """A folded heading is folded the next time; a search only unfolds it meanwhile."""
+    """A folded heading stays folded in the next window; a search unfolds it for its duration."""
     click(viewer, "Expressions")
     assert "joy" not in viewer.gui.places
     click(viewer, "Jaw")
@@ -250,7 +259,7 @@ def test_headings_stay_folded(viewer):
 
 
 def test_the_panel_can_be_made_wider(viewer):
-    """Its edge follows the mouse, but the picture keeps more than half of the window."""
+    """The panel's edge follows the mouse; the picture keeps more than half of the window."""
     left, top, _, height = viewer.face.view.area
     drag_and_release(viewer, on_screen(viewer, left - 1, top + 0.5 * height), (-90, 0))
     assert viewer.face.view.area[0] == approx(left - 90, abs=3)
@@ -262,7 +271,7 @@ def test_the_panel_can_be_made_wider(viewer):
 
 @pytest.mark.parametrize("zoom", [1.0, 3.0])
 def test_everything_stays_inside_its_panel(viewer, zoom):
-    """For any size of text, no button is cut off and no panel hides the picture."""
+    """For any text size, no button is cut off, and no panel hides the picture."""
     try:
         viewer.settings.zoom = zoom
         settle(viewer)
@@ -280,7 +289,7 @@ def test_everything_stays_inside_its_panel(viewer, zoom):
 
 
 def test_any_size_can_be_drawn(viewer):
-    """Made tiny, flat, and large again while the face moves: it goes on, and nothing explodes."""
+    """A window made tiny, flat, and large again while the face moves continues to draw."""
     import glfw
 
     before = viewer.face.view.area
@@ -299,11 +308,11 @@ def test_any_size_can_be_drawn(viewer):
 
 
 def test_what_is_not_keyed_is_read_in_a_small_window(viewer):
-    """The line is shown in full; without room a script's name is left out, not cut."""
+    """The status line is shown in full; without room a script's name is left out, not cut."""
     import glfw
 
     def shown(*size):
-        """Ends of the line below the timeline: left and right, None if it is left out."""
+        """Width of the status line below the timeline."""
         glfw.set_window_size(viewer.surface.handle, *size)
         settle(viewer)
         left, _, right, _ = viewer.gui.places.get("status", (0.0,) * 4)
@@ -322,7 +331,7 @@ def test_what_is_not_keyed_is_read_in_a_small_window(viewer):
 
 @pytest.mark.slow
 def test_a_dense_screen_has_everything_twice_as_large(viewer):
-    """At a content scale of 2, text, sliders and lines are doubled, and the mouse still hits."""
+    """At a content scale of 2, text, sliders and lines are doubled; the mouse still hits."""
     left, top, right, bottom = viewer.gui.places["Neutral"]
     result = subprocess.run(
         [sys.executable, "-m", "tests.app.dense_window"],
@@ -330,10 +339,10 @@ def test_a_dense_screen_has_everything_twice_as_large(viewer):
     )  # fmt: skip
     assert result.returncode == 0, result.stderr
     found = json.loads(result.stdout)
-    # Letters have widths of whole pixels, so at twice the size they are not exactly twice as wide.
+    # Letters have whole widths in pixels, so at twice the size they are not exactly twice as wide.
     assert found["button"] == approx([2.0 * (right - left), 2.0 * (bottom - top)], abs=6.0)
     assert found["line"] == 2.0
-    assert found["is_settled"]  # the first picture has the same arrangement as all others
+    assert found["is_settled"]  # the first picture has the final layout
     assert found["frame"] == found["window"] == [1200, 800]
     assert found["slid"] > 0.3
     assert found["dragged"] > 4.0

@@ -22,7 +22,10 @@ MAJOR = "zygomaticus_major_left"
 
 
 def test_recording_begins_at_the_playhead_and_keeps_the_rest(session):
-    """The script plays on; only moved controls are replaced, where they move; one undo suffices."""
+    """The script continues; only moved controls are replaced, where they move.
+
+    One undo is enough.
+    """
     before = session.script
     session.seek(1.5)
     line = session.toggle_recording()
@@ -56,7 +59,7 @@ EASINGS = st.sampled_from(["linear", "smooth", "hold", "ease-in", "ease-out"])
 
 @st.composite
 def scripts(draw):
-    """Poses, tracks, or both, of three controls; four seconds."""
+    """Scripts of poses, tracks, or both, with three controls and four seconds."""
     poses = [
         Pose(time, draw(st.dictionaries(st.sampled_from("abc"), SHARES)), draw(EASINGS))
         for time in sorted(draw(st.sets(TIMES, max_size=4)))
@@ -84,10 +87,9 @@ def cut_by(script, name, times, moment):
 )
 @settings(max_examples=100, deadline=None)
 def test_punching_in_changes_nothing_else(played, start, moves):
-    """Outside of the recording every key is the same, and so is each control not touched.
+    """Outside a recording, every key and every untouched control is the same, to the bit.
 
-    They are equal to the bit, except in an eased way that is cut: it is followed to an invisible
-    error.
+    An easing that the recording cuts is followed with an invisible error.
     """
     recorder = Recorder(played, start)
     held = dict[str, float]()
@@ -133,7 +135,7 @@ def test_punching_in_changes_nothing_else(played, start, moves):
 
 
 def paused(session):
-    """Begin to record at 1 s, move the jaw, and pause at 2 s."""
+    """A recording from 1 s, in which the jaw moves, paused at 2 s."""
     session.seek(1.0)
     session.toggle_recording()
     run(session, 30)
@@ -144,7 +146,7 @@ def paused(session):
 
 
 def test_moves_in_a_pause_stay_by_hand_when_it_ends(session):
-    """They are not part of the recording, as a line says, and can still be keyed."""
+    """Moves in a pause are not recorded, as a line says, and can still be keyed."""
     paused(session)
     session.set("AU4", 0.8)
     session.set("jaw_open", 0.1)
@@ -166,7 +168,7 @@ def test_moves_in_a_pause_stay_by_hand_when_it_ends(session):
 
 
 def test_a_recording_plays_back_to_the_same_positions(session, tmp_path):
-    """Record, save, load, replay: every vertex comes back, to a hundredth of a mm."""
+    """Recorded, saved, loaded and replayed, every vertex is within a hundredth of a mm."""
     session.work.begin_script()
     session.edit(replace(session.script, duration=1.0))
     session.toggle_recording()
@@ -192,7 +194,7 @@ def test_a_recording_plays_back_to_the_same_positions(session, tmp_path):
 
 
 def test_the_face_that_is_led_becomes_keys_poses_and_recordings(session, tmp_path):
-    """They store the visible face, not the sliders' values beneath it."""
+    """Keys, poses and recordings store the visible live face, not the sliders' values."""
     session.live_override.take({"jaw_open": 0.5}, 1.0)
     session.work.save_pose(tmp_path / "pose.toml")
     assert load_script(tmp_path / "pose.toml").at(0.0)["jaw_open"] == 0.5

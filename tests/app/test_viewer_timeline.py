@@ -38,7 +38,10 @@ REST = KeyPlace(POSES, 3.0)
 
 
 def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
-    """A drag goes to whole frames, the face follows, the file stores it, one undo reverts it."""
+    """A dragged key moves to whole frames, the face follows, the file stores it.
+
+    One undo reverts it.
+    """
     session = viewer.session
     before = session.script
     session.seek(1.0)
@@ -64,7 +67,7 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
 
 
 def test_a_click_selects_a_key_and_goes_there(viewer):
-    """The pose under the mouse is selected and shown; Shift adds another without moving there."""
+    """A click selects and shows a pose; Shift adds another without showing it."""
     session = viewer.session
     press(viewer, key_at(viewer, JOY))
     assert viewer.face.selection.places == {JOY}
@@ -82,7 +85,7 @@ def test_a_click_selects_a_key_and_goes_there(viewer):
 
 
 def test_a_box_selects_keys_that_then_move_together(viewer):
-    """A drag over empty space selects the keys inside, of poses and tracks; distances stay."""
+    """A drag over empty space selects poses and tracks' keys inside; they move together."""
     session = viewer.session
     x, y = key_at(viewer, JOY)
     right, low = key_at(viewer, KeyPlace("blink", 2.4))
@@ -102,7 +105,7 @@ def test_a_box_selects_keys_that_then_move_together(viewer):
 
 
 def test_the_face_becomes_a_key(viewer):
-    """Go to a time, move a slider, press Shift+K: a pose there shows exactly this face."""
+    """Shift+K makes a pose of the current face at the playhead."""
     session = viewer.session
     session.seek(2.0)
     open_jaw(viewer)
@@ -121,7 +124,7 @@ def test_the_face_becomes_a_key(viewer):
 
 
 def test_the_menu_of_a_bar_keys_one_control(viewer):
-    """A right click on a bar keys this control over the poses, deletes the key, and clears it."""
+    """The menu of a slider keys its control over the poses, deletes the key, and clears all."""
     viewer.session.seek(2.0)
     show_controls(viewer, "jaw open")
     drag_and_release(viewer, middle(viewer, "jaw_open"), (40, 0))
@@ -141,7 +144,7 @@ def test_the_menu_of_a_bar_keys_one_control(viewer):
 
 
 def test_the_ruler_scrubs_and_the_wheel_zooms(viewer):
-    """A drag in the ruler goes through frames; its end can be dragged; wheels zoom and scroll."""
+    """A drag in the ruler goes through frames; its end can be dragged; wheels zoom, scroll."""
     axis = viewer.face.time_axis
     session = viewer.session
     x, y = middle(viewer, "time")
@@ -169,7 +172,7 @@ def test_the_ruler_scrubs_and_the_wheel_zooms(viewer):
 
 
 def test_tracks_unfold_into_rows(viewer):
-    """A click on the arrow gives each track a row; its keys can then be selected alone."""
+    """A click on the arrow gives each track a row with selectable keys."""
     left = viewer.gui.places["keys"][0]
     rows = viewer.face.timeline.height()
     _, y = where_key(viewer, KeyPlace("blink", 2.0))
@@ -200,7 +203,7 @@ def scrub(viewer, time):
 
 
 def test_auto_key(viewer):
-    """With its button on, a released slider makes a key of its control; off, it makes none."""
+    """With auto key on, a released slider keys its control; off, it does not."""
     scrub(viewer, 2.0)
     click(viewer, "auto-key")
     value = open_jaw(viewer)
@@ -217,7 +220,7 @@ def test_auto_key(viewer):
 
 @pytest.fixture
 def curves(viewer: Viewer, own: Path) -> None:
-    """The timeline shows curves in place of rows."""
+    """Show curves in the timeline in place of rows."""
     viewer.settings.shows_curves = True
     settle(viewer)
 
@@ -228,19 +231,22 @@ def place_of(viewer, when, value):
 
 
 def at(viewer, when, value):
-    """Place of a time and a value on the screen."""
+    """Screen coordinates of a time and a value."""
     return on_screen(viewer, *place_of(viewer, when, value))
 
 
 def move(viewer, x, y):
-    """Move the mouse on, in two steps, and release."""
+    """Move the mouse in two steps, and release."""
     xdotool(viewer, "mousemove_relative", "--", round(x), round(y))
     xdotool(viewer, "mouseup", 1)
 
 
 @pytest.mark.usefixtures("curves")
 def test_a_key_is_dragged_in_time_and_value(viewer):
-    """Both at once, to frames and within limits; Escape reverts it."""
+    """A key in the graph moves in time and value, to frames and within limits.
+
+    Escape reverts it.
+    """
     session = viewer.session
     before = session.script
     drag(viewer, at(viewer, 1.0, 1.0), (-10, 10))
@@ -266,8 +272,8 @@ def test_easings_are_chosen_and_seen(viewer):
     times, drawn = script.posed_channel("joy").outline(0.0, 4.0, 200)
     played = [script.posed(when)["joy"] for when in times.tolist()]
     assert drawn == approx(played)
-    assert max(np.abs(np.diff(drawn))) == approx(0.4)  # it jumps
-    xdotool(viewer, "mousemove", *at(viewer, 2.9, 1.0))  # on the curve, which is now constant
+    assert max(np.abs(np.diff(drawn))) == approx(0.4)  # a jump
+    xdotool(viewer, "mousemove", *at(viewer, 2.9, 1.0))  # on the curve, which is constant here
     graph = viewer.face.timeline.dope_sheet.graph
     hit = graph.at(*place_of(viewer, 2.9, 1.0))
     assert hit.curve.name == "pose joy"
@@ -276,7 +282,7 @@ def test_easings_are_chosen_and_seen(viewer):
 
 @pytest.mark.usefixtures("curves")
 def test_handles_set_slopes(viewer):
-    """Handles bend the way to a selected key; face and file agree; undo and Escape work."""
+    """Handles change slopes at a selected key; face and file agree; undo and Escape work."""
     session = viewer.session
     before = session.script
     viewer.face.selection.places = Places.of(KeyPlace(POSES, 1.0))
@@ -285,7 +291,7 @@ def test_handles_set_slopes(viewer):
     first, last = (handle for handle in graph.handles() if handle.ends in ((0, 1), (1, 0)))
     assert first.slopes == last.slopes == (2.0, 0.0)  # ease-out
     drag(viewer, on_screen(viewer, *first.place), (0, 8))
-    move(viewer, 0, round(first.root[1] - first.place[1]))  # as low as the key before
+    move(viewer, 0, round(first.root[1] - first.place[1]))  # to the height of the previous key
     drag(viewer, on_screen(viewer, *last.place), (0, 8))
     move(viewer, 0, 12)
     pose = session.script.poses[1]

@@ -26,7 +26,7 @@ SHARES = st.integers(0, 100).map(lambda percent: percent / 100.0)
 
 @pytest.mark.parametrize("how", ["seek", "key", "play", "button"])
 def test_a_pose_that_is_let_go_is_reported_and_comes_back(session, how):
-    """Each way to discard it prints a line; one undo restores the pose at its own time."""
+    """Each way to discard a pose prints a line; one undo restores the pose at its own time."""
     session.seek(2.0)
     set_by_hand(session, jaw_open=0.6)
     assert session.differing == {"jaw_open"}
@@ -69,7 +69,7 @@ COMMANDS = {
 
 
 class Still(FaceScene):
-    """A face that needs no time."""
+    """A face that needs no time to settle."""
 
     def step(self, seconds):
         """Do nothing."""
@@ -78,7 +78,7 @@ class Still(FaceScene):
 @given(st.lists(st.tuples(st.sampled_from(sorted(COMMANDS)), SHARES), max_size=12))
 @settings(max_examples=60, deadline=None)
 def test_undo_gives_the_state_before(steps):
-    """After any commands, it goes back through all states, and forward again to the last."""
+    """After any commands, undo returns to each earlier state, and redo to the last."""
     session = Session(SHARED, load_script(HELLO))
 
     def state():
@@ -107,11 +107,11 @@ def test_undo_gives_the_state_before(steps):
 SHARED = Still()
 
 
-# Copies
+# Copies.
 
 
 def test_keys_are_pasted_in_another_script(session, scene):
-    """Copied keys are unchanged if their script changes; they are pasted at the playhead."""
+    """Copied keys do not change with their script, and are pasted at the playhead."""
     selection = KeySelection(session)
     assert not selection.copied
     selection.places = Places.of(KeyPlace(POSES, 1.0), KeyPlace("blink", 2.12))
@@ -129,7 +129,10 @@ def test_keys_are_pasted_in_another_script(session, scene):
 
 
 def test_detail_falls_once_and_does_not_flicker():
-    """Slow frames lower it to a level that fits; it rises by one, as a motion begins or later."""
+    """Slow frames lower the detail once to a level that fits.
+
+    It rises by one level when a motion begins, or later, so that it does not flicker.
+    """
     chosen = LevelOfDetail(is_software=False)
     assert chosen.detail == FULL_DETAIL
     for _ in range(PATIENCE_FRAMES):
@@ -156,7 +159,7 @@ def test_detail_falls_once_and_does_not_flicker():
     ],
 )
 def test_one_side_is_copied_to_the_other(session, source, copied):
-    """For all spellings of sides; eyes and jaw do not change."""
+    """One side is copied to the other in all spellings of sides; eyes and jaw stay."""
     middle = {"gaze_horizontal_left": 0.4, "jaw_sideways": 0.1, "AU61": 0.2}
     session.neutral()
     set_by_hand(session, AU12_left=0.5, mouthSmileRight=0.3, wink=0.2, **middle)
@@ -165,7 +168,7 @@ def test_one_side_is_copied_to_the_other(session, source, copied):
 
 
 def test_words_are_of_controls_that_there_are(session):
-    """Names, synonyms and filters of the table all have a meaning."""
+    """Names, synonyms and filters of the search table all refer to existing controls."""
     limits = session.controls.limits
     words = read_words()
 

@@ -1,4 +1,4 @@
-"""Worker processes: their results, their deaths, and no process left after a stop."""
+"""Worker processes: results, failures, and no process left after a stop."""
 
 import os
 import signal
@@ -28,7 +28,7 @@ list(run_all(working.write_slowly, [folder / "a", folder / "b"]))
 
 
 def run(work, *arguments, jobs=1, **options):
-    """The result of a piece of work."""
+    """The results of some work."""
     messages = list[Any]()
     WorkerPool(jobs).run(work, *arguments, on_message=messages.append, **options)
     return messages
@@ -44,7 +44,7 @@ def wait_until(is_so):
 
 
 def is_running(process):
-    """Whether a process runs, and is not only an ended one that awaits collection."""
+    """Whether a process runs, and is not an ended one that its parent has not collected."""
     try:
         state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:
@@ -53,7 +53,7 @@ def is_running(process):
 
 
 def test_every_share_is_done_in_a_process_of_its_own():
-    """Their messages arrive in order, and none of them is this process."""
+    """Each share is done in a process other than this one, and messages arrive in order."""
     shares = [[1, 2, 3], [10, 20], []]
     found = list(run_all(working.double, shares))
     assert sorted(number for number, _ in found) == [2, 4, 6, 20, 40]
@@ -64,10 +64,10 @@ def test_every_share_is_done_in_a_process_of_its_own():
 
 
 def test_what_dies_is_done_again(tmp_path):
-    """A killed process is replaced, and the log names the cause of death."""
+    """A killed process is replaced, and the log names the cause."""
     log = tmp_path / "log"
     other = tmp_path / ".risorius-0123456789ab"
-    other.mkdir()  # the work of another process
+    other.mkdir()  # as by another process
     assert run(working.die_once, tmp_path / "mark", log=log) == ["mark"]
     assert "risorius: the process of attempt 1 died of SIGKILL\n" in log.read_text()
     names = {path.name for path in tmp_path.iterdir()}
@@ -75,7 +75,10 @@ def test_what_dies_is_done_again(tmp_path):
 
 
 def test_what_kills_every_process_is_given_up(tmp_path):
-    """It ends after three attempts, in one line; for a fault the log has the place."""
+    """Work that kills every process ends after three attempts, in one line.
+
+    For a crash the log has the place.
+    """
     log = tmp_path / "log"
     with pytest.raises(UserError, match="died 3 times, the last time of SIGSEGV"):
         run(working.die, log=log)
@@ -92,7 +95,10 @@ def test_what_kills_every_process_is_given_up(tmp_path):
     ],
 )
 def test_what_is_raised_is_reported_and_not_tried_again(tmp_path, kind, message):
-    """In one line; a defect leaves a traceback in the log, a user's mistake does not."""
+    """An exception is reported in one line, and the work is not tried again.
+
+    A defect leaves a traceback in the log, a user's mistake does not.
+    """
     log = tmp_path / "log"
     with pytest.raises(UserError, match=message):
         run(working.fail, kind, log=log)
@@ -101,7 +107,7 @@ def test_what_is_raised_is_reported_and_not_tried_again(tmp_path, kind, message)
 
 
 def test_everything_that_is_printed_goes_to_its_log(tmp_path):
-    """Output of Python, of a C library and of child programs is all there."""
+    """Output of Python, of a C library and of child programs is in the log."""
     log = tmp_path / "log"
     run(working.talk, "nose", log=log)
     ways = ("as an error", "by Python", "by a child", "by a library")
@@ -109,7 +115,7 @@ def test_everything_that_is_printed_goes_to_its_log(tmp_path):
 
 
 def test_libraries_share_the_cores(monkeypatch):
-    """With more processes than cores each has one thread; a number set by the user is shared."""
+    """With more processes than cores, each has one thread; a user's number is divided."""
     monkeypatch.delenv("LP_NUM_THREADS", raising=False)
     assert run(working.library_threads, jobs=1024) == ["1"]
     monkeypatch.setenv("LP_NUM_THREADS", "7")
@@ -121,7 +127,7 @@ def test_libraries_share_the_cores(monkeypatch):
 
 
 def test_whoever_stops_early_leaves_no_process():
-    """The caller stops after the first message."""
+    """A caller that stops after the first message leaves no process."""
     running = run_all(working.double, [list(range(10_000))])
     process = next(running)[1]
     running.close()
@@ -134,7 +140,7 @@ def test_whoever_stops_early_leaves_no_process():
     [signal.SIGINT, signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)],
 )
 def test_nothing_runs_on_when_it_is_stopped(tmp_path, number):
-    """Ctrl-C, `kill`, and even a sudden end of the calling process stop all work."""
+    """Ctrl-C, `kill`, and a sudden end of the calling process stop all work."""
     process = started("-c", STOPPED, tmp_path)
     wait_until(lambda: len(list(tmp_path.glob(".risorius-*/?"))) == 2)
     threads = Path(f"/proc/{process.pid}/task").glob("*/children")

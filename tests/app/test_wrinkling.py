@@ -1,4 +1,4 @@
-"""Wrinkles that follow the simulated skin: when, where, in which direction, and on which heads."""
+"""Wrinkles that follow the simulated skin: when, where, in which direction, on which heads."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def wrinkling(scene: FaceScene) -> Compression:
 
 
 def amounts(scene, wrinkling, **pose):
-    """Strength of wrinkles in a settled pose."""
+    """Amounts of wrinkles in a settled pose."""
     scene.reset()
     scene.pose(pose)
     scene.step(SETTLED)
@@ -36,7 +36,7 @@ def forehead(scene):
 
 
 def test_nothing_wrinkles_at_rest(scene, wrinkling):
-    """They are exactly 0, so the picture without wrinkles is drawn."""
+    """At rest amounts are exactly 0, so that the picture without wrinkles is drawn."""
     found = amounts(scene, wrinkling)
     assert not found.any()
 
@@ -46,11 +46,11 @@ def test_nothing_wrinkles_at_rest(scene, wrinkling):
     ["AU4", *(pytest.param(f"AU{unit}", marks=pytest.mark.slow) for unit in (1, 6, 17, 18))],
 )
 def test_amounts_grow_with_the_muscle_and_never_jump(scene, wrinkling, name):
-    """In twenty steps no vertex moves by more than a fifth, and the sum only grows."""
+    """In twenty steps of a muscle, no amount changes by over a quarter; the sum only grows."""
     steps = [amounts(scene, wrinkling, **{name: share}) for share in np.linspace(0.0, 1.0, 41)]
     coarse, fine = (np.abs(np.diff(steps[::skip], axis=0)) for skip in (2, 1))
-    assert fine.max() < 0.65 * coarse.max() < 0.25  # half a step, half a change: there is no jump
-    assert coarse[0].max() < 0.06  # from nothing
+    assert fine.max() < 0.65 * coarse.max() < 0.25  # half a step gives half the change: no jump
+    assert coarse[0].max() < 0.06  # starting from 0
     sums = [step.sum() for step in steps]
     assert sums[-1] > 1.0
     assert (np.diff(sums) > -0.01 * sums[-1]).all()
@@ -70,7 +70,7 @@ def test_amounts_grow_with_the_muscle_and_never_jump(scene, wrinkling, name):
     ],
 )
 def test_each_wrinkles_where_it_does_in_people(scene, wrinkling, name, low, high, slot):
-    """There is a clear amount in its place, and almost none on a still forehead."""
+    """A unit has clear amounts at its place, and almost none on a still forehead."""
     found = amounts(scene, wrinkling, **{name: 1.0})
     assert found[region(scene, low, high), slot].max() > 0.3
     if name in ("AU6", "AU17", "AU18"):
@@ -78,7 +78,7 @@ def test_each_wrinkles_where_it_does_in_people(scene, wrinkling, name, low, high
 
 
 def test_furrows_of_age_are_pulled_flat():
-    """A kiss pulls the cheek over the fold beside the nose tight; its wrinkled lips keep theirs."""
+    """A kiss stretches the fold beside the nose flat; the wrinkled lips keep their furrows."""
     person = person_called("maria")
     aged = FaceScene(person)
     measure = Compression(aged)
@@ -94,7 +94,10 @@ def test_furrows_of_age_are_pulled_flat():
 
 
 def test_folds_of_lids_flatten_when_the_eyes_shut():
-    """The crease of an open eye crossed the shut lid as a dark band above a step."""
+    """The crease of an open eye flattens when the lids shut.
+
+    It crossed the shut lid as a dark band above a step.
+    """
     person = person_called("maria")
     faces = FaceScene(person)
     measure = Compression(faces)

@@ -19,12 +19,12 @@ def double(numbers: list[int], send: Send) -> None:
 
 
 def library_threads(send: Send) -> None:
-    """Number of threads allowed for software OpenGL."""
+    """The number of threads allowed for software OpenGL."""
     send(os.environ.get("LP_NUM_THREADS"))
 
 
 def die_once(mark: Path, send: Send) -> None:
-    """Die at the first call, when a file is almost complete."""
+    """Die in the first call, when a file is almost complete."""
     with written_atomically(mark.with_suffix(".txt")) as part:
         part.write_text("whole")
         if not mark.exists():
@@ -34,12 +34,12 @@ def die_once(mark: Path, send: Send) -> None:
 
 
 def die(send: Send) -> None:
-    """Die at every call, by a fault."""
+    """Die in every call by a crash."""
     os.kill(os.getpid(), signal.SIGSEGV)
 
 
 def fail(kind: str, send: Send) -> None:
-    """Raise the named error, or send an object that cannot be sent."""
+    """Raise the named error, or return an object that cannot be sent."""
     if kind == "user":
         raise UserError("the nose is too long")
     if kind == "defect":
@@ -58,7 +58,7 @@ def talk(word: str, send: Send) -> None:
 
 
 def write_slowly(target: Path, send: Send) -> None:
-    """Write a file for ever; its folder shows that writing has begun."""
+    """Write a file without end; its folder shows that writing has begun."""
     with written_atomically(target) as part:
         part.write_text("half")
         while True:

@@ -56,9 +56,7 @@ def test_wet_parts_have_a_crisp_highlight(renderer):
     dull, wet = frames
     assert dull.max() < 400
     assert wet.max() > 600
-    away = np.hypot(
-        *(np.indices(wet.shape) - 47.5)
-    )  # [pixels] from the middle; the outline is at 35
+    away = np.hypot(*(np.indices(wet.shape) - 47.5))  # [pixels]; the outline is at 35
     assert ((wet - dull) > 150)[away < 30.0].mean() < 0.015
 
 
