@@ -41,9 +41,9 @@ def read_light_map(path: Path) -> render.LightMap:
 
 
 def check_light_map(path: Path) -> None:
-    """Read a file's header; UserError unless it is a map of light, twice as wide as high.
+    """Raise UserError unless a file is a light map, twice as wide as high.
 
-    No memory is reserved for pixels.
+    Only the header is read, so no memory is reserved for pixels.
     """
     if path.suffix.lower() not in LIGHT_SUFFIXES:
         raise UserError(f"{path}: is no map of light; give a file {' or '.join(LIGHT_SUFFIXES)}")

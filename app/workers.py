@@ -30,7 +30,7 @@ from .stopping import cleaned_up_if_stopped, handle_signals
 from .text import as_text, in_one_line
 
 Send = Callable[[object], None]  # sends a message to the process that started the work
-ATTEMPTS = 3  # at a piece of work, if its process dies
+ATTEMPTS = 3  # number of attempts at a piece of work whose process dies
 GRACE = 5.0  # [s] for a process to clean up before it is killed
 
 
@@ -81,7 +81,10 @@ class Worker:
             self.process.stdin.flush()
 
     def messages(self) -> Iterator[Any]:
-        """Yield messages of the work; UserError for an error, DiedError if the process died."""
+        """Yield messages of the work.
+
+        Raises UserError for an error in the work, and DiedError if the process died.
+        """
         while True:
             try:
                 kind, content = pickle.load(self._answers)

@@ -43,7 +43,10 @@ class Job:
 
 
 def lines_of(path: Path) -> Iterator[tuple[int, str]]:
-    """Yield number and text of each line with a command; UserError for an unreadable file."""
+    """Yield number and text of each line with a command.
+
+    Raises UserError for an unreadable file.
+    """
     text = read_text(path, what="list", longest=64 << 20)  # 64 MiB
     for number, line in enumerate(text.splitlines(), 1):
         stripped = line.strip()
@@ -52,7 +55,10 @@ def lines_of(path: Path) -> Iterator[tuple[int, str]]:
 
 
 def words_of(text: str) -> list[str]:
-    """Split a line into words as a shell does; UserError for an open quotation mark, or NUL."""
+    """Split a line into words as a shell does.
+
+    Raises UserError for a quotation mark without its partner, and for NUL.
+    """
     if "\0" in text:
         raise UserError("holds a NUL character, which no name of a file can have")
     try:

@@ -93,7 +93,7 @@ def _framing(scene: Scene, view: str) -> render.OrbitCamera:
 class CaptureOptions:
     """Options for the capture of a script."""
 
-    size: tuple[int, int] = (1280, 720)  # of the whole picture [pixels]
+    size: tuple[int, int] = (1280, 720)  # size of the whole picture [pixels]
     frames_per_second: float = 30.0
     refinement: Refinement = Refinement()  # noqa: RUF009 - frozen
     beside: tuple[Refinement, ...] = ()  # comparisons, on the left
@@ -102,7 +102,7 @@ class CaptureOptions:
     is_turntable: bool = False  # the camera circles the scene once during the film
     span: tuple[float, float] | None = None  # [s] of the visible part of the script; None: all
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
-    tone: float | None = None  # of the skin [deg]; None: the tone of the head
+    tone: float | None = None  # tone of the skin [deg]; None: that of the head
     anatomy: AnatomyView = SKIN_ALONE
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in head

@@ -98,7 +98,7 @@ class Soundtrack:
     begin: float = 0.0
 
     def options(self, coding: str) -> list[str]:
-        """Return ffmpeg's options for the sound as its second input, after the frames."""
+        """Return ffmpeg's options for the sound; the frames must be the first input."""
         source = sound_input(self.file, self.seconds, self.begin)
         return [*source, "-map", "0:v", "-map", "1:a:0", *coding.split(), *sound_form()]
 
@@ -151,7 +151,7 @@ class Encoder:
             raise self._failure() from None
 
     def finish(self) -> None:
-        """Wait until the file is complete; UserError if it is not."""
+        """Wait until the file is complete; raise UserError if ffmpeg fails."""
         self._frames.close()
         if self._process.wait():
             raise self._failure()

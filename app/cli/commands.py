@@ -62,9 +62,10 @@ class Live:
     )
 
     def listening(self, gains: tuple[str, ...], mirror: bool) -> Listening | None:
-        """Return where to listen, or None without --live; UserError for options that need --live.
+        """Return where to listen, or None without --live.
 
-        gains: factors of channels, as "NAME=x". mirror: whether to swap left and right.
+        gains: factors of channels, as "NAME=x". mirror: whether to swap left and right. Raises
+        UserError if another option needs --live.
         """
         if self.live is None:
             source = click.get_current_context().get_parameter_source

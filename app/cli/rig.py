@@ -77,7 +77,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     """Make an avatar of HEAD: its own vertices, with named shapes.
 
     HEAD is a file, or the number or name of a person; by default it is the built-in head. Lines on
-    the error stream report the role of each piece of the file, and the errors of sums of shapes.
+    the error stream report the role of each piece of the file, and errors of combined shapes.
     """
     from ..rig.avatar import RigRequest, avatar_of
     from ..rig.writing import write_avatar

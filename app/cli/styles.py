@@ -30,7 +30,10 @@ class Words:
     shares: tuple[str, ...]
 
     def read(self, settings: Sequence[str]) -> dict[str, Any]:
-        """Return the value of each name that is set, True for a flag; UserError for other words."""
+        """Return the value of each name that is set, True for a flag.
+
+        Raises UserError for any other word.
+        """
         values: dict[str, Any] = {}
         for word in ",".join(settings).split(",") if settings else ():
             name, equals, text = word.partition("=")

@@ -31,7 +31,7 @@ class Limits(dict[str, tuple[float, float]]):
         super().__init__(limits)
         self.place = {name: place for place, name in enumerate(limits)}
         self._low, self._high = np.array([*limits.values()], np.float64).reshape(-1, 2).T
-        self.places = functools.lru_cache(256)(self._places)  # for this many sets of names
+        self.places = functools.lru_cache(256)(self._places)  # keeps this many sets of names
 
     def _places(self, names: tuple[str, ...]) -> Places:
         """Return the indices of controls, shape (n,). Raises UserError for an unknown name."""
@@ -54,7 +54,7 @@ class Limits(dict[str, tuple[float, float]]):
     def posed(
         self, places: Places, sums: Floats64, over: ControlValues | None = None
     ) -> ControlValues:
-        """Do the same as `pose` for controls by their indices; places and sums have shape (n,)."""
+        """Do the same as `pose`, but with indices of controls; places and sums have shape (n,)."""
         numbers = np.zeros(len(self)) if over is None else over.numbers.copy()
         numbers[places] = self.cut_off(sums, places)
         return ControlValues(self, numbers)

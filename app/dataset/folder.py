@@ -113,7 +113,7 @@ class SetFolder:
                     "folder"
                 )
 
-    def there(self) -> set[int]:
+    def numbers(self) -> set[int]:
         """The numbers of the samples with a .json, here or in a shard."""
         shards = map(read_shard, self.path.glob(PATTERN))
         packed = {number for shard in shards if shard for number in shard.places}
@@ -124,7 +124,7 @@ class SetFolder:
 
     def _has_samples(self) -> bool:
         """Whether there is a sample, or a shard with readable samples."""
-        return bool(self.there()) or any(self.path.glob(PATTERN))
+        return bool(self.numbers()) or any(self.path.glob(PATTERN))
 
     def has(self, index: int) -> bool:
         """Whether all files of a sample exist and are complete, by the lengths in its .json."""

@@ -16,7 +16,7 @@ from .folder import SetFolder
 from .packing import Packing
 from .request import SetRequest
 from .sampling import draw
-from .sharing import Brought, Share, made_on_cluster, make_samples
+from .sharing import MadeSample, Share, made_on_cluster, make_samples
 from .summary import card_of, write_index
 
 
@@ -78,7 +78,7 @@ def make_set(
 
 def _check(folder: SetFolder, numbers: range) -> None:
     """Raise UserError if a folder already has samples with other numbers."""
-    there = folder.there()
+    there = folder.numbers()
     if there <= set(numbers):
         return
     first = min(*there, numbers.start)
@@ -109,7 +109,7 @@ def _shares(request: SetRequest, missing: Sequence[int], each: int) -> list[Shar
 
 
 def _put_in_place(
-    folder: SetFolder, missing: Iterable[int], arriving: Iterator[Brought]
+    folder: SetFolder, missing: Iterable[int], arriving: Iterator[MadeSample]
 ) -> Iterator[tuple[int, int]]:
     """Yield number and size [bytes] of each missing sample, after its files are in place."""
     left = set(missing)

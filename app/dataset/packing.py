@@ -17,7 +17,7 @@ class Packing:
     """The shards of a data set."""
 
     def __init__(self, folder: SetFolder, size: int, numbers: range) -> None:
-        """size: samples in a shard; shard k begins at number k * size. numbers: of all samples."""
+        """size: samples in a shard; shard k begins at number k * size. numbers: all numbers."""
         self._folder = folder
         self._size = size
         self._numbers = numbers

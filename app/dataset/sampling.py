@@ -20,7 +20,7 @@ from ..motion.life import HEAD_RANGES
 from .degrading import Degradation
 from .table import BLINK, LETTERS, PERSONS, SampleTable, Shares, paired_units
 
-MOST_UNITS = 7  # of a mixture
+MOST_UNITS = 7  # largest number of units in a mixture
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,7 @@ class Share:
 
 
 @dataclass(frozen=True)
-class Brought:
+class MadeSample:
     """A finished sample, and its size [bytes].
 
     files: name -> content of the files, if they are sent back; else empty.
@@ -50,7 +50,7 @@ class Brought:
 
 
 def make_samples(share: Share, send: Send) -> None:
-    """Make the missing samples of a share, and pass a `Brought` to `send` after each sample."""
+    """Make the missing samples of a share, and pass a `MadeSample` to `send` after each sample."""
     request = share.request
     here = version("risorius")
     if request.version != here:
@@ -70,7 +70,7 @@ def make_samples(share: Share, send: Send) -> None:
             size = 0
             if not folder.has(number):  # an earlier process may have made it and died
                 size = folder.write_sample(number, studio.shoot(number).save)
-            send(Brought(number, size, {} if is_seen else _taken(folder, number)))
+            send(MadeSample(number, size, {} if is_seen else _taken(folder, number)))
 
 
 def _taken(folder: SetFolder, number: int) -> dict[str, bytes]:
@@ -83,7 +83,7 @@ def _taken(folder: SetFolder, number: int) -> dict[str, bytes]:
 
 def made_on_cluster(
     folder: SetFolder, shares: Sequence[Share], scheduler: str
-) -> Iterator[Brought]:
+) -> Iterator[MadeSample]:
     """Let a Dask cluster make samples, and yield them; raise UserError at the first failure."""
     if not shares:
         return
@@ -99,11 +99,11 @@ def made_on_cluster(
             yield from result
 
 
-def _make_on_worker(pool: WorkerPool, share: Share) -> list[Brought] | str:
+def _make_on_worker(pool: WorkerPool, share: Share) -> list[MadeSample] | str:
     """Make a share in a process of a Dask worker; return the samples, or the text of an error."""
-    made: dict[int, Brought] = {}  # a process that died may have sent some of them already
+    made: dict[int, MadeSample] = {}  # a process that died may have sent some of them already
 
-    def keep(sample: Brought) -> None:
+    def keep(sample: MadeSample) -> None:
         made[sample.number] = sample
 
     try:

@@ -206,7 +206,7 @@ def _camera_of(scene: FaceScene, view: SampleCamera, size: tuple[int, int]) -> r
         np.vstack([scene.positions, rest]), view="front", field_of_view=view.field_of_view
     )
     camera.orbit(view.yaw, view.pitch)
-    margin = 0.03  # of the picture, free on each side at zoom 1; the neck's end lies outside
+    margin = 0.03  # share of the picture, free on each side at zoom 1; the neck ends outside
     camera.fit(scene.positions[head], margin)
     camera.zoom(view.zoom)
     camera.pan(*view.shift)

@@ -13,7 +13,7 @@ from typing import Any
 from .labels import by_number
 from .request import SetRequest
 
-THERE = 0.05  # least value of a unit that counts as present: a quarter of intensity A
+LEAST_PRESENT = 0.05  # least value of a unit that counts as present: a quarter of intensity A
 
 
 @dataclass
@@ -43,7 +43,7 @@ def write_index(
             units = sample["action_units"].items()
             counts.kinds[sample["kind"]] += 1
             counts.persons[sample["person"]["number"]] += 1
-            counts.units.update(name for name, value in units if value >= THERE)
+            counts.units.update(name for name, value in units if value >= LEAST_PRESENT)
     return counts
 
 
@@ -75,7 +75,7 @@ def card_of(request: SetRequest, numbers: range, counts: Counts) -> str:
         else request.arguments,
         persons=persons,
         samples_each=samples / persons,
-        there=THERE,
+        least=LEAST_PRESENT,
         kinds=_table("kind", counts.kinds.most_common(), samples),
         units=_table("action unit", units, samples),
     )

@@ -99,7 +99,7 @@ class SampleLight:
 
 @dataclass(frozen=True)
 class LightFiles:
-    """The user's light maps, of which each sample has one; without maps it has a table's light."""
+    """The user's light maps, which replace the lights of the table."""
 
     paths: tuple[Path, ...] = ()
 
@@ -171,7 +171,10 @@ def laid_over(picture: Image, premultiplied: Image) -> Image:
 
 
 def light_files_of(path: Path | None) -> LightFiles:
-    """Read the value of `--light`: a light map, a folder of them, or None; UserError otherwise."""
+    """Read the value of `--light`: a light map, a folder of them, or None.
+
+    Raises UserError for any other value.
+    """
     if path is None:
         return LightFiles()
     if not os.path.exists(path):
@@ -185,12 +188,15 @@ def light_files_of(path: Path | None) -> LightFiles:
             raise UserError(f"--light {path}: no map of light in it, {', '.join(LIGHT_SUFFIXES)}")
         for each in paths:
             check_light_map(each)
-    _light_map(paths[0])  # other maps are read when they are drawn: many would take minutes
+    _light_map(paths[0])  # other maps are read later, because many would take minutes
     return LightFiles(paths)
 
 
 def backgrounds_of(text: str | None) -> Backgrounds:
-    """Read the value of `--background`: a colour, a folder, or None; UserError otherwise."""
+    """Read the value of `--background`: a colour, a folder of pictures, or None.
+
+    Raises UserError for any other value.
+    """
     if text is None:
         return Backgrounds()
     folder = Path(text)

@@ -122,7 +122,7 @@ class Sides(Record):
 
 @dataclass(frozen=True)
 class Eyes(Record):
-    """Shares of blinks and of looks into the camera; spread of the gaze in others [degrees]."""
+    """Shares of samples with a blink, or a look into the camera; spread of the gaze [degrees]."""
 
     blink: Share
     at_camera: Share

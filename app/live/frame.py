@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from ..recordings.names import NONSENSE, shape_of
 
-MOST_BYTES = 16384  # of a packet; known senders send at most about 3000
+MOST_BYTES = 16384  # in a packet that is read; known senders send at most about 3000
 
 
 @dataclass(frozen=True)

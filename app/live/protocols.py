@@ -83,7 +83,7 @@ def resolved(address: str) -> str:
             raise OSError("this is not a name")
         found = socket.getaddrinfo(address, None, socket.AF_INET, socket.SOCK_DGRAM)
         return str(found[0][4][0])
-    except (OSError, TypeError, ValueError) as error:  # also for names that are impossible
+    except (OSError, TypeError, ValueError) as error:  # Python's errors for impossible names
         reason = getattr(error, "strerror", None) or error
         raise UserError(
             f"address {in_one_line(repr(address))}: {reason}; write a computer's name, or its "

@@ -34,7 +34,7 @@ class Sender:
         self._socket.close()
 
     def send(self, channels: Mapping[str, float]) -> None:
-        """Send one frame; UserError if this fails."""
+        """Send one frame; raise UserError if this fails."""
         packet = packet_of(channels, subject=self._subject, frame=self._sent)
         self._sent += 1
         try:
@@ -52,7 +52,10 @@ class Sender:
         clock: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        """Send a take at its own speed, once or forever; UserError if no channel can be sent."""
+        """Send a take at its own speed, once or forever.
+
+        Raises UserError if the take has no channel that can be sent.
+        """
         channels = {name: values for name, values in take.channels.items() if name in CARRIED}
         if not channels:
             raise UserError(

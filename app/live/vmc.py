@@ -49,7 +49,7 @@ def parse(packet: bytes) -> LiveFrame | None:
     try:
         value_address = "/VMC/Ext/Blend/Val"
         apply_address = "/VMC/Ext/Blend/Apply"
-        most_depth = 4  # of nested bundles
+        most_depth = 4  # depth to which bundles may be nested
         read_bones = ("Neck", "Head", "LeftEye", "RightEye")
         for message in _messages(packet, most_depth):
             if not _KNOWN.match(message):

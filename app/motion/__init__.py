@@ -62,7 +62,7 @@ def play(
         values = script.values(time, scene.limits)
         if idle is not None and viewer is not None:
             opening = _opening_of_jaw(scene, values)
-            living = idle.beneath(moved, viewer, time, opening=opening)
+            living = idle.amounts(moved, viewer, time, opening=opening)
             values = scene.limits.pose(living, over=values)
         scene.take(values)
 

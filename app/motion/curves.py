@@ -57,7 +57,10 @@ def solved(
 
 
 def sided(scene: Scene, layer: str) -> tuple[str, ...]:
-    """Return a layer's controls, with sides in place of AU12; UserError without the layer."""
+    """Return the controls of a layer, in which AU12_left and AU12_right stand for AU12.
+
+    Raises UserError for a head without such controls.
+    """
     names = _muscles_of(scene, layer).layers.get(layer, ())
     if not names:
         raise UserError(f"{layer}: this head has no such controls; take the built-in head")
@@ -78,7 +81,7 @@ def _known(
     count: int,
     highest: Floats64,
 ) -> Floats64:
-    """Return the effective amounts of a layer's controls that were set, shape (N, L)."""
+    """Return the values that were set for a layer's controls, cut off, shape (N, L)."""
     set_to = {
         name: controls.get(name, np.zeros(count)) + controls.get(_without_side(name), 0.0)
         for name in names
@@ -127,7 +130,7 @@ def _rays(shares: Floats64) -> list[list[int]]:
     """Group controls with parallel shares (L, C), each group in order from weak to strong."""
     strengths = np.linalg.norm(shares, axis=1)
     lengths = np.maximum(np.outer(strengths, strengths), 1e-30)
-    does_the_same = shares @ shares.T / lengths > 1.0 - 1e-9  # with different strength
+    does_the_same = shares @ shares.T / lengths > 1.0 - 1e-9  # apart from their strength
     rays: list[list[int]] = []
     for control in np.argsort(strengths, kind="stable").tolist():
         for ray in rays:
@@ -141,7 +144,7 @@ def _rays(shares: Floats64) -> list[list[int]]:
 
 
 def _as_set(name: str, counted: Mapping[str, Floats64], tables: Layers) -> Floats64:
-    """Return the value to set; mouthClose, a share of jawOpen, is at most the value of jawOpen."""
+    """Return the value to set; for a share of another control, at most that control's value."""
     whole = tables.share_of.get(name)
     if whole is None:
         return counted[name]

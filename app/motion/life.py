@@ -106,9 +106,10 @@ class Life:
         if number < 2:
             return 0.0, 0.0
         random = self._random(PLACES, number)
-        away_share = 0.1  # of glances that leave the viewer
+        away_share = 0.1  # share of glances that leave the viewer
         if random.random() >= away_share:
-            face_spread = 1.1, 0.7  # of glances over the viewer's face, across and along
+            # Standard deviation of glances over the viewer's face, across and along [degrees].
+            face_spread = 1.1, 0.7
             across, along = np.clip(random.normal(0.0, face_spread), -2.0, 2.0)
             return float(across), float(along)
         least_away = 4.0
@@ -151,7 +152,7 @@ class Idle:
         self.scene = scene
         self._life = Life()
 
-    def beneath(
+    def amounts(
         self,
         moved: frozenset[str],
         viewer: Floats64,

@@ -111,7 +111,7 @@ def _plain(numbers: Floats64) -> Any:
 
 def gaze(face: Face, side: str) -> Floats64:
     """Return the direction of gaze of an eye, a unit vector in the scene, shape (3,)."""
-    forward = np.array([0.0, 0.0, 1.0])  # of a head and of an eye at rest
+    forward = np.array([0.0, 0.0, 1.0])  # direction of a head and of an eye at rest
     way: Floats64 = face.bone_transforms()[f"eye_{side}"][:3, :3] @ forward
     return way
 

@@ -107,7 +107,7 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
     neutral = _median_of_first(take, [n for n in names if n in HEAD_ANGLES], FIRST_SECONDS)
     if method is None and take.is_calibrated:
         return neutral
-    low_percentile = 5.0  # whose value counts as neutral
+    low_percentile = 5.0  # taken as the neutral value
     # Channels that are 0 in a face at rest, or are a share of another channel.
     never_neutral = ("eyeLook*", "eyeBlink*", "jawOpen", "mouthClose", "AU43*", "AU45*", "AU46*")
     for name in names:
@@ -158,7 +158,7 @@ def gains_of(
             default = value
             gains.clear()
             continue
-        name = shape_of(name) or angle_of(name) or name  # also as a file spells it: JawOpen
+        name = shape_of(name) or angle_of(name) or name  # NAME may be spelled as in a file: JawOpen
         fitting = _fitting(names, name)
         if not fitting and not _fitting(ARKIT, name):
             raise UserError(

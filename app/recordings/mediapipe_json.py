@@ -157,7 +157,8 @@ def _named_row(names: Sequence[str], row: Any) -> dict[str, Any]:
         beside = {name: cell for name, cell in cells.items() if not shape_of(name)}
         return beside | {"blendshapes": shapes}
     frame = dict(row)
-    weight_keys = ("weights", "values", "coefficients", "scores", *FACES)  # of one frame
+    # Names for the weights of one frame.
+    weight_keys = ("weights", "values", "coefficients", "scores", *FACES)
     for key in row:
         if _plain_name(key) in weight_keys and isinstance(row[key], list):
             del frame[key]

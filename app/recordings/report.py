@@ -38,7 +38,7 @@ class Report:
         wide = max((len(heading) for heading, _ in self.rows), default=0)
         shown = [f"{in_one_line(self.source)}: {self.recognised}"]
         width = 100  # [characters] of a line
-        most_lines = 3  # of one heading
+        most_lines = 3  # below one heading
         for heading, text in self.rows:
             start = f"  {heading:<{wide}}  "
             shown += textwrap.wrap(

@@ -22,7 +22,7 @@ def frame_times(
     has_stamps: whether the file has unusable time stamps, which an earlier note reports.
     """
     if rate is None:
-        default_rate = 30.0  # of most cameras
+        default_rate = 30.0  # [frames/s], the rate of most cameras
         rate = default_rate
         if count > 1:
             why = "Instead" if has_stamps else "No times are given:"

@@ -136,7 +136,7 @@ def _height(values: Floats64) -> float:
 
 
 def recognises_cues(document: Any) -> bool:
-    """Whether the document is one of Rhubarb Lip Sync."""
+    """Whether Rhubarb Lip Sync wrote the document."""
     return isinstance(document, dict) and isinstance(document.get("mouthCues"), list)
 
 
@@ -155,7 +155,7 @@ def read_cues(document: Any, source: str, request: TakeRequest) -> Take:
     starts = np.array([start for start, _ in cues])
     ends = np.append(starts[1:], max(end, starts[-1]))
     transition = 0.08  # [s] in which one mouth shape changes into the next
-    half = np.minimum((ends - starts) / 2.0, transition / 2.0)  # of a transition, for each cue
+    half = np.minimum((ends - starts) / 2.0, transition / 2.0)  # half of each cue's transition
     points: dict[float, str] = {float(starts[0]): cues[0][1]}
     for number, ((_, mouth), (start, following)) in enumerate(itertools.pairwise(cues)):
         turn = min(half[number], half[number + 1]) if number + 2 < len(cues) else half[number]

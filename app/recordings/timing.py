@@ -33,7 +33,7 @@ COMPACT_CLOCK = re.compile(  # ISO 8601 in its basic form
     r"(\d{4})(\d\d)(\d\d)T(\d\d)(\d\d)(\d\d(?:[.,]\d+)?)(Z|[-+]\d\d(?::?\d\d)?)?$",
     re.IGNORECASE,
 )
-DURATION = re.compile(  # of ISO 8601, in cells that are not numbers
+DURATION = re.compile(  # ISO 8601's durations
     r"(?P<sign>[-+]?)P(?=.*\d)(?:(?P<days>[\d.,]+)D)?"
     r"(?:T(?:(?P<hours>[\d.,]+)H)?(?:(?P<minutes>[\d.,]+)M)?(?:(?P<seconds>[\d.,]+)S)?)?$",
     re.IGNORECASE,
@@ -43,7 +43,7 @@ MEASURED = re.compile(
     re.IGNORECASE,
 )
 SHORTEST_STEP = 0.004  # [s] between frames; shorter steps are not seconds
-UNITS = (  # of time stamps: shortest step, longest step, unit [s]
+UNITS = (  # shortest step, longest step, unit [s] of time stamps, and its name
     (SHORTEST_STEP, 2.5, 1.0, "seconds"),
     (4.0, 2.5e3, 1e-3, "milliseconds"),
     (4e3, 2.5e6, 1e-6, "microseconds"),

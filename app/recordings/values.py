@@ -112,7 +112,7 @@ def intensities(units: Mapping[str, Floats64], notes: list[str]) -> dict[str, Fl
     found = of_percent(units, highest_unit, "Action units", notes)
     found = {name: np.where(np.abs(v) > highest_unit, np.nan, v) for name, v in found.items()}
     highest = max((float(np.nanmax(values, initial=0.0)) for values in found.values()), default=0.0)
-    most_overshoot = 1.05  # to which smoothed values of 0 to 1 reach
+    most_overshoot = 1.05  # largest smoothed value on a scale of 0 to 1
     if highest > most_overshoot:
         notes.append("Action units go from 0 to 5 and were divided by 5.")
         found = {name: values / 5.0 for name, values in found.items()}
@@ -147,7 +147,7 @@ def of_percent(
     if not channels:
         return {}
     values = np.array(list(channels.values()))
-    most_percent = 300.0  # of a shape; programs for animation allow more than 100
+    most_percent = 300.0  # largest value; programs for animation allow more than 100
     is_large = (values > most) & (values <= most_percent)
     moving = np.any(np.nan_to_num(values) != 0.0, axis=0)
     share_of_percent = 0.05  # if more rows have large values, these are percent, not errors

@@ -38,7 +38,7 @@ class DrawnMesh:
     plug_ins: tuple[PlugIn, ...] = ()  # code of other packages in the refiner
     wrinkles: bool = False  # whether the last frame has wrinkles
     resting: Callable[[], refine.Refiner] | None = None  # makes an equal refiner, refined at rest
-    _splits_at_rest: Unsigned8 | None = None  # of each edge, (E,)
+    _splits_at_rest: Unsigned8 | None = None  # for each edge, shape (E,)
 
     def refine(
         self,

@@ -181,7 +181,7 @@ def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any
             f"--option {settings[0]}: --refiner none draws the mesh as it is and has no options"
         )
     options: dict[str, Any] = {}
-    largest_number = 1e30  # in an option: single precision still holds it
+    largest_number = 1e30  # largest value of an option, which fits into single precision
     for setting in settings:
         name, equals, text = setting.partition("=")
         if not (name and equals and text):

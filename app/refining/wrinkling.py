@@ -28,8 +28,8 @@ Points = npt.NDArray[np.float64]
 class Wrinkling(NamedTuple):
     """Wrinkles of the skin in one frame: amounts, and directions of furrows.
 
-    amounts: of each vertex in its two slots for furrows, 0 to 1, shape (V, 2).
-    gradients: of texture coordinates u and v along the skin [1/mm], shape (U, 6).
+    amounts: depth of furrows in both slots of each vertex, 0 to 1, shape (V, 2).
+    gradients: gradients of texture coordinates u and v along the skin [1/mm], shape (U, 6).
     """
 
     amounts: Amounts
@@ -57,7 +57,7 @@ class Compression:
         return Wrinkling(amounts, self._gradients.measure(positions))
 
     def amounts(self, positions: Points) -> Amounts:
-        """Return the amount of each vertex in its two slots for furrows, 0 to 1, shape (V, 2).
+        """Return the depth of furrows in both slots of each vertex, 0 to 1, shape (V, 2).
 
         The amount begins and ends smoothly, so furrows do not pop up.
         """

@@ -30,7 +30,7 @@ from .easings import ALLOWED, Easing, easing_named, easing_names, hermite, share
 
 Easings = npt.NDArray[np.uint8]  # rows of easings.Easing
 
-DECIMALS = 6  # of numbers from sliders and clocks
+DECIMALS = 6  # to which numbers from sliders and clocks are rounded
 LONGEST_FILE = 2**25  # [bytes], about three quarters of an hour of a recorded face
 POSE_SECONDS = 1.0  # duration of a script that is one pose
 LARGEST = 86_400.0  # largest number in a script; as a time [s] it is a day
@@ -216,7 +216,7 @@ class Script:
 
     @functools.cached_property
     def names(self) -> tuple[str, ...]:
-        """All controls that the script moves: first of poses, then of tracks alone."""
+        """All controls that the script moves: first those of poses, then those only in tracks."""
         return tuple(dict.fromkeys((*self.posed_names, *self.tracks)))
 
     @functools.cached_property

@@ -42,7 +42,7 @@ def on_frame(time: float) -> float:
 
 
 def key_time(script: Script, time: float) -> float:
-    """Return the time for a new key: that of an old key within half a frame, or a frame's."""
+    """Return the time of a key within half a frame [s], or else of the nearest frame."""
     near = places_of(script).near(time, 0.5 * FRAME)
     return near.first if near else on_frame(time)
 

@@ -12,7 +12,7 @@ from risorius.jit import njit
 
 from . import DECIMALS, Channel
 
-TOLERANCE = 2e-3  # of a value: the largest, invisible error of a line between keys
+TOLERANCE = 2e-3  # largest error of a line between keys, which is invisible
 
 
 def thinned(times: npt.ArrayLike, values: npt.ArrayLike, tolerance: float = TOLERANCE) -> Channel:

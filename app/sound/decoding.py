@@ -31,7 +31,7 @@ PATIENCE = 300.0  # [s] for ffmpeg to read a file
 class Sound:
     """A decoded sound.
 
-    samples: (N, C) int16, where C is 1 or 2. rate: of each channel [samples/s].
+    samples: (N, C) int16, where C is 1 or 2. rate: samples of each channel in a second.
     """
 
     file: Path
@@ -152,7 +152,10 @@ def _samples(wav: bytes) -> npt.NDArray[np.int16]:
 
 
 def with_sound(script: Script, file: Path | None) -> Script:
-    """Return the script with another sound file, or unchanged for None; UserError if unusable."""
+    """Return the script with another sound file, or unchanged for None.
+
+    Raises UserError for an unusable file.
+    """
     if file is None:
         return script
     load_sound(file)

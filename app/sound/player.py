@@ -48,7 +48,10 @@ class _Part:
 
 
 class Player:
-    """Plays one sound on the device that the system prefers; NoDeviceError if there is none."""
+    """Plays one sound on the device that the system prefers.
+
+    Raises NoDeviceError if there is no device.
+    """
 
     def __init__(self, sound: Sound, clock: Callable[[], float] = time.perf_counter) -> None:
         """clock: counts seconds; the device's own clock may run a little faster or slower."""

@@ -137,7 +137,7 @@ def _look(scene, viewer):
     idle = Idle(scene)
     scene.reset()
     for _ in range(90):
-        scene.pose(idle.beneath(NOBODY, viewer, 0.0, is_still=True))
+        scene.pose(idle.amounts(NOBODY, viewer, 0.0, is_still=True))
         scene.step(1.0 / 60.0)
 
 
@@ -148,7 +148,7 @@ def test_what_others_move_is_left_to_them(scene):
     """
     viewer = np.array([100.0, 0.0, 900.0])
     idle = Idle(scene)
-    whole = idle.beneath(NOBODY, viewer, 5.6)
+    whole = idle.amounts(NOBODY, viewer, 5.6)
     assert {f"{LID}_left", "gaze_vertical_right", "head_roll"} <= whole.keys()
     for control, gone in (
         ("wink", LID),
@@ -156,10 +156,10 @@ def test_what_others_move_is_left_to_them(scene):
         ("AU61", "gaze"),
         ("head_roll", "head"),
     ):
-        left = idle.beneath(scene.moved_by(control), viewer, 5.6)
+        left = idle.amounts(scene.moved_by(control), viewer, 5.6)
         assert left and not any(name.startswith(gone) for name in left), control
         assert all(whole[name] == value for name, value in left.items())
-    smiling = idle.beneath(scene.moved_by("AU12"), viewer, 5.6)
+    smiling = idle.amounts(scene.moved_by("AU12"), viewer, 5.6)
     assert smiling == whole
 
 
@@ -167,13 +167,13 @@ def test_a_speaking_head_nods(scene):
     """A speaking head nods by at most two degrees, unless a script moves the head."""
     viewer = np.array([100.0, 0.0, 900.0])
     idle = Idle(scene)
-    silent = idle.beneath(NOBODY, viewer, 5.6)
+    silent = idle.amounts(NOBODY, viewer, 5.6)
     for opening, degrees in ((0.2, 0.8), (0.5, 2.0), (1.0, 2.0)):
-        nodding = idle.beneath(NOBODY, viewer, 5.6, opening=opening)
+        nodding = idle.amounts(NOBODY, viewer, 5.6, opening=opening)
         nod = 30.0 * (silent["head_pitch"] - nodding["head_pitch"])
         assert nod == pytest.approx(degrees)
         assert {**nodding, "head_pitch": silent["head_pitch"]} == silent
-    assert "head_pitch" not in idle.beneath(frozenset({"head_yaw"}), viewer, 5.6, opening=1.0)
+    assert "head_pitch" not in idle.amounts(frozenset({"head_yaw"}), viewer, 5.6, opening=1.0)
 
 
 @pytest.mark.slow

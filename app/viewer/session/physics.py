@@ -258,4 +258,4 @@ class IdleLife:
         viewer = self._eye()
         session = self._session
         moved = session.controls.moved_by(session.values)
-        return self._idle.beneath(moved, viewer, self._time, is_still=is_held)
+        return self._idle.amounts(moved, viewer, self._time, is_still=is_held)
