@@ -1,9 +1,10 @@
 """Muscles as bands along their fibres; they lie between skin and bone, and swell as they shorten.
 
-The simulation's fibres give the present courses of linear muscles. The fibres of sphincters are
-rows of landmarks around mouth and eyes, moved outward and carried by the skin. Each band has an
-elliptic cross section and lies under the present skin: on the bone at its origin, and right below
-the skin at its insertion.
+The simulation's fibres at rest give the courses of linear muscles. The fibres of sphincters are
+rows of landmarks around mouth and eyes, moved outward. Each band has an elliptic cross section and
+lies under the skin: on the bone at its origin, and right below the skin at its insertion. The
+origin then moves with its bone, and the insertion with the vertices that were over it at rest: to
+search the skin anew in each frame would make bands jump from one lip to the other.
 """
 
 from __future__ import annotations
@@ -17,8 +18,6 @@ import scipy
 from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
-from risorius.geometry.sheets import NEAR, heights_over, sheet_of
-from risorius.sim import Simulation
 
 from ..scenes import Face
 
@@ -29,14 +28,18 @@ CONTRACTED = np.array([0.50, 0.035, 0.045])  # sRGB
 TENDON = np.array([0.93, 0.87, 0.77])
 EYE = ((5.0, 9.0), (12.5, 9.0))
 MOUTH = ((1.0, 8.0), (7.5, 8.0))
+LIPS = ((48, 49, 50, 51, 52, 53, 54), (48, 59, 58, 57, 56, 55, 54))  # landmarks of their edges
 RINGS = (  # beginnings and ends of names; landmarks; bands: distance outward, width [mm]
     ("orbicularis_oculi", "right", (36, 37, 38, 39), EYE),
     ("orbicularis_oculi", "right", (36, 41, 40, 39), EYE),
     ("orbicularis_oculi", "left", (45, 44, 43, 42), EYE),
     ("orbicularis_oculi", "left", (45, 46, 47, 42), EYE),
-    ("orbicularis_oris", "", (48, 49, 50, 51, 52, 53, 54), MOUTH),
-    ("orbicularis_oris", "", (48, 59, 58, 57, 56, 55, 54), MOUTH),
+    *(("orbicularis_oris", "", lip, MOUTH) for lip in LIPS),
 )
+ALONG = np.linspace(0.0, 1.0, ROWS)
+ARCH = np.sin(np.pi * ALONG)  # 1 in the middle
+END = np.sqrt(np.clip(1.0 - (2.0 * ALONG - 1.0) ** 8, 0.0, 1.0))  # round
+NEAR = 8  # vertices that give the place of the skin
 AROUND_OF = {"right": range(36, 42), "left": range(42, 48), "": range(48, 60)}  # landmarks
 
 
@@ -68,93 +71,119 @@ class Muscles:
         return made
 
     def _build(self, face: Face) -> None:
-        """Set up everything constant: the bands, their lengths at rest, their faces."""
+        """Set up everything constant: the bands at rest, and what carries them."""
         simulation = face.simulation.clone()
         simulation.reset()
+        marks = face.rest_positions[face.head.landmarks]
         self.names: list[tuple[str, int]] = []  # names of linear muscles, and numbers of fibres
-        widths = list[float]()
-        for name, lines in simulation.anatomy.fibres().items():
+        widths = list[Floats64]()
+        lines = list[Floats64]()
+        bones = list[str]()
+        for name, fibres in simulation.anatomy.fibres().items():
             stem = name.removesuffix("_left").removesuffix("_right")
             row = face.head.rig["muscle"].get(stem, {})
             if name.startswith("platysma"):  # it lies on structures without drawings
                 continue
-            for number, (fibre, _) in enumerate(zip(row.get("fibre", ()), lines, strict=False)):
+            for number, (fibre, line) in enumerate(zip(row.get("fibre", ()), fibres, strict=False)):
+                visible = _before_mouth(_resampled(line[None])[0], marks)
+                if visible is None:
+                    continue
                 self.names.append((name, number))
                 # Half of the rig's width is flesh. Bands are 4 to 17 mm wide.
                 width = 0.5 * row.get("width", 10.0) * fibre.get("width_factor", 1.0)
-                widths.append(np.clip(width, 4.0, 17.0))
-        marks = face.rest_positions[face.head.landmarks]
+                widths.append(np.clip(width, 4.0, 17.0) * END)
+                lines.append(visible)
+                bones.append(row.get("bone", "cranium"))
+        self._is_mandible = np.array([bone == "mandible" for bone in bones])
         rings = list[Floats64]()
         self._controls: list[list[str]] = [[name] for name, _ in self.names]  # that move each band
         for start, end, numbers, bands in RINGS:
             edge = _resampled(marks[None, list(numbers)])[0]
+            red = _lip_height(marks) if start == "orbicularis_oris" else np.full(ROWS, np.inf)
             middle = marks[AROUND_OF[end]].mean(axis=0)
             away = unit_vectors((edge - middle) * (1.0, 1.0, 0.0))
             names = simulation.controls.sums
             own = [name for name in names if name.startswith(start) and name.endswith(end)]
             for outward, width in bands:
                 rings.append(edge + outward * away)
-                widths.append(width)
+                widths.append(np.minimum(width * END, 2.0 * (outward + 0.06 * red**2)))
                 self._controls.append(own)
-        self._width = np.array(widths)[:, None]
-        self._middle = np.array([marks[27, 0], *simulation.bones.pivots()["mandible"][1:]])
-        self._bone_depth = np.asarray(face.simulated_head.bone_depth)
-        self._bind(np.array(rings), face.simulation)
-        self._length = _lengths(self._lines(simulation, face.simulation.rest_positions))
+        self._width = np.array(widths)
+        looks_from = np.array([marks[27, 0], *simulation.bones.pivots()["mandible"][1:]])
+        bone_depth = np.asarray(face.simulated_head.bone_depth)
+        skin = _Skin(simulation.rest_positions, simulation.faces, bone_depth, looks_from)
+        ring_lines = np.array(rings)
+        for _ in range(4):
+            outside, normal, _ = skin.at(ring_lines)
+            ring_lines -= outside[..., None] * normal
+        self._place(skin, np.array([*lines, *ring_lines]))
+        self._length = _lengths(self._rest[1])
         self._lay_out()
 
-    def _bind(self, rings: Floats64, simulation: Simulation) -> None:
-        """Let the skin carry the sphincters (b, ROWS, 3)."""
-        rest = simulation.rest_positions
-        skin = _Skin(rest, simulation.faces, self._bone_depth, self._middle)
-        for _ in range(4):
-            outside, normal, _ = skin.at(rings)
-            rings -= outside[..., None] * normal
-        away, self._carriers = scipy.spatial.cKDTree(rest).query(rings, k=NEAR)
-        self._share = 1.0 / (away + away.mean()) ** 2
-        self._share /= self._share.sum(axis=-1, keepdims=True)
-        self._shift = rings - np.einsum("brk,brkc->brc", self._share, rest[self._carriers])
-
-    def _lines(self, simulation: Any, x: Floats64) -> Floats64:
-        """The middles of all bands, (b, ROWS, 3), those of the sphincters last."""
-        found = simulation.anatomy.fibres()
-        fibres = _resampled(np.array([found[name][number] for name, number in self.names]))
-        carried = np.einsum("brk,brkc->brc", self._share, x[self._carriers])
-        return np.concatenate([fibres, carried + self._shift])
-
-    def follow(self, face: Face) -> None:
-        """Take the present shape and colours."""
-        simulation = face.simulation
-        sums = simulation.controls.sums
-        bone = face.bone_transforms()["cranium"]
-        middle = bone[:3, :3] @ self._middle + bone[:3, 3]
-        skin = _Skin(simulation.positions, simulation.faces, self._bone_depth, middle)
-        lines = self._lines(simulation, simulation.positions)
-        swollen = np.clip(self._length / _lengths(lines), 0.75, 2.2)
+    def _place(self, skin: _Skin, lines: Floats64) -> None:
+        """Place bands along `lines` (b, ROWS, 3) between resting skin and bone, and bind them."""
         for _ in range(2):
             outside, normal, depth = skin.at(lines)
             lines = lines - outside[..., None] * normal
-        u = np.linspace(0.0, 1.0, ROWS)
-        arch = np.sin(np.pi * u)  # 1 in the middle
-        end = np.sqrt(np.clip(1.0 - (2.0 * u - 1.0) ** 8, 0.0, 1.0))  # round
-        swollen = 1.0 + (swollen[:, None] - 1.0) * arch
-        half = 0.5 * self._width * swollen**0.35 * end
-        # Measures [mm], chosen by eye after anatomical plates.
-        most_thickness = 2.8
-        plump = 0.45 + 0.55 * arch**0.8
-        thick = 0.5 * most_thickness * plump * swollen**0.65 * end
-        end_depth = 3.4  # below the skin, at the end of a band
+        thick = _thickness(np.ones((len(lines), 1)))
+        end_depth = 3.4  # [mm] below the skin, at the end of a band
         start_depth = depth[:, :1]
-        deep = start_depth + (end_depth - start_depth) * u * u * (3.0 - 2.0 * u)
+        deep = start_depth + (end_depth - start_depth) * ALONG * ALONG * (3.0 - 2.0 * ALONG)
         deep[len(self.names) :] = end_depth  # sphincters do not begin on a bone
         side = unit_vectors(np.cross(np.gradient(lines, axis=1), normal))
-        to_edge = half[..., None] * side
+        to_edge = 0.5 * self._width[..., None] * side
         rails = np.stack([lines - to_edge, lines, lines + to_edge])
         for _ in range(2):
             outside, normal, bone_depth = skin.at(rails)
             below = np.minimum(deep, np.maximum(bone_depth - thick, 0.0))
             below = np.maximum(below, thick + 1.0)  # [mm] of skin on top
             rails = rails - (outside + below)[..., None] * normal
+        self._rest = rails
+        self._outward = normal
+        self._below = below[..., None]
+        self._least = thick[..., None] + 1.0  # [mm] below the skin
+        self._carriers = skin.carriers(rails + self._below * normal, normal)
+        x, self._facing = self._carry(skin.x, skin.normals)
+        self._shift = rails + self._below * self._facing - x
+
+    def _moved(self, face: Face) -> tuple[Floats64, Floats64]:
+        """The edges and the middles of all bands now, and the directions outward, (3, b, ROWS, 3).
+
+        A band's origin goes with its bone, its insertion with the skin.
+        """
+        simulation = face.simulation
+        x = simulation.positions
+        place, facing = self._carry(x, vertex_normals(x, simulation.faces))
+        bones = face.bone_transforms()
+        turn = bones["cranium"][:3, :3].T
+        over = place + self._shift @ turn
+        rails = over - self._below * facing
+        normal = self._outward @ turn + facing - self._facing @ turn
+        for name, own in (("cranium", ~self._is_mandible), ("mandible", self._is_mandible)):
+            bands = np.flatnonzero(own)
+            turn = bones[name][:3, :3].T
+            share = ALONG[:, None]
+            fixed = self._rest[:, bands] @ turn + bones[name][:3, 3]
+            rails[:, bands] = fixed + share * (rails[:, bands] - fixed)
+            out = self._outward[:, bands] @ turn
+            normal[:, bands] = out + share * (normal[:, bands] - out)
+        outside = np.einsum("...c,...c->...", rails - over, facing)[..., None]
+        rails -= np.maximum(outside + self._least, 0.0) * facing
+        return rails, unit_vectors(normal)
+
+    def _carry(self, x: Floats64, normals: Floats64) -> tuple[Floats64, Floats64]:
+        """The places over all bands, and unit normals there, of skin with vertices x (V, 3)."""
+        found = self._carriers @ np.hstack([x, normals])
+        found = found.reshape(*self._rest.shape[:3], 6)
+        return found[..., :3], unit_vectors(found[..., 3:])
+
+    def follow(self, face: Face) -> None:
+        """Take the present shape and colours."""
+        rails, normal = self._moved(face)
+        swollen = np.clip(self._length / _lengths(rails[1]), 0.75, 2.2)
+        swollen = 1.0 + (swollen[:, None] - 1.0) * ARCH
+        rails = rails[1] + swollen[..., None] ** 0.35 * (rails - rails[1])
+        thick = _thickness(swollen)
         angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
         a = np.cos(angle)
         blend = np.stack([0.5 * a * (a - 1.0), 1.0 - a * a, 0.5 * a * (a + 1.0)])
@@ -162,14 +191,15 @@ class Muscles:
         outward = np.tensordot(normal, blend, (0, 0))
         raised = outward * thick[:, :, None, None] * np.sin(angle)
         grid = (middle + raised).swapaxes(2, 3)
+        sums = face.simulation.controls.sums
         active = [max((sums[name] for name in own), default=0.0) for own in self._controls]
-        self._set(grid, np.array(active), u)
+        self._set(grid, np.array(active))
 
-    def _set(self, grid: Floats64, active: Floats64, u: Floats64) -> None:
+    def _set(self, grid: Floats64, active: Floats64) -> None:
         """Set the shape to sections (b, ROWS, AROUND, 3) of bands with activations (b,)."""
         red = RELAXED + np.clip(active, 0.0, 1.0)[:, None] * (CONTRACTED - RELAXED)
         # This share of a band's length is tendon, at both ends.
-        tendon = np.clip(1.4 - np.minimum(u, 1.0 - u) / 0.14, 0.0, 0.92)
+        tendon = np.clip(1.4 - np.minimum(ALONG, 1.0 - ALONG) / 0.14, 0.0, 0.92)
         share = np.tile(tendon, (len(grid), 1))
         share[len(self.names) :] = 0.0
         colour = red[:, None] + share[..., None] * (TENDON - red[:, None])
@@ -201,30 +231,98 @@ class Muscles:
         a = np.cos(2.0 * np.pi * np.arange(AROUND) / AROUND)
         # Each band has its own 40 mm of the pattern.
         start = 40.0 * np.arange(count)[:, None, None]
-        across = start + 0.5 * self._width[:, None] * a
-        along = self._length[:, None, None] * np.linspace(0.0, 1.0, ROWS)[:, None]
+        across = start + 0.5 * self._width.max(axis=1)[:, None, None] * a
+        along = self._length[:, None, None] * ALONG[:, None]
         both = np.broadcast_arrays(across, along)
         self.striation = np.stack(both, axis=-1).reshape(-1, 2).astype(np.float32)
 
 
 class _Skin:
-    """The present skin near some places."""
+    """The resting skin, near some places.
+
+    Skin that turns away, such as the inner side of lips, lids and nostrils, is left out.
+    """
 
     def __init__(self, x: Floats64, faces: Any, bone: Floats64, middle: Floats64) -> None:
         """bone: how deep it is below each vertex of x; middle: from where a face looks outward."""
+        self.x = x
+        self._faces = faces
+        self._bone = bone
         self._middle = middle
-        self._sheet = sheet_of(x, vertex_normals(x, faces), bone)
+        self.normals = vertex_normals(x, faces)
+        self._tree = scipy.spatial.cKDTree(x)
 
     def at(self, points: Floats64) -> tuple[Floats64, Floats64, Floats64]:
-        """How far outside points (..., 3) are, which way is out, and how deep the bone is there.
-
-        Skin that turns away, such as the inner side of lips, lids and nostrils, is left out.
-        """
-        shape = points.shape
-        points = points.reshape(-1, 3)
+        """How far outside points (..., 3) are, which way is out, and how deep the bone is there."""
         out = (points - self._middle) * (1.0, 0.25, 1.0)
-        height, normal, depth = heights_over(self._sheet, points, out)
-        return height.reshape(shape[:-1]), normal.reshape(shape), depth.reshape(shape[:-1])
+        near, weight = self._near(points, out)
+        weight /= weight.sum(axis=-1, keepdims=True)
+        normals = self.normals[near]
+        off = np.einsum("...kc,...kc->...k", points[..., None, :] - self.x[near], normals)
+        normal = unit_vectors(np.einsum("...k,...kc->...c", weight, normals))
+        return (weight * off).sum(axis=-1), normal, (weight * self._bone[near]).sum(axis=-1)
+
+    def _near(
+        self, points: Floats64, out: Floats64, count: int = NEAR, reach: float = 0.35
+    ) -> tuple[Any, Floats64]:
+        """The `count` vertices nearest to points, and their weights, (..., count)."""
+        away, near = self._tree.query(points, k=count)
+        is_faced = np.einsum("...kc,...c->...k", self.normals[near], out) > 0.0
+        scale = reach * np.maximum(away[..., NEAR - 1 : NEAR] ** 2, 1e-30)
+        return near, 1e-9 + is_faced * np.exp(-(away**2) / scale)
+
+    def carriers(self, points: Floats64, out: Floats64) -> Any:
+        """Weights of vertices that carry points of the skin over bands, a sparse matrix (n, V).
+
+        points, out: of the edges and the middles, (3, b, ROWS, 3). Where the mouth is closed, both
+        lips have vertices near a point. Only those carry it that are a short way along the skin
+        from the vertex over the middle of its band.
+        """
+        near, weight = self._near(points, out, 3 * NEAR, 1.0)
+        first = np.take_along_axis(near[1], weight[1].argmax(axis=-1)[..., None], -1)
+        starts, number = np.unique(first, return_inverse=True)
+        count = len(self.x)
+        ends = self._faces[:, [0, 1, 2, 1, 2, 0]].reshape(-1, 2, 3).swapaxes(1, 2).reshape(-1, 2)
+        length = np.linalg.norm(self.x[ends[:, 0]] - self.x[ends[:, 1]], axis=1)
+        edges = scipy.sparse.coo_array((length, ends.T), (count, count)).tocsr()
+        way = scipy.sparse.csgraph.dijkstra(edges, directed=False, indices=starts)
+        straight = np.linalg.norm(self.x[near] - self.x[first], axis=-1)
+        weight *= way[number.reshape(first.shape), near] <= 1.5 * straight + 1e-9
+        alone = weight.sum(axis=-1, keepdims=True) == 0.0
+        near = np.concatenate([near, np.broadcast_to(first, alone.shape)], axis=-1)
+        weight = np.concatenate([weight, alone], axis=-1)
+        weight /= weight.sum(axis=-1, keepdims=True)
+        rows = np.repeat(np.arange(alone.size), near.shape[-1])
+        place = rows, near.ravel()
+        return scipy.sparse.coo_array((weight.ravel(), place), (alone.size, count)).tocsr()
+
+
+def _lip_height(marks: Floats64) -> Floats64:
+    """The height of the red of one lip along the mouth, (ROWS,): none at its corners."""
+    upper, lower = _resampled(marks[np.array(LIPS)])
+    height: Floats64 = 0.5 * np.linalg.norm(upper - lower, axis=1)
+    return height
+
+
+def _before_mouth(line: Floats64, marks: Floats64) -> Floats64 | None:
+    """The part of a line (ROWS, 3) before the mouth; None if that is less than half of it.
+
+    Some of the rig's fibres were fitted to motion, and pull across the lips.
+    """
+    x, y = line[:, :2].T
+    upper, lower = (marks[list(row), :2].T for row in LIPS)
+    is_inside = (y < np.interp(x, *upper)) & (y > np.interp(x, *lower))
+    is_inside &= (x > upper[0, 0]) & (x < upper[0, -1])
+    rows = int(is_inside.argmax()) if is_inside.any() else ROWS
+    return None if 2 * rows < ROWS else _resampled(line[None, :rows])[0]
+
+
+def _thickness(swollen: Floats64) -> Floats64:
+    """Half the thickness of bands [mm], (b, ROWS), chosen by eye after anatomical plates."""
+    most_thickness = 2.8
+    plump = 0.45 + 0.55 * ARCH**0.8
+    thick: Floats64 = 0.5 * most_thickness * plump * swollen**0.65 * END
+    return thick
 
 
 def _resampled(lines: Floats64) -> Floats64:

@@ -233,3 +233,25 @@ def test_a_mask_is_searched_for_a_neck_once(monkeypatch):
     for _ in range(2):
         anatomy.dissect(BOTH)
     assert len(searched) == 1
+
+
+@pytest.mark.parametrize("pose", [{"joy": 1.0}, {"jaw_open": 1.0}, {"anger": 1.0}])
+def test_bands_move_with_the_skin_and_leave_the_mouth_open(pose):
+    """They jumped by up to 34 mm in a frame of a suddenly set joy, and crossed the open mouth."""
+    scene = posed(FaceScene())
+    muscles = Muscles.of(scene.face)
+    scene.pose(pose)
+    before = muscles.vertices, scene.positions.copy()
+    for _ in range(40):
+        scene.step(1.0 / 60.0)
+        muscles.follow(scene.face)
+        now = muscles.vertices, scene.positions.copy()
+        bands, skin = (norm(b - a, axis=1).max() for a, b in zip(before, now, strict=True))
+        assert bands < 1.5 * skin + 0.5
+        before = now
+    inner = scene.positions[scene.landmarks[60:68], :2]  # an octagon, from corner to corner
+    x, y = muscles.vertices[:, :2].T
+    upper = np.interp(x, *inner[[0, 1, 2, 3, 4]].T)
+    lower = np.interp(x, *inner[[0, 7, 6, 5, 4]].T)
+    is_across = (lower + 1.0 < y) & (y < upper - 1.0)
+    assert not is_across.any()
