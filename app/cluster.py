@@ -52,7 +52,7 @@ def run_on_cluster(
 
 
 def _client(distributed: Any, scheduler: str) -> Any:
-    """A connection to the scheduler at an address; raises UserError if none answers."""
+    """Connect to the scheduler at an address; raise UserError if no scheduler answers."""
     try:  # tested first: a client takes half a minute to notice a missing scheduler
         host_and_port = distributed.comm.get_address_host_port(scheduler)
         socket.create_connection(host_and_port, PATIENCE).close()

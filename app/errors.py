@@ -25,7 +25,7 @@ class UserError(Exception):
 
 
 def traceback_of(error: BaseException) -> str:
-    """The traceback of an error and of its causes, if RISORIUS_DEBUG is set; else ""."""
+    """Return the traceback of an error and of its causes; "" unless RISORIUS_DEBUG is set."""
     if os.environ.get("RISORIUS_DEBUG", "0") in ("", "0"):
         return ""
     one: BaseException | None = error
@@ -37,7 +37,7 @@ def traceback_of(error: BaseException) -> str:
 
 
 def line_for(error: Exception) -> str | None:
-    """The message for an error that the user can correct; None for a defect."""
+    """Return the message for an error that the user can correct; None for a defect."""
     from risorius import assets, render  # slow, and not needed without errors
 
     if isinstance(error, MemoryError):

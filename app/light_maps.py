@@ -93,7 +93,7 @@ def _radiance_size(content: bytes) -> tuple[int, int, int]:
 
 
 def _radiance(content: bytes) -> Pixels:
-    """The pixels of a Radiance file, shape (H, W, 3); raises ValueError for another file."""
+    """Read the pixels of a Radiance file, shape (H, W, 3); raise ValueError for another file."""
     height, width, begin = _radiance_size(content)
     data = np.frombuffer(content, np.uint8, offset=begin)
     if len(data) == 4 * height * width:
@@ -145,7 +145,7 @@ def _opened_openexr(path: Path, *, header_only: bool) -> Iterator[Any]:
 
 
 def _openexr_size(path: Path) -> tuple[int, int]:
-    """Height and width of an OpenEXR file [pixels]; raises ValueError for one without colours."""
+    """Read height and width of an OpenEXR file [pixels]; raise ValueError without colours."""
     with _opened_openexr(path, header_only=True) as file:
         header = file.header()
         names = {channel.name for channel in header["channels"]}
@@ -157,7 +157,7 @@ def _openexr_size(path: Path) -> tuple[int, int]:
 
 
 def _openexr(path: Path) -> Pixels:
-    """The pixels of an OpenEXR file, shape (H, W, 3); raises ValueError if it is broken."""
+    """Read the pixels of an OpenEXR file, shape (H, W, 3); raise ValueError if it is broken."""
     with _opened_openexr(path, header_only=False) as file:
         channels = file.channels()
         pixels = np.stack([channels[name].pixels for name in "RGB"], axis=-1)

@@ -83,7 +83,7 @@ def _turn(view: str) -> tuple[float, float, float]:
 
 
 def _framing(scene: Scene, view: str) -> render.OrbitCamera:
-    """A camera that frames `Framing.framed`; the rest of the scene may lie outside the frame."""
+    """Return a camera that frames `Framing.framed`; other parts of the scene may lie outside."""
     camera = render.OrbitCamera.framing(scene.framing.extent, view=view)
     camera.fit(scene.framing.framed)
     return camera

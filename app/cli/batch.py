@@ -119,7 +119,7 @@ def jobs_in(listing: Path, logs: Path, *, resume: bool) -> list[Job]:
 
 
 def _job(number: int, text: str, logs: Path, *, resume: bool) -> Job:
-    """The job of a line. Raises UserError, or click's errors, for an impossible line."""
+    """Return the job of a line. Raises UserError, or click's errors, for an impossible line."""
     name, *arguments = words_of(text)
     command = _listed(name)
     given = _parsed(command, arguments)

@@ -81,7 +81,7 @@ def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
 
 
 def _commands(works: Mapping[str, bool]) -> str:
-    """The commands that work with these parts, and those that do not."""
+    """Return a line with the commands that work with these parts, and with other commands."""
     able = [name for name, parts in PARTS_OF_COMMANDS.items() if all(works[each] for each in parts)]
     others = [name for name in PARTS_OF_COMMANDS if name not in able]
     there = ", ".join(able)
@@ -100,7 +100,7 @@ def _card(findings: list[render.Finding]) -> str:
 
 
 def _names() -> list[str]:
-    """The names that options of refinement accept."""
+    """Return lines with the names that options of refinement accept."""
     from risorius import refine  # slow, and not needed for offscreen frames alone
 
     known: dict[str, refine.Registry[Any]] = {
@@ -112,7 +112,7 @@ def _names() -> list[str]:
 
 
 def _extras() -> str:
-    """The installed extras, and the command that installs the others."""
+    """Return a line with the installed extras, and the command to install missing extras."""
     missing = [name for name, modules in EXTRAS.items() if not all(map(_is_there, modules))]
     there = ", ".join(name for name in EXTRAS if name not in missing) or "none"
     cure = (
@@ -131,7 +131,7 @@ def _is_there(module: str) -> bool:
 
 
 def _films() -> tuple[bool, str]:
-    """Whether there is a working ffmpeg, and a line with its version or the remedy."""
+    """Return whether ffmpeg works, and a line with its version or the remedy."""
     cure = "pip install --force-reinstall imageio-ffmpeg"
     if "IMAGEIO_FFMPEG_EXE" in os.environ:
         cure = "unset IMAGEIO_FFMPEG_EXE"

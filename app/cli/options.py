@@ -270,7 +270,10 @@ def played(
 
 
 def printing(name: str, package: str, file: str, what: str) -> Command:
-    """An option that prints a file of a package, and ends the program. what: the help text."""
+    """Return an option that prints a file of a package and ends the program.
+
+    what: help text of the option.
+    """
 
     def show(context: click.Context, _: click.Parameter, asked: bool) -> None:
         """Print the file, if the option is given."""

@@ -80,7 +80,7 @@ ANATOMY_WORDS = Words("--anatomy", STRUCTURES, {"dissect": SIDES}, ("opacity",))
 
 
 def style_in(settings: Sequence[str]) -> dict[str, Any]:
-    """All settings of style by name, with defaults where the option does not set them."""
+    """Return all settings of style by name, with defaults for settings that are not set."""
     usual = {
         "skin": "textured",
         "light": "studio",

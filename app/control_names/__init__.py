@@ -50,7 +50,7 @@ def twin_of(name: str) -> str:
 
 
 def mirrored(values: Mapping[str, float]) -> dict[str, float]:
-    """Values with left and right exchanged; turns and sideways values change sign."""
+    """Return values with left and right exchanged; turns and sideways values change sign."""
     result = dict(values)
     for name, value in values.items():
         if twin_of(name) in values:
@@ -74,7 +74,7 @@ def copied(values: Mapping[str, float], source: str) -> dict[str, float]:
 
 
 def readable(name: str) -> str:
-    """A name in words, in sentence case; codes such as jawOpen stay as they are."""
+    """Return a name as words with a capital letter; codes such as jawOpen do not change."""
     is_word = name.partition("_")[0].partition(" ")[0].islower()
     return (name[:1].upper() + name[1:] if is_word else name).replace("_", " ")
 

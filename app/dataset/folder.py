@@ -114,7 +114,7 @@ class SetFolder:
                 )
 
     def numbers(self) -> set[int]:
-        """The numbers of the samples with a .json, here or in a shard."""
+        """Return the numbers of all samples with a .json, in the folder or in a shard."""
         shards = map(read_shard, self.path.glob(PATTERN))
         packed = {number for shard in shards if shard for number in shard.places}
         with os.scandir(self.path) as items:
@@ -168,12 +168,12 @@ class SetFolder:
         return self.write_sample(index, write)
 
     def files_of(self, index: int) -> list[Path]:
-        """The files of a sample, its .json first."""
+        """Return the files of a sample, its .json first."""
         names = [f"{name_of(index)}.json", *sorted(self.sample(index)[LENGTHS])]
         return [self.path / name for name in names]
 
     def sample(self, index: int) -> dict[str, Any]:
-        """The labels in the .json of a sample."""
+        """Return the labels in the .json of a sample."""
         content = (self.path / f"{name_of(index)}.json").read_bytes()
         labels: dict[str, Any] = json.loads(content)
         return labels

@@ -21,7 +21,7 @@ LOWER_EDGES = {  # landmarks of a lower lip's inner edge and of lower lids, from
 
 
 def apertures(positions: Array, triangles: npt.NDArray[Any], landmarks: Array) -> dict[str, float]:
-    """Openings of mouth and eyes [mm], seen from the front of the head, along z.
+    """Return the openings of mouth and eyes [mm], seen from the front of the head, along z.
 
     landmarks: present positions [mm], shape (68, 3).
     """
@@ -67,7 +67,7 @@ def around(triangles: Array, middle: Array, reach: float) -> Array:
 
 
 def _widest_gap(low: Array, high: Array, middle: float) -> float:
-    """Greatest height [mm] of a gap between the triangles that one plane cuts.
+    """Return the greatest height [mm] of a gap between the triangles that one plane cuts.
 
     The gap begins near the height `middle`. low, high: ends of each triangle's cut, shape (n,).
     """

@@ -17,7 +17,10 @@ class Packing:
     """The shards of a data set."""
 
     def __init__(self, folder: SetFolder, size: int, numbers: range) -> None:
-        """size: samples in a shard; shard k begins at number k * size. numbers: all numbers."""
+        """size: samples in a shard; shard k begins at number k * size.
+
+        numbers: numbers of all samples in the set.
+        """
         self._folder = folder
         self._size = size
         self._numbers = numbers
@@ -61,7 +64,7 @@ class Packing:
         self._pack_if_whole(place)
 
     def labels_and_place(self, number: int) -> tuple[dict[str, Any], dict[str, str | int]]:
-        """The labels of a sample, and its place in its shard."""
+        """Return the labels of a sample, and its place in its shard."""
         shard = self._packed[number // self._size]
         return shard.labels_of(number), shard.place_of(number)
 

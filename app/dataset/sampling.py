@@ -105,7 +105,7 @@ def chosen(random: np.random.Generator, shares: Shares) -> str:
 
 
 def _degradation(table: SampleTable, random: np.random.Generator) -> Degradation:
-    """Blur, noise and JPEG of a sample."""
+    """Draw the blur, noise and JPEG compression of a sample."""
     rows = table.degradations
     shares = rows.blurred, rows.noisy, rows.compressed
     is_blurred, is_noisy, is_compressed = random.random(3) < shares

@@ -37,14 +37,14 @@ class Shard:
     places: Mapping[int, tuple[int, int]]
 
     def labels_of(self, number: int) -> dict[str, Any]:
-        """The labels of a sample, whose .json is the first of its files."""
+        """Return the labels of a sample, whose .json is the first of its files."""
         with self.path.open("rb") as file:
             file.seek(self.places[number][0])
             labels: dict[str, Any] = json.loads(next(_files_in(file))[1])
         return labels
 
     def place_of(self, number: int) -> dict[str, str | int]:
-        """The place of a sample, for the index of the set."""
+        """Return the place of a sample, for the index of the set."""
         first, length = self.places[number]
         return {"shard": self.path.name, "offset": first, "bytes": length}
 

@@ -62,7 +62,7 @@ def _row(sample: dict[str, Any]) -> dict[str, Any]:
 
 
 def card_of(request: SetRequest, numbers: range, counts: Counts) -> str:
-    """The card of a requested set: its command, and counts of each kind and unit."""
+    """Return the card of a requested set: its command, and counts of each kind and unit."""
     samples = len(numbers)
     persons = len(counts.persons)
     units = [(name, counts.units[name]) for name in sorted(counts.units, key=by_number)]

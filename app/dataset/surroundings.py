@@ -137,7 +137,7 @@ def light_of(name: str, files: LightFiles, random: np.random.Generator) -> Sampl
 
 
 def _tint(random: np.random.Generator) -> Floats64:
-    """Random factors on red, green and blue light."""
+    """Draw random factors on red, green and blue light."""
     # Standard deviation of red and blue light, which change in opposite ways.
     warmth = 0.08 * np.clip(random.standard_normal(), -2.0, 2.0)
     return np.asarray(random.uniform(0.75, 1.15) * np.array([1.0 + warmth, 1.0, 1.0 - warmth]))

@@ -248,5 +248,5 @@ def load_table(path: Path | None) -> SampleTable:
 
 @cache
 def paired_units() -> frozenset[str]:
-    """The action units that have two sides."""
+    """Return the action units that have two sides."""
     return frozenset(name for name, row in _layer("Action units").items() if row.get("pair"))

@@ -43,13 +43,13 @@ def put_angle(channels: dict[str, float], name: str, degrees: float) -> None:
 
 
 def readable_subject(name: bytes) -> str:
-    """A sender's name for a face, reduced to printable letters."""
+    """Return a sender's name for a face, reduced to printable letters."""
     longest_subject = 40  # letters, shown in the window
     text = name[: 4 * longest_subject].decode("utf-8", "replace")
     return "".join(filter(str.isprintable, text))[:longest_subject]
 
 
 def shape_named(name: str) -> str | None:
-    """The shape with a sender's name; None for another name."""
+    """Return the shape that a sender's name means, or None."""
     longest_name = 40  # letters of a shape
     return shape_of(name) if len(name) <= longest_name else None

@@ -40,7 +40,7 @@ class Protocol:
             needed(self.library, self.title, "live", package="python-osc")
 
     def parser(self) -> Parser:
-        """The function that reads a packet; its module is imported here."""
+        """Import the protocol's module, and return its function that reads a packet."""
         parse: Parser = import_module(f"{__package__}.{self.module}").parse
         return parse
 

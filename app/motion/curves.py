@@ -99,7 +99,7 @@ def _without_side(name: str) -> str:
 
 
 def _sums(values: Floats64, shares: Floats64, floors: Floats64) -> Floats64:
-    """The sums of the layer's values, shape (N, C), added up as in sim/controls.py."""
+    """Return the sums of the layer's values, shape (N, C), added up as in sim/controls.py."""
     least = np.zeros((len(values), floors.shape[1]))
     for value, floor in zip(values.T, floors, strict=True):
         np.maximum(least, np.outer(value, floor), out=least)
@@ -144,7 +144,7 @@ def _rays(shares: Floats64) -> list[list[int]]:
 
 
 def _as_set(name: str, counted: Mapping[str, Floats64], tables: Layers) -> Floats64:
-    """Return the value to set; for a share of another control, at most that control's value."""
+    """Convert an effective value to the value to set; see `share_of` in sim/layers.py."""
     whole = tables.share_of.get(name)
     if whole is None:
         return counted[name]

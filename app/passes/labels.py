@@ -105,7 +105,7 @@ def _plain_landmarks(found: Landmarks) -> dict[str, Any]:
 
 
 def _plain(numbers: Floats64) -> Any:
-    """Lists of rounded numbers; no negative zeros."""
+    """Convert an array to lists of rounded numbers without negative zeros."""
     return (np.round(numbers, DIGITS) + 0.0).tolist()
 
 
@@ -185,7 +185,7 @@ def labelled(
     style: render.Style,
     wanted: Sequence[str],
 ) -> Labelled:
-    """Labels and passes of the last picture that the pipeline of `passes` drew."""
+    """Return labels and passes of the last picture that the pipeline of `passes` drew."""
     has_landmarks = "landmarks" in wanted
     images = passes.draw(camera, style, {*wanted, "depth"} if has_landmarks else wanted)
     depth = images["depth"] if has_landmarks else None
@@ -194,7 +194,7 @@ def labelled(
 
 
 def openexr() -> Any:
-    """OpenEXR's module; raises UserError if it is missing."""
+    """Import OpenEXR's module; raise UserError if it is missing."""
     return needed("OpenEXR", "--passes", "passes")
 
 

@@ -1,7 +1,7 @@
 """The landmarks of one picture, at the places where annotators of photographs put them.
 
 The points of the jaw lie on the outline of the face that this camera sees; `assets.annotation` has
-the lines for its search. The points of the jaw on the bone come from the rig.
+the lines on which it is searched. The points of the jaw on the bone come from the rig.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
 
 
 def _normals(pixels: Floats64, outward: Floats64) -> Floats64:
-    """Unit normals of a line in the picture, (n, 2), on the side of directions (n, 2)."""
+    """Return unit normals of a line in the picture, (n, 2), on the side of `outward`, (n, 2)."""
     along = unit_vectors(np.gradient(pixels, axis=0))
     normals = along @ np.array([[0.0, 1.0], [-1.0, 0.0]])
     return np.asarray(normals * np.sign((normals * outward).sum(axis=1, keepdims=True)))

@@ -96,7 +96,7 @@ class Passes:
 
 
 def _classes(part: Any) -> Bytes:
-    """The class of each triangle of a part."""
+    """Return the class of each triangle of a part."""
     if part.name.startswith(HAIR):
         return np.full(len(part.faces), Segment.HAIR, np.uint8)
     if part.name == GLASSES:

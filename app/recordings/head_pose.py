@@ -116,7 +116,7 @@ def _quaternion(value: Any) -> Floats64 | None:
 
 
 def _angles_of(matrix: Floats64 | None) -> tuple[float, float, float]:
-    """Yaw, pitch and roll [degrees] of a rotation, shape (3, 3); NaN for None."""
+    """Return yaw, pitch and roll [degrees] of a rotation, shape (3, 3); NaN for None."""
     if matrix is None:
         return math.nan, math.nan, math.nan
     ahead = matrix[:, 2] / (np.linalg.norm(matrix[:, 2]) or 1.0)

@@ -81,7 +81,7 @@ class Columns:
         return found
 
     def notes_of(self, names: tuple[str, ...]) -> list[str]:
-        """A note for each channel that two columns with different names hold."""
+        """Return a note on channels that are in several columns with different names, if any."""
         twice = [names[each] for each in self.repeated if names.index(names[each]) == each]
         if not twice:
             return []

@@ -159,7 +159,10 @@ def can_detail(scene: Drawable) -> bool:
 
 
 def finer_mesh(scene: Drawable) -> tuple[Floats64, Integers32] | None:
-    """Return vertices and triangles of the scene's head at four times its triangles, or None."""
+    """Return vertices and triangles of a finer mesh of the scene's head, if there is one.
+
+    The mesh has four times the triangles of the head.
+    """
     face = scene.face
     if face is None or not isinstance(face.head, assets.Head):
         return None

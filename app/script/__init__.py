@@ -95,12 +95,12 @@ class Channel:
         return tuple(Key(time, value, easing.name) for time, value, easing in parts)
 
     def easing(self, number: int) -> Easing:
-        """The easing of the key with this number."""
+        """Return the easing of the key with this number."""
         start, end, is_held = self.easings[number].tolist()
         return Easing(start, end, bool(is_held))
 
     def easing_rows(self) -> list[Easing]:
-        """The easings of all keys."""
+        """Return the easings of all keys."""
         return [Easing(start, end, bool(held)) for start, end, held in self.easings.tolist()]
 
     def __len__(self) -> int:

@@ -89,7 +89,7 @@ def easing_named(name: str) -> Easing:
 
 
 def easing_names() -> Iterator[str]:
-    """All texts that name an easing."""
+    """Yield all texts that name an easing."""
     yield from EASINGS
     tenths = range(STEEPEST_TENTHS + 1)
     for start in tenths:

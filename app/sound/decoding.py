@@ -85,7 +85,7 @@ class Peaks:
 
 
 def ffmpeg() -> str:
-    """The path of ffmpeg; raises UserError if it is missing."""
+    """Return the path of ffmpeg; raise UserError if it is missing."""
     imageio_ffmpeg = needed("imageio_ffmpeg", "film or sound", "films", package="imageio-ffmpeg")
     try:
         return str(imageio_ffmpeg.get_ffmpeg_exe())

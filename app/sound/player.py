@@ -164,7 +164,7 @@ def open_device(rate: int, channels: int) -> Any:
 
 
 def backends() -> list[Any]:
-    """The system's interfaces to devices, in miniaudio's order."""
+    """Return the system's interfaces to sound devices, in miniaudio's order."""
     kinds = miniaudio.Backend
     unwanted = {kinds.NULL, kinds.CUSTOM, kinds.JACK}  # a server that is rarely the only interface
     if sys.platform == "linux" and not os.path.exists("/dev/snd"):
