@@ -1,9 +1,9 @@
 """The paper's Figure 1, end to end: simulation, triangle mesh, refinement, rendering.
 
-`Pipeline.step` and `Pipeline.draw` are the figure; every picture of a scene, in the window, in
-films, in data sets and in the figures of the paper, goes through them. The simulation never learns
-that refinement exists; the refiner reads the mesh and writes only into the buffers that the
-renderer lent. The refined mesh is forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
+`Pipeline.step` and `Pipeline.draw` implement the figure. They make every picture of a scene: in the
+window, in films, in data sets and in the figures of the paper. The simulation does not know of
+refinement. The refiner reads the mesh, and writes only into buffers of the renderer. The refined
+mesh is forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
 """
 
 from __future__ import annotations

@@ -33,7 +33,8 @@ class StagingFolder:
         self._folder: Path | None = None
 
     def __enter__(self) -> Path:
-        if self._parent not in _swept:  # once only: a search in 100 000 files takes a second
+        # Only once, because a search in 100 000 files takes a second.
+        if self._parent not in _swept:
             _swept.add(self._parent)
             sweep(self._parent)
         folder = self._parent / f".risorius-{secrets.token_hex(6)}"

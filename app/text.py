@@ -22,7 +22,7 @@ def as_text(name: object) -> str:
     """Return a name that can be printed, and written into a file in UTF-8.
 
     Names of files are bytes. If they are not UTF-8, for example from an old archive, Python reads
-    them as characters that cannot be encoded. Such a byte becomes a text such as \\xe4.
+    them as characters that cannot be encoded. This function writes such a byte as \\xe4.
     """
     raw_byte = re.compile("[\udc80-\udcff]")  # in names that are not UTF-8
     text = raw_byte.sub(lambda found: f"\\x{ord(found[0]) - 0xDC00:02x}", str(name))

@@ -1,8 +1,8 @@
 """Work in separate processes, which are started again if they die.
 
-A new process is started for each piece of work. It is not forked, because a process that is forked
-after OpenGL was opened hangs. It has its own session, so that only its parent gets Ctrl-C. Work is
-a function at the top of a module; its arguments and messages are pickled. When the parent ends, for
+A new process is started for each piece of work. It is not forked, because a forked process hangs if
+its parent has used OpenGL. It has its own session, so that only its parent gets Ctrl-C. Work is a
+function at the top of a module; its arguments and messages are pickled. When the parent ends, for
 any reason, the process also ends, and removes half-written files.
 """
 

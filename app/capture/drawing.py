@@ -1,4 +1,4 @@
-"""Offscreen drawing, frame by frame: a surface with the whole pipeline, and its camera."""
+"""Offscreen drawing of frames, with the whole pipeline and a camera."""
 
 from __future__ import annotations
 

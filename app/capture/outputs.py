@@ -243,7 +243,7 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
     ):
 
         def add(image: Image, beside: Labelled | None = None) -> None:
-            """Write the next frame in a thread; raises errors of earlier frames."""
+            """Write the next frame in a thread; raise errors of threads with earlier frames."""
             nonlocal count
             picture = temporary / f"frame_{count:05d}.png"
             waiting.append(threads.submit(write, picture, image, beside))

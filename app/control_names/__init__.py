@@ -39,7 +39,7 @@ def parted(name: str) -> tuple[str, str]:
 
 @functools.lru_cache(maxsize=KNOWN)
 def twin_of(name: str) -> str:
-    """Return the name of the mirrored control; the same name for the middle."""
+    """Return the name of the mirrored control; a control in the middle mirrors itself."""
     if name in _TWINS:
         return _TWINS[name]
     base, side = parted(name)

@@ -31,7 +31,7 @@ class LiveFrame:
 
 
 def put_shape(channels: dict[str, float], name: str, value: float) -> None:
-    """Set a shape, unless its value is far from 0 and 1: trackers sometimes send such values."""
+    """Set a shape; ignore a value far outside of 0 to 1, which trackers sometimes send."""
     if abs(value) <= NONSENSE:
         channels[name] = value
 

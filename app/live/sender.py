@@ -20,7 +20,7 @@ class Sender:
     """Sends frames to one address; a context manager."""
 
     def __init__(self, address: str, port: int | None, subject: str) -> None:
-        """port: None for the protocol's own. Raises UserError for an invalid address."""
+        """port: None for the protocol's usual port. Raises UserError for an invalid address."""
         self.port = PROTOCOLS["livelink"].port if port is None else port
         self._subject = subject
         self._sent = 0

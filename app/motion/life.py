@@ -163,9 +163,9 @@ class Idle:
     ) -> Values:
         """Return amounts to add to the scene's controls at `time` [s].
 
-        moved: lowest controls that something else moves. viewer: position of the viewer [mm],
-        shape (3,). is_still: whether the face only looks at the viewer. opening: opening of the
-        jaw, 0 to 1; the head nods with it, and so on stressed syllables.
+        moved: lowest controls (sim/layers.py) that something else moves. viewer: position of the
+        viewer [mm], shape (3,). is_still: whether the face only looks at the viewer. opening:
+        opening of the jaw, 0 to 1; the head nods with it, and so on stressed syllables.
         """
         face = self.scene.face
         if face is None:

@@ -69,7 +69,7 @@ def letters_of(name: str) -> str:
 
 
 def _spellings() -> dict[str, str]:
-    """Return letters -> shape; sides are spelled out or L and R at the end of the name."""
+    """Return spelling without separators -> shape; a side may be shortened to L or R."""
     found = {}
     for name in ARKIT:
         found[letters_of(name)] = name
@@ -80,7 +80,7 @@ def _spellings() -> dict[str, str]:
 
 
 def _angle_spellings() -> dict[str, str]:
-    """Return letters -> angle, for all orders of words in packets and files."""
+    """Return spelling without separators -> angle, for all orders of words."""
     found = {letters_of(name): name for name in (*HEAD_ANGLES, *EYE_ANGLES)}
     for name in EYE_ANGLES:
         _, axis, side = name.split("_")

@@ -17,7 +17,7 @@ def frame_times(
     *,
     has_stamps: bool = False,
 ) -> Floats64:
-    """Return times of frames [s] from their numbers; without numbers each row is the next frame.
+    """Return times of frames [s] from their numbers; without numbers rows are consecutive frames.
 
     has_stamps: whether the file has unusable time stamps, which an earlier note reports.
     """

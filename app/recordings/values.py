@@ -125,7 +125,7 @@ def without_rows(channels: Mapping[str, Floats64], lost: Rows) -> dict[str, Floa
 
 
 def is_calibrated(shapes: Mapping[str, Floats64], notes: list[str]) -> bool:
-    """Whether the neutral face was subtracted: shapes of NEVER_AT_REST are then often 0.
+    """Whether the neutral face was subtracted, so that shapes of NEVER_AT_REST are often 0.
 
     Rows without a face, which are NaN, are ignored.
     """
@@ -158,7 +158,7 @@ def of_percent(
 
 
 def _rows_of_zeros(shapes: Mapping[str, Floats64]) -> Rows:
-    """Return the rows without a face: all shapes are 0, and in other rows some are never 0."""
+    """Return rows of zeros, which have no face if shapes of NEVER_AT_REST are above 0 elsewhere."""
     if not shapes:
         return np.zeros(0, dtype=bool)
     table = np.stack([*shapes.values()])

@@ -92,18 +92,18 @@ class DrawnMesh:
 
     @property
     def has_uv(self) -> bool:
-        """Whether rows have texture coordinates; a foreign refiner may leave them out."""
+        """Whether vertices have texture coordinates; other packages' refiners may lack them."""
         # Position, normal, u and v.
         return self.refiner.vertex_columns >= 8
 
     @property
     def can_wrinkle(self) -> bool:
-        """Whether rows also have wrinkles."""
+        """Whether vertices have wrinkles."""
         return self.refiner.vertex_columns >= 16
 
     @property
     def can_fade(self) -> bool:
-        """Whether rows also have the fading of the skin."""
+        """Whether vertices have the fading of the skin."""
         return self.refiner.vertex_columns == 18
 
     @property
