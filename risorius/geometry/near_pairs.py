@@ -17,9 +17,12 @@ def near_pairs(corners: Floats64) -> Integers64:
     order = np.argsort(low[:, 0])
     low = low[order]
     high = high[order]
-    pairs = np.empty((_sweep(low, high, np.empty((0, 2), np.int64)), 2), np.int64)
-    _sweep(low, high, pairs)
-    return np.sort(order[pairs], axis=1)
+    pairs = np.empty((8 * len(corners), 2), np.int64)  # more than on most surfaces
+    found = _sweep(low, high, pairs)
+    if found > len(pairs):
+        pairs = np.empty((found, 2), np.int64)
+        _sweep(low, high, pairs)
+    return np.sort(order[pairs[:found]], axis=1)
 
 
 @njit

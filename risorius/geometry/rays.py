@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..jit import njit
-from .arrays import Floats64, Integers64
+from .arrays import Flags, Floats64, Integers32, Integers64
 from .directions import unit_vectors
 from .normals import cross_products
 
@@ -34,6 +34,72 @@ def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tup
     u = (from_a * across).sum(axis=1)
     v = (turned * directions).sum(axis=1)
     return volume, u * share, v * share, (ac * turned).sum(axis=1) * share
+
+
+@njit
+def cutting(corners: Floats64, faces: Integers32, pairs: Integers64) -> Flags:
+    """Which pairs of triangles cut through each other and have no common vertex, shape (k,).
+
+    corners: shape (F, 3, 3). faces: numbers of their vertices, shape (F, 3). pairs: shape (k, 2).
+    """
+    cuts = np.zeros(len(pairs), np.bool_)
+    for number in range(len(pairs)):
+        one, other = pairs[number]
+        if _touch(faces[one], faces[other]):
+            continue
+        for k in range(3):
+            after = (k + 1) % 3
+            if _segment_cuts(corners[one, k], corners[one, after], corners[other]) or _segment_cuts(
+                corners[other, k], corners[other, after], corners[one]
+            ):
+                cuts[number] = True
+                break
+    return cuts
+
+
+@njit
+def _touch(one: Integers32, other: Integers32) -> bool:
+    """Whether two triangles have a common vertex."""
+    for vertex in one:
+        for twin in other:
+            if vertex == twin:
+                return True
+    return False
+
+
+@njit
+def _segment_cuts(start: Floats64, end: Floats64, triangle: Floats64) -> bool:
+    """Whether a segment cuts a triangle (3, 3), as `crossings` finds it."""
+    margin = 1e-6  # relative; contact at a corner or an edge is no cut
+    dx = end[0] - start[0]
+    dy = end[1] - start[1]
+    dz = end[2] - start[2]
+    ax, ay, az = triangle[0]
+    bx = triangle[1, 0] - ax
+    by = triangle[1, 1] - ay
+    bz = triangle[1, 2] - az
+    cx = triangle[2, 0] - ax
+    cy = triangle[2, 1] - ay
+    cz = triangle[2, 2] - az
+    across_x = dy * cz - dz * cy
+    across_y = dz * cx - dx * cz
+    across_z = dx * cy - dy * cx
+    volume = bx * across_x + by * across_y + bz * across_z
+    if not abs(volume) > PARALLEL:
+        return False
+    share = 1.0 / volume
+    x = start[0] - ax
+    y = start[1] - ay
+    z = start[2] - az
+    u = (x * across_x + y * across_y + z * across_z) * share
+    if not margin < u < 1.0 - margin:
+        return False
+    turned_x = y * bz - z * by
+    turned_y = z * bx - x * bz
+    turned_z = x * by - y * bx
+    v = (turned_x * dx + turned_y * dy + turned_z * dz) * share
+    along = (cx * turned_x + cy * turned_y + cz * turned_z) * share
+    return bool(v > margin and u + v < 1.0 - margin and margin < along < 1.0 - margin)
 
 
 def exits(

@@ -21,3 +21,10 @@ def test_pairs_are_those_of_a_plain_comparison():
 def test_no_triangles_have_no_pairs():
     """An empty mesh is not an error."""
     assert near_pairs(np.zeros((0, 3, 3))).shape == (0, 2)
+
+
+def test_more_pairs_than_expected_are_all_found():
+    """In a stack of equal triangles every two touch."""
+    stack = np.tile(np.eye(3), (40, 1, 1))
+    expected = np.argwhere(np.triu(np.ones((40, 40)), 1)).tolist()
+    assert sorted(near_pairs(stack).tolist()) == expected

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from risorius.geometry.normals import cross_products
-from risorius.geometry.rays import crossings, exits
+from risorius.geometry.rays import crossings, cutting, exits
 
 
 def test_weights_and_distance_name_one_point():
@@ -23,6 +23,26 @@ def test_weights_and_distance_name_one_point():
     assert_allclose(volume[50:], -(normals * directions[50:]).sum(axis=1), atol=1e-12)  # outside
     on_triangle = np.einsum("kn,nkj->nj", [1.0 - u - v, u, v], corners)[50:]
     assert_allclose(on_triangle, (origins + along[:, None] * directions)[50:], atol=1e-6)
+
+
+def test_triangles_cut_each_other_where_an_edge_of_one_crosses_the_other():
+    """A common vertex is no cut; `crossings` finds the same edges."""
+    random = np.random.default_rng(3)
+    vertices = random.normal(size=(30, 3))
+    faces = np.array([random.permutation(30)[:3] for _ in range(60)], dtype=np.int32)
+    corners = vertices[faces]
+    pairs = np.argwhere(np.triu(np.ones((60, 60)), 1))
+    ends = np.roll(corners, -1, axis=1)
+    expected = np.zeros(len(pairs), dtype=bool)
+    for one, other in (pairs.T, pairs.T[::-1]):
+        for k in range(3):
+            start = corners[one, k]
+            _, u, v, along = crossings(start, ends[one, k] - start, corners[other])
+            expected |= (np.stack([u, v, 1.0 - u - v, along, 1.0 - along]) > 1e-6).all(axis=0)
+    touch = (faces[pairs[:, 0], :, None] == faces[pairs[:, 1], None, :]).any(axis=(1, 2))
+    expected &= ~touch
+    assert expected.sum() > 100
+    assert np.array_equal(cutting(corners, faces, pairs), expected)
 
 
 def test_rays_leave_a_cube_where_its_walls_are():
