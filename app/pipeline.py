@@ -110,7 +110,8 @@ class Pipeline:
             rims = self.scene.rims(render.Opening.RIM_POINTS)
             mouth = rims["mouth"].points if "mouth" in rims else None
         skin = render.Skin(drawn.stream, maps, fading, values, mouth)
-        style = replace(style, opacity=style.opacity * seen.opacity)
+        # Uploaded amounts have the strength of wrinkles, for folds of lids keep theirs.
+        style = replace(style, opacity=style.opacity * seen.opacity, bumps=1.0)
         view = render.CameraView(camera, area, clip)
         return render.Frame(view, style, skin, seen.parts, seen.cut, overlays)
 
@@ -129,8 +130,9 @@ class Pipeline:
         overlays: lines over every viewport. timer: measures "refinement", "upload" and "draw".
         """
         with timer("refinement"):
-            compression = self._compression if style.shows_bumps else None
-            wrinkling = None if compression is None else compression.measure(self.scene.positions)
+            wrinkling = None
+            if self._compression is not None and style.shading is render.Shading.PIXEL:
+                wrinkling = self._compression.measure(self.scene.positions, style.bumps)
             self.refine(camera, viewports, wrinkling)
         with timer("upload"):
             for viewport in viewports:

@@ -149,12 +149,15 @@ class Wrinkles:
         length is the readiness to wrinkle, zero for none; shape (V, 2, 3), float32.
     resting: wrinkles of each vertex at rest, such as those of age, 0 to 1, shape (V,); (1,) for
         all.
+    folds: the share of `resting` that is anatomy, as folds of lids, and shows in a face that is
+        drawn without wrinkles, too; shape (V,); (1,) for all.
     """
 
     map: Image
     steepest: float
     across: Floats32
     resting: Floats32 = field(default_factory=lambda: np.zeros(1, np.float32))
+    folds: Floats32 = field(default_factory=lambda: np.zeros(1, np.float32))
 
     def __post_init__(self) -> None:
         make_read_only(self)

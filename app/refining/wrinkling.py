@@ -46,20 +46,29 @@ class Compression:
         face_uv = scene.faces if scene.skin.face_uv is None else scene.skin.face_uv
         self._gradients = TextureGradients(scene.faces, scene.skin.uv, face_uv)
         self._readiness = np.linalg.norm(wrinkles.across, axis=2)
-        self._resting = wrinkles.resting[:, None] * np.minimum(self._readiness, 1.0)
+        whole = np.minimum(self._readiness, 1.0)
+        self._resting = wrinkles.resting[:, None] * whole
+        self._folds = wrinkles.folds[:, None] * whole
+        self._has_folds = bool(self._folds.any())
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
 
-    def measure(self, positions: Points) -> Wrinkling | None:
-        """Return the wrinkles of the skin at these positions, (V, 3); None if there are none."""
-        amounts = self.amounts(positions)
+    def measure(self, positions: Points, strength: float = 1.0) -> Wrinkling | None:
+        """Return the wrinkles of the skin at these positions, (V, 3); None if there are none.
+
+        strength: as in `amounts`.
+        """
+        if strength == 0.0 and not self._has_folds:
+            return None
+        amounts = self.amounts(positions, strength)
         if not amounts.any():
             return None
         return Wrinkling(amounts, self._gradients.measure(positions))
 
-    def amounts(self, positions: Points) -> Amounts:
+    def amounts(self, positions: Points, strength: float = 1.0) -> Amounts:
         """Return the depth of furrows in both slots of each vertex, 0 to 1, shape (V, 2).
 
-        The amount begins and ends smoothly, so furrows do not pop up.
+        The amount begins and ends smoothly, so furrows do not pop up. strength: factor on all
+        furrows but folds, which are anatomy.
         """
         lost = self._shortening.measure(positions)
         # The numbers were chosen by eye. Skin yields a little before it folds, and the depth of a
@@ -70,6 +79,8 @@ class Compression:
         amounts = beyond / (beyond + (half_depth_loss - onset) ** 2)
         # Gain of length at which furrows of age are half as deep, because stretched skin is smooth.
         half_depth_gain = 0.1
-        resting = self._resting / (1.0 + np.square(np.minimum(lost, 0.0) / half_depth_gain))
-        shown: Amounts = np.maximum(amounts, resting).astype(np.float32)
-        return shown
+        left = 1.0 / (1.0 + np.square(np.minimum(lost, 0.0) / half_depth_gain))
+        shown = np.maximum(amounts, self._resting * left)
+        if strength != 1.0:
+            shown = np.maximum(strength * shown, self._folds * left)
+        return np.asarray(shown, np.float32)

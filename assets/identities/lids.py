@@ -43,9 +43,9 @@ def with_folds(wrinkles: Wrinkles, person: Person) -> Wrinkles:
         steep = 127.0 * size / wrinkles.steepest
         add_to(near, more * np.array([steep, steep, 255.0 * darkest], np.float32))
     found.flags.writeable = False
-    across, share = _yielding()
-    resting = np.maximum(wrinkles.resting, share)
-    return replace(wrinkles, map=found, across=across, resting=resting)
+    across, folds = _yielding()
+    resting = np.maximum(wrinkles.resting, folds)
+    return replace(wrinkles, map=found, across=across, resting=resting, folds=folds)
 
 
 @lru_cache(maxsize=1)

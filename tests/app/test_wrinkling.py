@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from risorius import render
+from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.refining.wrinkling import Compression
 from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
@@ -107,3 +109,35 @@ def test_folds_of_lids_flatten_when_the_eyes_shut():
         creased = head.rings[f"eye_3_{side}"][3:8]
         assert (open_eyed[creased] > 0.99).all()
         assert shut[creased].max() < 0.3
+
+
+def test_folds_of_lids_stay_without_wrinkles():
+    """Wrinkles of strength 0 took the fold with those of motion and age."""
+    person = person_called("maria")
+    faces = FaceScene(person)
+    measure = Compression(faces)
+    whole, half, none = (
+        measure.amounts(faces.rest_positions, strength) for strength in (1.0, 0.5, 0.0)
+    )
+    head = load("head")
+    creased = np.concatenate([head.rings[f"eye_3_{side}"][3:8] for side in ("left", "right")])
+    for each in (whole, half, none):
+        assert (each[creased] > 0.99).all()
+    is_fold = person.wrinkles.folds > 0.0
+    assert whole[~is_fold].max() > 0.2
+    np.testing.assert_allclose(half[~is_fold], 0.5 * whole[~is_fold], atol=1e-6)
+    assert not none[~is_fold].any()
+
+
+def test_a_young_person_looks_alike_without_wrinkles():
+    """Person 8 has folds and no furrows; the built-in head has neither, and nothing is measured."""
+    scene = FaceScene(person_called(8))
+    pictures = []
+    for strength in (1.0, 0.0):
+        options = CaptureOptions((160, 160), camera="0,0,3", style=render.Style(bumps=strength))
+        with Capture(scene, options) as capture:
+            pictures.append(capture.draw_image())
+            assert capture.viewports[0].drawn.wrinkles
+    np.testing.assert_array_equal(*pictures)
+    plain = FaceScene()
+    assert Compression(plain).measure(1.2 * plain.rest_positions, 0.0) is None
