@@ -10,6 +10,8 @@ from .programs import write_uniform
 from .render_target import RenderTarget
 from .translucency import changing_depth_alone
 
+FARTHER = 1.0, 4.0  # as glPolygonOffset takes it: of a pixel's slope, and least steps of depth
+
 
 def hide_below(
     parts: Sequence[PlacedBuffers],
@@ -18,6 +20,8 @@ def hide_below(
     program: moderngl.Program,
 ) -> None:
     """Draw the depth of dense hair among parts, by shadow.glsl with SHELLS."""
+    # It lies so near to the lowest layer that rounding would hide parts of that, too.
+    program.ctx.polygon_offset = FARTHER
     for each in parts:
         covered = view.covered_pixels(each.corners)
         if each.buffers.kind != "SHELLS" or min(covered[2:]) <= 0:
@@ -26,3 +30,4 @@ def hide_below(
         target.use(view.viewport, covered)
         with changing_depth_alone(program.ctx):
             each.buffers.draw_hiding(program, view)
+    program.ctx.polygon_offset = 0.0, 0.0

@@ -23,9 +23,10 @@ from . import hair as short
 from .hair import HAIR, Cut, Fall, Scalp, from_within
 
 EDGE, ROUNDED = np.radians([62.0, 50.0])  # angles from the face to hair, and to its full volume
-HEM = 12.0  # [mm] of thinning tips, of hair that is cut
+HEM = 5.0  # [mm] of thinning tips, of hair that is cut
 FULL = 2.0  # density where all layers are full; [mm] that hair stands off the head
 VOLUME = 9.0
+SLIDE = 1.3  # of layers along lying strands, for each millimetre outward
 DOWN, RIGHT = np.array([(0.0, -1.0, -0.12), (1.0, 0.0, 0.0)])  # it hangs down, free of the back
 Even = Floats64 | float  # a number may stand for all
 
@@ -59,7 +60,7 @@ def falling_hair(
     uneven = 0.6 * np.sin(0.9 * across) + 0.4 * np.sin(0.37 * across + 1.0)
     # Beside the face the outer side curves to the inner one.
     beside = np.clip((angle - EDGE) / ROUNDED, 0.0005, 1.0)
-    ragged_depth = 6.0  # [mm] of uneven tips
+    ragged_depth = 3.0  # [mm] of uneven tips
     layered_rise = 16.0  # [mm] that tips rise in front
     ends = ear[1] - cut.below * length + layered_rise * (1.0 - beside) ** 3 + ragged_depth * uneven
     rise = np.clip(over / 0.35, 0.0, 1.0)  # share of the way to the full volume
@@ -87,8 +88,18 @@ def falling_hair(
     # in front would be bars over the skin.
     dense = np.minimum(0.5 + along / 1.4, 0.1 + off / 2.4)
     dense = np.minimum(dense, (along[:, -1:] - along) / HEM)
-    hair = _layers(HAIR, bent, across[:, None], thick, dense, colour)
+    hair = _layers(HAIR, bent, across[:, None], thick, dense, colour, _slide(along))
     return from_within(hair, hair.faces), short.loose_hairs(hair), hair
+
+
+def _slide(along: Floats64) -> Floats64:
+    """Slide of layers in these places along strands [mm], as `_layers` takes it, (n, m).
+
+    Hair rises from its parting, and shines where it lies. Two lying halves, whose strands run
+    apart, would meet in a hard edge, one side bright and the other dark.
+    """
+    rising_length = 40.0  # [mm]
+    return np.asarray(SLIDE * smooth_step(0.0, rising_length, along))
 
 
 def _tips(height: Floats64, *, ears_end: float, ends: Floats64) -> tuple[Floats64, Floats64]:
@@ -187,13 +198,20 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
 
 
 def _layers(
-    name: str, places: Floats64, across: Floats64, thick: Even, dense: Even, colour: Floats64
+    name: str,
+    places: Floats64,
+    across: Floats64,
+    thick: Even,
+    dense: Even,
+    colour: Floats64,
+    slide: Even = SLIDE,
 ) -> Part:
     """Strands side by side, in layers.
 
     places: those of the outermost layer along each strand from its root [mm], shape (n, m, 3).
     across, thick, dense: place of strands beside each other [mm], thickness of their volume [mm],
-    their density, (n, m). colour: sRGB, (n, m, 3).
+    their density, (n, m). colour: sRGB, (n, m, 3). slide: along strands, for each millimetre
+    outward, (n, m).
     """
     shape = places.shape
     points = places.reshape(-1, 3)
@@ -203,10 +221,10 @@ def _layers(
     normals = unit_vectors(vertex_normals(points, grid_faces(number)) + outward_share * out)
     ahead = unit_vectors(np.gradient(places, axis=1).reshape(-1, 3))
     layer_share = 0.4  # of the volume
-    columns = across, short.FINE * _along(places), layer_share * thick, np.minimum(dense, FULL)
+    along = short.FINE * _along(places)
+    columns = across, along, layer_share * thick, np.minimum(dense, FULL), slide
     rows = np.stack([np.broadcast_to(each, shape[:2]) for each in columns], axis=-1)
-    across, along, thick, dense = np.split(rows.reshape(-1, 4), 4, axis=1)
-    slide = 1.3  # along strands, for each millimetre outward
+    across, along, thick, dense, slide = np.split(rows.reshape(-1, 5), 5, axis=1)
     way = thick * (normals + slide * ahead)
     return Part(
         name=name,

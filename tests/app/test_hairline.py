@@ -109,3 +109,24 @@ def test_skin_below_dense_hair_is_not_shaded(person, monkeypatch):
             assert (off > 2).sum() <= 4
             if view == "180,0":
                 assert counts[-2] < 0.75 * counts[-1]
+
+
+def test_no_specks_of_light_lie_in_parted_hair(monkeypatch):
+    """Rounded depths below hair hid hair itself: 843 white pixels on person 9 from this side."""
+    with Capture(FaceScene(person_called(9)), CaptureOptions(size=(640, 480))) as capture:
+        capture.camera = camera_for(capture.scene, "-40,10,2")
+        capture.camera.target = np.array([0.0, 60.0, 10.0])
+        image = capture.draw_image().astype(int)
+        monkeypatch.setattr(renderer, "hide_below", lambda *_: None)
+        whole = capture.draw_image().astype(int)
+    assert (np.abs(image - whole).max(axis=2) > 8).sum() < 40
+
+
+def test_halves_of_parted_hair_meet_softly():
+    """Person 9's right half shone up to the parting, 1.38 times as bright as the left one there."""
+    options = CaptureOptions(size=(480, 360), camera="0,40,3")
+    with Capture(FaceScene(person_called(9)), options) as capture:
+        capture.camera.target = np.array([0.0, 90.0, 30.0])
+        light = capture.draw_image().astype(float).mean(axis=2)[150:270].mean(axis=0)
+    beside, other = light[228:236].mean(), light[244:252].mean()
+    assert beside / other < 1.2

@@ -85,6 +85,16 @@ def test_hair_is_as_long_and_begins_where_it_is_set():
     assert receded.vertices[dense[1], 2].max() < usual.vertices[dense[0], 2].max() - 5.0
 
 
+def test_bobs_are_cut_off_without_a_veil():
+    """Person 28's strands behind the head are dense a centimetre above their tips."""
+    hair = next(part for part in person_called(28).parts if part.name == HAIR)
+    dense = hair.striation[:, 5].reshape(51, -1)[15:36]
+    tips = hair.vertices.reshape(51, -1, 3)[15:36, -2:]
+    assert np.linalg.norm(np.diff(tips, axis=1), axis=2).max() < 12.0
+    assert (dense[:, -1] == 0.0).all()
+    assert (dense[:, -2] > 1.2).all()
+
+
 def test_cropped_hair_has_no_ring_of_light_around_its_whorl():
     """Cropped hair is dull, so that its whorl has no bright ring; longer hair shines as before."""
     shines = {cut: hair_of(haired(cut)).shine for cut in ("cropped", "short", "brushed")}
