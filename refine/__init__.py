@@ -1,26 +1,28 @@
 """Dynamic refinement of animated triangle meshes: arrays in, crack-free triangles out, each frame.
 
 After Kähler, Haber and Seidel, "Dynamically refining animated triangle meshes for rendering", The
-Visual Computer 2003. It needs numpy and numba, and the neighbours jit.py and geometry/.
+Visual Computer 2003. It needs numpy, numba, and the modules jit.py and geometry/ beside this
+folder.
 
     refiner = refine.create("kahler", faces, rest_positions)   # once per mesh
     mesh = refiner.refine(positions)                           # every frame
     draw(mesh.positions, mesh.normals, mesh.triangles)
 
 Refiners by name: `none` returns the mesh itself, `kahler` is the paper's, `loop` subdivides the
-whole mesh for comparison. `refine(positions, out=stream)` writes straight into lent arrays.
+whole mesh for comparison. `refine(positions, out=stream)` writes straight into the caller's arrays.
 `Shortening` measures how far the skin is compressed. `Embedding` carries a fine mesh with a coarse
-one. `check` and `check_embedding` are for tests: they name the broken relation.
+one. `check` and `check_embedding` are for tests: they raise an error that names the broken
+relation.
 
 `kahler` follows the paper by default. Its options: `scheme` places points, `criterion` chooses the
 split edges, `splits` fixes them for all frames, `blend` keeps points from popping, `coherent` keeps
-triangulations from turning, `attributes` are further values at vertices, `crease_angle` keeps edges
-sharp. Schemes, criteria and refiners of other authors join by name: `schemes.register`,
-`criteria.register`, `refiners.register`, or an entry point. They derive from `Scheme`, `Criterion`
-and `BaseRefiner`.
+existing diagonals when a further edge splits, `attributes` are further values at vertices,
+`crease_angle` keeps edges sharp. Schemes, criteria and refiners of other authors join by name:
+`schemes.register`, `criteria.register`, `refiners.register`, or an entry point. They derive from
+`Scheme`, `Criterion` and `BaseRefiner`.
 
-There is one room for each subject. Each may import from the rooms above it, and from jit.py (the
-compiler) and geometry/, which lie beside this folder:
+There is one subfolder or module for each subject. Each may import from those above it in this list,
+and from jit.py (the compiler) and geometry/ beside this folder:
 
     mesh/       the bound mesh: connectivity, seams, normals
     border/     input and output of every refiner; the protocol is plugin.py

@@ -1,4 +1,4 @@
-"""Meshes of other programs, which have vertices doubled along seams, and any data there."""
+"""Refinement of meshes from other programs, with vertices doubled along seams and any data."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,20 +15,20 @@ from .mesh.seams import weld as weld_vertices
 from .mesh.validation import checked_mesh
 
 SMOOTH = {"scheme": "cubic", "criterion": "displacement+rest"}
-"""Options that round places which are coarse at rest, or bend: the application's usual look."""
+"""Options that refine places that bend, or are coarse at rest: the defaults of the application."""
 
 
 class WeldedRefiner:
-    """The refiner `kahler` for a mesh as VTK, trimesh, glTF and OBJ have it.
+    """The refiner `kahler` for meshes with doubled vertices, as in VTK, trimesh, glTF and OBJ.
 
         refiner = WeldedRefiner(points, triangles)
         mesh = refiner.refine(moved, values={"heat": heat})      # every frame
         draw(mesh.positions, mesh.triangles, mesh.attributes["heat"])
 
-    Such a mesh has a vertex twice where its two sides look different. Doubled vertices are welded
-    for refinement, so that no crack opens between them, and part again in the refined mesh. The
-    default is the refinement of the window, `scheme="cubic", criterion="displacement+rest"`, so
-    that a mesh that did not move gets smoother, too.
+    Such a mesh has a vertex twice where its two sides carry different data. Doubled vertices are
+    welded for refinement, so that no crack opens between them, and are separate again in the
+    refined mesh. The default options are those of the application's window, `scheme="cubic",
+    criterion="displacement+rest"`, which also smooth a mesh that did not move.
     """
 
     def __init__(
@@ -43,13 +43,13 @@ class WeldedRefiner:
     ) -> None:
         """Bind to `points` at rest, shape (V, 3), and `triangles`, shape (F, 3).
 
-        `weld`: whether vertices at one place are one; False for surfaces that touch at rest and
-        part later, such as lips. `weld_tolerance`: their largest distance, in sizes of the mesh;
-        None for 1e-9, or the last bits of the points' type if these are more. `seams`: whether
-        welded vertices part again in the output, which is needed only if they carry data.
-        `options`: those of `create_kahler` except texture coordinates and attributes, which frames
-        bring as values. With `splits`, of the welded `edges`, all frames have the same triangles.
-        Raises ValueError as `create` does.
+        `weld`: whether to join vertices at the same place; False for surfaces that touch at rest
+        and separate later, such as lips. `weld_tolerance`: largest distance of joined vertices, in
+        sizes of the mesh; None for 1e-9, or a few rounding steps of the points' type if these are
+        more. `seams`: whether welded vertices are separate again in the output, which is needed
+        only if they carry data. `options`: those of `create_kahler` except texture coordinates and
+        attributes, which frames bring as values. With `splits`, of the welded `edges`, all frames
+        have the same triangles. Raises ValueError as `create` does.
         """
         rest, given = checked_mesh(points, triangles, ("points", "triangles"))
         self.triangles = read_only(given)
@@ -62,7 +62,7 @@ class WeldedRefiner:
             self._faces = faces.astype(np.int64)
         self._parts = seams and len(self._kept) < len(rest)
         self._used = np.unique(self.triangles)  # in the order of values of corners
-        # The number of a doubled vertex takes the place of a texture coordinate.
+        # The number of a doubled vertex is used as its texture coordinate.
         numbers = {"uv": np.zeros((len(rest), 2)), "face_uv": self.triangles}
         chosen = {**SMOOTH, **options}
         if options.get("splits") is not None and "criterion" not in options:
@@ -91,10 +91,10 @@ class WeldedRefiner:
         view: View | None = None,
         values: Mapping[str, npt.ArrayLike] | None = None,
     ) -> RefinedMesh:
-        """Turn a frame of all points, shape (V, 3), into triangles, as `Refiner.refine` does.
+        """Turn the positions of all points, shape (V, 3), into triangles, as `Refiner.refine` does.
 
-        `values`: values of the points in this frame, by name, shape (V, ...), of any type. They
-        become attributes of the refined mesh, by `carry`. Raises ValueError for another number of
+        `values`: values of the points in this frame, by name, shape (V, ...), of any type. `carry`
+        turns them into attributes of the refined mesh. Raises ValueError for another number of
         points or values, or points that are not finite.
         """
         frame = np.asarray(points)
@@ -113,10 +113,11 @@ class WeldedRefiner:
         return self._mesh
 
     def carry(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
-        """Carry values of the input's points, shape (V, ...), to those of the last frame, (N, ...).
+        """Interpolate values of input points, (V, ...), at the points of the last frame, (N, ...).
 
-        They are linear along edges, and each side of a seam has its own. Types stay: integers
-        are rounded to the nearest, and values of other kinds come from the nearest point.
+        The interpolation is linear along edges, separately on each side of a seam. The type is
+        kept: integers are rounded to the nearest, and values that are not numbers come from the
+        nearest point.
         """
         table = np.asarray(values)
         if len(table) != self.point_count:
@@ -145,7 +146,7 @@ class WeldedRefiner:
 
 
 def _mixed(table: npt.NDArray[Any], rows: Integers64, weights: Floats64) -> npt.NDArray[Any]:
-    """Means of rows of a table, (M, 3), with weights of the same shape; numbers of any type."""
+    """Return weighted means of three rows each, (M, 3), of a table of numbers of any type."""
     if table.dtype.kind == "c":  # as pairs: infinity times a complex share is NaN
         pairs = np.ascontiguousarray(table)[..., None].view(table.real.dtype)
         return np.ascontiguousarray(_mixed(pairs, rows, weights)).view(table.dtype)[..., 0]
@@ -168,10 +169,10 @@ def _mixed(table: npt.NDArray[Any], rows: Integers64, weights: Floats64) -> npt.
 def _mixed_wide(
     corners: npt.NDArray[np.integer], shares: Floats64, has_part: Flags
 ) -> npt.NDArray[np.integer]:
-    """The same for integers of 64 bits, shape (M, 3, ...), which doubles do not hold.
+    """Do the same for integers of 64 bits, shape (M, 3, ...), which doubles cannot represent.
 
-    Doubles hold their differences from the least of them. Halves are rounded to the even number, as
-    `numpy.rint` does.
+    Doubles can represent their differences from the least of the three. Halves are rounded to the
+    even number, as `numpy.rint` does.
     """
     largest = np.iinfo(corners.dtype).max
     least = np.where(has_part, corners, largest).min(axis=1).astype(np.uint64)

@@ -1,1 +1,1 @@
-"""Beyond the paper: its future work (section 6), and methods of other authors."""
+"""Methods beyond the paper: its future work (section 6), and methods of other authors."""

@@ -1,6 +1,6 @@
-r"""No popping: the refined surface as a continuous function of the positions.
+r"""Blending without popping: the refined surface is a continuous function of the positions.
 
-Kähler, Haber, Seidel 2003, put a new point at its full place in the very frame in which its edge
+Kähler, Haber, Seidel 2003, put a new point at its final position in the frame in which its edge
 passes a threshold. Here the point begins on the straight edge, and moves out while the metric of
 its edge rises further. Two things must be continuous:
 
@@ -11,9 +11,9 @@ twice.
     weight twice   (metric - 1) / RAMP_WIDTH  and its full place; the same for the quarters
 
 *Triangles.* Where two edges of a triangle are split, a quadrangle remains, which has two diagonals.
-If one split goes away, the diagonal from the other one must be there. This holds for both splits,
-so the diagonal must turn in between, and the surface jumps. A point C in the middle needs no
-diagonal:
+If one split is taken back, only the diagonal from the point of the other split may remain. This
+holds for either split, so the diagonal must flip in between, and the surface jumps. A point C in
+the middle needs no diagonal:
 
               2             one edge     C = 2/3 m + 1/3 corner 2: on the line m-2, which is there
              /|\                         without C, so that nothing moves when it appears;
@@ -24,16 +24,16 @@ diagonal:
         0-----m-----1                    patch (the sixth part of its six inner points; Vlachos et
                                          al. 2001, "Curved PN triangles", give the same).
 
-Here m is the middle of a split edge, and its displacement is the vector from the edge to m. While
-edges grow, with weights g1 >= g2 >= g3, C is a mean of the three rules, and of the first rule for
-all edges at once:
+Here m is the middle of a split edge, and its displacement is the vector from the edge to m. Let g1
+>= g2 >= g3 be the geomorph weights of the edges. C is a weighted mean of the three rules, and of
+the first rule averaged over all edges:
 
     1 - g1  of all at once,   g1 - g2  of one edge,   g2 - g3  of two,   g3  of three
 
-It costs one more point and two more subtriangles for triangles with two or more splits.
+A triangle with two or more splits needs one more point and two more subtriangles than in the paper.
 
 So blending replaces the paper's table: a triangle with more than one split is a fan around C. A new
-split then cuts one triangle of the fan and never turns a diagonal. The paper's patterns must turn
+split then cuts one triangle of the fan and never flips a diagonal. The paper's patterns must flip
 one: between 110 and 010, for example, the diagonal from corner 2 becomes the diagonal from corner
 0, and their quadrangle is not flat.
 
@@ -78,15 +78,16 @@ from ..mesh.vectors import (
 )
 
 RAMP_WIDTH = np.float32(0.25)
-"""Range of the metric in which a point grows; 1 is the distance of both thresholds. Chosen: a half
-grown point costs as much as a whole one.
+"""Range of the metric over which a point moves from the straight edge to its final position; 1 is
+the difference of the two thresholds. Chosen short, because a half moved point costs as much as a
+fully moved one.
 """
 TWO_THIRDS = np.float32(2 / 3)
 FOUR_NINTHS = np.float32(4 / 9)
 
 
 def fan(splits: tuple[int, int, int]) -> list[Triangle]:
-    """Cut a triangle into a fan around its middle, or, for a single split, as the paper does."""
+    """Cut a triangle into a fan around its middle; with a single split, as the paper does."""
     if sum(splits) <= 1:
         return subdivide(splits)
     points = outline(splits)
@@ -99,7 +100,7 @@ FANS = table_of([fan(splits_of(configuration)) for configuration in range(CONFIG
 
 
 class Blended(Cutting):
-    """Points grow out of their edges, triangles are fans, and nothing pops."""
+    """The cutting of blended frames: points leave their edges gradually, triangles are fans."""
 
     patterns = FANS
     has_centres = True
@@ -111,7 +112,7 @@ class Blended(Cutting):
         return frame.configurations
 
     def mark(self, criterion: Criterion, frame: FrameBuffers, splits: Unsigned8) -> None:
-        """Decide how far the points of every edge have grown, and thus on its splits."""
+        """Write the geomorph weights of every edge, and the splits that follow from them."""
         metric = self._metric
         criterion.measure(frame.positions, frame.normals, metric)
         if weigh_geomorphs(metric, splits, frame.geomorph_once, frame.geomorph_twice) > 0:
@@ -127,7 +128,7 @@ class Blended(Cutting):
         return vertex_count + int(counts[CENTRES]), int(counts[TRIANGLES])
 
     def place(self, scheme: Scheme, frame: FrameBuffers) -> None:
-        """Write the points in the middle of triangles, which the scheme corrects."""
+        """Write the points in the middle of triangles; then let the scheme correct them."""
         share(place_centres, frame.centre_count, self._mesh, frame)
         scheme.place_centres(frame)
 
@@ -156,7 +157,7 @@ def number_centres(
 ) -> None:
     """List the triangles that have a point in the middle; count them, and all subtriangles.
 
-    The arrays are those of `FrameBuffers`, and the two of `Patterns`.
+    The arguments are arrays of `FrameBuffers`, and the two arrays of `Patterns`.
     """
     centre_count = triangle_count = 0
     for t in range(configurations.shape[0] - 1):
@@ -170,16 +171,17 @@ def number_centres(
 
 @njit
 def beyond(own: np.float32, other: np.float32, third: np.float32) -> tuple[np.float32, np.float32]:
-    """Excess of an edge's weight above both others; and, as one of two edges, above the least."""
+    """Return the weight of the rule of one edge, and of the rule of two, for the edge `own`."""
     rival = max(other, third)
     return max(own - rival, ZERO), min(own, rival) - min(own, other, third)
 
 
 @njit
 def centre_shares(x: np.float32, y: np.float32, z: np.float32) -> tuple[Vector, Vector]:
-    """Shares of corners, and of displacements of edges, in a point in the middle of a triangle.
+    """Return the shares of corners, and of edge displacements, in the middle of a triangle.
 
-    x, y, z: geomorph weights of the edges, which give the weight of each rule above.
+    `x`, `y`, `z`: geomorph weights of the edges; they determine the weights of the three rules
+    above.
     """
     all_three = min(x, y, z)
     none = ONE - max(x, y, z)
@@ -209,7 +211,7 @@ def displaced(
     middle: np.uint32,
     column: int,
 ) -> Vector:
-    """A point, moved by a share of the vector from the mean of two rows to the row `middle`."""
+    """Move a point by a share of the vector from the mean of two rows to the row `middle`."""
     straight = plus(row_of(rows, ends[0], column), row_of(rows, ends[1], column))
     out = less(row_of(rows, middle, column), HALF, straight)
     return plus(centre, times(share_of_edge, out))

@@ -1,32 +1,33 @@
 r"""Cubic edges from end points and normals: the scheme named `cubic`.
 
-The border curves of curved PN triangles (Vlachos, Peters, Boyd, Mitchell 2001): the cubic that
-starts at a in the plane across its normal, and arrives at b in the plane across its own. With
-d = b - a, and heights h_a = d . n_a, h_b = d . n_b over these planes:
+The border curves of curved PN triangles (Vlachos, Peters, Boyd, Mitchell 2001): the tangents of a
+cubic from a to b are normal to the vertex normals at its ends. With d = b - a, and heights h_a = d
+. n_a, h_b = d . n_b over these planes:
 
     middle         (a + b) / 2    -  ( h_a n_a -     h_b n_b) /  8
     near a      (3 a + b) / 4     -  (9 h_a n_a - 3 h_b n_b) / 64
     near b      (a + 3 b) / 4     -  (3 h_a n_a - 9 h_b n_b) / 64
 
 Differs from PN triangles: the normals are weighted by the geometric mean of a triangle's angle and
-its area at rest. The angle alone is best on smooth surfaces, the area alone where decimation has
-left folds of small triangles; the mean loses little on both. A mean over the surrounding triangles
-also shows a bend too small. So for heights, but not for light, a normal is moved a little away from
-those of its neighbours: n - 0.15 x mean of the neighbours, normalised. This changes nothing on a
-plane, or on a sphere of equal triangles. An edge on a border is cubic in the border curve itself,
-because the normals of a surface do not give its outline. Beside a corner of the border only the far
-end has a tangent, and the curve is a parabola: a chord as the tangent at the corner would make the
-curve flatter than skin.
+its area at rest. The angle alone is best on smooth surfaces; the area alone is best where
+decimation has left folds of small triangles; the mean loses little on either. A mean over the
+surrounding triangles also underestimates bends. So for heights, but not for shading, a normal is
+moved a little away from the normals of its neighbours: n - 0.15 x mean of the neighbours,
+normalised. This changes nothing on a plane, or on a sphere of equal triangles. An edge on a border
+takes its tangents from the border curve, because the normals of a surface do not determine its
+outline. Beside a corner of the border only the far end has a tangent, and the curve is a parabola.
+A chord as the tangent at the corner would make the curve flatter than skin is.
 
-The *displacement* of a point is its vector from the straight edge. Points of split edges are moved
-by it as far as their geomorph weights allow (blending.py):
+The *displacement* of a point is the vector from its place on the straight edge to the curve. Points
+of split edges are moved by the share of it that their geomorph weights give (blending.py):
 
                  .  m  .                 m      =  (a + b) / 2          +  displacement
               n           n              n at a =  (3 a + b) / 4        +  displacement
             a---------------b            grown   =  mix of (a + m) / 2 and n
 
-The normal at m is the mean of those at a and b; the normal at n is the mean of those of its
-neighbours, as in the paper (section 4.4). surface_normals.py has other normals.
+The normal at m is the mean of the normals at a and b; the normal at n is the mean of the normals of
+its neighbours, as in the paper (section 4.4). surface_normals.py computes normals of the refined
+surface instead.
 """
 
 from typing import NamedTuple
@@ -73,14 +74,15 @@ NEAR_END = 2
 """Points of an edge in an array of displacements, shape (E, 3, 3): edge, point, x y z."""
 FULLNESS = np.float32(1.2)
 """Factor on the cubic displacement of inner edges. Triangles between curves are flat, so the best
-fit stands out a little; measured on ellipsoids, a torus and heads, where 1.1 to 1.25 are almost
-equally good.
+fit lies a little outside the curves. Measured on ellipsoids, a torus and heads, where 1.1 to 1.25
+are almost equally good.
 """
 STEEPENING_SHARE = np.float32(0.15)
 """Share of the neighbours' mean normal that is subtracted from a normal. A vertex normal is a mean,
-and this is a first step to undo it; a second step, or a larger one, amplifies the noise of
-decimated meshes. Measured on two faces and their decimations: half a point of 35 % better on scans,
-equal on smooth heads, and half a point worse on the roughest and on a torus.
+and this is a first step to undo the averaging. A second step, or a larger one, amplifies the noise
+of decimated meshes. Measured on two faces and their decimations: half a percentage point of 35
+better on scans, equal on smooth heads, and half a percentage point worse on the roughest and on a
+torus.
 """
 EIGHTH = np.float32(1 / 8)
 """Share of the end tangents in the middle of a cubic."""
@@ -88,16 +90,16 @@ NEAR_WEIGHT = np.float32(9 / 64)
 FAR_WEIGHT = np.float32(3 / 64)
 """Share of the nearer and of the farther tangent at a quarter of a cubic."""
 SLIVER_SINE = 1e-9
-"""Sine of an angle below which a triangle has no direction."""
+"""Sine of an angle below which a triangle counts as degenerate and has no normal."""
 
 
 class Tangents(NamedTuple):
-    """Data of the tangents at the ends of cubic edges; compiled code takes this tuple as it is."""
+    """Data for the tangents at the ends of cubic edges, passed to compiled code as one tuple."""
 
     normals: Floats32
     """Unit normals of the S sectors of vertices, each corner weighted as at rest, shape (S, 3)."""
     steeper: Floats32
-    """Unit normals, moved away from those of their neighbours, shape (S, 3)."""
+    """Unit normals, moved away from the normals of their neighbours, shape (S, 3)."""
     off: Floats32
     """Share of each neighbour's normal that is subtracted, shape (S,)."""
     ends: Unsigned32
@@ -107,7 +109,7 @@ class Tangents(NamedTuple):
 
 
 class CubicScheme(Scheme):
-    """Edges are cubic curves across the normals at their ends."""
+    """The scheme `cubic`: edges become cubic curves, normal to the vertex normals at both ends."""
 
     interpolates = True
     uses_normals = False
@@ -135,7 +137,7 @@ class CubicScheme(Scheme):
             ends=sectors.edges[: len(mesh.edges)],
             beyond=follow_borders(mesh, rest_positions),
         )
-        # For light, both sides of a crease are one surface, as in the input.
+        # For shading, both sides of a crease are one surface, as in the input.
         self._normals = sector_normals
         self._whole_fans: Fans | None = None
         if mesh.is_sharp.any():
@@ -143,7 +145,7 @@ class CubicScheme(Scheme):
             self._whole_fans = fans_of(mesh)
 
     def prepare(self, frame: FrameBuffers) -> None:
-        """Find normals of vertices, and displacements of all edges as if each were split once."""
+        """Compute vertex normals, and the displacements of the points on all edges."""
         self._displace(frame.positions)
 
     def place(self, frame: FrameBuffers) -> None:
@@ -158,10 +160,10 @@ class CubicScheme(Scheme):
         share(place_on_curves, count, self._around.points, frame, self._rows)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
-        """Write the distance of the middle of every edge from it after one split, shape (E,).
+        """Write how far one split would displace the middle of every edge, shape (E,).
 
-        The normal in the middle is the mean of the ends' normals, so `turns`, shape (E,), become
-        zero.
+        The normal in the middle is the mean of the normals at the ends, so `turns`, shape (E,), are
+        set to zero.
         """
         displacement_sizes(self._displacements, displacements)
         turns[:] = ZERO
@@ -203,9 +205,9 @@ def weigh_corners(positions: Floats64, faces: Unsigned32, weights: Rows) -> None
 
 
 def follow_borders(mesh: Connectivity, rest_positions: Floats64) -> Unsigned32:
-    """Find the vertices before and after every border edge, shape (E, 2); its own ends at a corner.
+    """Find the vertices before and after every border edge, shape (E, 2).
 
-    Rows of other edges have no meaning.
+    At a corner of the border it is the end of the edge itself. Rows of other edges have no meaning.
     """
     neighbours = border_neighbours(mesh, rest_positions)[mesh.edges]
     others = mesh.edges[:, ::-1].view(np.uint32)
@@ -257,7 +259,7 @@ def steepen_normals(
     steeper: Floats32,
     off: Floats32,
 ) -> None:
-    """Write unit normals minus `off` of those of their neighbours, normalised, shape (V, 3)."""
+    """Write unit normals minus `off` times the sum around them, normalised, shape (V, 3)."""
     assert normals.shape[1] == steeper.shape[1] == WIDTH
     for k in range(first, last):
         v = np.uint32(k)
@@ -296,7 +298,7 @@ def displace_cubic(
     tangents: Tangents,
     displacements: Floats32,
 ) -> None:
-    """Write the displacements of edges: those of the cubic with the tangents at both ends.
+    """Write the displacements of edges from the cubics with the given tangents at both ends.
 
     `displacements`: three rows for each edge, shape (3 E, 3).
     """
@@ -344,8 +346,8 @@ def place_on_curves(
 ) -> None:
     """Write positions of unchanged vertices, and of the one or three points of split edges.
 
-    The loop is over vertices, and then over split edges. `ends`: of edges, in the first two columns
-    of (E, 4); `displacements`: three rows for each edge, shape (3 E, 3).
+    The loop runs over vertices, and then over split edges. `ends`: the ends of edges, in the first
+    two columns of (E, 4); `displacements`: three rows for each edge, shape (3 E, 3).
     """
     points = frame.points
     rows = frame.rows
@@ -381,7 +383,7 @@ def place_on_curves(
 def place_mean_normals(
     first: int, last: int, ends: Unsigned32, frame: FrameBuffers, normals: Floats32
 ) -> None:
-    """Write normals of vertices, shape (V, 3), and between them; loop and `ends` as above."""
+    """Write normals of vertices, shape (V, 3), and of points on edges; loop and `ends` as above."""
     rows = frame.rows
     vertex_count = frame.points.shape[0]
     for v in range(first, min(last, vertex_count)):

@@ -1,4 +1,4 @@
-"""The criterion `rest`: edges that are curved at rest, for meshes too coarse for their form.
+"""The criterion `rest`: it splits edges curved at rest, where a mesh is too coarse for its form.
 
 The paper's criterion counts bending since rest, so an outline that is a polygon at rest remains
 one. This criterion splits such edges.
@@ -8,9 +8,9 @@ one. This criterion splits such edges.
 The height of the arc over an edge (Taubin 1995) is k L^2 / 8, with the curvature k the mean of
 2 n_a . d / L^2 and, from the other side, -2 n_b . d / L^2.
 
-The root prefers long edges, whose corners are most visible, to short ones. Where a mesh is already
-fine, such as at touching lips, smoothing would only open gaps. (A limit of length tore the rims of
-ears, where long and short edges meet.)
+The root prefers long edges, because corners between long edges are most visible. Where a mesh is
+already fine, such as at touching lips, smoothing would only open gaps. (A fixed limit of length
+gave ragged rims of ears, where long and short edges meet.)
 """
 
 import numpy as np
@@ -25,13 +25,16 @@ from .blending import RAMP_WIDTH
 from .measuring import Measuring, Once, Twice
 
 USUAL_LENGTH = 1.0 / 40.0
-"""Length of an edge whose measure is the height of its arc, in sizes of the mesh."""
+"""The usual length of an edge, in sizes of the mesh: there the measure equals the height of the
+arc.
+"""
 
 
 class RestCurvature(Measuring):
-    """The height of the arc over an edge at rest, and a little its length; measured once.
+    """The criterion `rest`: the height of the arc over an edge at rest, times a root of its length.
 
-    The same edges are split in every frame, from any viewpoint, so no point can pop.
+    It is measured once. The same edges are split in every frame, from any viewpoint, so no point
+    can pop.
     """
 
     uses_normals = False
@@ -40,9 +43,10 @@ class RestCurvature(Measuring):
     def __init__(self, once: Once = 0.00077, twice: Twice = 0.0053, levels: Levels = 2) -> None:
         """`once`, `twice`: measures in sizes of the mesh, so a fine mesh stays unchanged.
 
-        Chosen by eye on a head of 2030 triangles, 720 pixels high: lower limits do not improve its
-        outline. Splits must reach all round places: a vertex without splits sticks out beside one
-        that was drawn inward. `levels`: the most splits of an edge.
+        The defaults are chosen by eye on a head of 2030 triangles, 720 pixels high: lower limits do
+        not improve its outline. Splits must cover a round place completely: smoothing moves
+        vertices at split edges inward, and a vertex without splits would stick out beside them.
+        `levels`: the most splits of an edge.
         """
         super().__init__(once, twice, "heights in sizes of the mesh", levels)
 
@@ -52,7 +56,7 @@ class RestCurvature(Measuring):
         """Decide how often each edge is split."""
         super().bind(connectivity, rest_positions, rest_normals)
         edges = connectivity.edges
-        sectors = sectors_of(connectivity)  # each side of a crease is curved by itself
+        sectors = sectors_of(connectivity)  # each side of a crease has its own curvature
         edge_of = sectors.edge_of
         normals = rest_normals.astype(np.float64)
         if connectivity.is_sharp.any():
@@ -67,7 +71,8 @@ class RestCurvature(Measuring):
         asked = (measures > once).astype(np.uint8) + (measures > twice)
         splits = np.zeros(len(edges), dtype=np.uint8)
         np.maximum.at(splits, edge_of, asked)
-        # Metrics at which a blended point is fully grown: a constant metric cannot make it grow.
+        # Metrics at which a blended point is at its final position: a constant metric cannot move
+        # it there.
         self._decided = np.array([-np.inf, RAMP_WIDTH, 1.0 + RAMP_WIDTH], np.float32)[splits]
 
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:

@@ -4,10 +4,10 @@ Kähler, Haber, Seidel 2003, section 6: "If the input geometry has been produced
 one could do even better than smoothing: detail information can be stored locally and used to place
 generated split vertices on the surface, as has been exercised in multiresolution editing."
 
-At binding, the points that all edges would get from the scheme `cubic` are compared with the
-closest points of the finer mesh that look the same way, both at rest. Points are displaced FULLNESS
-times as far as these closest points, as those of the cubic are, because triangles between them are
-flat. The rest is stored along three directions that move with the surface:
+At binding, the scheme `cubic` places points on all edges. Each is compared with the closest point
+of the finer mesh whose surface faces the same way, both at rest. A point is displaced FULLNESS
+times as far as its closest point, as in the scheme `cubic`, because triangles between points are
+flat. The difference from the cubic is stored along three directions that move with the surface:
 
           n                                     stored:  how the finer surface lies beside the
           |                                              point, along n, t and n x t
@@ -15,12 +15,13 @@ flat. The rest is stored along three directions that move with the surface:
          /                                      n:  upright on the edge in its middle, half way from
         n x t                                       there to the normal of the end at its quarters
 
-In a frame the same directions are found in the deformed mesh and the detail is added to the cubic.
-They change without a jump as long as normals and edges do. A quarter must turn with the vertex near
-it: one direction n for a whole edge makes stars around vertices where the mesh is folded.
+In a frame the same directions are found in the deformed mesh, and the stored detail is added to the
+cubic. The directions change continuously as long as normals and edges do. A quarter point must turn
+with the vertex near it: one direction n for a whole edge gives star-shaped artefacts around
+vertices where the mesh is folded.
 
-Vertices stay where they are (they lie on the finer mesh if they are taken from it). Normals are not
-the finer mesh's but those of the refined surface (surface_normals.py), which has its shape.
+Vertices stay where they are (they lie on the finer mesh if they are taken from it). Normals are the
+normals of the refined surface (surface_normals.py), which has the shape of the finer mesh.
 """
 
 import numpy as np
@@ -40,8 +41,8 @@ FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
 
 WRONG_SIDE_DISTANCE = 10.0
-"""Added distance, in edge lengths, of a surface that faces the other way: lips that touch at rest
-must not take each other's points.
+"""Distance, in edge lengths, that is added for a surface that faces the other way. So a point of
+one lip finds no point of the other lip, although they touch at rest.
 """
 
 
@@ -51,7 +52,8 @@ class DetailScheme(CubicScheme):
     def __init__(self, finer: FinerMesh | None = None) -> None:
         """`finer`: positions at rest, in the place of the coarse mesh, and triangles.
 
-        Raises ValueError without a finer mesh: the name `detail` alone has none.
+        Raises ValueError without a finer mesh, such as when the scheme is chosen by the name
+        `detail` alone.
         """
         if not isinstance(finer, tuple) or len(finer) != 2:
             raise ValueError(
@@ -72,9 +74,9 @@ class DetailScheme(CubicScheme):
         edge_count = len(connectivity.edges)
         self._every_edge = np.arange(edge_count, dtype=np.uint32)
         self._axes = np.zeros((edge_count, 3, 3, 3), dtype=np.float32)
-        rest = rest_positions.copy()  # of the type of frames, for which kernels are compiled
+        rest = rest_positions.copy()  # single precision, as in frames
         self._displace(rest)
-        normals = self._normals  # at rest: all directions follow the cubic's normals
+        normals = self._normals  # at rest: all directions are derived from the normals of the cubic
         middle_axes(self._around, rest, normals, self._axes)
         quarter_axes(self._around, rest, normals, self._every_edge, self._axes)
 
@@ -92,13 +94,13 @@ class DetailScheme(CubicScheme):
         self._offsets = np.einsum("epij,epj->epi", axes, missing).astype(np.float32)
 
     def prepare(self, frame: FrameBuffers) -> None:
-        """Find the displacements of all edges as if each were split once."""
+        """Compute the displacements of the points on all edges; middles have their detail."""
         super().prepare(frame)
         middle_axes(self._around, frame.positions, self._normals, self._axes)
         self._add(self._every_edge, MIDDLE)
 
     def place_positions(self, frame: FrameBuffers) -> None:
-        """Write points with their detail; only once after `prepare` with edges split twice."""
+        """Write points with their detail; call it once per `prepare` if edges are split twice."""
         twice = frame.twice_split_edges
         quarter_axes(self._around, frame.positions, self._normals, twice, self._axes)
         self._add(twice, NEAR_START)
@@ -140,10 +142,10 @@ def write_axes(up: Vector, towards: Vector, axes: Floats32) -> None:
 def middle_axes(
     around: Surroundings, positions: Floats64, normals: Floats32, axes: Floats32
 ) -> None:
-    """Write the directions at the middles of all edges: upright on the edge, along it, across it.
+    """Write the directions at the middles of all edges: normal to the edge, along it, across both.
 
-    The upright one is the mean of the normals at both ends, made normal to the edge. `normals`: of
-    vertices, shape (V, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
+    The first direction is the mean of the normals at both ends, made normal to the edge. `normals`:
+    of vertices, shape (V, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
     """
     for e in range(axes.shape[0]):
         a = around.points[e, 0]
@@ -160,8 +162,8 @@ def quarter_axes(
 ) -> None:
     """Write the directions at the quarters of some edges, shape (N,), from those at the middles.
 
-    The upright one is half way between the middle's and the normal at the end: a point near a
-    vertex turns with the vertex, not with the edge.
+    The first direction is half way between that of the middle and the normal at the near end. So a
+    point near a vertex turns with the vertex, not with the edge.
     """
     for e in edges:
         a = around.points[e, 0]

@@ -1,14 +1,14 @@
-"""The criterion `displacement`: distance and turn of an edge's middle that a split would make.
+"""The criterion `displacement`: how far a split moves an edge's middle and turns its normal.
 
 Where the straight edge is far from the scheme's curve, the unsplit mesh is wrong. Where the normal
 in the middle differs from the mean of those at the ends, the shading is wrong. The criterion needs
-a scheme that measures both (`Scheme.measure`): one with curved edges, or any with
+a scheme that measures both (`Scheme.measure`): a scheme with curved edges, or any scheme with
 `normals="refined"`.
 
     size of an edge     hypot(displacement, turning x angle x length)      a distance
 
-A border is an outline from every viewpoint, and no shading shows its turns. So the turn of the
-border itself counts there: an arc of height s turns by 8 s / length between its ends.
+A border is an outline from every viewpoint, and shading does not show how it bends. So the turn of
+the border curve counts there: an arc of height s turns by 8 s / length between its ends.
 """
 
 from typing import Annotated
@@ -25,8 +25,9 @@ from .blending import RAMP_WIDTH
 from .measuring import Measuring, Once, Twice, mean_length
 
 GROWTH_SHARE = 0.6
-"""Share of the first threshold in which a blended point grows. Chosen: a half grown point costs as
-much as a whole one; with a smaller share, surfaces jump farther than their input moves.
+"""Share of the first threshold over which a blended point moves to its final position. Chosen
+small, because a half moved point costs as much as a fully moved one; with a still smaller share,
+the surface moves faster than its input.
 """
 
 BORDER_WEIGHT = np.float32(8.0)
@@ -39,7 +40,7 @@ Turning = Annotated[
 
 
 class Displacement(Measuring):
-    """Distance and turn of the normal that a split would give the middle of an edge.
+    """The criterion `displacement`: how far a split moves an edge's middle and turns its normal.
 
     Places that are coarse at rest count as well, unlike in the paper.
     """
@@ -56,8 +57,8 @@ class Displacement(Measuring):
     ) -> None:
         """`once`, `twice`: distances in mean edge lengths of the mesh at rest.
 
-        `turning`: weight of a turn of the normal by a radian, in lengths of the edge; at 0 only
-        distances count. `levels`: the most splits of an edge.
+        `turning`: the distance, in lengths of the edge, that counts as much as a turn of the normal
+        by one radian; at 0 only distances count. `levels`: the most splits of an edge.
         """
         super().__init__(once, twice, "distances in mean edge lengths", levels)
         self.turning = turning
@@ -101,14 +102,14 @@ def count_turns(sizes: Floats32, turns: Floats32, scale: np.float32) -> None:
 
 @njit
 def weigh_borders(sizes: Floats32, borders: Unsigned32) -> None:
-    """Multiply the sizes, shape (E,), of edges on borders, numbers of shape (B,)."""
+    """Multiply the sizes, shape (E,), of the border edges with the given numbers, shape (B,)."""
     for k in range(borders.shape[0]):
         sizes[borders[k]] *= BORDER_WEIGHT
 
 
 @njit
 def advance_metric(metric: Floats32, soon: np.float32, ramp: np.float32) -> None:
-    """Scale the metrics, shape (E,), so that `soon` becomes `ramp`: there points are grown."""
+    """Scale the metrics, shape (E,): `soon` becomes `ramp`, where points are fully moved."""
     if soon >= ramp:
         return
     for e in range(metric.shape[0]):

@@ -1,4 +1,4 @@
-r"""The base of all criteria but the paper's: each compares a measure with two thresholds.
+r"""Base class of all criteria except the paper's: each compares a measure with two thresholds.
 
 Kähler, Haber, Seidel 2003, section 4.1 ("More complex criteria can be used as well, such as
 measuring discrete curvature on the mesh [19]") and section 6 ("refining the mesh along silhouette
@@ -8,8 +8,8 @@ Each has two thresholds, above which an edge is split once and twice. Its measur
 all criteria can be blended (blending.py) and combined. The criterion `silhouette` is defined here.
 It measures how far the surface turns along an edge near the outline:
 
-    (1 - n_a . n_b) x facing      facing is 1 where the line of sight grazes the edge, 0 at
-                                  SILHOUETTE_BAND; the turn counts up to where points have grown
+    (1 - n_a . n_b) x facing facing is 1 where the line of sight grazes the edge, 0 at
+    SILHOUETTE_BAND; the turn is limited (see `Silhouette`)
 """
 
 import reprlib
@@ -37,7 +37,7 @@ Twice = Annotated[float, Option("the same for splitting twice", least=0.0)]
 
 
 class Measuring(Criterion):
-    """A criterion that measures, and compares with two thresholds."""
+    """A criterion that compares a measure of each edge with two thresholds."""
 
     def __init__(self, once: float, twice: float, meaning: str, levels: int = 2) -> None:
         self.thresholds = Thresholds(once, twice, meaning, levels=levels)
@@ -50,7 +50,7 @@ class Measuring(Criterion):
 
 
 class Maximum(Criterion):
-    """Several criteria: the one that asks for most splits of an edge decides on this edge."""
+    """Combination of several criteria: an edge gets the most splits that any of them wants."""
 
     def __init__(self, criteria: Sequence[Criterion]) -> None:
         if not criteria:
@@ -94,10 +94,10 @@ class Maximum(Criterion):
 
 
 class Silhouette(Measuring):
-    """Edges along which the surface turns away from the eye.
+    """The criterion `silhouette`: it splits edges along which the surface turns away from the eye.
 
     The turn of an edge counts only up to the turn that splits it twice on the outline itself.
-    Otherwise points on coarse meshes would pop out after a small motion of the eye.
+    Otherwise points on coarse meshes would move out abruptly after a small motion of the eye.
     """
 
     def __init__(self, once: Once = 0.005, twice: Twice = 0.03, levels: Levels = 2) -> None:
@@ -108,7 +108,7 @@ class Silhouette(Measuring):
         super().__init__(once, twice, "1 - the cosine between two normals", levels)
 
     def set_view(self, view: View | None) -> None:
-        """Take the view of this frame; raises ValueError without a view, or a proper eye in it."""
+        """Set the view of this frame; raises ValueError without a view with a finite eye."""
         if view is None:
             raise ValueError(
                 f"{type(self).__name__} needs the place of the eye; pass "

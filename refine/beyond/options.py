@@ -1,7 +1,7 @@
-"""The refiner named `kahler`: its options in words, and their objects.
+"""The factory of the refiner `kahler`: it turns option names into objects.
 
-By default it is exactly the paper's (`refine.Kahler`). Options choose other criteria and schemes,
-by name or as objects, and blend new points in (`Blended`).
+By default the refiner follows the paper exactly (`refine.Kahler`). Options choose other criteria
+and schemes, by name or as objects, and blend new points in (`Blended`).
 """
 
 from collections.abc import Sequence
@@ -58,22 +58,22 @@ def create_kahler(
     coherent: Annotated[bool, IN_ORDER] = False,
     **values: Unpack[Values],
 ) -> Kahler:
-    """Bind the paper's refiner, as the options change it, to a mesh (`registry.create`).
+    """Bind the paper's refiner to a mesh, changed by the options (see `registry.create`).
 
     - `threshold_once`, `threshold_twice`: drop of the normals' dot product above which an edge is
       split once or twice, for the paper's criterion, "normal".
     - `criterion`: "normal", "rest", "silhouette", "displacement", another name of
-      `refine.criteria`, an object, or a list of these; the one that asks for most splits counts.
-      "normal+rest" is such a list.
+      `refine.criteria`, an object, or a list of these; each edge gets the most splits that any of
+      them wants. "normal+rest" is such a list.
     - `splits`: 0, 1 or 2 for every edge, shape (E,), in place of a criterion: all frames have the
       same vertices and triangles (`splits_of_clip`).
     - `scheme`: "loop", the paper's, "cubic", another name of `refine.schemes`, or an object such as
       `DetailScheme((finer_positions, finer_faces))`.
-    - `blend`: whether points grow out of their edges, so that nothing pops. None, the default,
-      chooses True for the schemes that interpolate, and False for the paper's.
-    - `normals`: "linear", between the ends of an edge, as in the paper; or "refined", those of the
-      refined surface. None, the default, chooses "linear" for the paper's scheme, and "refined" for
-      those that interpolate.
+    - `blend`: whether points move gradually out of their edges, so that nothing pops. None, the
+      default, chooses True for the schemes that interpolate, and False for the paper's.
+    - `normals`: "linear" interpolates between the ends of an edge, as in the paper; "refined"
+      computes the normals of the refined surface. None, the default, chooses "linear" for the
+      paper's scheme, and "refined" for schemes that interpolate.
     - `coherent`: whether triangulations continue those of the frame before (section 4.4).
     - `values`: `uv`, `face_uv`, `attributes` and `crease_angle`, as `create` takes them.
     """
@@ -97,7 +97,7 @@ def create_kahler(
 
 
 def scheme_of(chosen: str | Scheme) -> Scheme:
-    """Return the scheme of a name, or the object itself; raises ValueError for anything else."""
+    """Return the scheme with this name, or the given object; raises ValueError otherwise."""
     if isinstance(chosen, str):
         chosen = schemes.find(chosen)()
     if not isinstance(chosen, Scheme):
@@ -108,7 +108,7 @@ def scheme_of(chosen: str | Scheme) -> Scheme:
 
 
 def with_normals(chosen: Scheme, normals: str | None) -> Scheme:
-    """Return the scheme, with the normals of its own surface if `normals` asks for them."""
+    """Return the scheme, wrapped in `RefinedNormals` if `normals` requires it."""
     if normals not in (None, "linear", "refined"):
         raise ValueError(f'normals must be "linear" or "refined", got {normals!r}')
     is_refined = chosen.interpolates if normals is None else normals == "refined"
@@ -120,9 +120,9 @@ def criterion_of(
     normal_drop: NormalDrop,
     splits: npt.ArrayLike | None = None,
 ) -> Criterion:
-    """Return the criterion of a name, of several, of an object, or of given splits, shape (E,).
+    """Return the criterion for one or more names, for an object, or for given splits, shape (E,).
 
-    `normal_drop`: for "normal".
+    `normal_drop`: the factory of the criterion "normal".
     """
     if splits is not None:
         if not (isinstance(chosen, str) and chosen == "normal"):

@@ -1,8 +1,8 @@
-r"""Normals of the refined surface itself: `normals="refined"`.
+r"""Normals computed from the refined surface: `normals="refined"`.
 
 Kähler, Haber, Seidel 2003, interpolate the normal of a new point from those at the ends of its edge
-(section 4.4). Then smooth shading cannot show the form that a split found: only outlines and
-highlights change. This scheme uses the surface that a split of every edge would make:
+(section 4.4). Then smooth shading cannot show the form that a split adds: only outlines and
+highlights change. This scheme uses the surface in which every edge is split once:
 
               c                m    middles of all edges, where the scheme puts them
              / \ C middle of a triangle: its corners' mean, and 0.511 of the
@@ -14,11 +14,12 @@ highlights change. This scheme uses the surface that a split of every edge would
              \ /                              (C - a) x (m_ac - m_ab)
               d
 
-Both are sums of the cross products of the small triangles around the point. They do not depend on
-the splits of this frame, so no normal jumps when an edge is split. Normals at m are computed on
-split edges, or on all edges where the criterion measures them. A new point begins with the mean of
-the normals at the ends of its edge, and turns to its own while it goes the first third of its way
-(blending.py). At a quarter it is the mean of its neighbours'.
+Both normals are sums of the cross products of the small triangles around the point. They do not
+depend on the splits of this frame, so no normal jumps when an edge is split. Normals at m are
+computed on split edges, or on all edges if the criterion measures them. The normal of a new point
+begins as the mean of the normals at the ends of its edge. It reaches the normal of the surface when
+the point has gone a third of its way (blending.py). The normal at a quarter point is the mean of
+the normals of its neighbours.
 
 Differs from the paper, whose rule is `normals="linear"`.
 """
@@ -45,18 +46,19 @@ from ..mesh.vectors import (
 from .whole_surface import WholeSurface, between_rows
 
 NORMAL_HASTE = np.float32(3.0)
-"""Factor by which the normal of a new point is faster than its place. Chosen: a turn of shading is
-less visible than a jump of the surface, and a half turned normal wastes half a triangle.
+"""Factor by which the normal of a new point changes faster than its position. Chosen because a turn
+of shading is less visible than a jump of the surface, and a half turned normal uses a triangle for
+half of its effect.
 """
 
 
 class RefinedNormals(Scheme):
-    """A scheme with the normals of the surface that it makes."""
+    """A wrapper around a scheme that replaces its normals by the normals of the refined surface."""
 
     measures = True
 
     def __init__(self, scheme: Scheme) -> None:
-        """`scheme`: places the points."""
+        """`scheme`: the scheme that places the points."""
         self.parts = (scheme,)
         self.interpolates = scheme.interpolates
         self.uses_normals = scheme.uses_normals
@@ -65,7 +67,7 @@ class RefinedNormals(Scheme):
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
-        """Bind the scheme, and make room for its surface."""
+        """Bind the scheme, and allocate its surface."""
         self._scheme.bind(connectivity, rest_positions, rest_normals)
         self._mesh = connectivity
         self._surface = WholeSurface(connectivity, rest_positions)
@@ -74,13 +76,13 @@ class RefinedNormals(Scheme):
         self._at_creases = np.flatnonzero(on_crease[connectivity.edges].any(axis=1))
 
     def prepare(self, frame: FrameBuffers) -> None:
-        """Find the surface of this frame where every edge is split once, and its normals."""
+        """Compute the surface of this frame with every edge split once, and its normals."""
         self._scheme.prepare(frame)
         self._scheme.place_positions(self._surface.split(frame))
         self._surface.find_normals()
 
     def place(self, frame: FrameBuffers) -> None:
-        """Write points where the scheme has them, with the normals of its surface."""
+        """Write points at the positions of the scheme, with the normals of its surface."""
         self._surface.find_normals_of_edges(frame.split_edges)
         self._scheme.place_positions(frame)
         count = len(frame.points) + int(frame.counts[ONCE])
@@ -93,10 +95,10 @@ class RefinedNormals(Scheme):
         share(turn_centres, frame.centre_count, *triangles, frame, self._surface.rows)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
-        """Write the distance of every edge's middle from it, and the turn of its normal, (E,) each.
+        """Write how far a split moves the middle of every edge, and turns its normal, (E,) each.
 
-        The normal of a vertex on a crease is a mean of its sides, so a split would not correct the
-        turn of edges that end there.
+        The normal of a vertex on a crease is a mean over both sides. So a split would not correct
+        the turn of edges that end there, and their turn is zero.
         """
         self._surface.measure(displacements, turns)
         turns[self._at_creases] = ZERO
@@ -106,10 +108,10 @@ class RefinedNormals(Scheme):
 def turn_normals(
     first: int, last: int, points: Unsigned32, frame: FrameBuffers, normals: Floats32
 ) -> None:
-    """Write the normals of vertices and of the points of split edges, as far as they have grown.
+    """Write the normals of vertices, and of points on split edges by their geomorph weights.
 
-    The loop is over vertices, and then over split edges. `points`: of edges, shape (E, 4);
-    `normals`: of vertices and middles, shape (V + E, 3).
+    The loop runs over vertices, and then over split edges. `points`: ends and opposite corners of
+    edges, shape (E, 4); `normals`: of vertices and middles of edges, shape (V + E, 3).
     """
     vertices = frame.rows
     vertex_count = frame.points.shape[0]
@@ -142,9 +144,9 @@ def turn_centres(
     frame: FrameBuffers,
     rows: Floats32,
 ) -> None:
-    """Turn the normals of points in the middle of triangles, as far as the least grown edge allows.
+    """Turn the normals of points in the middle of triangles, by their least geomorph weight.
 
-    They turn to the normal of the hexagon around, whose corners are in `rows`, shape (V + E, 6).
+    They turn to the normal of the hexagon of corners and middles, from `rows`, shape (V + E, 6).
     """
     vertices = frame.rows
     vertex_count = frame.points.shape[0]

@@ -1,7 +1,7 @@
-"""The surface of a frame where every edge is split once, and its normals (surface_normals.py).
+"""The surface of a frame with every edge split once, and its normals (see surface_normals.py).
 
-Loops over the whole mesh write sums. A separate loop normalises them, so the compiler takes many
-vectors at a time (mesh/normals.py): measuring all edges takes 0.42 of the time.
+Loops over the whole mesh write sums, and a separate loop normalises them. So the compiler
+vectorises that loop (mesh/normals.py), and measuring all edges takes 0.42 of the time.
 """
 
 import numpy as np
@@ -35,27 +35,28 @@ from ..mesh.vectors import (
 
 CENTRE_SHARE = np.float32(0.511)
 """Share of the edges' displacements in the middle of a triangle: 4/9 (blending.py) plus 15 %,
-because curves between these points stand out farther. This brings normals nearer to those of a
-dense head.
+because curves between these points stand out farther. With this share the normals are closest to
+the normals of a dense head.
 """
 MEAN_NORMAL_SHARE = np.float32(0.02)
-"""Share of the mean of the ends' normals, in squared lengths of the edge, that is added to a normal
-in the middle. Chosen: this decides where an edge is folded until no width is left across it. More
-is softer in deep folds, but farther from dense faces: 0.3 costs five points of thirty.
+"""Weight of the mean of the ends' normals, in squared lengths of the edge, that is added to a
+normal in the middle. Chosen: it matters where a fold leaves no width across an edge. A larger
+weight is softer in deep folds, but farther from dense faces: 0.3 loses five of thirty percentage
+points.
 """
 
 OfEdges = tuple[Unsigned32, Unsigned32, Flags, Floats32, Floats32, Floats32]
-"""What kernels of all edges read: `around.points`, `edge_sides`, `around.is_interior` (mesh/), rows
-of vertices and middles, shape (V + E, 6), centres of triangles, (F, 3), normals, (V + E, 3). It is
-a plain tuple, which is passed faster than a named one.
+"""The arrays that kernels over all edges read: `around.points`, `edge_sides`, `around.is_interior`
+(mesh/), rows of vertices and middles, shape (V + E, 6), centres of triangles, (F, 3), normals, (V +
+E, 3). It is a plain tuple, because numba takes it faster than a named tuple.
 """
 
 
 class WholeSurface:
-    """The surface of a frame where every edge is split once, and its normals."""
+    """The surface of a frame with every edge split once, and its normals."""
 
     def __init__(self, mesh: Connectivity, rest_positions: Floats64) -> None:
-        """Make room; `rest_positions`: shape (V, 3)."""
+        """Allocate the arrays; `rest_positions`: shape (V, 3)."""
         self._mesh = mesh
         self._fans = fans_of(mesh)
         self._origin = mesh.first_vertex
@@ -70,18 +71,19 @@ class WholeSurface:
         self._corners = np.zeros((3 * len(mesh.faces), 3), dtype=np.float32)
         self._has_all_edges = False
         self.rows = rows
-        """Rows of the vertices, then of the middles of all edges, shape (V + E, 6). Positions are
-        relative to the first vertex in use, so that a mesh far from the origin keeps its precision.
+        """Positions and normals of the vertices, then of the middles of all edges, shape (V + E,
+        6). Positions are relative to the first vertex in use, so that a mesh far from the origin
+        keeps its precision.
         """
         self.normals = np.zeros((vertex_count + edge_count, 3), dtype=np.float32)
-        """Unit normals there, shape (V + E, 3); those of middles only after
+        """Unit normals of these rows, shape (V + E, 3); of middles only after
         `find_normals_of_edges`.
         """
         around = mesh.around.points, mesh.edge_sides, mesh.around.is_interior
         self._of_edges: OfEdges = (*around, rows, self._centres, self.normals)
 
     def split(self, frame: FrameBuffers) -> FrameBuffers:
-        """The mesh of `frame`, from its first vertex, every edge split once, points unplaced."""
+        """Return the mesh of `frame` with every edge split once, before points are placed."""
         if frame.normals is not self._frame.normals:
             self._frame = self._frame._replace(normals=frame.normals)
         positions = frame.positions
@@ -102,7 +104,7 @@ class WholeSurface:
         self._has_all_edges = False
 
     def find_normals_of_edges(self, edges: Unsigned32) -> None:
-        """Compute the normals in the middles of `edges`, (N,), unless all edges have theirs."""
+        """Compute the normals in the middles of `edges`, (N,), unless all are known already."""
         if self._has_all_edges:
             return
         share(surface_normals_of_edges, len(edges), edges, self._of_edges)
@@ -110,8 +112,8 @@ class WholeSurface:
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write the distances of middles from their edges, and turns of their normals, (E,) each.
 
-        A turn is the angle to the mean of the normals at the ends [rad], times the length of the
-        edge. All middles have their normals afterwards.
+        A turn is the angle between the normal and the mean of the normals at the ends [rad], times
+        the length of the edge. This computes the normals of all middles.
         """
         means = self._corners  # no longer needed, and large enough
         share(measure_edges, len(turns), self._of_edges, means, displacements, turns)
@@ -131,7 +133,7 @@ def see_from(
 
 @njit
 def between_rows(rows: Floats32, a: np.uint32, b: np.uint32) -> Vector:
-    """The vector from row a to row b."""
+    """Return the vector from row a to row b."""
     return less(row_of(rows, b), ONE, row_of(rows, a))
 
 
@@ -148,9 +150,9 @@ def cross_corners(
 ) -> None:
     """Write the points in the middle of triangles with three split edges, shape (F, 3).
 
-    Also write what each triangle adds to the normals at its corners, shape (3 F, 3); zero where it
-    names a vertex twice. `rows`, `middles`: of vertices and of all edges, shape (V + E, 6) and (E,
-    6).
+    Also write the summand of each triangle in the normals at its corners, shape (3 F, 3); it is
+    zero for a triangle that names a vertex twice. `rows`, `middles`: of vertices and of all edges,
+    shape (V + E, 6) and (E, 6).
     """
     assert (
         faces.shape[1] == triangle_edges.shape[1] == centres.shape[1] == corners.shape[1] == WIDTH
@@ -188,7 +190,7 @@ def sum_corners(
     corners: Floats32,
     normals: Floats32,
 ) -> None:
-    """Write unit normals of vertices, the first of `normals`, shape (V + E, 3).
+    """Write unit normals of vertices into the first V rows of `normals`, shape (V + E, 3).
 
     `starts`, `around`: the corners at each vertex (mesh/fans.py). `corners`: their summands, shape
     (3 F, 3).
@@ -214,16 +216,16 @@ def across_middle(
     is_interior: Flags,
     centres: Floats32,
 ) -> Vector:
-    """A vector of any length, normal to the surface in the middle of edge e.
+    """Return a vector of any length, normal to the surface in the middle of edge e.
 
-    mean: that of the normals at its ends; along: vector from end to end; middle: its split point.
+    mean: mean of the normals at its ends; along: vector from end to end; middle: its split point.
     `edge_sides`, `is_interior`: of edges; `centres`: of triangles, shape (F, 3).
     """
     side = edge_sides[e, 0] >> SIDE_BITS
     beyond = edge_sides[e, 1] >> SIDE_BITS
     has_two = beyond < centres.shape[0]
     if has_two and not is_interior[e]:
-        return mean  # sheets that meet share no normal
+        return mean  # sheets that meet at a border share no normal
     far = row_of(centres, beyond) if has_two else middle
     across = less(row_of(centres, side), ONE, far)
     steady = times(MEAN_NORMAL_SHARE * dot(along, along), mean)
@@ -232,9 +234,9 @@ def across_middle(
 
 @njit
 def surface_normals_of_edges(first: int, last: int, edges: Unsigned32, of_edges: OfEdges) -> None:
-    """Write unit normals of the middles of edges; the vertices have theirs.
+    """Write unit normals of the middles of edges; those of the vertices must be known.
 
-    `edges`: the edges that need theirs, shape (N,).
+    `edges`: numbers of these edges, shape (N,).
     """
     points, edge_sides, is_interior, rows, centres, normals = of_edges
     vertex_count = normals.shape[0] - points.shape[0]
@@ -261,8 +263,8 @@ def measure_edges(
 ) -> None:
     """Write unit normals of the middles of consecutive edges, and measure the edges.
 
-    Measures are the distance of each middle from its edge, and the turn of its normal x length,
-    (E,) each. `means`: scratch, at least (E, 3).
+    The measures are the distance of each middle from its straight edge, and the turn of its normal
+    times the length of the edge, (E,) each. `means`: scratch, at least (E, 3).
     """
     points, edge_sides, is_interior, rows, centres, normals = of_edges
     assert centres.shape[1] == normals.shape[1] == means.shape[1] == WIDTH
@@ -301,8 +303,8 @@ def finish_measures(
     """
     assert normals.shape[1] == means.shape[1] == WIDTH
     for k in range(turns.shape[0]):
-        # The chord of the angle, which differs from it by less than a hundredth up to half a
-        # radian.
+        # The chord of the angle: up to half a radian it differs from the angle by less than a
+        # hundredth.
         apart = less(row_of(normals, k), ONE, row_of(means, k))
         turns[k] = np.sqrt(dot(apart, apart) * turns[k])
         displacements[k] = np.sqrt(displacements[k])

@@ -1,1 +1,1 @@
-"""The border: input and output of every refiner; plugin.py holds the protocol."""
+"""The plug-in border: input and output of every refiner; plugin.py holds the protocol."""

@@ -1,7 +1,7 @@
-"""The base of all built-in refiners; it checks the mesh, lent arrays and positions.
+"""Base class of all built-in refiners: it checks the mesh, the caller's arrays and positions.
 
-A refiner derives from `BaseRefiner`, states the largest size of its output, and has one method,
-`fill`. A refiner of another package may derive from it, too, or only follow the protocol
+A refiner derives from `BaseRefiner`, states the largest size of its output, and implements one
+method, `fill`. A refiner of another package may also derive from it, or only follow the protocol
 (plugin.py).
 
 Source: the plug-in of Kähler, Haber, Seidel 2003, Fig. 1.
@@ -30,16 +30,16 @@ from .stream import OwnStream, StreamArrays, check_lent
 
 
 class BaseRefiner(Refiner):
-    """Base class of refiners: it binds a mesh, checks its input, and fills lent arrays.
+    """Base class of refiners: it binds a mesh, checks its input, and fills the caller's arrays.
 
-    A subclass has `vertex_capacity`, `triangle_capacity` and `fill`, and extends `origins` by its
-    own points. `fill` is called once in every frame, when the positions have been checked. It calls
-    `reserve` for rows, `find_normals` if it needs normals, and `write_wedges`.
+    A subclass defines `vertex_capacity`, `triangle_capacity` and `fill`, and extends `origins` by
+    its own points. `fill` is called once in every frame, after the positions have been checked. It
+    must call `reserve` for its rows, `find_normals` if it needs normals, and `write_wedges`.
 
     The first W rows are the wedges of the mesh: row v is vertex v, copies of vertices on texture
-    seams follow, and `connectivity.corners` has the rows of each triangle. So a point that is a mix
-    of a triangle's corners is the same mix of these rows, including texture coordinates and
-    attributes.
+    seams follow, and `connectivity.corners` lists the rows of each triangle. So a point that is a
+    weighted mean of a triangle's corners is the same mean of these rows, including texture
+    coordinates and attributes.
     """
 
     connectivity: Connectivity
@@ -47,13 +47,13 @@ class BaseRefiner(Refiner):
     rest_positions: Floats64
     """Undeformed vertex positions, shape (V, 3); read only."""
     positions: Floats64
-    """Positions of this frame, a copy: a simulation may go on meanwhile."""
+    """Positions of this frame, copied because a simulation may continue meanwhile."""
     points: Floats32
     """The same in single precision."""
     normals: Floats32
     """Vertex normals of this frame after `find_normals`, shape (V, 3)."""
     edge_splits: Unsigned8
-    """The numbers that `splits` shows and `fill` writes; 0 at first."""
+    """The splits of every edge: `fill` writes them, `splits` returns them; 0 at first."""
 
     def __init__(
         self,
@@ -65,7 +65,7 @@ class BaseRefiner(Refiner):
         attributes: Mapping[str, AttributeLike] | None = None,
         crease_angle: float | None = None,
     ) -> None:
-        """Check and connect (see `registry.create`); a subclass passes the `refine.Values` on."""
+        """Check and connect the mesh (see `registry.create`); a subclass passes `values` on."""
         positions, triangles = checked_mesh(rest_positions, faces)
         self._values = checked_corner_values(
             triangles, len(positions), uv=uv, face_uv=face_uv, attributes=attributes
@@ -90,13 +90,13 @@ class BaseRefiner(Refiner):
 
     @abstractmethod
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
-        """Write the frame for `positions` into the rows of the stream that `reserve` gives.
+        """Write the frame for `positions` into the rows of the stream that `reserve` returns.
 
         Returns the numbers of vertices and triangles that were written.
         """
 
     def reserve(self, stream: Stream, vertex_count: int, triangle_count: int) -> StreamArrays:
-        """Enlarge the refiner's own stream to this size; return the checked arrays of `stream`."""
+        """Return the checked arrays of `stream`; enlarge the refiner's own stream if needed."""
         own = self._own_stream
         if stream is own:
             own.reserve(vertex_count, triangle_count)
@@ -118,7 +118,7 @@ class BaseRefiner(Refiner):
             write_wedges(self.connectivity, self._wedge_values, rows)
 
     def follow_values(self) -> None:
-        """Take over the values of a frame; a subclass that keeps its own values extends it.
+        """Take over the values of a frame; a subclass with copies of values extends this method.
 
         It is called before `fill` if the values differ from those of the frame before.
         """
@@ -126,11 +126,11 @@ class BaseRefiner(Refiner):
         spread_over_wedges(self._values.values, self._mesh.wedge_uv, self._wedge_values)
 
     def origins(self) -> Origins:
-        """Return the places of the wedges on the input mesh; a subclass adds its own points."""
+        """Return the places of the wedges on the input mesh; a subclass appends its points."""
         return Origins.at(self.connectivity.wedge_vertices)
 
     def __reduce__(self) -> str:
-        """Raise TypeError: arrays of a refiner share memory, which a copy would lose."""
+        """Raise TypeError: arrays of a refiner share memory, and in a copy they would not."""
         raise TypeError(
             "a refiner cannot be copied, pickled or sent to another process; make one there with "
             "refine.create from the same faces and rest positions"
@@ -214,7 +214,7 @@ class BaseRefiner(Refiner):
             self.follow_values()
 
     def _own(self, *things: object) -> None:
-        """Raise ValueError if one of these, which serve one mesh, has another refiner."""
+        """Raise ValueError if one of these objects already serves another refiner."""
         for thing in things:
             if _owners.get(id(thing), self) is not self:
                 raise ValueError(
@@ -224,7 +224,7 @@ class BaseRefiner(Refiner):
             _owners[id(thing)] = self
 
     def _accept(self, stream: Stream, vertex_count: int, triangle_count: int) -> None:
-        """Raise ValueError unless the arrays have room for this; known ones are checked briefly."""
+        """Raise ValueError unless the arrays are large enough; the last ones pass quickly."""
         try:
             vertices = stream.vertices
             triangles = stream.triangles
@@ -250,11 +250,11 @@ class BaseRefiner(Refiner):
 
     @cached_property
     def _own_stream(self) -> OwnStream:
-        """The stream for frames without a lent one."""
+        """The stream for frames for which the caller lends none."""
         return OwnStream(self.vertex_columns, self.vertex_capacity, self.triangle_capacity)
 
     def values_in(self, vertices: Floats32) -> tuple[Floats32 | None, Mapping[str, Floats32]]:
-        """Texture coordinates and attributes in rows of a frame, shape (N, columns): views."""
+        """Return views of texture coordinates and attributes in the rows of a frame."""
         if self._values is None:
             return None, _NO_ATTRIBUTES
         values = vertices[:, GEOMETRY_COLUMNS:]

@@ -1,21 +1,23 @@
-"""A checker for refined meshes: it compares one with the promises of the paper's section 4.
+"""A checker for refined meshes: it tests the promises of the paper's section 4.
 
-It goes from counts to references to geometry, and names the first broken relation. From the refiner
-it uses only `origins`, the places of its vertices on the input. It accepts any number of levels,
-and points anywhere on edges or inside triangles. It is for tests and for authors of refiners, and
-far too slow for every frame.
+It checks counts, then references, then geometry, and names the first broken relation. From the
+refiner it uses only `origins`, the places of output vertices on the input mesh. It accepts any
+number of levels, and points anywhere on edges or inside triangles. It is for tests and for authors
+of refiners, and far too slow for every frame.
 
 The relations (Kähler, Haber, Seidel 2003, sections 3 and 4.3, Fig. 7 for the cracks):
   - every input triangle is covered exactly, by subtriangles of its own orientation, in the plane of
     its barycentric coordinates: no fold, no sliver with three points on one edge;
-  - equal places have equal positions and normals, on both sides of a texture seam too;
+  - output vertices at the same place have equal positions and normals, also across a texture seam;
   - a sub-edge inside an input triangle has two subtriangles, in opposite directions;
-  - a sub-edge on an input edge has the sides of this edge in the input: so there is no T-junction,
-    and no new border;
+  - a sub-edge on an input edge has as many subtriangles on each side as this edge has triangles in
+    the input: so there is no T-junction, and no new border;
   - an edge that was split s times has 2^s sub-edges;
-  - no criterion measures NaN, if the refiner reports it (`Kahler.complaint`);
+  - no criterion measures NaN (only checked if the refiner has a `complaint`, see
+    `Kahler.complaint`);
   - a vertex without a split edge has its input position, to the last bit of a float32.
-An input triangle that names a vertex twice is exempt from these relations; the output has it once.
+An input triangle that names a vertex twice is exempt from these relations; the output contains it
+once.
 """
 
 from typing import NamedTuple
@@ -28,11 +30,12 @@ from ..mesh.validation import LARGEST_COORDINATE
 from .plugin import Origins, RefinedMesh, Refiner
 
 PARTS = 2**9 * 3**2 * 5 * 7
-"""Parts of an edge; places are rounded to this lattice, so that equal ones compare equal.
+"""Parts of an edge: places are rounded to this lattice, so that equal places compare equal.
 
-Nine levels of halving are whole parts, and so are thirds, fifths, sevenths and ninths of most of
-them; these may have rounding errors of single precision. Other places count as different if they
-are a part or more apart, so they must have the same weights on all sides.
+The points of nine levels of halving lie on the lattice, and so do thirds, fifths, sevenths and
+ninths of most of them; all may have rounding errors of single precision. Any other place must have
+the same weights in all triangles that share it, because places that are a part or more apart count
+as different.
 """
 
 
@@ -40,9 +43,9 @@ class _Places(NamedTuple):
     """Places of output vertices on the input mesh; equal places have equal numbers."""
 
     vertices: Integers64
-    """Input vertices in rising order, shape (N, 3); -1 for a vertex without a part."""
+    """Input vertices in rising order, shape (N, 3); -1 for a vertex with no part in the place."""
     parts: Integers64
-    """Their parts, which add up to `PARTS`, shape (N, 3)."""
+    """Weights of these vertices in parts, which add up to `PARTS`, shape (N, 3)."""
 
 
 class BrokenMeshError(ValueError):
@@ -140,8 +143,7 @@ def _rounded(origins: Origins) -> _Places:
 
 def _number_places(places: _Places, mesh: RefinedMesh) -> Integers64:
     """Give equal places on the input mesh the same number, shape (N,)."""
-    # A point inside a triangle belongs to this triangle alone, even if another has the same
-    # corners.
+    # A point inside a triangle belongs to it alone, even if another triangle has the same corners.
     is_inside = (places.parts > 0).all(axis=1)
     source = np.full(len(mesh.positions), -1, dtype=np.int64)
     source[mesh.triangles] = mesh.source[:, None]
@@ -248,7 +250,7 @@ def _check_sub_edges(
 
 
 def _sides_of_edges(refiner: Refiner) -> tuple[Integers64, Integers64]:
-    """Numbers of input triangles that run along, and against, each edge."""
+    """Return the numbers of input triangles that run along each edge, and against it."""
     faces = _input_faces(refiner)
     proper = faces[:, 0] >= 0
     triangle_edges = refiner.triangle_edges[proper]

@@ -1,7 +1,7 @@
 """Texture coordinates and attributes: the values of triangle corners besides positions.
 
-They are checked and joined into one table, with one row for each different corner. They are copied,
-so that later changes to the caller's arrays cannot reach a frame.
+They are checked and joined into one table, with one row for each distinct corner. They are copied,
+so that later changes to the caller's arrays have no effect.
 """
 
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ AttributeLike = npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]
 class Values(TypedDict, total=False):
     """The arguments of all built-in refiners besides the mesh (see `registry.create`).
 
-    In a signature, `**values: Unpack[Values]` says that a refiner takes them, too.
+    A refiner that takes them has `**values: Unpack[Values]` in its signature.
     """
 
     uv: npt.ArrayLike | None
@@ -31,23 +31,27 @@ class Values(TypedDict, total=False):
     attributes: Mapping[str, AttributeLike] | None
     """Other values of vertices or corners, by name."""
     crease_angle: float | None
-    """Edges whose triangles turn by more than this at rest [degrees] stay sharp; None: no edges."""
+    """Edges whose two triangles form a larger angle than this at rest [degrees] stay sharp; None:
+    none.
+    """
 
 
 @dataclass(frozen=True)
 class CornerValues:
-    """Texture coordinates and attributes side by side: one row per different corner."""
+    """Texture coordinates and attributes side by side: one row per distinct corner."""
 
     values: Floats32
     """Shape (A, k)."""
     corners: Integers64 | None
     """Row of every corner, shape (F, 3); None if vertex v has row v."""
     columns: Mapping[str, slice]
-    """Columns of each attribute among the k columns."""
+    """The columns of each attribute among the k columns."""
     has_uv: bool
     """Whether the first two columns are texture coordinates."""
     own_rows: Mapping[str, Integers64 | None]
-    """For each attribute: the row of its own array for each row here, (A,); None: the same row."""
+    """For each attribute: the row of its own array that each row of the table shows, (A,); None:
+    the same row.
+    """
     own_lengths: Mapping[str, int]
     """For each attribute: the number of rows of its own array."""
 

@@ -1,9 +1,9 @@
 """Values that change from frame to frame: a frame may bring new numbers for attributes.
 
 Kähler, Haber, Seidel 2003, section 4.4, carry texture coordinates through splits linearly along
-edges. We treat attributes in the same way (corner_values.py). Most stay as they were bound; heat,
-strain or the depth of wrinkles change in each frame. Those are bound like the others, which gives
-them their columns and rows, and a frame writes new numbers there.
+edges. We treat attributes in the same way (corner_values.py). Most keep their bound values; heat,
+strain or the depth of wrinkles change in each frame. A changing attribute is bound like the others,
+which reserves its columns and rows. Each frame then writes new numbers there.
 """
 
 from collections.abc import Mapping
@@ -16,11 +16,11 @@ from ..mesh.validation import as_array
 from .corner_values import CornerValues
 
 FrameValuesLike = Mapping[str, npt.ArrayLike]
-"""Values of a frame by the names of attributes, each in its bound shape."""
+"""Values of a frame by the names of attributes, in the shapes in which they were bound."""
 
 
 class FrameValues:
-    """The values of the frame, in the bound table."""
+    """Writes the values of each frame into the bound table."""
 
     def __init__(self, bound: CornerValues) -> None:
         """`bound`: the table that every frame with values rewrites."""
@@ -31,7 +31,7 @@ class FrameValues:
     def take(self, given: FrameValuesLike | None) -> bool:
         """Write the values of a frame into the table; return whether the table has changed.
 
-        Attributes that a frame does not bring have their bound values. Raises ValueError for a name
+        Attributes that are missing in a frame take their bound values. Raises ValueError for a name
         that was not bound, another shape, and numbers that are not finite in single precision.
         """
         if not given and not self._are_given:
@@ -67,7 +67,7 @@ class FrameValues:
 
 
 def refuse(given: FrameValuesLike | None) -> None:
-    """Raise ValueError for values where no attribute was bound."""
+    """Raise ValueError if a frame brings values although no attribute was bound."""
     for name in given or ():
         raise ValueError(_unknown(name, []))
 

@@ -1,12 +1,12 @@
 """Options of refiners and criteria, as their factories declare them.
 
-An option is a keyword of the factory: its name, type and default stand in the signature. Range and
-help, which a signature cannot state, are an annotation of the type:
+An option is a keyword of the factory: its name, type and default are in the signature. An
+annotation of the type adds its range and its help:
 
     def __init__(self, *, reach: Annotated[float, Option("how far it looks", least=0.0)] = 1.0):
 
-This one record gives the checks of `create`, the options of the command line, and the sliders of a
-window.
+The checks of `create`, the options of the command line and the sliders of a window are all derived
+from this record.
 """
 
 import inspect
@@ -24,7 +24,7 @@ _KINDS: Mapping[type, Kind] = MappingProxyType(
     {bool: "switch", int: "integer", float: "number", str: "word"}
 )
 LEFT_OPEN = "automatic"
-"""The word for None, an open choice."""
+"""The word that stands for None, an open choice."""
 
 
 @dataclass(frozen=True)
@@ -36,18 +36,18 @@ class Option:
     least: float | None = None
     """The least number that is allowed; None: there is no limit."""
     most: float | None = None
-    """The largest."""
+    """The largest number that is allowed; None: there is no limit."""
     name: str = ""
     """Name of the keyword; taken from the signature, like all fields below."""
     default: Any = None
     kind: Kind = "object"
-    """Kind of its value; an object, such as an array, has no slider and no words."""
+    """Kind of its value; an object, such as an array, can be set neither by slider nor by text."""
     choices: Mapping[str, Any] = field(default_factory=dict)
-    """The values of a choice, by their words."""
+    """The allowed values of a choice, by the words that stand for them."""
 
     @property
     def wanted(self) -> str:
-        """The values that are allowed, in words."""
+        """Describe the allowed values in words."""
         if self.kind == "switch" or True in self.choices.values():
             return "on or off (True or False)"
         if self.kind == "choice":
@@ -60,7 +60,7 @@ class Option:
         return number if self.least is None else f"{number}, {self.least:g} or more"
 
     def allows(self, value: object) -> bool:
-        """Whether a value is of the kind and in the range of this option."""
+        """Return whether a value has the kind and the range of this option."""
         is_switch = isinstance(value, bool | np.bool_)
         if self.kind == "object":
             return True
@@ -86,7 +86,7 @@ class Option:
 
 
 def signature_of(factory: Callable[..., Any]) -> inspect.Signature:
-    """The signature of a factory, with its types looked up where possible."""
+    """Return the signature of a factory, with its type names resolved where possible."""
     try:
         return inspect.signature(factory, eval_str=True)
     except (NameError, AttributeError, SyntaxError, TypeError):  # imported for type checkers only
@@ -94,7 +94,7 @@ def signature_of(factory: Callable[..., Any]) -> inspect.Signature:
 
 
 def options_of(signature: inspect.Signature, first: int = 0) -> Iterator[Option]:
-    """The options of a factory: all arguments from the place `first` on that have a keyword."""
+    """Return the options of a factory: all keyword arguments from the place `first` on."""
     for parameter in list(signature.parameters.values())[first:]:
         if parameter.kind in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD):
             yield _option_of(parameter)
@@ -115,7 +115,7 @@ def _option_of(parameter: inspect.Parameter) -> Option:
 def _choices_of(annotation: object) -> dict[str, Any]:
     """The values by words of `bool | None`, and of `Literal[...]` or `Literal[...] | None`.
 
-    Not of any union with bool: numpy's ArrayLike may be one, too.
+    Other unions with bool count as no choice, because numpy's ArrayLike may be such a union.
     """
     if get_origin(annotation) is Literal:
         return {word: word for word in get_args(annotation)}

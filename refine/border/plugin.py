@@ -1,9 +1,9 @@
-"""The border of the plug-in: the protocol of refiners, their input and their output.
+"""The plug-in border: the protocol of refiners, their input and their output.
 
 Kähler, Haber, Seidel 2003, Fig. 1 and section 3: refinement sits between the deformed mesh and the
-rendering engine. It reads the mesh, feeds the engine, and keeps no geometry between frames. So a
-refiner is bound once to the connectivity and the undeformed positions of a mesh, and then turns
-positions into triangles, frame by frame:
+rendering engine. It reads the mesh, passes triangles to the engine, and keeps no geometry between
+frames. So a refiner is bound once to the connectivity and the undeformed positions of a mesh, and
+then turns positions into triangles, frame by frame:
 
     refiner = refine.create("kahler", faces, rest_positions)
     mesh = refiner.refine(positions)          # draw mesh.positions, mesh.normals, mesh.triangles
@@ -24,7 +24,7 @@ class RefinedMesh(NamedTuple):
     """Triangles of one frame: views of buffers that the next frame overwrites.
 
     A refiner whose output lies elsewhere, for example in buffers of a GPU, returns an object of its
-    own with these members, counts included. That object fetches arrays when they are read.
+    own class with these members, counts included. That object fetches arrays when they are read.
     """
 
     positions: npt.NDArray[np.float32]
@@ -42,7 +42,7 @@ class RefinedMesh(NamedTuple):
 
     @property
     def vertex_count(self) -> int:
-        """N, for renderers that need no arrays."""
+        """N; a renderer can read this count without fetching arrays."""
         return len(self.positions)
 
     @property
@@ -66,7 +66,7 @@ class Origins(NamedTuple):
     """Place of every output vertex on the undeformed input mesh.
 
     Output vertex n is the mix of input vertices `vertices[n]` with `weights[n]`, before smoothing.
-    Any other attribute follows: `(colours[o.vertices] * o.weights[..., None]).sum(1)`.
+    Any other attribute is mixed likewise: `(colours[o.vertices] * o.weights[..., None]).sum(1)`.
     """
 
     vertices: npt.NDArray[np.int32]
@@ -76,7 +76,7 @@ class Origins(NamedTuple):
 
     @classmethod
     def at(cls, vertices: npt.ArrayLike) -> "Origins":
-        """Return the origins of output vertices that lie at one input vertex each, shape (N,)."""
+        """Return the origins of output vertices at the input vertices `vertices`, shape (N,)."""
         corners = np.stack([np.asarray(vertices, dtype=np.int32)] * 3, axis=1)
         weights = np.zeros(corners.shape, dtype=np.float32)
         weights[:, 0] = 1.0
@@ -93,10 +93,10 @@ class Origins(NamedTuple):
 class Stream(Protocol):
     """Arrays lent by the caller, which the refiner fills from the top.
 
-    They have room for `vertex_capacity` and `triangle_capacity`. Each frame may bring other arrays.
-    They may be views of mapped memory: of a file, of another process, or of a GPU buffer. The
-    built-in refiners read rows again that they wrote in the same frame, so the memory should also
-    be fast to read.
+    They must hold `vertex_capacity` vertices and `triangle_capacity` triangles. Each frame may lend
+    different arrays. They may be views of mapped memory: of a file, of another process, or of a GPU
+    buffer. The built-in refiners also read rows that they wrote in the same frame, so the memory
+    should be fast to read.
     """
 
     @property
@@ -115,9 +115,10 @@ class Stream(Protocol):
 class GpuStream(Protocol):
     """A stream that lives on the graphics card, for refiners that write there (`refine_gl/`).
 
-    Its moderngl buffers belong to an OpenGL context that is current when the refiner is called, and
-    have room for `vertex_capacity` and `triangle_capacity`. Rows, triangles and sources lie in them
-    as in the arrays of a `Stream`; the processor does not learn their number.
+    Its moderngl buffers belong to an OpenGL context that must be current when the refiner is
+    called. They must hold `vertex_capacity` vertices and `triangle_capacity` triangles. Rows,
+    triangles and sources have the layout of the arrays of a `Stream`; their numbers are not read
+    back from the card.
     """
 
     @property
@@ -145,7 +146,7 @@ class GpuStream(Protocol):
 
 @runtime_checkable
 class Refiner(Protocol):
-    """A refinement method bound to one mesh with V vertices, F triangles and E edges."""
+    """A refinement method bound to one mesh of V vertices, F triangles and E edges."""
 
     @property
     def edges(self) -> npt.NDArray[np.int32]:
@@ -185,10 +186,11 @@ class Refiner(Protocol):
 
         `positions` are never written. The result is a view of the arrays of `out`, or, without it,
         of the refiner's own stream. `view`: for criteria that depend on the eye. `values`:
-        attributes of this frame by name, in place of the bound ones and each of the same shape, (V,
-        k) for values of vertices. A refiner makes one frame at a time, so each thread needs its own
-        refiner. Do not fork a process while one of its threads compiles: numba's lock stays shut in
-        the child. (After a first frame before the fork there is nothing to compile.)
+        attributes of this frame by name, which replace bound attributes of the same shape, (V, k)
+        for values of vertices. A refiner makes one frame at a time, so each thread needs its own
+        refiner. Do not fork a process while one of its threads compiles: numba's lock would stay
+        locked in the child. (If a first frame was refined before the fork, nothing is left to
+        compile.)
         """
 
     @abstractmethod
@@ -197,7 +199,7 @@ class Refiner(Protocol):
 
 
 class GpuRefiner(Refiner):
-    """A refiner that writes on the graphics card, too."""
+    """A refiner that can also write into buffers of the graphics card."""
 
     @abstractmethod
     def refine_on_card(
@@ -207,4 +209,4 @@ class GpuRefiner(Refiner):
         view: View | None = None,
         values: Mapping[str, npt.ArrayLike] | None = None,
     ) -> RefinedMesh:
-        """Refine into a stream, whose context is current; arrays are fetched when they are read."""
+        """Refine into a stream whose context is current; arrays are fetched when they are read."""

@@ -1,8 +1,8 @@
 """Registries of names: refiners here, schemes and criteria of `kahler` in the same way.
 
-This package registers its own factories in the same way as others do. Installed packages announce
-theirs by entry points, in a group for each kind. An entry point is looked up when a name is not
-registered or when names are listed; it is imported when its name is used.
+This package registers its own factories in the same way as other packages. Installed packages
+announce factories by entry points, with one group for each kind. Entry points are looked up when a
+name is not registered or when names are listed; a factory is imported when its name is used.
 """
 
 import functools
@@ -25,15 +25,15 @@ class Registry(Generic[Product]):
     """Factories of one kind of object, by name."""
 
     def __init__(self, kind: str, group: str) -> None:
-        """`kind`: the product of the factories, for errors; `group`: the name of entry points."""
+        """`kind`: name of the products, for errors; `group`: group name of the entry points."""
         self.kind = kind
         self._group = group
         self._factories: dict[str, Callable[..., Product]] = {}
 
     def register(self, name: str, factory: Callable[..., Product]) -> None:
-        """Make `factory` known as `name`; raises ValueError if the name is empty or taken.
+        """Register `factory` as `name`; raises ValueError if the name is empty or taken.
 
-        It has precedence over an entry point of this name.
+        A registered factory has precedence over an entry point with the same name.
         """
         if not (isinstance(name, str) and name) or "+" in name:
             raise ValueError(f"the name of a {self.kind} must be a word without +, got {name!r}")
@@ -56,7 +56,7 @@ class Registry(Generic[Product]):
     def find(self, name: str) -> Callable[..., Product]:
         """Return the factory of a name.
 
-        Raises ValueError if there is none, or if the package that announces it cannot be imported.
+        Raises ValueError if no factory has this name, or if its package cannot be imported.
         """
         if name in self._factories:
             return self._factories[name]
@@ -78,11 +78,11 @@ class Registry(Generic[Product]):
         return factory
 
     def options(self, name: str) -> tuple[Option, ...]:
-        """The options of the factory with this name, as it declares them."""
+        """Return the options that the factory with this name declares."""
         return tuple(options_of(signature_of(self.find(name))))
 
     def make(self, name: str, **options: Any) -> Product:
-        """Call the factory with this name; raises ValueError for options that it does not have."""
+        """Call the factory with this name; raises ValueError for options that it lacks."""
         factory = self.find(name)
         _check_options(self.kind, name, factory, options)
         return factory(**options)
@@ -109,12 +109,12 @@ def create(
     `faces`: vertices of each triangle, shape (F, 3), any integer type. `rest_positions`: undeformed
     vertex positions [any unit], shape (V, 3), any float type. `uv`: texture coordinates, shape (U,
     2); `face_uv`: the row in `uv` of each corner, shape (F, 3), or None if vertex v has coordinate
-    v (then U = V). `options`: those of the method; see `create_kahler` and `Loop`. All built-in
+    v (then U = V). `options`: options of the refiner; see `create_kahler` and `Loop`. All built-in
     refiners take `attributes`, by name: values of each vertex, shape (V, k), or, for values that
     differ along seams, a pair of values, shape (A, k), and the row of each corner, shape (F, 3).
-    They also take `crease_angle` [degrees]: edges at which two triangles turn by more at rest stay
-    sharp. Raises ValueError for an unknown name or option, for arrays that do not fit together, and
-    for a refiner of an installed package that cannot be imported.
+    They also take `crease_angle` [degrees]: edges whose two triangles form a larger angle at rest
+    stay sharp. Raises ValueError for an unknown name or option, for arrays that do not fit
+    together, and for a refiner of an installed package that cannot be imported.
     """
     factory = refiners.find(name)
     _check_options(refiners.kind, name, factory, options)
@@ -122,12 +122,12 @@ def create(
 
 
 def parameters(name: str) -> tuple[Option, ...]:
-    """The options of a refiner, as its factory declares them."""
+    """Return the options that the factory of a refiner declares."""
     return _options_of_refiner(signature_of(refiners.find(name)))
 
 
 def takes_attributes(name: str) -> bool:
-    """Whether a refiner takes `attributes`, as all refiners with `**values: Values` do."""
+    """Return whether a refiner takes `attributes`, as all refiners with `**values: Values` do."""
     signature = signature_of(refiners.find(name))
     values = (_names_of_values(each) for each in signature.parameters.values())
     declared = (option.name for option in _options_of_refiner(signature))
@@ -141,7 +141,7 @@ def _options_of_refiner(signature: inspect.Signature) -> tuple[Option, ...]:
 
 
 def _names_of_values(parameter: inspect.Parameter) -> set[str]:
-    """The names behind `**values: Unpack[Values]`."""
+    """Return the keyword names that `**values: Unpack[Values]` stands for."""
     is_unpacked = get_origin(parameter.annotation) is Unpack
     if parameter.kind is not parameter.VAR_KEYWORD or not is_unpacked:
         return set()
@@ -152,7 +152,7 @@ def _names_of_values(parameter: inspect.Parameter) -> set[str]:
 def _check_options(
     kind: str, name: str, factory: Callable[..., Any], options: Mapping[str, Any]
 ) -> None:
-    """Raise ValueError for options that a factory does not have, or whose values it refuses."""
+    """Raise ValueError for options that a factory does not have, and for values out of range."""
     signature = signature_of(factory)
     of_refiner = kind == refiners.kind
     found = _options_of_refiner(signature) if of_refiner else options_of(signature)

@@ -29,7 +29,7 @@ def copy_along_seams(wedge_vertices: Unsigned32, first: int, rows: Floats32) -> 
 def spread_over_wedges(values: Floats32, wedge_uv: Integers32, spread: Floats32) -> None:
     """Write `wedge_values` of other values into `spread`, shape (W, k); zeros remain.
 
-    `values`: shape (A, k); `wedge_uv`: the row of it that a wedge has, -1 for none, shape (W,).
+    `values`: shape (A, k); `wedge_uv`: row of each wedge in `values`, -1 for none, shape (W,).
     """
     for w in range(wedge_uv.shape[0]):
         row = wedge_uv[w]
@@ -42,7 +42,7 @@ def spread_over_wedges(values: Floats32, wedge_uv: Integers32, spread: Floats32)
 def wedge_values(mesh: Connectivity, values: Floats32) -> Floats32:
     """Texture coordinates and attributes of wedges, 0 where none is given, shape (W, k).
 
-    `values`: shape (A, k); the mesh has the row of each wedge.
+    `values`: shape (A, k); `mesh` has the row of each wedge.
     """
     zeros = np.zeros((1, values.shape[1]), np.float32)
     return np.concatenate([values, zeros])[mesh.wedge_uv]  # -1 is the last row

@@ -1,4 +1,4 @@
-"""Arrays for frames: those that a caller lends, and a refiner's own."""
+"""Arrays for frames: arrays lent by the caller, and the refiner's own arrays."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ import numpy as np
 from ...geometry.arrays import Floats32, Integers32, Unsigned32
 
 GROWTH_FACTOR = 1.25
-"""Factor beyond the present need when an own stream must grow."""
+"""Ratio of the new size to the needed size when a refiner's own stream must grow."""
 
 
 class StreamArrays(NamedTuple):
@@ -16,13 +16,13 @@ class StreamArrays(NamedTuple):
     vertices: Floats32
     """Rows of the output (rows.py), shape (.., k)."""
     triangles: Unsigned32
-    """Their corners, shape (.., 3)."""
+    """Corners of the triangles, as numbers of rows, shape (.., 3)."""
     source: Integers32
     """Input triangle that each triangle is part of, shape (..,)."""
 
 
 class OwnStream:
-    """The stream a refiner uses when none is lent: it grows to the size of its frames."""
+    """The stream of a refiner for frames without a lent one: it grows with its frames."""
 
     def __init__(self, columns: int, vertex_capacity: int, triangle_capacity: int) -> None:
         self._most = vertex_capacity, triangle_capacity
@@ -34,7 +34,7 @@ class OwnStream:
     def with_triangles(
         cls, columns: int, vertex_count: int, triangles: Unsigned32, source: Integers32
     ) -> "OwnStream":
-        """A stream for frames that all have these triangles, and this number of vertices."""
+        """Return a stream for frames that all have these triangles and this number of vertices."""
         stream = cls(columns, vertex_count, len(triangles))
         stream.vertices = np.zeros((vertex_count, columns), dtype=np.float32)
         stream.triangles = triangles
@@ -42,7 +42,7 @@ class OwnStream:
         return stream
 
     def reserve(self, vertex_count: int, triangle_count: int) -> None:
-        """Make room for a frame of this size; the frame before is lost."""
+        """Enlarge the arrays for a frame of this size; the frame before is lost."""
         if len(self.vertices) < vertex_count:
             rows = min(int(GROWTH_FACTOR * vertex_count), self._most[0])
             self.vertices = np.zeros((rows, self.vertices.shape[1]), dtype=np.float32)

@@ -1,6 +1,6 @@
-"""A checker for embeddings: a fine mesh must follow a coarse one as promised.
+"""A checker for embeddings: it tests whether a fine mesh follows a coarse one as promised.
 
-It is for tests, and for authors of other carriers, as `check` is for refiners.
+It is for tests, and for authors of classes like `Embedding`, as `check` is for refiners.
 """
 
 from typing import Protocol
@@ -13,24 +13,25 @@ from ..border.checker import BrokenMeshError
 from .embedding import EmbeddedPoints, checked_vectors
 
 SAME_SHARE = 1e-6
-"""Tolerance of points, in sizes of the fine mesh and its way."""
+"""Tolerance of points, relative to the size of the fine mesh and the length of its motion."""
 
 
 class Carrier(Protocol):
     """An `Embedding`, or any object that carries points in the same way."""
 
     def evaluate(self, positions: Floats64, /) -> EmbeddedPoints:
-        """The points when the coarse mesh is at `positions`, shape (V, 3)."""
+        """Return the points for the coarse mesh at `positions`, shape (V, 3)."""
 
 
 def check_embedding(
     embedding: Carrier, rest_positions: npt.ArrayLike, points: npt.ArrayLike
 ) -> None:
-    """Raise BrokenMeshError, naming the relation, unless fine points follow as promised.
+    """Raise BrokenMeshError, which names the relation, unless fine points follow as promised.
 
-    With the coarse mesh at rest they keep their places, and rigid motions carry them along, both to
-    1e-6 of the size. `rest_positions`, shape (V, 3), and `points`, shape (N, 3): the bound ones.
-    Returns nothing. Raises ValueError for points of another shape or not finite.
+    With the coarse mesh at rest, fine points are at their rest positions; a rigid motion of the
+    coarse mesh moves them rigidly; both to 1e-6 of the size. `rest_positions`, shape (V, 3), and
+    `points`, shape (N, 3): as they were bound. Returns nothing. Raises ValueError for points of
+    another shape or not finite.
     """
     rest = np.asarray(rest_positions, dtype=np.float64)
     fine = checked_vectors("points", points, None)

@@ -1,9 +1,9 @@
 """A fine mesh that follows the smooth surface of a coarse one: a wrap deformer.
 
 Each fine vertex is bound once to a place on the surface at rest (places.py), with its offset from
-there. In a frame the offset turns with the surface: by the mean of the rotations of the patch's
-corners (patches.py), weighted as the place is. All of this is continuous over the edges of the
-coarse mesh, and no triangle is split.
+there. In a frame the offset turns with the surface: by the mean of the rotations at the patch's
+corners (patches.py), weighted by the barycentric coordinates of the place. Place and offset are
+continuous across the edges of the coarse mesh, and no triangle is split.
 """
 
 from typing import NamedTuple
@@ -38,18 +38,20 @@ class EmbeddedPoints(NamedTuple):
     positions: Floats64
     """Shape (N, 3)."""
     normals: Floats32 | None
-    """Unit normals of `points`, turned with the surface, shape (N, 3); None if none were bound."""
+    """Unit normals of `points`, turned with the surface, shape (N, 3); None without bound
+    normals.
+    """
 
 
 class Embedding:
-    """Carries a fine mesh with a coarse one that deforms.
+    """Moves a fine mesh along with a coarse mesh that deforms.
 
         embedding = refine.Embedding(faces, rest_positions, points)    # once
         fine = embedding.evaluate(positions).positions                 # every frame
 
     The coarse mesh is not refined and may have any triangles: borders, edges of three triangles,
-    several pieces. At its rest positions fine vertices are at theirs, to rounding; a rigid motion
-    carries them along exactly.
+    several pieces. With the coarse mesh at rest, fine vertices are at their rest positions, to
+    rounding. A rigid motion of the coarse mesh moves them rigidly.
 
     triangles: coarse triangle that each fine vertex is bound to, shape (N,), read only.
     weights: its barycentric coordinates there, shape (N, 3), read only.
@@ -72,18 +74,18 @@ class Embedding:
     ) -> None:
         """Bind `points` at rest, shape (N, 3), to `faces`, (F, 3), of `rest_positions`, (V, 3).
 
-        `normals`: directions in which the fine surface faces, of any length, shape (N, 3), zero for
-        any direction. A triangle that faces the other way counts as ten mean edges farther away, so
-        that touching lips do not take each other's vertices. `labels`, integers of shape (N,),
-        `face_labels`, (F,): a fine vertex is bound to triangles of its own label alone.
-        `crease_angle`: edges that are sharper at rest [degrees] stay sharp. `stretch_offsets`:
-        whether offsets also grow with the surface around them; else they only turn. `groups`,
-        integers of shape (N,): fine vertices of one number share the place of the first of them, so
-        a hair keeps its shape and goes with its root. `places`: triangles, shape (P,), and
-        barycentric coordinates there, (P, 3), instead of a search: one for each group, numbered
-        from 0 on, or, without groups, for each fine vertex. Raises ValueError for arrays that do
-        not fit together, points that are not finite, and labels or places without a triangle that
-        has an area.
+        `normals`: directions in which the fine surface faces, of any length, shape (N, 3); a zero
+        vector allows any direction. A triangle that faces the other way counts as ten mean edges
+        farther away, so no vertex of one lip is bound to the other lip where they touch. `labels`,
+        integers of shape (N,), `face_labels`, (F,): a fine vertex is bound only to triangles with
+        the same label. `crease_angle`: edges that are sharper at rest [degrees] stay sharp.
+        `stretch_offsets`: whether offsets are also scaled by the stretch of the surface around
+        them; else they only turn. `groups`, integers of shape (N,): fine vertices with the same
+        number share the place of the first of them, so a hair keeps its shape and follows its root.
+        `places`: triangles, shape (P,), and barycentric coordinates there, (P, 3), which replace
+        the search: one for each group, numbered from 0 on, or, without groups, one for each fine
+        vertex. Raises ValueError for arrays that do not fit together, points that are not finite,
+        and labels or places without a triangle that has an area.
         """
         rest, triangles = checked_mesh(rest_positions, faces)
         fine = checked_vectors("points", points, None)
@@ -120,9 +122,9 @@ class Embedding:
     def evaluate(
         self, positions: npt.NDArray[np.floating], *, with_normals: bool = True
     ) -> EmbeddedPoints:
-        """The fine mesh when the coarse one is at `positions`, shape (V, 3).
+        """Return the fine mesh for the coarse mesh at `positions`, shape (V, 3).
 
-        `with_normals`: whether bound normals are turned, too, which doubles the time. Raises
+        `with_normals`: whether bound normals are also turned, which doubles the time. Raises
         ValueError for another shape and for positions that are not finite.
         """
         take_positions_like_rest(positions, self._is_used, self._positions, self._points)
@@ -137,7 +139,7 @@ class Embedding:
         return EmbeddedPoints(moved, turned)
 
     def carry(self, values: npt.ArrayLike) -> Floats64:
-        """Carry values from coarse vertices, shape (V,) or (V, k), to fine ones: (N,) or (N, k).
+        """Interpolate values of coarse vertices, (V,) or (V, k), at fine ones: (N,) or (N, k).
 
         They are linear in each triangle. Raises ValueError for another number of values.
         """
@@ -158,7 +160,7 @@ class Embedding:
 
 
 def checked_vectors(name: str, given: npt.ArrayLike, count: int | None) -> Floats64:
-    """A copy of finite vectors, shape (count, 3); any number of vectors if `count` is None."""
+    """Return a copy of finite vectors, shape (count, 3); of any number if `count` is None."""
     rows = "N" if count is None else str(count)
     array = as_array(name, given, f"numbers of shape ({rows}, 3)")
     is_shaped = array.ndim == 2 and array.shape[1] == 3 and count in (None, len(array))
@@ -179,7 +181,7 @@ def checked_vectors(name: str, given: npt.ArrayLike, count: int | None) -> Float
 def _of_first(
     groups: Integers64 | None, triangles: Integers64, weights: Floats64
 ) -> tuple[Integers64, Floats64]:
-    """Places of fine vertices; all vertices of a group have that of its first vertex."""
+    """Return the places of fine vertices; a group has the place of its first vertex."""
     if groups is None:
         return triangles, weights
     _, first, number = np.unique(groups, return_index=True, return_inverse=True)
@@ -194,7 +196,7 @@ def _given_places(
     is_proper: npt.NDArray[np.bool_],
     count: int,
 ) -> tuple[Integers64, Floats64]:
-    """The given places, one for each of `count` fine vertices, checked."""
+    """Return the given places after checks, one for each of `count` fine vertices."""
     if labels is not None:
         raise ValueError("places and labels exclude each other; leave one of them out")
     number = np.arange(count) if groups is None else groups
@@ -223,7 +225,7 @@ def _groups(
     count: int,
     is_proper: npt.NDArray[np.bool_],
 ) -> tuple[list[tuple[Integers64, Integers64]], Integers64]:
-    """Groups of fine points and allowed triangles; and the label of each triangle, -1 for none."""
+    """Return groups of fine points with allowed triangles; and triangle labels, -1 for none."""
     if (labels is None) != (face_labels is None):
         raise ValueError("labels and face_labels go together: give both or none of them")
     label_of = np.where(is_proper, 0, -1).astype(np.int64)
@@ -259,9 +261,9 @@ def _checked_labels(name: str, given: npt.ArrayLike, count: int) -> Integers64:
 def turned_at(
     rows: Floats64, t: int, u: float, v: float, w: float, vector: Vector
 ) -> tuple[Vector, float]:
-    """A vector, turned with the place on patch t, and the stretch there.
+    """Turn a vector with the place on patch t; also return the stretch there.
 
-    The mean of the corners' quaternions may have any length; zero means no turn.
+    The mean of the corners' quaternions may have any length; a zero mean counts as no turn.
     """
     row = rows[t]
     at = (u, v, w)
@@ -292,9 +294,9 @@ def place_points(
     stretched: float,
     moved: Floats64,
 ) -> None:
-    """Write fine points, shape (N, 3): places on patches `numbers` plus turned offsets.
+    """Write fine points, shape (N, 3): their places on the patches `numbers` plus turned offsets.
 
-    `stretched`: share of the surface's stretch in the offsets.
+    `stretched`: how far offsets follow the stretch of the surface, 0 to 1.
     """
     for k in range(first, last):
         t = numbers[k]

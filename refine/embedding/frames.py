@@ -1,11 +1,11 @@
-r"""Turns of a coarse surface at its vertices.
+r"""Rotations of a coarse surface at its vertices.
 
-The *axes* of a vertex are its normal and two directions across it at rest, which the surrounding
-triangles carry along. A *frame* is the rotation of the axes since rest: the one nearest to the
-deformation of the plane across the normal (its polar decomposition), so no edge is preferred.
-Rotations are unit quaternions, because quaternions can be mixed.
+The *axes* of a vertex are its normal and two directions in its tangent plane at rest. The
+surrounding triangles carry these two directions along. A *frame* is the rotation of the axes since
+rest: the rotation nearest to the deformation of the tangent plane (its polar decomposition), so no
+edge is preferred. Rotations are unit quaternions, because quaternions can be averaged.
 
-Where a vertex has several sectors (mesh/creases.py), each sector has its own axes.
+If a vertex has several sectors (mesh/creases.py), each sector has axes and a frame.
 """
 
 from typing import NamedTuple
@@ -26,27 +26,29 @@ FRAME_NUMBERS = 5
 AXES_NUMBERS = 16
 """Count of the numbers of a sector's axes."""
 LEAST_SIDE = 0.1
-"""Least length of the summed cross products of a vertex with a side, in sums of their lengths."""
+"""Least length of a sector's summed cross products, relative to the sum of their lengths: below it
+the sector has no direction.
+"""
 
 
 class Fans(NamedTuple):
-    """The surroundings of S sectors, K corners in all, for compiled code."""
+    """The triangles around S sectors, with K corners in all, for compiled code."""
 
     starts: Unsigned32
     """Sector s has the corners `starts[s]` up to `starts[s + 1]` in the arrays below, (S + 1,)."""
     corners: Unsigned32
     """Vertices of each corner's triangle, the sector's own vertex first, shape (K, 3)."""
     shares: Floats64
-    """Summands of a triangle in the axes, shape (K, 5): the weight of its cross product; then
-    shares of its first and second edge, for each of two directions in the surface.
+    """Contributions of a triangle to the axes, shape (K, 5): the weight of its cross product; then,
+    for each of two directions in the surface, the shares of its first and second edge.
     """
 
 
 def sound_sectors(mesh: Connectivity, rest: Floats64) -> Integers64:
-    """Sector of each corner, shape (F, 3); borders and creases part sectors.
+    """Return the sector of each corner, shape (F, 3); borders and creases separate sectors.
 
-    Where the normals of a sector cancel each other, such as on a sheet whose two faces lie on one
-    another, each corner is a sector of its own.
+    If the normals of a sector cancel each other, such as on a sheet folded onto itself, each of its
+    corners becomes a sector.
     """
     joined, count = corner_sectors(mesh, ~mesh.around.is_interior)
     sectors = joined.astype(np.int64)
@@ -68,7 +70,7 @@ def sound_sectors(mesh: Connectivity, rest: Floats64) -> Integers64:
 def fans_of_sectors(
     mesh: Connectivity, rest: Floats64, corner_sector: Integers64, used: Integers64
 ) -> Fans:
-    """The fans of the sectors `used`; `corner_sector`: sector of each corner, shape (F, 3)."""
+    """Return the fans of the sectors `used`; `corner_sector`: of each corner, shape (F, 3)."""
     around = np.flatnonzero(np.isin(corner_sector, used))  # corners, 3 x triangle + i
     number = np.searchsorted(used, corner_sector.ravel()[around])
     order = np.argsort(number, kind="stable")
@@ -85,7 +87,7 @@ def fans_of_sectors(
 
 
 def _shares(rest: Floats64, fans: Unsigned32, sector: Integers64, weights: Floats64) -> Floats64:
-    """`Fans.shares`; `sector`: that of each corner, (K,); `weights`: of cross products, (K,)."""
+    """Return `Fans.shares`; `sector`: of each corner, (K,); `weights`: of cross products, (K,)."""
     first = rest[fans[:, 1]] - rest[fans[:, 0]]
     second = rest[fans[:, 2]] - rest[fans[:, 0]]
     crosses = np.cross(first, second)
@@ -100,7 +102,8 @@ def _shares(rest: Floats64, fans: Unsigned32, sector: Integers64, weights: Float
     totals = _sums(sector, np.where(is_proper, areas, 0.0)[:, None], count)[:, 0]
     share_of = np.where(is_proper, areas / np.maximum(totals[sector], 1e-300), 0.0)
     squared = np.where(is_proper, areas, 1.0) ** 2
-    # A direction d in the triangle is x first + y second; the dual of its edges gives x and y.
+    # A direction d in the triangle is x first + y second; the dual basis of its edges gives x and
+    # y.
     dual_of_first = np.cross(second, crosses) / squared[:, None]
     dual_of_second = np.cross(crosses, first) / squared[:, None]
     shares = [weights]
@@ -111,7 +114,7 @@ def _shares(rest: Floats64, fans: Unsigned32, sector: Integers64, weights: Float
 
 
 def _sums(numbers: Integers64, values: Floats64, count: int) -> Floats64:
-    """Sums of rows with the same number, shape (count, k)."""
+    """Return the sums of rows with the same number, shape (count, k)."""
     columns = [np.bincount(numbers, column, minlength=count) for column in values.T]
     return np.stack(columns, axis=1)
 
@@ -129,9 +132,9 @@ def unit_of(v: Vector) -> Vector:
 def find_axes(first: int, last: int, positions: Floats64, fans: Fans, axes: Floats64) -> None:
     """Write the axes of sectors, shape (S, 16).
 
-    Unit rows normal, across and beside; the stretch; and the present vectors, of any length, of the
-    two directions that lie in the surface at rest. All are zero where triangles have no normal or
-    direction.
+    A row has three unit vectors (normal, first and second direction), the stretch, and the present
+    vectors, of any length, of the two directions that lie in the surface at rest. All are zero
+    where triangles have no normal or direction.
     """
     for s in range(first, last):
         normal = across = beside = 0.0, 0.0, 0.0
@@ -161,7 +164,8 @@ def find_axes(first: int, last: int, positions: Floats64, fans: Fans, axes: Floa
 def find_frames(first: int, last: int, rest: Floats64, axes: Floats64, frames: Floats64) -> None:
     """Write frames of sectors, (S, 5): the turn of `axes`, (S, 16), since `rest`.
 
-    A quaternion is zero where there are no axes, now or at rest; then it does not count.
+    A quaternion is zero where axes are missing, now or at rest; a zero quaternion has no effect on
+    means.
     """
     turn = np.zeros((3, 3))
     for s in range(first, last):
@@ -181,7 +185,7 @@ def find_frames(first: int, last: int, rest: Floats64, axes: Floats64, frames: F
 def write_quaternion(turn: Floats64, quaternion: Floats64) -> None:
     """Write the quaternion w, x, y, z of a rotation, a matrix (3, 3).
 
-    It begins with the largest number, as Shepperd does (1978, "Quaternion from rotation matrix").
+    It computes the largest component first, as in Shepperd 1978, "Quaternion from rotation matrix".
     """
     trace = turn[0, 0] + turn[1, 1] + turn[2, 2]
     largest = 3

@@ -1,8 +1,9 @@
-r"""The smooth surface of a coarse mesh: one cubic patch over each triangle, and its turn.
+r"""The smooth surface of a coarse mesh: one cubic patch over each triangle, and its rotations.
 
 Curved PN triangles (Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN triangles"), whose border
-curves are those of the scheme `cubic` (beyond/cubic.py): across the normals of vertices inside, and
-along the border curve on borders and creases. Two patches share the curve between them.
+curves are those of the scheme `cubic` (beyond/cubic.py): their tangents are normal to the vertex
+normals inside the mesh, and follow the border curve on borders and creases. Neighbouring patches
+share the curve between them.
 
            a_c
           /   \          corners        a, b, c
@@ -12,11 +13,12 @@ along the border curve on borders and creases. Two patches share the curve betwe
 
 At rest the tangent is d = b - a without its part along the normal at a. In a frame the surrounding
 triangles carry the tangents along with the plane at a. So a point keeps its place on a surface that
-is stretched unevenly, and every affine map of the plane is exact. A carried tangent may differ from
-that of the present mesh by half at most; beyond that a fold would make loops.
+is stretched unevenly, and every affine map of the plane is reproduced exactly. A carried tangent
+may differ from the tangent of the present mesh by at most half of the latter's length; otherwise a
+fold would give curves with loops.
 
-Differs from the refined mesh: there are no flat triangles, so curves have the displacement of the
-cubic itself, and normals are those of vertices, not steeper ones.
+Differs from the refined mesh: there are no flat triangles to compensate for, so curves have exactly
+the displacement of the cubic, and vertex normals are used without steepening.
 """
 
 from typing import NamedTuple
@@ -42,15 +44,15 @@ POINTS = 10
 """Control points of a patch: corners a, b, c; near a towards b and c; near b towards c and a; near
 c towards a and b; and the middle."""
 FRAMES = 3 * POINTS
-"""First column of the frames of a patch's corners: a quaternion and a stretch for each."""
+"""First column of the frames of a patch's corners; a frame is a quaternion and a stretch."""
 WIDTH = FRAMES + 3 * FRAME_NUMBERS
 """Count of the numbers of a patch."""
 MOST_CARRIED = 0.5
-"""Largest distance of a carried tangent from that of the present mesh, in lengths of the latter.
-Chosen: from one on a curve may turn back.
+"""Largest difference of a carried tangent from the tangent of the present mesh, in lengths of the
+latter. Chosen: at 1 or more a curve may turn back.
 """
 NO_VERTEX = np.uint32(2**32 - 1)
-"""Number for no vertex: an edge inside the mesh has no border that runs on."""
+"""Number for no vertex: edges inside the mesh have no border vertices before and after."""
 
 
 class Patches(NamedTuple):
@@ -66,13 +68,12 @@ class Patches(NamedTuple):
     near: Unsigned32
     """Directed edges from each corner to the next one and to the one before, shape (T, 6)."""
     ways: Unsigned32
-    """For directed edges, shape (D, 5): their vertices a and b; on a border the vertices before a
-    and after b, or, at a corner, a and b themselves; inside the mesh NO_VERTEX; and the sector at
-    a.
+    """For directed edges, shape (D, 5): vertices a and b; the vertices before a and after b on the
+    border (at a corner, a or b itself; inside the mesh, NO_VERTEX); the sector at a.
     """
     slopes: Floats64
-    """Coordinates of the tangent at rest in both directions of the sector, shape (D, 2); on a
-    border, the edge's shares of the chords across a and across b.
+    """Coordinates of the tangent at rest in the two directions of the sector, shape (D, 2); on a
+    border, the shares of this edge in the border lengths through a and through b.
     """
     rest: Floats64
     """Axes of sectors at rest, shape (S, 16), as `find_axes` writes them."""
@@ -112,7 +113,7 @@ class SmoothSurface:
         return np.ascontiguousarray(self._axes[:, :3])
 
     def move(self, positions: Floats64) -> None:
-        """Find the patches over `positions`, shape (V, 3)."""
+        """Compute the patches over `positions`, shape (V, 3)."""
         patches = self._patches
         share(find_axes, len(self._axes), positions, self._fans, self._axes)
         share(find_frames, len(self._axes), patches.rest, self._axes, self._frames)
@@ -147,7 +148,7 @@ def _directed_edges(
 
 @njit
 def find_slopes(first: int, last: int, rest: Floats64, patches: Patches) -> None:
-    """Write `patches.slopes`, from the axes at rest."""
+    """Write `patches.slopes` from the axes at rest."""
     for k in range(first, last):
         a, b, before, after, s = patches.ways[k]
         if before != NO_VERTEX:
@@ -166,7 +167,7 @@ def find_slopes(first: int, last: int, rest: Floats64, patches: Patches) -> None
 
 @njit
 def share_of_chord(positions: Floats64, before: np.uint32, a: np.uint32, b: np.uint32) -> float:
-    """Length of the edge from a to b, as a share of the border from the vertex before a to b."""
+    """Return the length of edge a-b, relative to the border from the vertex before a to b."""
     length = distance(positions, a, b)
     whole = length + distance(positions, before, a)
     return length / whole if whole > 0.0 else 0.0
@@ -176,7 +177,7 @@ def share_of_chord(positions: Floats64, before: np.uint32, a: np.uint32, b: np.u
 def border_tangent(
     positions: Floats64, way: Unsigned32, share_at_a: float, share_at_b: float
 ) -> Vector:
-    """The tangent of a border curve at a, along the edge to b, by shares of chords across both.
+    """Return the tangent of a border curve at a along the edge to b, from its shares at both ends.
 
     Beside a corner the curve is a parabola, as in `cubic`.
     """
@@ -252,7 +253,7 @@ def write_patches(
             along = 0.0
             for j in range(4):
                 along += frames[s, j] * frames[patches.sectors[t, 0], j]
-            sign = -1.0 if along < 0.0 else 1.0  # both signs are the same rotation
+            sign = -1.0 if along < 0.0 else 1.0  # a quaternion of either sign is the same rotation
             column = FRAMES + FRAME_NUMBERS * i
             for j in range(4):
                 rows[t, column + j] = sign * frames[s, j]
@@ -261,7 +262,7 @@ def write_patches(
 
 @njit
 def place_on(rows: Floats64, t: int, u: float, v: float, w: float) -> Vector:
-    """The place on patch t with barycentric coordinates u, v, w."""
+    """Return the point of patch t with barycentric coordinates u, v, w."""
     row = rows[t]
     uu = u * u
     vv = v * v

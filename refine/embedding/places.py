@@ -1,12 +1,13 @@
 """Places of a fine mesh on the smooth surface of a coarse one, at rest.
 
-The search begins with the nearest place on the flat triangles. From there the place slides over the
-surface until the point stands upright above it: x = p + h n, with p on the cubic patch and n the
-mean of the vertex normals there. Newton's method finds p; a step that leaves a patch goes on in the
-patch behind the edge. Vertex normals have no jump at an edge, so places that are neighbours on the
-fine mesh are neighbours on the surface (Panozzo, Baran, Diamanti, Sorkine-Hornung 2013, "Weighted
-averages on surfaces", who call it Phong projection). Some points, such as those beyond a border,
-stand upright above no place. They keep the best place that was found, and the vector from there.
+The search begins with the nearest place on the flat triangles. From there the place p moves over
+the surface until the fine point x lies on the interpolated normal: x = p + h n, with p on the cubic
+patch and n the mean of the vertex normals at p. Newton's method finds p; a step that leaves a patch
+continues in the patch beyond the edge. Interpolated normals are continuous across edges, so
+neighbouring points of the fine mesh have neighbouring places (Panozzo, Baran, Diamanti,
+Sorkine-Hornung 2013, "Weighted averages on surfaces", who call it Phong projection). Some points,
+such as points beyond a border, lie on the normal of no place. They keep the best place that was
+found, and the vector from there.
 """
 
 import numpy as np
@@ -22,19 +23,20 @@ from .frames import unit_of
 from .patches import SmoothSurface, place_on
 
 WRONG_SIDE = 10.0
-"""Added distance, in mean edge lengths, of a triangle that faces the other way."""
+"""Distance, in mean edge lengths, that is added for a triangle that faces the other way."""
 STEPS = 16
 """Most steps of Newton's method; four are enough on most surfaces."""
 FARTHEST = 1.25
-"""Largest distance of a place, relative to the first one. Chosen: an upright place is rarely the
-nearest one, but a place much farther away belongs to another part of the surface.
+"""Largest distance of a place, relative to the distance of the nearest place. Chosen: the place
+with the point on its normal is rarely the nearest place, but a place much farther away belongs to
+another part of the surface.
 """
 ROUNDING = 1e-14
 """A step in barycentric coordinates, or the square of an angle's sine, that counts as zero."""
 INSIDE, STUCK = 3, 4
 """Results of a step that does not cross the edge opposite of corner 0, 1 or 2."""
 UPRIGHT = 1e-12
-"""Largest sideways part of an upright distance, in distances from the surface."""
+"""Largest part of the vector to the point across the normal, relative to its length."""
 
 
 def nearest_places(
@@ -44,9 +46,9 @@ def nearest_places(
     faces: Integers64,
     groups: list[tuple[Integers64, Integers64]],
 ) -> tuple[Integers64, Floats64]:
-    """The nearest places on flat triangles: their numbers, shape (N,), and coordinates, (N, 3).
+    """Return the nearest places on flat triangles: triangle numbers, (N,), and coordinates, (N, 3).
 
-    `groups`: points, each with its allowed triangles.
+    `groups`: pairs of point numbers and allowed triangles.
     """
     triangles = np.zeros(len(points), dtype=np.int64)
     weights = np.zeros((len(points), 3))
@@ -61,7 +63,7 @@ def nearest_places(
 
 
 def has_area(rest: Floats64, faces: Integers64, sliver: float) -> Flags:
-    """Flag triangles that have a direction, shape (F,)."""
+    """Flag triangles that have a normal, shape (F,)."""
     areas = np.linalg.norm(cross_products(rest, faces), axis=1)
     edges = rest[faces[:, [1, 2, 0]]] - rest[faces]
     longest = np.linalg.norm(edges, axis=2).max(axis=1, initial=0.0)
@@ -69,9 +71,10 @@ def has_area(rest: Floats64, faces: Integers64, sliver: float) -> Flags:
 
 
 def across_edges(mesh: Connectivity, label: Integers64) -> Integers64:
-    """The side beyond each side of triangles, 4 x triangle + i, shape (F, 3); -1 for none.
+    """Return the neighbour's side at each side of triangles, 4 x triangle + i, (F, 3); -1 for none.
 
-    Only edges inside the mesh count, between triangles with one `label`, shape (F,); -1: no label.
+    Only edges inside the mesh count, between triangles with the same `label`, shape (F,); -1: no
+    label.
     """
     across = np.full(mesh.faces.shape, -1, dtype=np.int64)
     edges = np.flatnonzero(mesh.around.is_interior)
@@ -91,7 +94,7 @@ def settle(
     triangles: Integers64,
     weights: Floats64,
 ) -> None:
-    """Slide places, (N,) and (N, 3), until points, shape (N, 3), stand upright on them."""
+    """Move places, (N,) and (N, 3), until points, shape (N, 3), lie on their normals."""
     given = surface.rows, surface.normals, surface.sectors, across
     share(slide, len(points), points, *given, triangles, weights)
 
@@ -173,7 +176,7 @@ def linearise(
 
 @njit
 def slope(rows: Floats64, t: int, u: float, v: float, w: float, i: int) -> Vector:
-    """Derivative of a place on patch t by its coordinate i, with the others fixed."""
+    """Return the derivative of a place on patch t by its coordinate i, with the others fixed."""
     at = (u, v, w)
     j = (i + 1) % 3
     k = (i + 2) % 3
@@ -215,7 +218,7 @@ def advance(aside: Vector, columns: Floats64, across: Integers64, t: int, place:
 
 @njit
 def newton_step(aside: Vector, columns: Floats64) -> Vector:
-    """The step in barycentric coordinates that makes `aside` smallest, by least squares."""
+    """Return the step in barycentric coordinates that minimises `aside`, by least squares."""
     first = less(row_of(columns, 1), 1.0, row_of(columns, 0))
     second = less(row_of(columns, 2), 1.0, row_of(columns, 0))
     a = dot(first, first)
@@ -234,7 +237,7 @@ def newton_step(aside: Vector, columns: Floats64) -> Vector:
 
 @njit
 def step_along(aside: Vector, columns: Floats64, i: int, j: int) -> Vector:
-    """The step along the edge from corner i to corner j that makes `aside` smallest."""
+    """Return the step along the edge from corner i to corner j that minimises `aside`."""
     way = less(row_of(columns, j), 1.0, row_of(columns, i))
     squared = dot(way, way)
     size = dot(way, aside) / squared if squared > 0.0 else 0.0

@@ -1,7 +1,7 @@
-r"""Time-coherent splitting: the 271 sequences of splits, and how a triangle moves between them.
+r"""Time-coherent splitting: the 271 sequences of splits, and the transitions between them.
 
-Kähler, Haber, Seidel 2003, section 4.4. The 27-entry table (table.py) knows how often each edge is
-split, but not in which order. So a new split may turn existing diagonals, and a flat shaded
+Kähler, Haber, Seidel 2003, section 4.4. The 27-entry table (table.py) takes only the number of
+splits of each edge, not their order. So a new split may flip existing diagonals, and a flat shaded
 triangle flickers. Here a triangle is split in the order in which its edges were split:
 
             2                   2                   2         the first split of an edge joins its
@@ -12,23 +12,24 @@ triangle flickers. Here a triangle is split in the order in which its edges were
 
     sequence ()             (0,)                (0, 1)
 
-A split only cuts subtriangles in two. So the triangulation of a sequence holds all inner lines of
-each sequence that it continues: no line ever turns.
+A split only cuts subtriangles in two. So the triangulation of a sequence contains all inner lines
+of every shorter sequence that it continues: no line ever flips.
 
 Each edge can be split up to twice, which gives 271 sequences, from () to those of length six.
 Between frames a triangle keeps only the number of its sequence. `transitions` lead from a sequence
 and the wanted splits to the next sequence:
 
   - Splits that are taken back leave the sequence at its end. A split that is taken back while a
-    later one stays is removed out of order: the sequence continues as if this split had never been,
-    and lines may turn. This cannot be avoided (the paper says so); it is counted.
-  - Splits that come in one frame have no order among them. They get the order with the shortest
+    later one stays is removed out of order: the sequence continues as if this split had never
+    happened, and lines may flip. This cannot be avoided (see the paper); these removals are
+    counted.
+  - Splits that are added in the same frame have no order. They get the order with the shortest
     inner lines in an equilateral triangle; among equal orders, the first by edge numbers.
 
-Differs from the paper: it keeps the history with the mesh, and we keep one number for each
-triangle. Entries with all edges split have no middle triangle, unlike those of the table: no order
-of splits gives one. The tables are built in a tenth of a second, when a refiner first asks for
-them.
+Differs from the paper: the paper keeps the history with the mesh, and we keep one number for each
+triangle. Sequences with all edges split have no middle triangle, unlike entries of the table,
+because no order of splits gives one. The tables are built in a tenth of a second, at their first
+use.
 
 Neighbours may have had their splits in different orders; they still share the points along their
 edge, so no crack can open.
@@ -69,18 +70,18 @@ class SequenceTables:
     """All data of the 271 sequences, as read-only arrays."""
 
     sequences: tuple[Sequence, ...]
-    """Edges in the order of their splits; number 0 is (), shorter ones come first."""
+    """The split edges of each sequence in order; number 0 is (), shorter sequences come first."""
     patterns: Patterns
     """Subtriangles of each sequence."""
     transitions: Unsigned16
     """Next sequence for each sequence and each wanted configuration, shape (271, 27)."""
     removals: Unsigned8
-    """Number of splits that this step takes back out of order, shape (271, 27)."""
+    """Number of splits that each such step takes back out of order, shape (271, 27)."""
 
 
 @cache
 def sequence_tables() -> SequenceTables:
-    """Build all tables, once; every entry is verified like those of the 27-entry table."""
+    """Build all tables, once; every entry is verified as in the 27-entry table."""
     sequences = _all_sequences()
     assert len(sequences) == SEQUENCE_COUNT, f"{len(sequences)} sequences, not {SEQUENCE_COUNT}"
     number = {sequence: k for k, sequence in enumerate(sequences)}
@@ -128,7 +129,7 @@ def split_in_order(sequence: Sequence) -> list[Triangle]:
 
 
 def _halved(triangles: list[Triangle], start: int, end: int, point: int) -> list[Triangle]:
-    """Cut the subtriangle with the side start-end in two, at a point on this side."""
+    """Cut the subtriangle with the side from start to end in two, at a point on this side."""
     result: list[Triangle] = []
     for triangle in triangles:
         if start in triangle and end in triangle:
@@ -143,7 +144,7 @@ def _halved(triangles: list[Triangle], start: int, end: int, point: int) -> list
 
 
 def _all_sequences() -> tuple[Sequence, ...]:
-    """Sequences with up to two of each edge, by length, then by edge numbers."""
+    """Return all sequences with each edge up to twice, by length, then by edge numbers."""
     return tuple(
         sequence
         for length in range(3 * MOST_SPLITS + 1)
@@ -157,9 +158,9 @@ def splits_in(sequence: Sequence) -> tuple[int, int, int]:
 
 
 def _taken_back(sequence: Sequence, wanted: tuple[int, int, int]) -> tuple[Sequence, int]:
-    """Leave out the last splits of edges that have too many.
+    """Remove the last splits of edges that are split too often.
 
-    Returns the remaining sequence, and the number of removed splits that a remaining one follows.
+    Returns the remaining sequence, and the number of removed splits that precede a remaining one.
     """
     surplus = [max(0, has - want) for has, want in zip(splits_in(sequence), wanted, strict=True)]
     left: list[int] = []
@@ -194,19 +195,19 @@ def _length_of_inner_lines(sequence: Sequence) -> float:
 
 
 class Coherent(Cutting):
-    """Table rows by sequence of splits, for the triangles of one mesh."""
+    """Time-coherent cutting: looks up the triangles of one mesh by their sequences of splits."""
 
     has_memory = True
 
     def __init__(self) -> None:
-        """Take the tables; the triangles come with `bind`."""
+        """Copy the tables; `bind` adds the triangles."""
         tables = sequence_tables()
         # Copies: compiled code takes writable arrays faster.
         self._steps = tables.transitions.copy(), tables.removals.copy()
         self.patterns = tables.patterns
         """A row for each sequence."""
         self.removals_out_of_order = 0
-        """Splits taken back while a later one stayed, in all frames; each may turn lines."""
+        """Splits taken back while a later one stayed, in all frames; each may flip lines."""
 
     def bind(self, connectivity: Connectivity, frame: FrameBuffers) -> Unsigned16:
         """Start with no split anywhere; return the sequence of each triangle, shape (F,)."""
@@ -225,7 +226,7 @@ class Coherent(Cutting):
 
     @states.setter
     def states(self, states: npt.ArrayLike) -> None:
-        """Go on from these sequences; raises ValueError as above."""
+        """Set the sequences to continue from; raises ValueError as above."""
         given = np.asarray(states)
         is_right = given.shape == self._states.shape and given.dtype.kind in "iu"
         if not is_right or ((given < 0) | (given >= SEQUENCE_COUNT)).any():
@@ -238,7 +239,7 @@ class Coherent(Cutting):
     def number(
         self, frame: FrameBuffers, vertex_count: int, triangle_count: int
     ) -> tuple[int, int]:
-        """Move every triangle from its sequence to the next one; numbers of points stay."""
+        """Move every triangle from its sequence to the next one; point numbers do not change."""
         removed = follow_splits(frame.configurations, *self._steps, self._states)
         self.removals_out_of_order += removed
         return vertex_count, triangle_count

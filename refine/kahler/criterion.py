@@ -1,8 +1,8 @@
-"""How often each edge is split in this frame.
+"""Criteria, which decide how often each edge is split in a frame.
 
 Kähler, Haber, Seidel 2003, section 4.1: compare the dot product of the vertex normals at both ends
 of an edge with its value in the undeformed mesh. Where it has dropped, the surface bends more than
-its triangles were made for.
+at rest, for which its triangles were made.
 
     drop = rest dot product - current dot product;  one split above `threshold_once`,
                                                     two splits above `threshold_twice`
@@ -31,21 +31,23 @@ from ..mesh.vectors import ONE, WIDTH, add_to_row, cross, difference, dot, row_o
 from .scheme import Scheme
 
 THRESHOLD_ONCE = 0.02
-"""Default drop above which an edge is split once: a flat place, bent by 11 degrees along it.
+"""Default drop above which an edge is split once: on a plane, a bend of 11 degrees along the edge.
 
 Chosen with `THRESHOLD_TWICE` to get the 1.5 times of Table 1: scanned full expressions (smile with
 open jaw; sneer with smile and lowered brows) on a face of 2029 triangles gave 1.56 and 1.57 times.
 """
 THRESHOLD_TWICE = 0.08
-"""Default drop above which an edge is split twice: a flat place, bent by 23 degrees."""
+"""Default drop above which an edge is split twice: on a plane, a bend of 23 degrees."""
 DROP_ROUNDING = 1e-5
 """Drops up to this size are rounding (measured, see above)."""
 LEAST_WIDTH = 1e-6
-"""Least distance of two thresholds: equal ones leave no range to blend over."""
+"""Least difference of the two thresholds: equal thresholds leave no range to blend over."""
 LARGEST_LIMIT = 1e30
 """Largest finite threshold: single precision holds all measures."""
 UNDEFINED_NORMAL = 1e-6
-"""A normal shorter than this share of its summands' lengths is rounding, not a direction."""
+"""Least length of a sum of normals, relative to the sum of lengths: a shorter sum is only
+rounding.
+"""
 
 
 INFINITE = np.float32(np.inf)
@@ -62,20 +64,22 @@ DropTwice = Annotated[float, Option("the same for splitting twice", least=0.0)]
 
 
 class Criterion:
-    """Base class of all criteria, the paper's and your own: it decides on splits.
+    """Base class of all criteria, the paper's and your own: a criterion decides on splits.
 
-    A subclass has `measure`, which `mark` uses; a `mark` of its own may be faster. All other
-    methods do nothing by default. A refiner calls `set_scheme` and `bind` once, then in every frame
-    `set_view`, and `mark` or, if it blends, `measure`.
+    A subclass defines `measure`, which `mark` calls; it may override `mark` with a faster version.
+    All other methods do nothing by default. A refiner calls `set_scheme` and `bind` once, then in
+    every frame `set_view`, and `mark` or, if it blends, `measure`.
     """
 
     parts: tuple["Criterion", ...] = ()
-    """Criteria that this one asks; each of them serves one refiner only, too."""
+    """Criteria that this criterion uses; each of them also serves only one refiner."""
     uses_normals = True
-    """Whether it reads normals; they are computed only if a part of the refiner reads them."""
+    """Whether the criterion reads normals; they are computed only if a part of the refiner reads
+    them.
+    """
     is_constant = False
-    """Whether every frame gets the same splits. A refiner then asks once, at its first frame, and
-    keeps its vertices and triangles in number and order.
+    """Whether every frame gets the same splits. A refiner then calls the criterion once, at its
+    first frame; number and order of its vertices and triangles never change.
     """
     _metric: Floats32 = np.zeros(0, dtype=np.float32)
     """Metric of each edge for `mark`, shape (E,)."""
@@ -102,12 +106,12 @@ class Criterion:
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
         """Write the refinement metric of every edge, shape (E,): above 0 one split, above 1 two.
 
-        Blending is continuous only if it is a continuous function of the positions.
+        Blending is continuous only if the metric is a continuous function of the positions.
         """
         raise NotImplementedError(f"{type(self).__name__} must have a method measure")
 
     def complaint(self, metric: Floats32) -> str:
-        """Describe the edges whose metric is NaN; `metric`: of every edge, shape (E,)."""
+        """Return a message on edges whose metric is NaN; `metric`: of every edge, shape (E,)."""
         bad = np.flatnonzero(np.isnan(metric))
         return (
             f"the criterion {type(self).__name__} measures NaN for {len(bad)} of {len(metric)} "
@@ -115,7 +119,7 @@ class Criterion:
         )
 
     def find_complaint(self, positions: Floats64, normals: Floats32, edge_count: int) -> str | None:
-        """Measure a frame again, part by part; return the first complaint of a part."""
+        """Measure a frame again with each part of the criterion; return the first complaint."""
         for part in self.parts:
             complaint = part.find_complaint(positions, normals, edge_count)
             if complaint is not None:
@@ -135,10 +139,10 @@ class Thresholds:
     def __init__(
         self, once: float, twice: float, meaning: str, *, least: float = 0.0, levels: int = 2
     ) -> None:
-        """`meaning`: the quantity measured, for the error; `least`: values up to this never count.
+        """`meaning`: the measured quantity, for errors; `least`: thresholds must be above it.
 
-        `levels`: the most splits of an edge, 0 to 2. Raises ValueError if the two are out of order,
-        and for other levels.
+        `levels`: the most splits of an edge, 0 to 2. Raises ValueError if the thresholds are out of
+        order, and for other levels.
         """
         if levels not in (0, 1, 2):
             raise ValueError(f"levels must be 0, 1 or 2 splits of an edge, got {levels!r}")
@@ -153,26 +157,26 @@ class Thresholds:
                 f"switches a level off), got {reprlib.repr(once)} and {reprlib.repr(twice)}"
             )
         self.once = np.float32(max(float(once), least))
-        """Above this an edge is split; it may be set at any time."""
+        """The measure above which an edge is split once; it may be set at any time."""
         self.twice = np.float32(max(float(twice), least))
-        """Above this an edge is split twice; it may be set at any time."""
+        """The measure above which an edge is split twice; it may be set at any time."""
 
     @property
     def limits(self) -> tuple[np.float32, np.float32]:
-        """Both thresholds; infinite where `levels` has no such split."""
+        """Both thresholds; a threshold is infinite if `levels` excludes its split."""
         once = self.once if self.levels > 0 else INFINITE
         return once, self.twice if self.levels > 1 else INFINITE
 
     @property
     def width(self) -> np.float32:
-        """The distance between both thresholds: the unit of the metric."""
+        """The difference of the thresholds: the unit of the metric."""
         if np.isinf(self.twice):
             return self.once if 0.0 < self.once < np.inf else ONE
         return np.float32(max(float(self.twice - self.once), LEAST_WIDTH))
 
     @property
     def most(self) -> np.float32:
-        """The greatest metric: 1 where the second level is switched off."""
+        """The greatest metric: 1 if the second level is switched off."""
         return np.float32(1.0 if np.isinf(self.limits[1]) else np.inf)
 
     def scale(self, measures: Floats32, unit: np.float32 = ONE) -> None:
@@ -181,7 +185,7 @@ class Thresholds:
 
 
 class NormalDrop(Criterion):
-    """The paper's criterion: drop of the dot product of the vertex normals along each edge."""
+    """The paper's criterion: the drop of the dot product of the normals at both ends of an edge."""
 
     def __init__(
         self,
@@ -199,11 +203,11 @@ class NormalDrop(Criterion):
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Store the dot product of every edge of the undeformed mesh."""
-        self._edges = connectivity.edges.astype(np.uint32)  # writable arrays are taken faster
+        self._edges = connectivity.edges.astype(np.uint32)  # numba takes writable arrays faster
         self._rest_dots = np.empty(len(self._edges), dtype=np.float32)
         edge_dots(rest_normals, self._edges, self._rest_dots)
         self._dots = np.empty_like(self._rest_dots)
-        # All triangles around are slivers at rest: there is no direction to compare with, so no
+        # If all triangles around are slivers at rest, there is no direction to compare with: no
         # split.
         undefined = np.empty(len(rest_positions), dtype=np.bool_)
         find_undefined_normals(connectivity.faces, rest_positions, undefined)
@@ -245,7 +249,7 @@ def mark_drops(
     """Write 0, 1 or 2 into `splits`, shape (E,), by the drop of the dot product (as above).
 
     `edges`: end points, shape (E, 2); `once`, `twice`: the thresholds; `dots`: scratch, shape (E,).
-    The numbers to compare are consecutive in memory, so that many edges are compared at once.
+    The compared numbers are consecutive in memory, so that the compiler vectorises the comparison.
     """
     edge_dots(normals, edges, dots)
     for e in range(edges.shape[0]):
@@ -272,7 +276,7 @@ def scale_metric(metric: Floats32, once: np.float32, width: np.float32, most: np
 
 @njit
 def find_undefined_normals(faces: Unsigned32, positions: Floats64, undefined: Flags) -> None:
-    """Flag the vertices, shape (V,), whose normal is only rounding."""
+    """Flag the vertices, shape (V,), whose normal is only a rounding error."""
     sums = np.zeros((positions.shape[0], 4))
     for t in range(faces.shape[0]):
         a = faces[t, 0]

@@ -1,7 +1,8 @@
 """Ways to cut triangles with split edges: the paper's table, and others.
 
-Kähler, Haber, Seidel 2003, section 4.3. `Cutting` is the paper's. Others derive from it:
-coherence.py cuts in the order of the splits, beyond/blending.py lets points grow.
+Kähler, Haber, Seidel 2003, section 4.3. `Cutting` is the paper's. Other ways derive from it:
+coherence.py cuts in the order of the splits; in beyond/blending.py points leave their edges
+gradually.
 """
 
 from ...geometry.arrays import Unsigned8, Unsigned16
@@ -13,21 +14,21 @@ from .table import CONFIGURATIONS, Patterns
 
 
 class Cutting:
-    """The paper's way: every point has its full place, and the table has 27 patterns.
+    """The paper's way: every point has its final position, and the table has 27 patterns.
 
     A refiner calls `bind` once, then in every frame `mark`, `number` and `place`. One object serves
     one refiner.
     """
 
     patterns: Patterns = CONFIGURATIONS
-    """Table in which triangles are looked up."""
+    """The table in which triangles are looked up."""
     has_centres = False
     """Whether triangles may have a point in the middle."""
     has_memory = False
     """Whether a frame depends on those before it."""
 
     def bind(self, connectivity: Connectivity, frame: FrameBuffers) -> Unsigned16:
-        """Take the mesh; return the array with the row of each triangle in the table, shape (F,).
+        """Bind the mesh; return the array of each triangle's row in the table, shape (F,).
 
         The array may be longer.
         """
@@ -40,11 +41,11 @@ class Cutting:
     def number(
         self, frame: FrameBuffers, vertex_count: int, triangle_count: int
     ) -> tuple[int, int]:
-        """Follow the splits of a frame, after the points on edges have been numbered.
+        """Update the rows of triangles for a frame, after the points on edges have been numbered.
 
         Returns the numbers of all vertices and of all triangles.
         """
         return vertex_count, triangle_count
 
     def place(self, scheme: Scheme, frame: FrameBuffers) -> None:
-        """Write the points that lie on no edge, after all others have been written."""
+        """Write the points inside triangles, after all others have been written."""
