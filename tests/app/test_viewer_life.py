@@ -8,7 +8,7 @@ import pytest
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session.physics import SLEEP_DELAY
 
-from .driving import NEEDS_A_SCREEN, moved, press_keys, settle, until
+from .driving import NEEDS_A_SCREEN, SIZE, moved, on_screen, press_keys, settle, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("alive")]
 
@@ -56,3 +56,23 @@ def test_it_sleeps_when_nobody_is_there(viewer):
     assert until(viewer, lambda: viewer.schedule.is_idle)
     press_keys(viewer, "Shift_L")
     assert viewer.face.life.is_on
+
+
+def test_panels_lie_beside_the_picture_of_a_smaller_window(viewer):
+    """Nobody touches a window that gets smaller: its panels were drawn over the old picture."""
+    import glfw
+
+    handle = viewer.surface.handle
+    xdotool(viewer, "mousemove", *on_screen(viewer, 450, 200))  # it neither leaves nor enters
+    assert until(viewer, lambda: viewer.schedule.is_left_alone)
+    try:
+        glfw.set_window_size(handle, 600, 420)
+        assert until(viewer, lambda: viewer.surface.size == (600, 420))
+        assert until(viewer, lambda: viewer.schedule.is_left_alone)
+        left = int(viewer.face.view.area[0])
+        seen = viewer.surface.read()[:, :left].astype(int)
+        settle(viewer)
+        assert np.abs(seen - viewer.surface.read()[:, :left]).max() < 8
+    finally:
+        glfw.set_window_size(handle, *SIZE)
+        settle(viewer)

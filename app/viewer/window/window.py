@@ -153,6 +153,9 @@ class Viewer:
             self.face.life.note_input()
         for _ in self.gui.turns():
             self._draw_gui(is_visible=False)
+        if self.surface.frame_size != self._panels_size:  # no event says so
+            schedule.wake()
+            self._draw_gui(is_visible=False)  # so that the picture knows its place
         self._take_results()
         elapsed = schedule.begin_frame()
         mode = self.mode
