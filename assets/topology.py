@@ -112,14 +112,34 @@ def quarter(faces: Faces, vertex_count: int) -> Quartered:
     return Quartered(children.reshape(-1, 3).astype(np.int32), edges.astype(np.int32))
 
 
-def decimated(
-    vertices: Floats64, faces: Faces, count: int, attempt: int = 0
-) -> tuple[Floats64, Faces]:
+def decimated(vertices: Floats64, faces: Faces, count: int) -> tuple[Floats64, Faces]:
     """Other vertices and about `count` triangles; the edges of openings stay in place.
 
+    A manifold mesh stays one: where every attempt pinches it, more triangles are left.
+    """
+    most_attempts = 8  # at one number of triangles
+    while count < len(faces):
+        for attempt in range(most_attempts):
+            points, triangles = collapsed(vertices, faces, count, attempt)
+            if len(triangles) and is_manifold(triangles):
+                return points, triangles
+        count *= 2
+    return vertices, faces
+
+
+def is_manifold(faces: Faces) -> bool:
+    """Whether one face lies at each edge, or two that run along it in opposite directions."""
+    sides = sides_of(faces)
+    both = np.bincount(different_pairs(np.sort(sides, axis=1))[1])
+    return len(different_pairs(sides)[0]) == len(sides) and both.max(initial=0) <= 2
+
+
+def collapsed(vertices: Floats64, faces: Faces, count: int, attempt: int) -> tuple[Floats64, Faces]:
+    """Other vertices and about `count` triangles, more than two of which may meet at an edge.
+
     By quadric error metrics (Garland, Heckbert 1997, "Surface simplification using quadric error
-    metrics"), in a maintained library. It may pinch the surface, so that three triangles meet at an
-    edge; another `attempt` then has another result.
+    metrics"), in a maintained library. It may pinch the surface; another `attempt` then has another
+    result.
     """
     import fast_simplification  # only dense meshes need it
 

@@ -17,7 +17,7 @@ from risorius.geometry.sides import different_pairs, sides_of
 
 from ..errors import AssetError
 from ..model import Eye, Layer, Part
-from ..topology import border_vertices, decimated
+from ..topology import border_vertices, collapsed
 from .landmark_file import nearest_vertices
 from .mesh_validation import SkinPiece, check_manifold, pieces_of
 
@@ -80,7 +80,7 @@ def _fewer(skin: SkinPiece, is_head: Flags, attempt: int) -> tuple[Floats64, Int
     """
     body = skin.faces[~is_head]
     if not len(body):
-        return decimated(skin.vertices, skin.faces, SIMPLIFIED, attempt)
+        return collapsed(skin.vertices, skin.faces, SIMPLIFIED, attempt)
     least_body = SIMPLIFIED * min(0.2, len(body) / len(skin.faces))  # of a head with many triangles
     head = skin.faces[is_head]
     head_count = min(len(head), SIMPLIFIED - int(least_body))
@@ -97,13 +97,13 @@ def _part_with(
     part = numbers.reshape(-1, 3).astype(np.int32)
     if len(part) <= count:
         return vertices[used], part
-    return decimated(vertices[used], part, count, attempt)
+    return collapsed(vertices[used], part, count, attempt)
 
 
 def unpinched(vertices: Floats64, faces: Integers32) -> tuple[Floats64, Integers32]:
     """The same mesh, with separate vertices for sheets that touch along an edge.
 
-    `decimated` pinches folds of a dense mesh, so that more than two triangles meet at an edge. A
+    `collapsed` pinches folds of a dense mesh, so that more than two triangles meet at an edge. A
     vertex stays one if edges with two triangles connect all triangles around it. The largest piece
     is kept; the others were attached only by such an edge.
     """
@@ -133,7 +133,7 @@ def _sewn(
     """Two parts of a mesh as one, joined where their edges meet."""
     edge = border_vertices(faces)
     more_edge = border_vertices(more_faces)
-    joined_share = 2e-4  # of the size of both parts: `decimated` moves an edge by less
+    joined_share = 2e-4  # of the size of both parts: `collapsed` moves an edge by less
     joined_distance = joined_share * float(np.ptp(np.vstack([vertices, more]), axis=0).max())
     distance, nearest = scipy.spatial.cKDTree(vertices[edge]).query(more[more_edge])
     is_joined = distance < joined_distance
