@@ -19,7 +19,7 @@ SHIFT = (3.0, -2.0, 1.6)
 
 
 @dataclass(frozen=True)
-class Stranger:
+class UserHead:
     """A user's head, in metres, with z up."""
 
     mesh: Mesh
@@ -31,15 +31,15 @@ class Stranger:
         landmarks = changes.get("landmarks", self.landmarks)
         lines = [f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in vertices]
         lines += [f"f {a} {b} {c}" for a, b, c in changes.get("faces", self.mesh.faces) + 1]
-        mesh = folder / "stranger.obj"
-        marks = folder / "stranger.json"
+        mesh = folder / "user_head.obj"
+        marks = folder / "user_head.json"
         mesh.write_text("\n".join(lines))
         found = vertices[landmarks].tolist() if points else np.asarray(landmarks).tolist()
         marks.write_text(json.dumps({"landmarks": found}))
         return mesh, marks
 
 
-def write_topology(folder: Path, other: Stranger, **changes: Any) -> Path:
+def write_topology(folder: Path, other: UserHead, **changes: Any) -> Path:
     """Write a topology as a user's folder, described by counts alone unless `changes` adds more."""
     file = folder / "risorius" / "topologies" / "mine.json"
     file.parent.mkdir(parents=True, exist_ok=True)
@@ -67,12 +67,12 @@ def shape(x: Array) -> Array:
     )
 
 
-def stranger(level: int = 1) -> Stranger:
+def user_head(level: int = 1) -> UserHead:
     """The built-in head with 4^level times as many triangles, as a user's head."""
     head = assets.load("head")
     fine = head.finer(level)
     vertices = shape(fine.vertices) @ TURN.T * METRES + SHIFT
-    return Stranger(Mesh(vertices, fine.faces), head.landmarks)
+    return UserHead(Mesh(vertices, fine.faces), head.landmarks)
 
 
 def closed(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
@@ -123,7 +123,7 @@ def with_card(mesh: Mesh) -> Mesh:
     return Mesh(np.vstack([mesh.vertices, card]), faces)
 
 
-def sealed() -> Stranger:
+def sealed() -> UserHead:
     """The built-in head with lips joined along their contact line, without a mouth behind them."""
     head = assets.load("head")
     vertices = head.vertices.copy()
@@ -138,10 +138,10 @@ def sealed() -> Stranger:
     faces = head.faces[~np.isin(head.faces, np.concatenate(inner)).any(axis=1)]
     used, number = np.unique(same[faces], return_inverse=True)
     found = np.searchsorted(used, same[head.landmarks]).astype(np.int32)
-    return Stranger(Mesh(vertices[used], number.reshape(-1, 3).astype(np.int32)), found)
+    return UserHead(Mesh(vertices[used], number.reshape(-1, 3).astype(np.int32)), found)
 
 
-def masked() -> Stranger:
+def masked() -> UserHead:
     """The built-in head with a slightly open mouth; triangles cover the mouth and the eyes."""
     head = assets.load("head")
     opening = np.array([0.0, -8.0, 0.0])  # [mm]
@@ -151,4 +151,4 @@ def masked() -> Stranger:
     mesh = Mesh(vertices, head.faces[~np.isin(head.faces, np.concatenate(inner)).any(axis=1)])
     for around in (slice(60, 68), slice(36, 42), slice(42, 48)):
         mesh = filled(mesh, head.landmarks[around])
-    return Stranger(mesh, head.landmarks)
+    return UserHead(mesh, head.landmarks)

@@ -38,7 +38,7 @@ def test_fresh_import(package, banned):
     assert not modules & (banned | neighbours)
 
 
-def test_scenes_answer_for_themselves():
+def test_no_other_code_tests_the_kind_of_a_scene():
     """Outside app/scenes no code tests the class of a scene, or derives a class of scenes."""
     asked = []
     made = []

@@ -52,7 +52,7 @@ def test_links_lead_somewhere(page):
             assert heading in [anchor(title) for title in titles], target
 
 
-def test_the_paper_is_where_the_page_says():
+def test_places_in_the_paper_page_exist():
     """Every file and name that docs/the_paper_in_code.md lists exists."""
     page = (ROOT / "docs" / "the_paper_in_code.md").read_text("utf-8")
     places = re.findall(r"\| `([\w/.]+)(?:: (\w+))?`", page)

@@ -89,7 +89,7 @@ def test_data_go_along():
     assert (refined.point_data.active_normals[:, 2] > 0.0).all()
 
 
-def test_the_paper_asks_what_has_bent():
+def test_the_papers_rule_compares_with_a_form_at_rest():
     """The paper's rule refines a mesh where it differs from a given form at rest."""
     mesh = plane()
     frame = mesh.copy()

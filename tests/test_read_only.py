@@ -12,7 +12,7 @@ from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.assets.fitting import fit
 from risorius.assets.identities import make_person, sample_identity
 from risorius.refine.kahler.table import CONFIGURATIONS
-from tests.heads import stranger
+from tests.heads import user_head
 
 OF_A_FRAME = {"positions", "points", "normals", "edge_splits"}
 """Arrays of a refiner that subclasses may write: each frame writes all of them again."""
@@ -54,7 +54,7 @@ def is_kept(thing, name):
 
 def own_head():
     """A head of a user."""
-    brought = stranger()
+    brought = user_head()
     return fit(brought.mesh, brought.landmarks)
 
 
@@ -68,7 +68,7 @@ THINGS = {
     "finer": lambda head: head.finer(1),
     "plane": lambda head: assets.load("plane"),
     "own head": lambda head: own_head(),
-    "own mesh": lambda head: stranger().mesh,
+    "own mesh": lambda head: user_head().mesh,
     "person": lambda head: person(),
     "simulation": sim.create,
     "moved simulation": lambda head: moved(head),

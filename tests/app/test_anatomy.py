@@ -17,7 +17,7 @@ from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import FaceScene
 from risorius.assets.coarse import coarse_head
 from risorius.assets.fitting import fit_head
-from tests.heads import stranger
+from tests.heads import user_head
 
 from .command_line import risorius
 
@@ -124,12 +124,12 @@ def test_muscles_swell_and_redden_as_they_contract():
 
 
 @pytest.mark.slow
-def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path):
+def test_a_users_head_has_muscles_and_a_skull(tmp_path):
     """A user's head has muscles and a skull inside its skin.
 
     A long head's skull is long, and the mandible moves down with the jaw.
     """
-    head = fit_head(*stranger().write(tmp_path))
+    head = fit_head(*user_head().write(tmp_path))
     longer = head.vertices * np.where(head.vertices[:, 2:] < 0.0, [1.0, 1.0, 1.25], 1.0)
     scene = FaceScene(replace(head, vertices=longer))
     anatomy = Anatomy(scene)

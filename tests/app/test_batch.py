@@ -148,7 +148,7 @@ def test_jobs_and_scheduler_exclude_each_other():
 
 
 @pytest.mark.slow
-def test_what_fails_fails_alone():
+def test_one_line_fails_alone():
     """One line fails alone, with exit code 1 and its reason in one line and in the summary.
 
     `--resume` tries it again.
@@ -173,7 +173,7 @@ def test_a_scheduler_that_is_not_there(address):
 
 
 @pytest.mark.slow
-def test_a_cluster_does_what_is_done_here(cluster):
+def test_a_cluster_gives_the_results_of_this_machine(cluster):
     """Files made by a cluster are the same; a failing line fails alone, with the same report."""
     Path("sadness.toml").write_text("duration = [")
     ended = batch("--scheduler", cluster.scheduler_address)

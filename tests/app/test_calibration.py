@@ -40,7 +40,7 @@ def test_a_mirror_swaps_sides_and_turns_the_head():
 
 
 @given(frames)
-def test_what_is_neutral_now_is_rest(frame):
+def test_the_neutral_face_becomes_rest(frame):
     calibrated = Calibration(neutral_now(frame)).apply(frame)
     assert not any(calibrated.values())
 
@@ -52,7 +52,7 @@ def test_a_face_that_never_moves_is_neutral_by_its_first_second(frame, method):
     assert not any(np.any(values) for values in calibrated.values())
 
 
-def test_the_usual_neutral_face_spares_what_rests_at_nothing():
+def test_channels_that_rest_at_zero_are_not_calibrated():
     """A held blink, gaze or open jaw is not subtracted as a part of the neutral face."""
     held = take_of(browDownLeft=0.3, jawOpen=0.3, mouthClose=0.2, eyeBlinkLeft=0.4, eyeLookInLeft=1)
     neutral = neutral_of(held)

@@ -40,7 +40,7 @@ def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene):
 @pytest.mark.parametrize(
     "text", ["behind", "1", "1,2,3,4", "nan,0", "0,inf", "0,0,0", "0,0,-1", ""]
 )
-def test_what_no_camera_is(scene, text):
+def test_wrong_cameras_are_refused(scene, text):
     """Unknown names and numbers are refused with the allowed ones; no word is the usual view."""
     if not text:
         assert camera_for(scene, text).yaw == camera_for(scene, DEFAULT_VIEW).yaw

@@ -117,7 +117,7 @@ def test_a_script_begins_in_its_first_pose(tmp_path):
         assert count > (2300 if scene == "face" else 1000)
 
 
-def test_controls_lists_what_scripts_may_name():
+def test_controls_lists_all_names_for_scripts():
     """The list has muscles and names of every layer, with limits and effects."""
     output = succeeded("controls")
     for name in ("joy", "zygomaticus_major_left", "jaw_open", "viseme_aa", "AU12_left"):

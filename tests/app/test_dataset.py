@@ -142,7 +142,7 @@ def test_a_set_can_be_made_longer(made, tmp_path):
     assert "has sample 3 already; give --count 4 or more" in message
 
 
-def test_what_is_no_such_set_is_left_alone(made, tmp_path):
+def test_other_folders_are_left_alone(made, tmp_path):
     """A folder with other content is reported in one line, and every file stays."""
     before = content(made)
     other = tmp_path / "other"
@@ -226,7 +226,7 @@ def test_the_index_has_a_row_for_each_sample(made, samples):
         assert float(row["head_yaw"]) == sample["head"]["yaw"]
 
 
-def test_the_card_lists_what_is_in_the_set(made, samples):
+def test_the_card_lists_the_contents_of_the_set(made, samples):
     card = (made / "README.md").read_text("utf-8")
     (command,) = re.findall(r"^    risorius (.* -o FOLDER)$", card, re.MULTILINE)
     assert command.startswith(f"dataset --count {COUNT} --seed {SEED}")
@@ -291,14 +291,14 @@ def apertures_of(face, pose):
 
 
 @pytest.mark.parametrize("shut", ["AU17 AU15 AU4", "AU24", "AU28", "AU12", "AU43 AU6", "AU43 AU51"])
-def test_what_is_shut_has_no_aperture(face, shut):
+def test_shut_lips_and_lids_have_no_aperture(face, shut):
     """Rolled lips and squeezed lids have aperture 0, although landmarks are 1 to 4 mm apart."""
     found = apertures_of(face, dict.fromkeys(shut.split(), 1.0))
     assert found.pop("mouth") < 0.1
     assert all((value < 0.1) == ("AU43" in shut) for value in found.values())
 
 
-def test_apertures_grow_with_what_opens(face):
+def test_apertures_grow_with_the_opening(face):
     """Apertures grow in proportion to the opening, for each eye and any turn of the head."""
     parted = [apertures_of(face, {"AU25": value})["mouth"] for value in (0.25, 0.5, 0.75, 1.0)]
     assert parted[0] < 0.3

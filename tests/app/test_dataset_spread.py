@@ -80,7 +80,7 @@ def test_shards_hold_the_files_of_the_set(loose, packed):
     assert "000003.seg.png" in found
 
 
-def test_the_index_says_where_samples_are(loose, packed):
+def test_the_index_has_the_place_of_each_sample(loose, packed):
     """Offset and length in the index cut out a part that is a tar file with this sample alone."""
     with (packed / "index.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -200,7 +200,7 @@ def test_another_release_is_refused(tmp_path):
         make_samples(Share(request, (1,)), print)
 
 
-def test_persons_of_a_seed_are_nobody_elses():
+def test_seeds_have_different_persons():
     """The persons of a seed have the numbers, shape and colours of other commands' persons."""
     table = load_table(None)
     persons = [{draw(table, seed, k).person for k in range(300)} for seed in (0, 1, 7)]

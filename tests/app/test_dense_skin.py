@@ -16,13 +16,13 @@ from risorius.assets.meshes import Mesh
 from risorius.assets.sheets import make_grid
 from risorius.geometry.normals import vertex_normals
 from risorius.refine import Embedding
-from tests.heads import stranger
+from tests.heads import user_head
 
 
 @pytest.fixture(scope="module")
 def dense() -> FaceScene:
     """A head above the limit, which is lowered here."""
-    other = stranger()
+    other = user_head()
     colours = np.tile(np.array([180, 140, 120], np.uint8), (len(other.mesh.vertices), 1))
     mesh = Mesh(other.mesh.vertices, other.mesh.faces, colours=colours)
     with pytest.MonkeyPatch.context() as patch:
@@ -36,7 +36,7 @@ def test_its_own_triangles_are_drawn(dense):
 
     Triangles of a fading neck come last.
     """
-    other = stranger()
+    other = user_head()
     drawn, of_file = (each[np.lexsort(each.T)] for each in (dense.faces, other.mesh.faces))
     assert np.array_equal(drawn, of_file)
     rest = dense.head.to_millimetres.points(other.mesh.vertices)
@@ -68,7 +68,7 @@ def test_it_follows_and_comes_back(dense):
     assert_allclose(dense.positions, dense.rest_positions, atol=1e-3)
 
 
-def test_it_follows_when_somebody_looks(dense, monkeypatch):
+def test_it_follows_when_it_is_read(dense, monkeypatch):
     """After several steps, the file's vertices move once, when they are read.
 
     A second reading moves nothing.

@@ -13,7 +13,7 @@ from .command_line import risorius
 
 
 @pytest.fixture
-def ill(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> object:
+def machine_without(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> object:
     """A function that makes a machine without the given parts."""
 
     def make(*missing):
@@ -41,23 +41,23 @@ def ask(*options):
 PARTS = ("offscreen", "window", "films")
 
 
-def test_every_command_is_said_to_work_or_not(ill):
+def test_every_command_is_said_to_work_or_not(machine_without):
     """Without a screen, all commands are reported to work except those of the window."""
-    ill("window")
+    machine_without("window")
     said = next(line for line in ask().output.splitlines() if line.startswith("commands: "))
     able, _, unable = said.removeprefix("commands: ").partition(" work; ")
     assert unable == "view, replay do not"
     assert set(able.split(", ")) == set(command().commands) - {"view", "replay", "doctor"}
-    ill()
+    machine_without()
     assert "commands: all work" in ask().output
 
 
 @pytest.mark.parametrize(
     "missing", [each for count in range(4) for each in itertools.combinations(PARTS, count)]
 )
-def test_the_verdict_is_what_works(ill, missing):
+def test_the_verdict_agrees_with_the_parts(machine_without, missing):
     """For each missing part, line, summary and exit code agree."""
-    ill(*missing)
+    machine_without(*missing)
     result = ask()
     lines = dict(line.split(": ", 1) for line in result.output.splitlines() if ": " in line)
     for part in PARTS:
@@ -93,9 +93,9 @@ def test_refinement_on_the_card(able, is_software, message, monkeypatch):
 
 
 @pytest.mark.parametrize("missing", [(), ("offscreen",), ("window", "films")])
-def test_offscreen_alone(ill, missing):
+def test_offscreen_alone(machine_without, missing):
     """A part that was not asked for is reported neither as missing nor as present."""
-    ill(*missing)
+    machine_without(*missing)
     result = ask("--offscreen")
     assert result.exit_code == (2 if "offscreen" in missing else 0)
     assert "window" not in result.output
@@ -104,9 +104,9 @@ def test_offscreen_alone(ill, missing):
 
 
 @pytest.mark.parametrize("program", ["exec sleep 100", "exec >&-; exit 3", None])
-def test_an_ffmpeg_that_does_not_answer(ill, tmp_path, monkeypatch, program):
+def test_an_ffmpeg_that_does_not_answer(machine_without, tmp_path, monkeypatch, program):
     """An ffmpeg that hangs, fails or does not exist counts as missing, without a long wait."""
-    ill()
+    machine_without()
     monkeypatch.setattr(doctor, "PATIENCE", 0.3)
     fake = tmp_path / "ffmpeg"
     fake.unlink() if program is None else fake.write_text(f"#!/bin/sh\n{program}\n")

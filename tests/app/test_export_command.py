@@ -85,7 +85,7 @@ def test_only_a_dense_head_has_a_simplified_mesh():
     assert not Path("x.npz").exists()
 
 
-def test_files_of_somebody_else_stay(folder):
+def test_other_files_stay(folder):
     """Files beside the output, a user's head, and files in a folder stay."""
     Path("x.obj").write_text("mine")
     line = refusal(export("plane.toml", "-o", "x.pc2"))

@@ -278,7 +278,7 @@ def test_blender_sees_the_same(clip, glb, tmp_path):
 
 
 @pytest.mark.slow
-def test_what_targets_cannot_follow_is_reported(clip, tmp_path, monkeypatch):
+def test_the_error_of_too_few_targets_is_reported(clip, tmp_path, monkeypatch):
     """If a clip needs more targets than allowed, the remaining error is reported."""
     monkeypatch.setattr(gltf, "decompose", functools.partial(decompose, most=4))
     remark = written(clip, tmp_path / "rough.glb")
@@ -323,7 +323,7 @@ def test_named_targets_alone_follow_the_motion(clip, tmp_path):
     assert 0.0 <= weights.min() and weights.max() <= 1.0
 
 
-def test_weights_say_what_their_names_say(tmp_path):
+def test_weights_of_shapes_come_back_by_name(tmp_path):
     """A take of ARKit shapes is written under the same names, with the face's delay."""
     script = parse_script(TAKE, source="test")
     path = tmp_path / "take.glb"

@@ -81,7 +81,7 @@ def test_help_needs_no_extra(tmp_path):
     assert [line for line in lines if not line.endswith(" 0")] == ["0"]
 
 
-def test_the_doctor_says_what_is_missing(tmp_path):
+def test_the_doctor_lists_missing_extras(tmp_path):
     """The doctor reports what each missing extra installs.
 
     Without extras it reports pictures, but neither films nor a window.
@@ -97,7 +97,7 @@ def test_the_doctor_says_what_is_missing(tmp_path):
     assert lines["Missing"].startswith("window, films;")
 
 
-def test_what_is_missing_is_named(tmp_path):
+def test_a_missing_extra_is_named(tmp_path):
     """One line names the missing extra and the command that installs it; no file remains."""
     missing = {
         "view": "window",
@@ -118,7 +118,7 @@ def test_what_is_missing_is_named(tmp_path):
     assert {path.name for path in tmp_path.iterdir()} - {"list_logs"} == {"take.csv", "list.txt"}
 
 
-def test_extras_bring_what_they_are_named_for():
+def test_extras_install_their_libraries():
     """Extras install what they are named for; `all` has every extra of a program's user."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extras = project["optional-dependencies"]

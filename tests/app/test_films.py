@@ -85,7 +85,7 @@ def test_frames_are_in_order_and_complete(tmp_path, suffix):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_gif_is_not_asked_for_frames_that_players_slow_down(tmp_path):
+def test_a_gif_refuses_frames_that_players_slow_down(tmp_path):
     """Frames of a GIF last at least two hundredths of a second; less is refused in one line.
 
     Players slow down shorter frames.
@@ -148,7 +148,7 @@ def several(count, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_range_is_a_part_of_the_film_whoever_draws(tmp_path, monkeypatch):
+def test_a_range_is_a_part_of_the_film_for_any_number_of_processes(tmp_path, monkeypatch):
     """Frames of a range equal those of the whole film, from one process and from several."""
     text = "duration = 0.5\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.5\njoy = 1.0\n"
     script = parse_script(text, source="smile.toml")

@@ -17,7 +17,7 @@ from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
 from risorius.assets.fitting import fit_head
 from risorius.assets.identities import person_called
-from tests.heads import stranger
+from tests.heads import user_head
 
 SIZE = (900, 900)
 MOST = 1.5  # [mm]
@@ -144,7 +144,7 @@ def test_an_outline_ends_at_one_height_of_the_head(studio):
 
 def test_a_head_of_ones_own_keeps_its_marks(tmp_path):
     """On a user's head, landmarks stay where they were placed; those of the jaw slide."""
-    scene = FaceScene(fit_head(*stranger().write(tmp_path)))
+    scene = FaceScene(fit_head(*user_head().write(tmp_path)))
     with Capture(scene, CaptureOptions(size=SIZE)) as opened:
         portrait = Portrait(opened)
     marked = scene.face.marked

@@ -116,7 +116,7 @@ def _off(scene, viewer):
     return float(max(off))
 
 
-def test_who_stands_aside_is_not_followed(scene):
+def test_a_camera_at_the_side_is_not_followed(scene):
     """With the camera in profile or behind, the face looks straight ahead.
 
     Its motion never jumps on the way.
@@ -141,7 +141,7 @@ def _look(scene, viewer):
         scene.step(1.0 / 60.0)
 
 
-def test_what_others_move_is_left_to_them(scene):
+def test_controls_moved_by_others_are_left_alone(scene):
     """Controls moved by a script are left alone, with all related controls.
 
     One lid stands for both lids, one direction of gaze for both eyes.
@@ -177,7 +177,7 @@ def test_a_speaking_head_nods(scene):
 
 
 @pytest.mark.slow
-def test_a_recording_without_a_head_lives(tmp_path):
+def test_a_recording_without_head_motion_has_life(tmp_path):
     """A film of a recording without head motion blinks and nods by default.
 
     With head motion, or with --not-alive, it does not.

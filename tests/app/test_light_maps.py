@@ -216,7 +216,7 @@ def _painted(background, lens=40.0):
         return surface.read()[..., 0].astype(int)
 
 
-def test_what_lies_behind_is_the_middle_of_the_map(map_ahead):
+def test_the_background_is_the_middle_of_the_map(map_ahead):
     """The middle of the map is behind the head, out of focus; it follows the map's rotation."""
     rows = [_painted(map_ahead.background(turn))[30] for turn in (0.0, 12.0)]
     assert abs(int(rows[0].argmin()) - 40) <= 3

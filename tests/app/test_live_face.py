@@ -137,7 +137,7 @@ def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire):
     assert wire.face.presence == 1.0
 
 
-def test_a_sender_that_sees_no_face_lets_go_of_ours(wire):
+def test_a_sender_without_a_face_releases_the_controls(wire):
     """Packets without values are no lost signal, but the face returns to rest."""
     wire.take(live_link({"JawOpen": 0.5}))
     wire.take(live_link(None), seconds=0.1)
@@ -185,7 +185,7 @@ def test_gains_and_mirror_may_be_given_from_the_start():
 
 
 @pytest.mark.parametrize("wire", ["vmc"], indirect=True)
-def test_what_is_not_named_keeps_its_value(wire):
+def test_missing_values_stay(wire):
     """Values missing in a packet stay as they were, because a sender may send changes only."""
     wire.take(vmc({"jawOpen": 0.5, "cheekPuff": 0.3}))
     wire.take(vmc({"jawOpen": 0.2}))

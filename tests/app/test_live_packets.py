@@ -180,7 +180,7 @@ def test_messages_that_we_do_not_read_are_passed_over(caplog):
 # All protocols
 
 
-def test_what_is_sent_is_what_is_read(generator):
+def test_a_sent_packet_is_read_back(generator):
     """A packet of the project's sender has every shape and angle when it is read."""
     shapes = {name: float(generator.random()) for name in ARKIT}
     angles = {name: float(generator.uniform(-40.0, 40.0)) for name in (*HEAD_ANGLES, *EYE_ANGLES)}

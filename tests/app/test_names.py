@@ -260,7 +260,7 @@ def test_frames_and_samples_follow_no_link(secret, tmp_path):
     check_untouched(secret)
 
 
-def test_a_link_is_no_way_around_what_is_read(tmp_path):
+def test_an_output_never_replaces_an_input(tmp_path):
     """An output that would replace an input is refused, whatever link names either."""
     real, link, other = (tmp_path / name for name in ("real.toml", "link.toml", "other.toml"))
     real.write_text("mine")

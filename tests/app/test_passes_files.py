@@ -76,7 +76,7 @@ def test_every_frame_has_its_passes_beside_it(tmp_path):
     assert "gaze" in labels
 
 
-def test_only_what_is_asked_for_is_written(tmp_path):
+def test_only_requested_passes_are_written(tmp_path):
     """A picture with classes alone has no OpenEXR file, and no landmarks in its numbers."""
     target = tmp_path / "deep" / "joy.png"
     succeeded(*CAPTURE, "--set", "joy", "--passes", "segmentation", "-o", target)

@@ -99,7 +99,7 @@ def test_eyes_look_where_they_were_set(face):
     assert abs(gaze(face.face, "right")[0]) < 0.01
 
 
-def test_labels_hold_what_was_set_and_what_it_moves(face):
+def test_labels_have_controls_and_activations(face):
     """Labels have the controls that were set, and activations other than 0.
 
     All are plain numbers that JSON can store.

@@ -39,7 +39,7 @@ def written(folder, seconds=1.0):
 
 
 @given(st.floats(0.0, 0.3), st.floats(0.0, 2.5))
-def test_the_lead_shifts_what_is_played(lead, moment):
+def test_the_lead_shifts_the_script(lead, moment):
     take = take_of(jawOpen=wave(), head_yaw=20.0 * wave())
     script, _ = script_of(take, Playback(neutral="none", lead=lead), limits_of("face"))
     for name, size in (("jawOpen", 1.0), ("head_yaw", 20.0 / 45.0)):
@@ -48,7 +48,7 @@ def test_the_lead_shifts_what_is_played(lead, moment):
     assert script.duration == approx(3.0), "as long as its sound"
 
 
-def test_the_usual_lead_is_what_the_skin_is_late(face):
+def test_the_default_lead_equals_the_lag_of_the_skin(face):
     """With the default lead, a jaw that opens in waves is open on time, within a frame.
 
     The skin lags behind the controls by this lead.
@@ -83,7 +83,7 @@ def test_one_frame_is_a_pose():
     assert report.recognised == "MediaPipe, one frame"
 
 
-def test_the_report_says_what_moves_the_face_and_what_does_not():
+def test_the_report_lists_used_and_unused_channels():
     take = take_of(
         jawOpen=wave(), browDownLeft=0.3 + 0.1 * wave(), cheekPuff=0.2, AU26=wave(),
         head_yaw=90.0 * wave(), head_roll=0.0
@@ -124,7 +124,7 @@ def test_a_recording_becomes_a_script_that_plays_the_same(tmp_path):
         ("take.toml", b"hello, this is\na text\n", "not valid TOML"),
     ],
 )
-def test_what_a_file_seems_to_be_is_what_the_error_speaks_of(tmp_path, name, content, words):
+def test_the_error_names_the_apparent_kind_of_file(tmp_path, name, content, words):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(UserError, match=words):
         read_performance(tmp_path / name)

@@ -204,7 +204,7 @@ def test_all_kinds_are_drawn(tmp_path, options, count):
         (["--refiner", "three"], "must be a class or a function, got 3"),
     ],
 )
-def test_what_is_of_no_use_is_reported_in_one_line(tmp_path, options, text):
+def test_an_unusable_plug_in_is_reported_in_one_line(tmp_path, options, text):
     """A wrong name is reported with the correct ones, a broken package with its reason."""
     assert text in refusal(capture(tmp_path, *options))
 
@@ -254,7 +254,7 @@ def test_an_error_in_one_is_reported_with_its_name(tmp_path, name):
     assert not [item for item in tmp_path.iterdir() if item.name.startswith("face")]
 
 
-def test_the_traceback_is_there_for_whoever_asks(tmp_path, monkeypatch):
+def test_the_traceback_is_printed_on_request(tmp_path, monkeypatch):
     """RISORIUS_DEBUG=1 prints the traceback before the line, and the exit code stays."""
     monkeypatch.setenv("RISORIUS_DEBUG", "1")
     for name in ("criterion=unborn", "lost", "gone"):
@@ -289,7 +289,7 @@ def test_one_in_other_processes(tmp_path, monkeypatch):
 
 @pytest.mark.window
 @pytest.mark.skipif("DISPLAY" not in os.environ, reason="needs a display; `make test` brings one")
-def test_a_window_that_is_opened_with_a_broken_one_says_so(tmp_path):
+def test_a_window_reports_a_broken_plug_in(tmp_path):
     """A window opened with a broken plug-in closes with its line.
 
     A plug-in that fails after the face moves does not end an open window.

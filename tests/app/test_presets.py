@@ -57,7 +57,7 @@ def test_every_look_is_drawn_by_every_refiner(surface, scenes, name, look, refin
     assert is_refined == (refiner != "none")
 
 
-def test_the_papers_look_is_the_papers_rule(scenes):
+def test_the_look_paper_is_the_papers_rule(scenes):
     """On the face, the look paper makes the triangles of `kahler` without options.
 
     The look smooth makes more.

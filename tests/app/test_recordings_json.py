@@ -95,7 +95,7 @@ def test_a_film(kind, tmp_path):
     assert take.times == approx(np.arange(4) / 30.0)
 
 
-def test_what_stands_in_columns_beside_shapes(tmp_path):
+def test_columns_beside_shapes_are_read(tmp_path):
     """Columns beside shapes turn the head and mark rows without a face.
 
     Unknown columns are listed.

@@ -66,7 +66,7 @@ def test_the_sound_of_rhubarb(name, tmp_path):
     assert has_note(read_take(path).notes, "The sound is 'voice.wav'")
 
 
-def test_a_sound_that_is_gone(tmp_path):
+def test_a_missing_sound(tmp_path):
     """A missing sound is named, and the mouth moves without it."""
     path = rhubarb(tmp_path / "take.json", "gone.wav")
     assert script_of(path).sound is None

@@ -77,7 +77,7 @@ def test_a_torn_last_row(tmp_path):
         (b"Dear diary,\ntoday I smiled.\n", "known are"),
     ],
 )
-def test_what_is_no_recording(content, words, tmp_path):
+def test_other_files_are_refused(content, words, tmp_path):
     """Another file is refused in one line with its kind, and the accepted kinds."""
     path = tmp_path / "take.csv"
     path.write_bytes(content)

@@ -213,7 +213,7 @@ def test_layouts_of_json(layout, tmp_path):
     assert not take.unknown
 
 
-def test_what_json_says_besides(tmp_path):
+def test_unknown_keys_of_json_are_reported(tmp_path):
     """Unknown keys, and a shape under two names, are reported."""
     frames = [{**frame, "emotion": "joy"} for frame in FRAMES]
     frames[3]["blendshapes"] = {"jawOpen": 0.25, "JawOpen": 0.75}

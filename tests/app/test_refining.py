@@ -37,7 +37,7 @@ def test_only_switches_numbers_and_words_are_options():
     assert (levels.name, levels.default, levels.least, levels.most) == ("levels", 1, 1, 4)
 
 
-def test_what_may_be_left_open_is_a_choice():
+def test_optional_values_are_choices():
     """Texts stand for values; another value, or a number for a switch, is refused."""
     options = options_of("kahler", "normal")
     choices = {name: dict(each.choices) for name, each in options.items() if each.choices}

@@ -27,7 +27,7 @@ from risorius.assets.fitting.topologies import recognised
 from risorius.assets.meshes import read_mesh
 from risorius.geometry.normals import vertex_normals
 
-from ..heads import TURN, stranger
+from ..heads import TURN, user_head
 from ..meshes import ball
 from .command_line import refusal, risorius, shape_keys_in_blender, succeeded
 from .glb_player import Player, document
@@ -179,7 +179,7 @@ def test_a_file_keeps_its_vertices_in_their_order(whole):
     assert content == (whole.mesh.parent / PICTURE).read_bytes()
 
 
-def test_each_piece_of_a_file_moves_as_what_it_is(whole, face):
+def test_each_piece_of_a_file_moves_by_its_role(whole, face):
     """Teeth move with the jaw, lashes with the lids, the tongue comes out.
 
     The rest stands still.
@@ -222,7 +222,7 @@ def test_the_file_is_read_by_trimesh(whole):
 
 
 @pytest.mark.slow
-def test_an_option_corrects_what_a_piece_is(whole, tmp_path):
+def test_an_option_corrects_the_role_of_a_piece(whole, tmp_path):
     """With an option that corrects the role of pieces, eyes turn by the shapes."""
     landmarks = whole.mesh.with_suffix(".json")
     path = tmp_path / "other.glb"
@@ -255,7 +255,7 @@ def test_correctives_make_sums_come_true(tmp_path, face):
         assert np.abs(plain - together).max() > 3.0
 
 
-def test_what_is_printed_of_sums_has_the_correctives(face):
+def test_printed_errors_include_the_correctives(face):
     """In the printed table of pairs, a pair with a corrective has no error."""
     pair = ("jawOpen", "mouthPucker")
     rest = rest_in(face, {})
@@ -301,7 +301,7 @@ def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
     """A mesh with too many triangles to simulate has shapes on all its own vertices."""
     monkeypatch.setattr(simplifying, "MOST_SIMULATED", 5000)
     monkeypatch.setattr(simplifying, "SIMPLIFIED", 4000)
-    fine = stranger(1)
+    fine = user_head(1)
     assert len(fine.mesh.faces) > 5000
     mesh, landmarks = fine.write(tmp_path)
     path = tmp_path / "fine.glb"
@@ -376,7 +376,7 @@ def test_shapes_of_a_glb_are_those_of_the_simulation(copied, face):
     assert player.shapes("teeth_lower")["jawOpen"][:, 1].max() < -0.005
 
 
-def test_motion_of_a_glb_goes_on(copied):
+def test_motion_of_a_glb_is_kept(copied):
     """The file's animation is unchanged, with weights of 0 for the added shapes."""
     own, path = copied
     before = Player(own)
@@ -413,7 +413,7 @@ def test_a_folder_of_objs_keeps_the_lines_of_the_file(whole, tmp_path):
 def test_wrong_options_are_refused(whole, tmp_path):
     """A wrong option is refused in one line with the allowed values."""
     landmarks = whole.mesh.with_suffix(".json")
-    unknown, _ = stranger().write(whole.mesh.parent)
+    unknown, _ = user_head().write(whole.mesh.parent)
     head = (whole.mesh, "--landmarks", landmarks)
     for words, expected in (
         (("-o", tmp_path / "a.fbx"), ".glb"),
@@ -444,7 +444,7 @@ def test_a_file_that_changed_since_it_was_read_is_refused(tmp_path, change):
 
     The window makes avatars long after reading.
     """
-    brought = stranger()
+    brought = user_head()
     mesh, marks = brought.write(tmp_path)
     head = fit_head(mesh, marks)
     lines = mesh.read_text().splitlines()

@@ -13,7 +13,7 @@ from risorius.assets.fitting.lips import lip_cut
 from risorius.assets.meshes import read_mesh
 
 from ..assets.gltf_files import GltfMaker
-from ..heads import METRES, Stranger, closed, masked, sealed
+from ..heads import METRES, UserHead, closed, masked, sealed
 from .command_line import succeeded
 from .glb_player import Player
 
@@ -22,13 +22,13 @@ LOWER = 66
 
 
 @pytest.fixture(scope="module")
-def shut() -> Stranger:
+def shut() -> UserHead:
     """The built-in head with sealed lips [mm]."""
     return sealed()
 
 
 @pytest.mark.slow
-def test_an_avatar_keeps_what_fills_its_mouth_and_eyes(tmp_path):
+def test_an_avatar_keeps_triangles_across_mouth_and_eyes(tmp_path):
     """An avatar keeps the triangles that fill mouth and eyes, in the file's order.
 
     The filling moves with the lips.
@@ -119,7 +119,7 @@ def test_skin_across_an_open_mouth_is_not_cut(shut):
 def test_a_fault_of_a_cut_head_names_the_cut(shut, tmp_path):
     """Skin over an eye, found after the lips were cut, is reported together with the cut."""
     landmarks = shut.landmarks
-    covered = Stranger(closed(shut.mesh, landmarks[42:48]), landmarks)
+    covered = UserHead(closed(shut.mesh, landmarks[42:48]), landmarks)
     with pytest.raises(AssetError, match=r"lips were sealed: .*; but the left eye has no opening"):
         fit_head(*covered.write(tmp_path))
 

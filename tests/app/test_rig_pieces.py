@@ -139,7 +139,7 @@ def pieces_with(scene: FaceScene, own: tuple[Points, Faces], name: str = "") -> 
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_a_piece_is_taken_for_what_it_is(face, case):
+def test_each_piece_gets_its_role(face, case):
     """Roles are found for layered eyes, rooted teeth, a deep tongue, a beard and glasses."""
     make, role = CASES[case]
     assert {piece.role for piece in pieces_with(face, make(Maker(face)))} == {role}

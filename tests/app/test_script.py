@@ -71,7 +71,7 @@ def channels(draw):
 
 
 @given(tracks=st.dictionaries(st.text(max_size=5), channels(), max_size=3))
-def test_what_is_written_reads_back(tracks):
+def test_a_written_script_reads_back(tracks):
     """A written script reads back to the last digit and in order, for both forms of tracks."""
     script = Script("t", 1.0, "t", poses=(Pose(0.0),), tracks=tracks)
     read = parse_script(script_text(script), source="t")
@@ -97,7 +97,7 @@ def test_a_channel_has_the_values_of_its_keys(channel, data):
 
 
 @given(channel=channels(), start=st.floats(0.0, LARGEST), span=st.floats(1e-3, 1e4))
-def test_a_drawn_curve_is_what_is_played(channel, start, span):
+def test_a_drawn_curve_has_the_played_values(channel, start, span):
     """Each point of the drawn curve has the played value; with few keys, each key is drawn."""
     times, values = channel.outline(start, start + span, 40)
     keys = [time for time in channel.times.tolist() if start <= time <= start + span]
@@ -185,7 +185,7 @@ def test_a_lone_pose_is_held_for_a_second():
         ),
     ],
 )
-def test_what_is_wrong_is_named(text, message):
+def test_each_mistake_in_a_script_is_named(text, message):
     """Each mistake is reported with the file, the key and the allowed values."""
     with pytest.raises(UserError, match=message):
         parse_script(text, source="bad.toml")

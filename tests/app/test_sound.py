@@ -67,7 +67,7 @@ def test_other_rates_are_in_step(tmp_path, rate):
     assert lag(again, load_sound(tmp_path / "high.wav")) == approx(0.0, abs=5e-4)
 
 
-def test_what_is_no_sound_is_reported_in_one_line(tmp_path):
+def test_an_unreadable_sound_is_reported_in_one_line(tmp_path):
     """An unreadable sound is reported in one line with the fault and the remedy.
 
     Missing, empty, damaged, silent, a folder, a pipe.

@@ -27,7 +27,7 @@ def killed(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_folder_is_gone_after_the_work(tmp_path):
+def test_a_folder_is_removed_after_the_work(tmp_path):
     """The folder is removed however the work ends."""
     with StagingFolder(tmp_path) as folder:
         (folder / "x").touch()
@@ -38,7 +38,7 @@ def test_a_folder_is_gone_after_the_work(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_a_killed_process_left_is_swept_away(killed):
+def test_the_folder_of_a_killed_process_is_removed(killed):
     """The next process removes a killed process's folder, but not one with a growing film."""
     made_old(killed)
     (killed / "film.mp4").write_bytes(b"more")
@@ -58,7 +58,7 @@ def test_what_a_killed_process_left_is_swept_away(killed):
         lambda path: (shutil.rmtree(path), path.write_text("a file")),
     ],
 )
-def test_nothing_else_is_swept_away(killed, change):
+def test_nothing_else_is_removed(killed, change):
     """Folders with other names, links and files stay."""
     folder = killed.parent
     change(killed)

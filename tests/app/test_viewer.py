@@ -208,7 +208,7 @@ def test_a_look_is_chosen(viewer):
     assert not viewer.messages.is_error
 
 
-def test_unsaved_work_is_asked_for(viewer):
+def test_closing_asks_about_unsaved_work(viewer):
     """Closing with a pose set by hand asks; "back" keeps the pose, "on" closes."""
     viewer.session.set("jaw_open", 0.5)
     press_keys(viewer, "ctrl+q")

@@ -62,7 +62,7 @@ def desk(session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> D
     return Desk(session)
 
 
-def test_a_bad_file_is_reported_and_survived(desk, tmp_path):
+def test_an_unreadable_file_is_reported(desk, tmp_path):
     """An unreadable file gives one line, and the current script stays."""
     before = desk.session.script
     bad = tmp_path / "bad.toml"
@@ -190,7 +190,7 @@ def test_a_script_moves_the_face_alone(session):
     assert life.is_on
 
 
-def test_live_leads_controls_it_names_and_sliders_keep_the_rest(session):
+def test_live_sets_the_controls_it_names_and_sliders_the_others(session):
     """A live face leads the controls it names; sliders move the others.
 
     When the live face ends, its controls have their sliders' values again.

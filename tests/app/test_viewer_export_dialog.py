@@ -19,7 +19,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import ExportChoices
 from risorius.render import LIGHT, LIGHTS, Style
 
-from ..heads import stranger
+from ..heads import user_head
 from .driving import (
     NEEDS_A_SCREEN,
     clear_search,
@@ -120,7 +120,7 @@ def test_motion_is_exported_by_the_same_dialog(viewer, tmp_path):
 
 
 @pytest.mark.slow
-def test_the_window_lives_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatch):
+def test_the_window_responds_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatch):
     """The face responds during an export; cancel leaves neither a file nor a part of one."""
     monkeypatch.setattr(workers, "GRACE", LONG)
     viewer.settings.export.kind = "mp4"
@@ -188,7 +188,7 @@ def test_a_head_of_the_user_becomes_an_avatar(viewer, tmp_path):
     The window shows the progress.
     """
     before = viewer.session.scene
-    mesh, marks = stranger().write(tmp_path)
+    mesh, marks = user_head().write(tmp_path)
     put(viewer, mesh, marks)
     assert until(viewer, lambda: viewer.file_drop.making is None)
     click(viewer, "menu File")
@@ -207,5 +207,5 @@ def test_a_head_of_the_user_becomes_an_avatar(viewer, tmp_path):
     head = next(each for each in found["meshes"] if each["name"] == "head")
     assert tuple(head["extras"]["targetNames"]) == ARKIT
     position = head["primitives"][0]["attributes"]["POSITION"]
-    assert found["accessors"][position]["count"] == len(stranger().mesh.vertices)
+    assert found["accessors"][position]["count"] == len(user_head().mesh.vertices)
     assert "teeth_lower" in {each["name"] for each in found["meshes"]}

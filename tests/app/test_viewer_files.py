@@ -15,7 +15,7 @@ from risorius.app.sound import player
 from risorius.app.viewer import Viewer
 from risorius.assets.coarse import coarse_head
 from risorius.assets.meshes import Mesh
-from tests.heads import stranger, write_topology
+from tests.heads import user_head, write_topology
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -81,7 +81,7 @@ def test_the_chooser_walks_through_folders(viewer, tmp_path):
     assert not viewer.files.is_waiting
 
 
-def test_the_chooser_replaces_nothing_unasked(viewer, tmp_path):
+def test_the_chooser_asks_before_it_replaces(viewer, tmp_path):
     """An existing name needs a second confirmation; a missing folder is reported."""
     taken = tmp_path / "pose.toml"
     taken.write_text("precious")
@@ -167,7 +167,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer, tmp_path):
     """A dropped head and script: the face changes, the script plays, unsaved work stays."""
     session = viewer.session
     before = session.scene
-    mesh, landmarks = stranger().write(tmp_path)
+    mesh, landmarks = user_head().write(tmp_path)
     try:
         session.set("jaw_open", 0.5)
         session.note()
@@ -186,7 +186,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer, tmp_path):
         script = tmp_path / "smile.toml"
         script.write_text(SCRIPT)
         put(viewer, mesh, script, landmarks)
-        assert until(viewer, lambda: "smile.toml: opened with stranger" in viewer.messages.text)
+        assert until(viewer, lambda: "smile.toml: opened with user_head" in viewer.messages.text)
         session.seek(2.0)
         assert until(viewer, lambda: moved(viewer) > 2.0)
         drag(viewer, nose(viewer), (30, 30))
@@ -200,14 +200,14 @@ def test_a_head_and_a_script_are_dropped_together(viewer, tmp_path):
 def test_a_head_is_opened_by_the_menu(viewer, tmp_path):
     """The dialog opens a mesh with the landmarks beside it; each kind of file is listed alone."""
     before = viewer.session.scene
-    mesh, landmarks = stranger().write(tmp_path)
-    landmarks = landmarks.rename(tmp_path / "stranger.landmarks.json")
+    mesh, landmarks = user_head().write(tmp_path)
+    landmarks = landmarks.rename(tmp_path / "user_head.landmarks.json")
     (tmp_path / "another.json").write_text("{}")
     click(viewer, "menu File")
     click(viewer, "menu File: Open head ...")
-    assert until(viewer, lambda: "file stranger.obj" in viewer.gui.places)
+    assert until(viewer, lambda: "file user_head.obj" in viewer.gui.places)
     assert f"file {landmarks.name}" not in viewer.gui.places
-    click(viewer, "file stranger.obj", times=2)
+    click(viewer, "file user_head.obj", times=2)
     assert until(viewer, lambda: viewer.session.scene is not before)
     assert viewer.settings.recent[0].split("\n") == [str(mesh), str(landmarks)]
     viewer.show_scene(before)
@@ -355,7 +355,7 @@ def test_a_known_head_needs_no_marking(viewer, tmp_path):
     """A mesh with the vertices of a known head is shown with muscles, without landmarks."""
     before = viewer.session.scene
     head = coarse_head()
-    known = replace(stranger(), mesh=Mesh(head.vertices, head.faces), landmarks=head.landmarks)
+    known = replace(user_head(), mesh=Mesh(head.vertices, head.faces), landmarks=head.landmarks)
     mesh, _ = known.write(tmp_path)
     put(viewer, mesh)
     assert until(viewer, lambda: viewer.file_drop.making is None)
@@ -369,7 +369,7 @@ def test_a_known_head_needs_no_marking(viewer, tmp_path):
 def test_a_known_head_that_does_not_fit_is_marked(viewer, tmp_path, monkeypatch):
     """A mesh of a known topology with wrong landmarks opens marking, and a line says why."""
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
-    other = stranger()
+    other = user_head()
     write_topology(tmp_path, other, landmarks=list(range(68)))
     put(viewer, other.write(tmp_path)[0])
     try:

@@ -62,7 +62,7 @@ def test_settings_come_back(tmp_path):
         ("display.options.kahler.threshold_once", float("nan")),
     ],
 )
-def test_one_value_gives_way_alone(path, where, value):
+def test_one_wrong_value_gets_its_default(path, where, value):
     """A wrong value is reported by name and gets its default; all others stay."""
     stored = json.loads(json.dumps(GOOD))
     *tables, name = where.split(".")
@@ -90,7 +90,7 @@ def test_one_value_gives_way_alone(path, where, value):
     "content",
     [b"", b"not json", b"[]", b"\xff\xfe\x00", 100_000 * b'{"display":', b" " * (2**20 + 1)],
 )
-def test_a_file_of_no_use_is_reported(path, content):
+def test_an_unreadable_settings_file_is_reported(path, content):
     """An unreadable file gives defaults and a line; the next write makes the file valid."""
     path.write_bytes(content)
     settings, complaint = load_settings(path)
@@ -105,7 +105,7 @@ def test_a_file_of_no_use_is_reported(path, content):
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
 @pytest.mark.parametrize("name", ["theme", "display"])
-def test_no_settings_keep_the_window_shut(path, name):
+def test_no_settings_prevent_the_window_from_opening(path, name):
     """With all values wrong, or with an option that a refiner refuses, the window opens.
 
     A message reports the fault.
@@ -202,7 +202,7 @@ def leave(folder, session):
     recovery.close()
 
 
-def test_work_is_written_soon_and_goes_when_it_is_undone(session, recovery, clock, tmp_path):
+def test_work_is_written_soon_and_removed_by_undo(session, recovery, clock, tmp_path):
     """A pose is written soon after it is set, also during a drag; undo removes the file."""
     recovery.watch()
     assert recovery.due_in() == float("inf")
@@ -220,7 +220,7 @@ def test_work_is_written_soon_and_goes_when_it_is_undone(session, recovery, cloc
     assert not stored(tmp_path)
 
 
-def test_all_of_it_comes_back(session, recovery, tmp_path):
+def test_a_recovered_script_is_complete(session, recovery, tmp_path):
     """A script with its current recording is recovered to each digit, with its comments."""
     session.set("jaw_open", 0.25)
     session.set_key()
@@ -253,7 +253,7 @@ def test_a_found_file_stays_and_is_found_once(session, tmp_path):
     assert found_by_next(tmp_path, session) is None
 
 
-def test_a_folder_that_takes_nothing_is_reported_once(session, clock):
+def test_a_read_only_folder_is_reported_once(session, clock):
     """A message says that work is not safe in a read-only folder, and the window continues."""
     recovery = Recovery(Path("/proc/none"), session, clock)
     session.set("jaw_open", 0.4)

@@ -143,7 +143,7 @@ def test_the_face_follows_an_edit_if_it_followed_the_script(session):
     assert session.values["joy"] == 0.3
 
 
-def test_the_file_goes_with_its_script(session, tmp_path):
+def test_undo_restores_the_file_of_a_script(session, tmp_path):
     """Undo beyond the opening of another script restores the first script's file, too."""
     own = session.file.path
     other = tmp_path / "other.toml"

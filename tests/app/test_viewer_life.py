@@ -49,7 +49,7 @@ def test_a_key_switches_it_off_and_on(viewer):
     assert until(viewer, lambda: moved(viewer) > 0.1)
 
 
-def test_it_sleeps_when_nobody_is_there(viewer):
+def test_it_sleeps_without_input(viewer):
     """After some minutes without input the window sleeps; a key wakes the face."""
     viewer.face.life.after(SLEEP_DELAY, is_held=False)
     assert not viewer.face.life.is_on

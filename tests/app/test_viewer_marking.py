@@ -25,7 +25,7 @@ from risorius.app.viewer.marking.picture import places_in
 from risorius.assets import AssetError
 from risorius.assets.fitting.guess import placing
 from risorius.assets.fitting.landmark_file import read_landmarks
-from tests.heads import METRES, stranger, with_card, write_topology
+from tests.heads import METRES, user_head, with_card, write_topology
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -45,7 +45,7 @@ NEAR = 6.0 * METRES  # [m], error of guesses on the built-in head's shape
 @pytest.fixture
 def mesh(tmp_path: Path) -> Path:
     """A head in metres, with z up."""
-    return stranger().write(tmp_path)[0]
+    return user_head().write(tmp_path)[0]
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def marking(mesh: Path) -> Marking:
 
 def true_places():
     """The places of its landmarks."""
-    other = stranger()
+    other = user_head()
     return other.mesh.vertices[other.landmarks]
 
 
@@ -82,10 +82,10 @@ def test_a_known_head_opens_without_marking(mesh, tmp_path, monkeypatch):
     assert CliRunner().invoke(commands.view, ["--head", str(mesh)]).exit_code == 0
     drawing = opened[0][2]
     assert fitted_head_of(drawing, may_be_marked=True) == (None, "")
-    write_topology(tmp_path, stranger())
+    write_topology(tmp_path, user_head())
     head, complaint = fitted_head_of(drawing, may_be_marked=True)
     assert head.files == (mesh,) and not complaint
-    write_topology(tmp_path, stranger(), landmarks=list(range(68)))
+    write_topology(tmp_path, user_head(), landmarks=list(range(68)))
     head, complaint = fitted_head_of(drawing, may_be_marked=True)
     assert head is None and "those of mine" in complaint
     with pytest.raises(AssetError, match="those of mine"):
@@ -130,12 +130,12 @@ def test_half_done_marks_are_kept_and_continued(marking, tmp_path):
 
 def test_vertex_numbers_can_be_corrected(marking, tmp_path):
     """A landmark file of another program is read, and saved as points."""
-    _, numbers = stranger().write(tmp_path)
+    _, numbers = user_head().write(tmp_path)
     marking.open(numbers)
     assert off(marking).max() < 1e-8
     assert not marking.marks.guessed
     wrong = Marking(marking.path, FileDialogs())
-    numbers.write_text(json.dumps({"landmarks": np.roll(stranger().landmarks, 20).tolist()}))
+    numbers.write_text(json.dumps({"landmarks": np.roll(user_head().landmarks, 20).tolist()}))
     with pytest.raises(UserError, match=r"\.json: these points are no face"):
         wrong.open(numbers)
     assert not wrong.marks.places
@@ -156,7 +156,7 @@ def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path):
 
 def test_pieces_beside_the_skin_may_be_anything(tmp_path):
     """A card of hair without a valid surface does not prevent marking of the skin."""
-    other = stranger()
+    other = user_head()
     mesh = with_card(other.mesh)
     path, _ = other.write(tmp_path, vertices=mesh.vertices, faces=mesh.faces)
     assert len(Marking(path, FileDialogs()).seen_mesh.faces) == len(mesh.faces)
@@ -282,7 +282,7 @@ class TestInTheWindow:
         write(viewer, "marked")
         press_keys(viewer, "Return")
         assert until(viewer, lambda: viewer.marking_mode is None)
-        assert len(viewer.session.scene.faces) == len(stranger().mesh.faces)
+        assert len(viewer.session.scene.faces) == len(user_head().mesh.faces)
         image = tmp_path / "joy.png"
         marks = mesh.with_name("marked.json")
         assert viewer.exporter.head.files == (mesh, marks)  # ready for an avatar
@@ -311,7 +311,7 @@ class TestInTheWindow:
         assert viewer.context.question.is_open
         press_keys(viewer, "Escape")
         press_keys(viewer, "ctrl+q")
-        assert viewer.context.question.unsaved == "the landmarks of stranger.obj"
+        assert viewer.context.question.unsaved == "the landmarks of user_head.obj"
         press_keys(viewer, "Escape")
         click(viewer, "Leave")
         click(viewer, "question: Save landmarks")

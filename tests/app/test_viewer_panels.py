@@ -95,7 +95,7 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
     assert not viewer.surface.labels
 
 
-def test_any_look_stands_at_the_left(viewer):
+def test_any_look_can_be_the_left_one(viewer):
     """The mouse chooses the left look of a comparison; the picture has both names."""
     viewer.settings.display = Display(compare="side by side")
     only_open(viewer, "Refinement")
@@ -307,7 +307,7 @@ def test_any_size_can_be_drawn(viewer):
     assert viewer.face.view.area == before  # the panel has its old width
 
 
-def test_what_is_not_keyed_is_read_in_a_small_window(viewer):
+def test_the_status_line_is_complete_in_a_small_window(viewer):
     """The status line is shown in full; without room a script's name is left out, not cut."""
     import glfw
 

@@ -25,7 +25,7 @@ SHARES = st.integers(0, 100).map(lambda percent: percent / 100.0)
 
 
 @pytest.mark.parametrize("how", ["seek", "key", "play", "button"])
-def test_a_pose_that_is_let_go_is_reported_and_comes_back(session, how):
+def test_a_discarded_pose_is_reported_and_can_be_restored(session, how):
     """Each way to discard a pose prints a line; one undo restores the pose at its own time."""
     session.seek(2.0)
     set_by_hand(session, jaw_open=0.6)

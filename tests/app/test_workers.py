@@ -52,7 +52,7 @@ def is_running(process):
     return state != "Z"
 
 
-def test_every_share_is_done_in_a_process_of_its_own():
+def test_every_share_is_done_in_another_process():
     """Each share is done in a process other than this one, and messages arrive in order."""
     shares = [[1, 2, 3], [10, 20], []]
     found = list(run_all(working.double, shares))
@@ -63,7 +63,7 @@ def test_every_share_is_done_in_a_process_of_its_own():
     assert list(run_all(working.double, [])) == []
 
 
-def test_what_dies_is_done_again(tmp_path):
+def test_work_of_a_killed_process_is_repeated(tmp_path):
     """A killed process is replaced, and the log names the cause."""
     log = tmp_path / "log"
     other = tmp_path / ".risorius-0123456789ab"
@@ -74,7 +74,7 @@ def test_what_dies_is_done_again(tmp_path):
     assert names >= {"log", "mark", "mark.txt", other.name}
 
 
-def test_what_kills_every_process_is_given_up(tmp_path):
+def test_work_that_kills_every_process_is_given_up(tmp_path):
     """Work that kills every process ends after three attempts, in one line.
 
     For a crash the log has the place.
@@ -94,7 +94,7 @@ def test_what_kills_every_process_is_given_up(tmp_path):
         ("unfit", "pickle"),
     ],
 )
-def test_what_is_raised_is_reported_and_not_tried_again(tmp_path, kind, message):
+def test_an_exception_is_reported_and_not_tried_again(tmp_path, kind, message):
     """An exception is reported in one line, and the work is not tried again.
 
     A defect leaves a traceback in the log, a user's mistake does not.
@@ -126,7 +126,7 @@ def test_libraries_share_the_cores(monkeypatch):
         assert share_of_cores() == share
 
 
-def test_whoever_stops_early_leaves_no_process():
+def test_an_early_stop_leaves_no_process():
     """A caller that stops after the first message leaves no process."""
     running = run_all(working.double, [list(range(10_000))])
     process = next(running)[1]

@@ -97,7 +97,7 @@ def test_rows_exist_on_both_sides(head):
     assert {len(head.rings[f"mouth_{row}_left"]) for row in range(8)} == {15}
 
 
-def test_bone_depth_is_what_was_chosen(head):
+def test_bone_depth_has_the_chosen_values(head):
     """Bone is near the surface at nose bridge and forehead, deep in the cheek; sides are equal."""
     depth = head.bone_depth
     anatomy = head.anatomy

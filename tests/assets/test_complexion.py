@@ -235,7 +235,7 @@ def test_no_two_irises_are_alike():
     assert (spread > 0.03).sum() > 100
 
 
-def test_irises_have_fibres_and_edges_of_their_own():
+def test_irises_differ_in_fibres_and_edges():
     """Another seed puts an iris's fibres in other places; a limbus darkens only the edge."""
     person = make_person(sample_identity(1))
 
@@ -274,7 +274,7 @@ def test_irises_follow_the_shares_where_skin_is_light(angle):
 
 
 @pytest.mark.slow
-def test_features_do_what_their_names_say(head):
+def test_each_feature_has_its_effect(head):
     """Each feature has its effect: brow shape, dark beard, red lips, grey or missing hair."""
     plain = recoloured(40.0).astype(int)
 

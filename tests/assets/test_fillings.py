@@ -12,13 +12,13 @@ from risorius.assets.fitting import fit_head
 from risorius.assets.fitting.fillings import filling_of
 from risorius.assets.meshes import read_mesh
 
-from ..heads import SHIFT, TURN, Stranger, closed, filled, masked
+from ..heads import SHIFT, TURN, UserHead, closed, filled, masked
 
 COUNT = 62  # triangles of `masked` across its mouth and eyes, the last of its list
 
 
 @pytest.fixture(scope="module")
-def mask() -> Stranger:
+def mask() -> UserHead:
     """A mask with closed openings [mm]."""
     return masked()
 
@@ -61,7 +61,7 @@ def test_a_mask_is_opened_and_moves(mask, tmp_path):
     assert moved[lids[:2], 1].mean() < moved[lids[2:], 1].mean() - 3.0
 
 
-def test_a_picture_goes_on_without_the_triangles(mask, tmp_path):
+def test_a_picture_stays_without_the_triangles(mask, tmp_path):
     """Triangles after the removed ones keep their texture coordinates and picture."""
     path, _ = mask.write(tmp_path)
     faces = mask.mesh.faces[::-1] + 1
@@ -87,7 +87,7 @@ def test_skin_with_points_of_its_own_is_no_filling(mask, tmp_path):
     opened = mask.mesh.without(np.arange(len(mask.mesh.faces))[-COUNT:])
     covered = closed(filled(opened, landmarks[60:68]), landmarks[42:48])
     assert filling_of(covered, landmarks, covered.vertices[landmarks]).openings == ("mouth",)
-    path, marks = Stranger(covered, landmarks).write(tmp_path)
+    path, marks = UserHead(covered, landmarks).write(tmp_path)
     assert json.loads(marks.read_text())
     with pytest.raises(AssetError, match="the left eye has no opening"):
         fit_head(path, marks)

@@ -19,18 +19,18 @@ from risorius.assets.topology import boundary_loops
 from risorius.bench.gaps import eyeballs_of, lid_gaps
 from risorius.sim.landmarks import MIRRORED
 from tests.assets.checks import edge_faces
-from tests.heads import Stranger, closed, stranger, with_card
+from tests.heads import UserHead, closed, user_head, with_card
 from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settled_displacement
 
 
 @pytest.fixture(scope="module")
-def other() -> Stranger:
+def other() -> UserHead:
     """A head of another shape, in metres, z up."""
-    return stranger()
+    return user_head()
 
 
 @pytest.fixture(scope="module")
-def fitted(other: Stranger) -> FittedHead:
+def fitted(other: UserHead) -> FittedHead:
     """The built-in anatomy fitted to that head."""
     return fit(other.mesh, other.landmarks)
 
@@ -190,7 +190,7 @@ def test_a_fitted_head_makes_faces(fitted, simulation):
     assert lip_gap(simulation, fitted) > 20.0
 
 
-def test_the_chin_goes_stiffly_with_the_jaw(fitted, simulation):
+def test_the_chin_moves_stiffly_with_the_jaw(fitted, simulation):
     """An open jaw moves the tip of the chin by 90 % of the bone's motion."""
     chin = fitted.vertices[fitted.landmarks[8]]
     displacement = settled_displacement(simulation, {"jaw_open": 1.0})
@@ -391,12 +391,12 @@ def test_warp_meets_its_points_and_keeps_similarities(generator):
 
 
 @pytest.mark.slow
-def test_a_bag_behind_the_lips_makes_room():
+def test_a_pouch_behind_the_lips_is_removed():
     """A pouch behind the lips of the file is removed for the built-in mouth.
 
     The outer skin keeps its landmarks and vertex numbers.
     """
-    other = stranger()
+    other = user_head()
     bagged = closed(other.mesh, other.landmarks[60:68])
     vertices = bagged.vertices.copy()
     vertices[-1, 1] -= 0.04  # back, in the axes of this head

@@ -111,7 +111,7 @@ def _ball(centre, radius):
     return centre + radius * unit.vertices, unit.faces
 
 
-def test_eyeballs_of_the_file_say_where_eyes_are():
+def test_eyeballs_of_the_file_set_place_and_size():
     """Eyes get the centre and size of the file's eyeballs; irises keep the face's size."""
     head = assets.load("head")
     vertices = shape(head.vertices)

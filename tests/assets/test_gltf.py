@@ -336,7 +336,7 @@ def _draco_beside(maker):
 
 
 @pytest.mark.parametrize("change", [_extras, _unknown, _draco_beside])
-def test_what_is_not_needed_is_left_alone(maker, tmp_path, change):
+def test_unneeded_content_is_ignored(maker, tmp_path, change):
     """Unknown extras, optional extensions, and cameras are ignored."""
     show_square(maker)
     change(maker)
@@ -414,7 +414,7 @@ def _circle(maker):
         (_circle, "broken, or not what its name says"),
     ],
 )
-def test_what_cannot_be_read_is_named(maker, tmp_path, change, message):
+def test_unreadable_content_is_named(maker, tmp_path, change, message):
     """Each unreadable content gives one clear line."""
     show_square(maker)
     change(maker)

@@ -12,7 +12,7 @@ from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.identities import make_person, sample_identity
 from risorius.assets.meshes import Mesh
 from risorius.sim.landmarks import MIRRORED
-from tests.heads import METRES, stranger
+from tests.heads import METRES, user_head
 
 JAW = 17  # number of jaw landmarks, which come first and have no exact place along the jaw
 
@@ -47,7 +47,7 @@ def test_other_persons_are_found(seed):
 @pytest.mark.slow
 def test_unit_axes_and_other_pieces_do_not_matter():
     """For a head in metres, z up, inside out, with eyeballs, landmarks lie on the skin."""
-    other = stranger()
+    other = user_head()
     true = other.mesh.vertices[other.landmarks]
     balls = [true[list(eye)].mean(axis=0) for eye in (range(36, 42), range(42, 48))]
     corners = np.vstack([np.eye(3), -np.eye(3)]) * 14.0 * METRES

@@ -102,7 +102,7 @@ def test_cropped_hair_has_no_ring_of_light_around_its_whorl():
     assert shines["short"] == shines["brushed"] == 0.12
 
 
-def test_a_tail_is_tied_behind_the_ears_and_touches_no_skin_below():
+def test_a_ponytail_touches_no_skin_below():
     """A ponytail hangs behind the ears without touching neck and shoulders."""
     person = haired("tailed")
     tail = hair_of(person, HAIR + "_tied").vertices
@@ -138,7 +138,7 @@ def label_of(person):
         return image, classes["segmentation"]
 
 
-def test_sparse_hair_is_called_what_is_behind_it():
+def test_sparse_hair_has_the_class_behind_it():
     """A pixel has the class of hair only where at least half of the strands are.
 
     Elsewhere, as at sparse tips, it has the class behind the hair.
@@ -153,7 +153,7 @@ def test_sparse_hair_is_called_what_is_behind_it():
     assert 0 < found[1].sum() < 0.6 * found[0].sum()
 
 
-def test_hair_is_seen_framed_and_labelled():
+def test_hair_is_framed_and_labelled():
     """Hair is inside the frame, has its class, and is hidden over muscles and on clay."""
     scene = FaceScene(person_called("ada"))
     assert scene.skin.fade is None  # no fade, because a shirt covers the end of the neck

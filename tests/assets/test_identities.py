@@ -134,7 +134,7 @@ def test_womens_necks_are_narrower():
     assert shares == approx(0.83, abs=0.02)
 
 
-def test_nine_of_ten_parts_of_what_differs_need_eight_ways():
+def test_most_variance_needs_eight_components():
     """90 % of the variance of a hundred faces needs at least eight principal components.
 
     Fewer components would mean that persons are of three or four types.
@@ -147,7 +147,7 @@ def test_nine_of_ten_parts_of_what_differs_need_eight_ways():
     assert (np.cumsum(shares) / shares.sum() < 0.9).sum() + 1 >= 8
 
 
-def test_age_is_seen():
+def test_age_has_visible_effects():
     """With age lips get thinner and the skin above them longer; furrows show at rest."""
     young, old = (make_person(sample_identity(4, age=age)) for age in (25.0, 70.0))
     assert old.measures["ls-sto"] < young.measures["ls-sto"] - 0.5
@@ -168,7 +168,7 @@ def test_persons_of_one_age_and_sex_differ_in_small_things():
     assert resting[0] == approx(3.0 * resting[1])
 
 
-def test_furrows_of_old_persons_lie_in_places_of_their_own():
+def test_furrows_of_old_persons_differ_in_place():
     """Two equally old persons have furrows in different places, as forehead or mouth.
 
     Both halves of a face are alike.
@@ -181,7 +181,7 @@ def test_furrows_of_old_persons_lie_in_places_of_their_own():
         assert share[person.mirror] == approx(share, abs=1e-5)
 
 
-def test_people_are_drawn_freely():
+def test_weights_vary_as_much_as_peoples():
     """Weights vary at least as much as people's in every direction, except in the head's size."""
     weights = np.array(
         [sample_identity(seed, sex=Sex.MAN, age=30.0).weights for seed in range(300)]

@@ -16,7 +16,7 @@ from risorius.assets.fitting.landmark_file import (
     read_landmarks,
 )
 from risorius.assets.meshes import Mesh
-from tests.heads import Stranger, shape, stranger
+from tests.heads import UserHead, shape, user_head
 
 HEAD = assets.load("head")
 TEMPLATE = HEAD.vertices[HEAD.landmarks]
@@ -24,14 +24,14 @@ ROUGHNESS = 2.0  # [mm]
 
 
 @pytest.fixture(scope="module")
-def other() -> Stranger:
+def other() -> UserHead:
     """A head of another shape, with a closed mouth."""
-    return stranger()
+    return user_head()
 
 
 @settings(deadline=None, max_examples=60)
 @given(seed=st.integers(0, 2**32 - 1), stretch=st.tuples(*[st.floats(0.85, 1.15)] * 3))
-def test_right_landmarks_are_taken(seed, stretch):
+def test_right_landmarks_are_accepted(seed, stretch):
     """Landmarks of another, stretched head are accepted, although each is up to 2 mm off."""
     random = np.random.default_rng(seed)
     away = random.normal(size=(68, 3))

@@ -87,7 +87,7 @@ def test_libraries_are_read_as_programs_write_them(tmp_path, library, picture):
         ("-clamp on -s 2 2 2", (UV * 2).clip(0, 1)),
     ],
 )
-def test_options_say_how_a_picture_lies(tmp_path, options, wanted):
+def test_options_scale_and_shift_a_picture(tmp_path, options, wanted):
     """A picture's coordinates are scaled first, and shifted then."""
     mesh = read(tmp_path, "skin", f"newmtl skin\nmap_Kd {options} skin.png\n")
     assert colour_of(mesh) == RED

@@ -5,7 +5,7 @@ import numpy as np
 from risorius.assets.data_files import read_arrays
 
 
-def test_nostrils_are_no_black_holes(head):
+def test_nostrils_are_not_black(head):
     """The walls of nostrils get a quarter of the light, so that they are not black.
 
     Elsewhere the map is unchanged.

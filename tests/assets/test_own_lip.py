@@ -7,7 +7,7 @@ from risorius.assets.fitting.mesh_validation import path_lengths
 from risorius.assets.meshes import Mesh
 
 
-def test_a_lip_that_lies_over_the_other_is_itself(head):
+def test_overlapping_lips_keep_bone_and_colour(head):
     """A lower lip 3 mm higher and 4 mm in front moves with the jaw.
 
     Its texture is that of the lip, red and not dark.

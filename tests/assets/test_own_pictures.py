@@ -15,15 +15,15 @@ from risorius.assets import AssetError
 from risorius.assets.fitting import fit, fit_head
 from risorius.assets.fitting.painting import Layout, drawn_over, maps_in, sampled, texels_within
 from risorius.assets.meshes import Mesh, read_mesh
-from tests.heads import Stranger, stranger
+from tests.heads import UserHead, user_head
 
 SIZE = 64  # [pixels]
 
 
 @pytest.fixture(scope="module")
-def other() -> Stranger:
+def other() -> UserHead:
     """A head of another shape."""
-    return stranger()
+    return user_head()
 
 
 def _striped():
@@ -251,7 +251,7 @@ def test_dense_heads_are_simplified_with_their_colours():
 
     A line reports the simplification.
     """
-    dense = stranger(2)
+    dense = user_head(2)
     vertices, faces = trimesh.remesh.subdivide(dense.mesh.vertices, dense.mesh.faces)
     colours = np.where(vertices[:, [0]] > dense.mesh.vertices[:, 0].mean(), 250, 10)
     mesh = Mesh(vertices, faces.astype(np.int32), colours=np.tile(colours, 3).astype(np.uint8))

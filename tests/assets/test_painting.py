@@ -30,7 +30,7 @@ def test_picture_is_mirrored_but_for_patches_and_grain(head):
     assert off.max() < 25.0
 
 
-def test_picture_goes_on_outside_the_skin(head):
+def test_picture_continues_outside_the_skin(head):
     """The picture continues outside the skin, so that filters across the rim find no border."""
     rim = head.rings["rim_left"][3:-3]
     size = len(head.albedo)

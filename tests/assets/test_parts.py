@@ -19,7 +19,7 @@ def test_parts_are_well_formed(head):
         assert 0.0 <= found.shine <= 1.0
 
 
-def test_what_belongs_to_the_jaw_moves_with_it(head):
+def test_parts_of_the_jaw_move_with_it(head):
     """Lower teeth, lower gums, tongue and the floor of the mouth move with the mandible."""
     on_mandible = {found.name for found in head.parts if found.bone == "mandible"}
     assert on_mandible == {"teeth_lower", "gums_lower", "tongue", "oral_cavity_lower"}

@@ -86,7 +86,7 @@ def test_lips_that_touch_exactly_are_two(head, tmp_path, way):
         assert np.array_equal(found.file_vertices[found.landmarks], head.landmarks)
 
 
-def test_lips_that_are_one_are_shut(head, tmp_path):
+def test_lips_that_share_vertices_are_refused(head, tmp_path):
     """Lips that share vertices cannot part, so the head is refused."""
     number = np.arange(len(head.vertices))
     number[head.landmarks[LOWER]] = head.landmarks[UPPER]

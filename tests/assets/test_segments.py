@@ -47,7 +47,7 @@ def test_the_right_half_is_the_left_one_mirrored(head):
 
 
 @pytest.mark.parametrize("place", list(PLACES))
-def test_named_places_are_what_they_are(head, place):
+def test_named_points_have_the_class_of_their_region(head, place):
     """Anatomical points well within a region have the region's class."""
     assert at(head, head.anatomy[place]) == [PLACES[place]]
 

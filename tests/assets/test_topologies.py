@@ -16,7 +16,7 @@ from risorius.assets.fitting.landmark_file import COUNT, MisfitError, Unfinished
 from risorius.assets.fitting.topologies import recognised
 from risorius.assets.meshes import Mesh
 
-from ..heads import METRES, TURN, shape, stranger, write_topology
+from ..heads import METRES, TURN, shape, user_head, write_topology
 
 TABLE = read_toml(Path(assets.__file__).with_name("topologies.toml"))["topology"]
 
@@ -62,13 +62,13 @@ def test_a_known_head_is_fitted_without_a_landmark_file(tmp_path):
 
     For other meshes a line asks for landmarks.
     """
-    other = replace(stranger(), mesh=as_another(assets.load("head")))
+    other = replace(user_head(), mesh=as_another(assets.load("head")))
     mesh, marks = other.write(tmp_path)
     fitted = fit_head(mesh)
     assert np.array_equal(fitted.vertices, fit_head(mesh, marks).vertices)
     assert "its vertices are those of the built-in head" in fitted.notes[0]
     assert fitted.files == (mesh,)
-    unknown, _ = stranger().write(tmp_path)
+    unknown, _ = user_head().write(tmp_path)
     with pytest.raises(UnfinishedError, match="needs a landmark file"):
         fit_head(unknown)
 
@@ -85,7 +85,7 @@ def test_the_table_is_sound():
 
 def test_edges_tell_meshes_of_the_same_counts_apart(tmp_path):
     """A user's topology is applied only to meshes with its edges, not just its vertex count."""
-    other = stranger()
+    other = user_head()
     mesh = other.mesh
     right, left = mesh.vertices[other.landmarks[[36, 45]]]
     width = norm(right - left)
@@ -103,7 +103,7 @@ def test_edges_tell_meshes_of_the_same_counts_apart(tmp_path):
 
 def test_a_known_head_that_cannot_be_fitted_may_be_marked(tmp_path):
     """If a topology's landmarks do not fit a mesh, the error suggests marking the landmarks."""
-    other = stranger()
+    other = user_head()
     write_topology(tmp_path / "config", other, landmarks=list(range(COUNT)))
     mesh, marks = other.write(tmp_path)
     with pytest.raises(MisfitError, match=r"those of mine, .*; but .*; else mark") as raised:
@@ -124,7 +124,7 @@ def test_a_known_head_that_cannot_be_fitted_may_be_marked(tmp_path):
 def test_a_wrong_topology_is_one_line(tmp_path, change, message):
     """A wrong topology file is reported in one line: file, value, and allowed values."""
     whole = {"counts": [[100, 200]], "landmarks": list(range(COUNT))}
-    write_topology(tmp_path / "config", stranger(), **whole | change)
+    write_topology(tmp_path / "config", user_head(), **whole | change)
     with pytest.raises(assets.AssetError, match=message) as raised:
-        recognised(stranger().mesh)
+        recognised(user_head().mesh)
     assert "\n" not in str(raised.value)

@@ -80,7 +80,7 @@ def test_what_is_left_is_held_to_targets():
     assert len(targets({"coarse": good, "finer": good})) == len(MOST_DISTANCES) + 2
 
 
-def test_what_looks_at_skin_is_no_region(space):
+def test_inner_sides_of_lips_are_no_region(space):
     """The inner sides of lips are left out; the skin of cheeks and forehead is included."""
     regions = space.regions()
     marks = space.landmarks

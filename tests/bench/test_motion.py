@@ -9,7 +9,7 @@ from numpy.linalg import norm
 from risorius import assets, sim
 from risorius.app.errors import UserError
 from risorius.bench.motion import Row, blobs_of, measure, report, targets
-from tests.heads import METRES, SHIFT, TURN, shape, stranger
+from tests.heads import METRES, SHIFT, TURN, shape, user_head
 from tests.sim.poses import settled_displacement
 
 # Scored fields: each name in a reference -> the controls with the same motion on the built-in head.
@@ -116,7 +116,7 @@ def test_a_bump_is_known_as_a_blob(head):
 @pytest.fixture(scope="module")
 def arrays() -> dict[str, Any]:
     """The arrays of a head that can be fitted, with one field of the right shape."""
-    other = stranger()
+    other = user_head()
     return {
         "vertices": other.mesh.vertices,
         "triangles": other.mesh.faces,

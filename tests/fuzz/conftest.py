@@ -8,7 +8,7 @@ import pytest
 
 from risorius.app.scenes import SCENES, FaceScene
 
-from .sandbox import furnish
+from .sandbox import put_files
 
 LONG_WORK = (
     "risorius.bench.reproduce.figure_8.outcome",
@@ -33,7 +33,7 @@ def face() -> FaceScene:
 @pytest.fixture
 def sandbox(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A working directory with files of every kind, without a screen and without user settings."""
-    furnish(tmp_path)
+    put_files(tmp_path)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "folder"))

@@ -33,7 +33,7 @@ class Kind(Enum):
     HEAD = "a fitted head"
 
 
-class Brought(NamedTuple):
+class HeadFiles(NamedTuple):
     """The files of one input; without landmarks only the mesh is read."""
 
     mesh: Path
@@ -44,11 +44,11 @@ class OddHead(NamedTuple):
     """One odd or broken head."""
 
     name: str
-    write: Callable[[Path], Brought]
+    write: Callable[[Path], HeadFiles]
     expected: Kind | str
 
 
-def open_brought(brought: Brought) -> Mesh | FittedHead:
+def open_head_files(brought: HeadFiles) -> Mesh | FittedHead:
     """Read, or fit, the written files as the command does."""
     if brought.landmarks is None:
         return assets.read_mesh(brought.mesh)
@@ -87,10 +87,10 @@ MESHES: dict[str, tuple[bytes | str, Kind | str]] = {
 }
 
 
-def _mesh(name: str, content: bytes | str, folder: Path) -> Brought:
+def _mesh(name: str, content: bytes | str, folder: Path) -> HeadFiles:
     path = folder / name.replace(" ", "_")
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    return Brought(path)
+    return HeadFiles(path)
 
 
 def _obj(where: Any = 0, to: Any = None, scale: float = 1.0, shift: float = 0.0) -> bytes:
@@ -103,9 +103,9 @@ def _obj(where: Any = 0, to: Any = None, scale: float = 1.0, shift: float = 0.0)
     return "\n".join(lines).encode()
 
 
-def _head(mesh: Callable[[], bytes], marks: Any, folder: Path) -> Brought:
+def _head(mesh: Callable[[], bytes], marks: Any, folder: Path) -> HeadFiles:
     """A mesh file, made by `write`, and a landmark file."""
-    brought = Brought(folder / "head.obj", folder / "head.json")
+    brought = HeadFiles(folder / "head.obj", folder / "head.json")
     brought.mesh.write_bytes(mesh())
     text = marks if isinstance(marks, bytes | str) else json.dumps(marks)
     (folder / "head.json").write_bytes(text if isinstance(text, bytes) else text.encode())
@@ -152,18 +152,18 @@ WAYS: dict[str, tuple[Callable[[Path], object], str]] = {
 }
 
 
-def _at(make: Callable[[Path], object], name: str, folder: Path) -> Brought:
+def _at(make: Callable[[Path], object], name: str, folder: Path) -> HeadFiles:
     """Make an odd path in place of the mesh file, or in place of a good mesh's landmark file."""
     if name == "head.json":
         brought = _head(_obj, "", folder)
         (folder / name).unlink()
     else:
-        brought = Brought(folder / name)
+        brought = HeadFiles(folder / name)
     make(folder / name)
     return brought
 
 
-def _exported(suffix: str, marks: Any, folder: Path) -> Brought:
+def _exported(suffix: str, marks: Any, folder: Path) -> HeadFiles:
     """The built-in head as exported by trimesh."""
     brought = _head(lambda: b"", marks, folder)._replace(mesh=folder / f"head.{suffix}")
     trimesh.Trimesh(HEAD.vertices, HEAD.faces, process=False).export(brought.mesh)

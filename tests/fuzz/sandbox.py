@@ -47,7 +47,7 @@ class Ended:
     err: str
 
 
-def furnish(folder: Path) -> None:
+def put_files(folder: Path) -> None:
     """Put good files and hostile files of every kind into a folder."""
     (folder / "good.toml").write_text(GOOD)
     (folder / "notes.txt").write_text("mine")

@@ -11,7 +11,7 @@ from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead
 from risorius.assets.meshes import Mesh
 
-from .head_inputs import Kind, head_inputs, open_brought
+from .head_inputs import Kind, head_inputs, open_head_files
 from .sandbox import bounded
 
 pytestmark = pytest.mark.slow
@@ -40,7 +40,7 @@ def test_odd_heads(odd, tmp_path, capfd):
     brought = odd.write(tmp_path)
     if isinstance(odd.expected, str):
         with quiet_and_bounded(), pytest.raises(AssetError) as refusal:
-            open_brought(brought)
+            open_head_files(brought)
         message = str(refusal.value)
         assert message.isprintable()
         assert len(message) < 500
@@ -48,7 +48,7 @@ def test_odd_heads(odd, tmp_path, capfd):
         assert re.search(odd.expected, message), message
     else:
         with quiet_and_bounded():
-            found = open_brought(brought)
+            found = open_head_files(brought)
         assert isinstance(found, Mesh if odd.expected is Kind.MESH else FittedHead)
         assert np.isfinite(found.vertices).all()
         assert 0 <= found.faces.min()

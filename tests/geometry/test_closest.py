@@ -38,7 +38,7 @@ def test_points_on_the_mesh():
     assert (found.triangles == chosen).mean() > 0.99
 
 
-def test_finds_what_looks_the_same_way():
+def test_finds_the_surface_with_the_same_direction():
     """Of two grids that face away from each other, a point finds the one that faces its way."""
     grid = meshes.open_grid(6, 6)
     count = len(grid.vertices)

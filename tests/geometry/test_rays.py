@@ -61,7 +61,7 @@ def test_rays_leave_a_cube_where_its_walls_are():
     assert_allclose(cosine[order], np.abs(directions[np.arange(300), walls]), rtol=1e-9)
 
 
-def test_what_a_ray_enters_is_no_exit():
+def test_only_exits_of_a_ray_are_counted():
     """A ray that enters an inner box from outside has one exit: the far side of the outer box."""
     vertices, faces = cube()
     small = 0.2 * vertices + [0.6, 0.1, 0.2]

@@ -142,7 +142,7 @@ def test_values_of_a_frame_are_its_attributes(seams):
         refiner.refine(points, values={"heat": [1, 2, 3]})
 
 
-def test_words_come_from_an_end():
+def test_texts_are_those_of_one_end():
     """Texts cannot be averaged, so a new point has the text of one end."""
     assert set(one_triangle().carry(["a", "b", "c"])) == {"a", "b", "c"}
 

@@ -109,7 +109,7 @@ def test_pictures_are_the_same(pipeline, style, kind, monkeypatch):
     assert card.caption.endswith(f"\n{processor.triangle_count} triangles")
 
 
-def test_nothing_comes_back(scene, monkeypatch):
+def test_nothing_is_downloaded(scene, monkeypatch):
     """A hardware driver draws a frame that stays on the card, if no numbers are requested."""
     drawn_by(monkeypatch, "hardware")
     with render.open_offscreen(SIZE, samples=4) as surface:

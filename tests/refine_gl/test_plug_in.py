@@ -28,7 +28,7 @@ def bound(**options):
     return bound_twice(MESH.faces, MESH.vertices, **options)
 
 
-def test_it_joins_as_anybodys_would():
+def test_it_is_found_by_an_entry_point():
     """It is registered by an entry point, with its own options; wrong options are refused."""
     assert "kahler-gl" in refine.refiners.available()
     assert "kahler-gl" in refine.refiners.installed()
@@ -103,7 +103,7 @@ def test_buffers_of_another_context(surface):
 
 
 @pytest.mark.parametrize("rules", ["two levels", "window's look"])
-def test_a_lost_context_is_made_anew(rules):
+def test_a_new_context_gets_the_mesh_again(rules):
     """After the buffers are lost with a closed window, the next context gets the mesh again."""
     processor, card = bound(**RULES[rules])
     wanted = processor.refine(BENT)
@@ -183,13 +183,13 @@ def test_shaders_take_eight_buffers():
         ({"criterion": "displacement"}, 'criterion "displacement" needs scheme="cubic"'),
     ],
 )
-def test_what_the_card_has_not(options, words):
+def test_options_of_the_processor_are_refused(options, words):
     """Options that only `kahler` has are refused by name."""
     with pytest.raises(ValueError, match=re.escape(words)):
         refine.create("kahler-gl", MESH.faces, MESH.vertices, **options)
 
 
-def test_it_imports_what_an_outsider_may():
+def test_it_imports_public_names_only():
     """From refinement it imports only `risorius.refine` and `refine.port`, by exported names."""
     folder = Path(refine_gl.__file__).parent
     for file in folder.glob("*.py"):

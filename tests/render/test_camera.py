@@ -26,7 +26,7 @@ def test_framing_fits_everything(view, aspect):
     assert np.abs(places[:, :2]).max() == approx(0.88, abs=0.03)
 
 
-def test_views_look_from_where_they_say():
+def test_views_have_their_direction():
     """Front is seen from +z, the profile from the subject's left (+x), below from -y."""
     eyes = {view: render.OrbitCamera.framing(HEAD, view=view).axes()[2] for view in render.VIEWS}
     assert eyes["front"] == approx((0, 0, 1))
@@ -82,7 +82,7 @@ def test_framing_errors(vertices, view, message):
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_what_is_seen_can_be_found_again(seed):
+def test_a_projected_point_is_found_again(seed):
     """A point, projected and unprojected, is unchanged, and its ray starts at the eye."""
     random = np.random.default_rng(seed)
     camera = render.OrbitCamera.framing(HEAD, view=random.choice(list(render.VIEWS)))

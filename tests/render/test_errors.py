@@ -115,7 +115,7 @@ def test_shader_error_names_file_and_stage(surface, monkeypatch, tmp_path):
         programs.compile_program(surface.gl, "broken.glsl", "WIDE 3")
 
 
-def test_probe_finds_what_is_there():
+def test_probe_finds_the_driver():
     """On the test machine the probe can draw offscreen, and reports the driver's name."""
     (finding,) = render.probe(offscreen_only=True)
     assert finding.is_ok

@@ -69,7 +69,7 @@ def test_other_light_leaves_nothing_behind(surface, renderer):
 
 
 @pytest.mark.parametrize("name", render.LIGHTS)
-def test_no_light_burns_or_blackens(surface, name):
+def test_no_light_is_too_bright_or_too_dark(surface, name):
     """Balls in light and dark skin are neither white nor black where they face the viewer."""
     for albedo, low, high in ((LIGHT_SKIN, 60, 254), (DARK_SKIN, 16, 235)):
         style = replace(PLAIN, albedo=albedo, light=render.LIGHTS[name])

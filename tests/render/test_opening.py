@@ -39,7 +39,7 @@ def test_an_eye_is_darkest_below_its_upper_lid(renderer):
     assert middle > 0.93
 
 
-def test_a_mouth_lets_in_as_much_light_as_it_is_open(renderer):
+def test_a_wider_mouth_lets_in_more_light(renderer):
     """A ball is dark behind a slit and light behind a wide opening; the edge is darker."""
     plain = at(light(renderer, None), 0.0, 0.0).item()
     heights = (1.0, 8.0, 40.0)
@@ -53,7 +53,7 @@ def test_a_mouth_lets_in_as_much_light_as_it_is_open(renderer):
     assert middles[2] > 0.85
 
 
-def test_what_is_out_of_the_mouth_has_all_light(renderer):
+def test_a_tongue_outside_the_mouth_has_all_light(renderer):
     """A tongue in front of the lips loses no light."""
     opening = render.Opening(rim(50.0, 20.0, 5.0), is_filled=False)
     out = at(light(renderer, opening), 0.0, 0.0).item()

@@ -82,7 +82,7 @@ def test_mesh_without_triangles_draws_nothing(renderer):
     assert (draw(renderer, stream, render.Style(background=render.WHITE)) >= 254).all()
 
 
-def test_positions_that_are_not_finite_are_survived(renderer):
+def test_positions_that_are_not_finite_are_drawn(renderer):
     """A frame with positions that are not finite is drawn, as after a failed simulation."""
     stream = lent(renderer, sphere())
     stream.vertices[3, 0] = np.inf

@@ -60,7 +60,7 @@ def test_bad_arguments():
         render.open_offscreen((100_000, 10))
 
 
-def test_closed_surface_says_so():
+def test_a_closed_surface_reports_it():
     """Drawing after close is an error; a second close is not."""
     surface = render.open_offscreen((8, 8))
     surface.close()
@@ -81,7 +81,7 @@ def test_two_surfaces_do_not_mix(surface):
         assert (other.read() == small).all()
 
 
-def test_begin_repairs_what_a_panel_changed(surface):
+def test_begin_resets_the_state_of_opengl(surface):
     """Every frame sets depth test, culling, blending, scissor and masks, whatever a panel set."""
     expected = draw_image(surface, sphere())
     gl = surface.gl

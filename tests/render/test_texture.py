@@ -212,7 +212,7 @@ def test_less_light_where_it_is_less_open(surface, shading):
 
 @pytest.mark.parametrize("shading", render.Shading)
 @pytest.mark.parametrize("is_textured", [True, False])
-def test_fine_shape_tilts_what_each_pixel_shows(surface, shading, is_textured):
+def test_fine_shape_tilts_the_normal_of_each_pixel(surface, shading, is_textured):
     """Slopes that rise to the right are brighter; level skin and other shadings are unchanged."""
     slopes = np.full((32, 32, 2), 128, np.uint8)
     slopes[:, 16:] = 190, 128

@@ -110,7 +110,7 @@ def test_a_coarser_scene_fills_the_window(window):
     assert not images[1][:, 52:].any()
 
 
-def test_the_scene_outlives_its_panels(window):
+def test_the_scene_can_be_shown_without_panels(window):
     """A second resolve shows the scene without the panel that was drawn over it."""
     renderer = render.Renderer(window)
     renderer.draw(render.Frame(render.CameraView(facing()), render.Style()))

@@ -147,13 +147,13 @@ def test_wrong_heads_are_refused(attribute, begins, values):
 
 
 @pytest.mark.parametrize("given", LISTS)
-def test_what_is_no_layer_is_reported(given):
+def test_wrong_layers_are_reported(given):
     """A head's layers must be a list of objects with titles and rows."""
     refused(lambda: read_layers(given, ["a"]), "head.layers")
 
 
 @pytest.mark.parametrize("head", [None, 3, "head", [], {}, object(), SimpleNamespace(vertices=1)])
-def test_what_is_no_head_is_reported(head):
+def test_heads_without_a_mesh_are_reported(head):
     """A head must have vertices and faces."""
     with pytest.raises(ValueError, match=r"head: .* has no attribute '(vertices|faces)'; give any"):
         sim.create(head)

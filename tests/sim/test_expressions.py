@@ -317,7 +317,7 @@ def test_gaze_turns_the_eyes(simulation, head):
     assert moved_landmarks(head, moved, 37, 38, 43, 44)[1] > 1.0
 
 
-def test_each_eye_looks_for_itself(simulation, head):
+def test_each_eye_turns_alone(simulation, head):
     """Each eye can turn alone, and its lid follows without motion of the other lid."""
     gaze = {"gaze_horizontal_left": -0.5, "gaze_horizontal_right": 0.5, "gaze_vertical_left": -1.0}
     moved = settled_displacement(simulation, gaze)

@@ -117,7 +117,7 @@ def test_a_share_follows_the_whole_that_is_set_later():
     assert subject.values["part"] == 0.3
 
 
-def test_what_rows_make_sure_of_does_not_add():
+def test_floors_do_not_add_up():
     """Of several floors the greatest holds, through every layer, unless the sum exceeds it."""
     units = layer(
         "Units",
@@ -186,7 +186,7 @@ def test_a_wrong_row_is_named(rows, message):
         controls(layer("X", **rows))
 
 
-def test_a_row_cannot_hold_what_is_a_share():
+def test_a_row_cannot_use_a_share():
     """A row cannot use a control that is a share.
 
     A share depends on set values, which a row in a higher layer does not have.

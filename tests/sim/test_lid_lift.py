@@ -44,7 +44,7 @@ def test_a_flat_triangle_is_lifted_over_the_cornea():
     assert 13.0 + CLEARANCE + 0.8 < nearest(lifted(closed, lift)) < 13.0 + CLEARANCE + 1.3
 
 
-def test_what_is_far_enough_stays():
+def test_distant_triangles_are_not_lifted():
     """Small triangles at a lid's thickness from the ball, beside the cornea, are not lifted."""
     closed = at(AHEAD / 20.0 + [11.0, 0.0], 13.0 + CLEARANCE + 0.05)
     assert not lift_off(closed, closed, FACE, ALL, BALL).any()
@@ -59,14 +59,14 @@ def test_what_is_far_enough_stays():
     ],
     ids=["lower lid", "inner side", "sunk at rest"],
 )
-def test_what_belongs_there_stays(faces, moves, sunk):
+def test_other_triangles_are_not_lifted(faces, moves, sunk):
     """Only the outer side of the upper lid is lifted."""
     closed = at(AHEAD, 14.0)
     rest = at(AHEAD, 13.0 - sunk) if sunk else closed + ABOVE
     assert not lift_off(closed, rest, faces, moves, BALL).any()
 
 
-def test_the_drawn_eyeball_is_what_lids_are_lifted_over(head):
+def test_the_drawn_eyeball_fits_the_lifted_lids(head):
     """Almost no point of the drawn eyeball is outside the shape that lid_lift.py assumes.
 
     The shape is a sphere with a cornea.

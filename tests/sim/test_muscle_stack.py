@@ -44,7 +44,7 @@ def test_a_muscle_rises_on_the_bulge_beneath(head):
     assert np.abs(rises[0]).max() > 2.0  # it moves along even without a bulge
 
 
-def test_nothing_is_carried_by_what_does_not_lie_beneath(head):
+def test_only_muscles_beneath_move_a_muscle(head):
     """A muscle is not moved by one it does not lie on, nor by one of the other side."""
     apart = sim.create(stacked(head, {}))
     settled_displacement(apart, {f"{BENEATH}_left": 1.0})

@@ -80,7 +80,7 @@ def test_a_corner_pulled_up_and_back_smiles(simulation, head):
         (LEFT_LID, (0.0, -5.0, 0.0), {"orbicularis_oculi_palpebral_upper_left"}),
     ],
 )
-def test_skin_is_held_by_what_moves_it_in_life(simulation, head, landmark, offset, wanted):
+def test_skin_is_held_by_the_muscles_of_anatomy(simulation, head, landmark, offset, wanted):
     """Pulled brow, chin, corner and lid are each held by the few muscles of anatomy."""
     pull, before = pull_at(simulation, head.landmarks[landmark], offset)
     found = values_of(pull)
@@ -89,7 +89,7 @@ def test_skin_is_held_by_what_moves_it_in_life(simulation, head, landmark, offse
     assert pull.short < 0.8 * before
 
 
-def test_what_no_muscle_can_do_is_not_done(simulation, head):
+def test_skin_without_muscles_does_not_move(simulation, head):
     """Pulled forward, the nose above its tip does not move, and neither does the crown."""
     pull, before = pull_at(
         simulation, head.landmarks[NOSE - 1], (0.0, 0.0, 10.0), sight=(1.0, 0.0, 0.0)
@@ -113,7 +113,7 @@ def test_what_no_muscle_can_do_is_not_done(simulation, head):
         (LEFT_WING, (1.0, 0.0, 0.0)),
     ],
 )
-def test_a_generous_pull_goes_as_far_as_a_short_one(simulation, head, landmark, way):
+def test_a_far_pull_ends_at_the_limit_of_muscles(simulation, head, landmark, way):
     """Skin pulled far beyond the reach of muscles moves to their limit, by three at most."""
     went = []
     for length in (6.0, 20.0, 40.0):

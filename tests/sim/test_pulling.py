@@ -13,7 +13,7 @@ def cheek(simulation):
     return np.flatnonzero(norm(rest - middle, axis=1) < 12.0)
 
 
-def test_skin_follows_a_finger_and_swings_back(simulation):
+def test_skin_follows_the_pointer_and_swings_back(simulation):
     """Pulled by 20 mm, skin and its surroundings move most of the way; released, they rest."""
     grabbed = cheek(simulation)
     target = simulation.rest_positions[grabbed] + (20.0, 0.0, 0.0)
@@ -30,7 +30,7 @@ def test_skin_follows_a_finger_and_swings_back(simulation):
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 0.01
 
 
-def test_a_finger_knows_where_a_turned_head_is(simulation):
+def test_skin_of_a_turned_head_follows_the_pointer(simulation):
     """On a turned head, skin still follows the pointer."""
     simulation.controls.set("head_yaw", 1.0)
     for _ in range(90):
@@ -46,7 +46,7 @@ def test_a_finger_knows_where_a_turned_head_is(simulation):
     assert norm(moved) > 0.6 * norm(offset)
 
 
-def test_a_mad_finger_breaks_nothing(simulation, generator):
+def test_a_jumping_pointer_breaks_nothing(simulation, generator):
     """A pointer that jumps 100 mm in every frame leaves skin within bounds, at the longest step."""
     grabbed = cheek(simulation)
     for _ in range(40):

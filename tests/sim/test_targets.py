@@ -26,7 +26,7 @@ def test_a_face_that_rests_places_no_targets(simulation, monkeypatch):
     assert len(placed) == count < 80
 
 
-def test_a_finger_is_felt_by_a_resting_face(simulation):
+def test_a_resting_face_follows_the_pointer(simulation):
     """Skin of a resting face moves in the first step of a pull, and springs back after it."""
     simulation.step(FRAME)
     rest = simulation.positions.copy()

@@ -124,7 +124,7 @@ def test_the_tongue_pierces_nothing(simulation, head, pose):
         assert not is_within(points[front], tongue, faces).any(), name
 
 
-def test_the_measure_sees_what_is_pierced(head):
+def test_the_measure_detects_points_inside(head):
     """The measure reports the middle of the tongue as inside, and a point above as outside."""
     tongue = part(head, "tongue")
     points = np.array([[0.0, -77.0, 65.0], [0.0, -50.0, 65.0], [12.0, -77.0, 60.0]])

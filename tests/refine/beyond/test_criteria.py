@@ -206,7 +206,7 @@ def test_displacement_needs_measures():
     assert (refiner.splits > 0).all()
 
 
-def test_a_rule_of_ones_own_is_asked():
+def test_an_overridden_method_is_used():
     """A subclass that replaces `mark` is used, alone and in a list."""
     mesh = meshes.irregular(4)
 
@@ -228,7 +228,7 @@ def test_a_rule_of_ones_own_is_asked():
     ],
 )
 @pytest.mark.parametrize("name", ["kahler", "kahler-gl"])
-def test_a_rule_that_says_nothing(name, options, text):
+def test_a_missing_method_is_reported(name, options, text):
     """A criterion or scheme without its required method is reported by name in a frame."""
     mesh = meshes.octahedron()
     if name == "kahler-gl" and "scheme" in options:

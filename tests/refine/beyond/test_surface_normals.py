@@ -80,7 +80,7 @@ def test_edges_have_normals_where_they_are_needed(scheme, monkeypatch):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_does_not_depend_on_what_is_split(scheme):
+def test_normals_do_not_depend_on_splits(scheme):
     """The normal of a vertex has the same bits for all splits.
 
     So has a fully grown middle's normal.

@@ -255,7 +255,7 @@ def test_bad_options(options, text):
 
 
 @pytest.mark.parametrize("name", ["criterion", "scheme"])
-def test_an_object_knows_one_mesh(name):
+def test_an_object_serves_one_refiner(name):
     """A criterion or scheme that one refiner uses is refused by another, alone or in a list."""
     thing = refine.Displacement() if name == "criterion" else LoopScheme()
     create = partial(refine.create, "kahler", FINE.faces, FINE.vertices, normals="refined")

@@ -176,7 +176,7 @@ def test_bad_positions(positions):
         refiner.refine(positions)
 
 
-def test_masked_positions():
+def test_masked_positions_are_refused():
     """Positions with masked entries, or with uneven rows, are refused."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh)

@@ -88,7 +88,7 @@ def test_the_checker_passes_embeddings(mesh):
         (lambda points: points.mean(axis=0) + POINTS - POINTS.mean(axis=0), "a turn carries"),
     ],
 )
-def test_the_checker_names_what_is_broken(flaw, relation):
+def test_the_checker_names_the_broken_relation(flaw, relation):
     """The checker reports points that move at rest, that stay behind, or that do not turn."""
     ball = SURFACES["ball"]
     embedding = Flawed(refine.Embedding(ball.faces, ball.vertices, POINTS), flaw)

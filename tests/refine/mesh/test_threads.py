@@ -108,7 +108,7 @@ assert same and os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
-def test_forked_processes_have_threads_of_their_own():
+def test_forked_processes_have_their_own_threads():
     """A forked child refines like its parent, although the parent's threads do not exist in it."""
     code = FORKED.replace("{LOOK}", repr(LOOK))
     done = subprocess.run(
