@@ -75,7 +75,7 @@ def check_surface(part):
 
 @pytest.mark.slow
 def test_skin_that_hides_everything_is_drawn_as_ever(studio):
-    """With opacity 1, or with no structures beneath, the picture has the usual bytes."""
+    """With opacity 1, or without structures, the picture equals one without anatomy."""
     posed(studio.scene)
     usual = picture(studio, AnatomyView())
     assert np.array_equal(picture(studio, AnatomyView(STRUCTURES, 1.0)), usual)

@@ -119,7 +119,7 @@ def test_a_missing_extra_is_named(tmp_path):
 
 
 def test_extras_install_their_libraries():
-    """Extras install what they are named for; `all` has every extra of a program's user."""
+    """Each extra installs its libraries; `all` has every extra of a program's user."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extras = project["optional-dependencies"]
     packages = {"pxr": "usd-core", "imgui_bundle": "imgui-bundle", "pythonosc": "python-osc"}

@@ -26,7 +26,7 @@ EXPRESSIONS = {
 
 
 def passes_of(studio, wanted):
-    """These passes of the last picture."""
+    """The requested passes of the last picture."""
     passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
     return passes.draw(studio.camera, studio.options.style, wanted)
 

@@ -73,7 +73,7 @@ def test_an_avatar_of_ours_needs_no_landmarks(built_in, face):
 
 
 def test_shares_of_bones_stay_within_their_limits(face):
-    """A bone weight rounded above 1 becomes 1; otherwise another would be below 0, an error."""
+    """Bone weights rounded above 1 become 1, so that no other weight is below 0."""
     surface = MovingSurface("skin", face.rest_positions, face.faces)
     none = np.zeros((0, *surface.rest.shape))
     normals = vertex_normals(surface.rest, surface.faces)
@@ -98,7 +98,7 @@ def test_mouth_close_shuts_an_open_jaw(built_in, face):
 
 
 def test_parts_have_the_shapes_that_move_them(built_in):
-    """Lower teeth and tongue have the shape of the jaw, hair has none, eyes are nodes."""
+    """Lower teeth and tongue have shapes that move them; hair has none, and eyes are nodes."""
     player = Player(built_in)
     assert tuple(player.shapes("teeth_lower")) == ARKIT
     lowered = player.shapes("teeth_lower")["jawOpen"][:, 1]

@@ -45,7 +45,7 @@ def lag(heard, source):
 
 
 def test_a_wav_is_read_to_the_sample(tmp_path):
-    """At the usual rate samples are unchanged; one channel stays, more than two become two."""
+    """Samples at the usual rate are unchanged; sounds of more than two channels become stereo."""
     for sides in (1, 2):
         samples = np.stack([noise(0.5, 48_000, seed=seed) for seed in range(sides)], axis=1)
         sound = load_sound(write_wav(tmp_path / "a b, ü.wav", samples, 48_000))

@@ -191,7 +191,7 @@ def test_a_script_moves_the_face_alone(session):
 
 
 def test_live_sets_the_controls_it_names_and_sliders_the_others(session):
-    """A live face leads the controls it names; sliders move the others.
+    """A live face sets the controls that it names; sliders set the others.
 
     When the live face ends, its controls have their sliders' values again.
     """

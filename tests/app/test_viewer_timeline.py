@@ -124,7 +124,7 @@ def test_the_face_becomes_a_key(viewer):
 
 
 def test_the_menu_of_a_bar_keys_one_control(viewer):
-    """The menu of a slider keys its control over the poses, deletes the key, and clears all."""
+    """A slider's menu adds a key of its control, deletes this key, and clears the track."""
     viewer.session.seek(2.0)
     show_controls(viewer, "jaw open")
     drag_and_release(viewer, middle(viewer, "jaw_open"), (40, 0))

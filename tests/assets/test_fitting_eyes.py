@@ -46,7 +46,7 @@ def _across(edge):
 
 
 def _meets(points, triangles):
-    """Whether lines along z meet one of the triangles (m, 3, 3) that face the viewer; (n,)."""
+    """Flags (n,) of lines along z that meet one of the triangles (m, 3, 3) facing the viewer."""
     a, b, c = (triangles[:, corner, :2] for corner in range(3))
     u = b - a
     v = c - a

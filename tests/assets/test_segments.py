@@ -1,4 +1,4 @@
-"""The map of classes: every texel has one, sides mirror, named places have theirs."""
+"""The map of classes: every texel has a class, both sides are mirrored."""
 
 import numpy as np
 import pytest

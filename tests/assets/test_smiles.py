@@ -19,7 +19,7 @@ def test_smiles_change_two_rows_within_their_limits():
     plain = {name: row for layer in layers for name, row in layer.rows.items()}
 
     def rows(smile):
-        """All rows of the layers with a smile."""
+        """All rows of the layers, with this smile applied."""
         return {name: row for layer in smiling(layers, smile) for name, row in layer.rows.items()}
 
     for name, row in rows(USUAL_SMILE).items():

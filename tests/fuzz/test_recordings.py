@@ -40,7 +40,7 @@ TOKENS = (
 
 
 def check(take):
-    """Check a Take read from any content: what its class promises holds."""
+    """Check the properties of every Take, for any content of the file."""
     assert len(take.times) > 0
     assert take.times[0] == 0.0
     assert np.isfinite(take.times).all()

@@ -39,7 +39,7 @@ def test_points_on_the_mesh():
 
 
 def test_finds_the_surface_with_the_same_direction():
-    """Of two grids that face away from each other, a point finds the one that faces its way."""
+    """Of two grids facing away from each other, the one with the point's direction is found."""
     grid = meshes.open_grid(6, 6)
     count = len(grid.vertices)
     vertices = np.concatenate([grid.vertices, grid.vertices - [0.0, 0.0, 0.01]])

@@ -55,7 +55,7 @@ def test_split_wires_outline_split_triangles_alone(surface):
 
 
 def test_split_colours_of_many_triangles(surface):
-    """With more triangles than one row of the look-up texture, colours fit their triangles."""
+    """Triangles beyond the first row of the look-up texture have their own colours, too."""
     shape = sphere(5)
     centres = shape.positions[shape.triangles].mean(axis=1)
     values = np.where(centres[:, 1] > 0.0, 5, 0).astype(np.uint8)

@@ -91,7 +91,7 @@ def test_two_runs_are_bit_identical(simulation, head):
 
 
 def test_reset_forgets_everything(simulation):
-    """After a reset a run repeats itself to the bit."""
+    """After a reset the same inputs give the same bits."""
     values = both_sides(simulation, {"zygomaticus_major": 0.7, "jaw_open": 0.5})
     first = settled_displacement(simulation, values, frames=7)
     second = settled_displacement(simulation, values, frames=7)

@@ -128,7 +128,7 @@ def plain_measure(kind, positions, normals, edges, most):
     ],
 )
 def test_needs_by_hand(kind, once, twice, level):
-    """A metric is the measure, scaled by the distance of both thresholds.
+    """A metric is the measure minus `once`, divided by the distance of both thresholds.
 
     With an infinite second threshold it is scaled by the first threshold.
     """

@@ -162,7 +162,7 @@ def test_normals_do_not_pop(scheme):
     at=st.sampled_from([0.0, 0.25, 1.0, 1.25]),
 )
 def test_geomorph_has_no_steps(seed, scheme, edge, at):
-    """For any splits around it, an edge that passes a threshold does not turn shading by a step.
+    """Shading does not jump when an edge passes a threshold, for any splits around it.
 
     The remaining change comes from interpolation between more points: 3 degrees for turns of 80.
     """
