@@ -188,9 +188,9 @@ def test_the_command_draws_anatomy(tmp_path):
 
 @pytest.mark.parametrize(("pose", "view"), [({}, "-30,-10,1.3"), ({"surprise": 1.0}, "-12,0,2")])
 def test_the_whole_side_is_the_usual_picture(studio, pose, view):
-    """On the side that is not opened, the picture is the usual one.
+    """The side that is not opened looks as usual: no structure comes through its skin.
 
-    No structure comes through the skin, the mouth is lined, and lashes are there.
+    The mouth is lined, and lashes are there.
     """
     posed(studio.scene, **pose)
     camera, studio.camera = studio.camera, camera_for(studio.scene, view)
@@ -237,7 +237,10 @@ def test_a_mask_is_searched_for_a_neck_once(monkeypatch):
 
 @pytest.mark.parametrize("pose", [{"joy": 1.0}, {"jaw_open": 1.0}, {"anger": 1.0}])
 def test_bands_move_with_the_skin_and_leave_the_mouth_open(pose):
-    """They jumped by up to 34 mm in a frame of a suddenly set joy, and crossed the open mouth."""
+    """In a suddenly set joy, bands move smoothly with the skin, and leave the open mouth free.
+
+    They once jumped by up to 34 mm in a frame, and crossed the open mouth.
+    """
     scene = posed(FaceScene())
     muscles = Muscles.of(scene.face)
     scene.pose(pose)

@@ -215,7 +215,7 @@ linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks i
 @pytest.mark.slow
 @linux
 def test_killed_at_random_moments():
-    """A worker or the whole batch is killed; --resume completes exactly the undisturbed bytes."""
+    """After a worker or the whole batch is killed, --resume gives exactly the undisturbed bytes."""
     names = films(3)
     assert batch("--jobs", "2").exit_code == 0
     undisturbed = contents("made")

@@ -139,7 +139,7 @@ def test_a_pose_needs_no_script(tmp_path):
 
 @pytest.mark.slow
 def test_persons_and_lights_are_filmed(tmp_path):
-    """Persons and lights change the pictures, and the same ones give the same pictures."""
+    """Persons and lights change the pictures, and pictures of the same person repeat exactly."""
     seen = []
     for words in ("", "--head 3", "--style light=side", "--head ada", "--head 3"):
         asked = f"capture --set joy {words} --size 96x96 --quiet -o".split()

@@ -97,7 +97,7 @@ def test_a_damaged_sample_is_made_anew(made, tmp_path):
 
 
 def test_a_sample_counts_when_all_of_its_files_are_whole(made, tmp_path):
-    """A sample with something else in the place of one file is not counted as complete."""
+    """A sample is not counted as complete if something else has the name of one of its files."""
     labels = (made / "000001.json").read_bytes()
     picture = (made / "000001.png").read_bytes()
     instead = [
@@ -163,7 +163,7 @@ def test_other_folders_are_left_alone(made, tmp_path):
 
 @pytest.mark.slow
 def test_a_set_begins_anywhere(made, tmp_path):
-    """A set may begin at any sample; it has the same samples, and can be completed from 0 on."""
+    """A set that begins later has the same samples, and can be completed from 0 on."""
     folder = tmp_path / "part"
     assert run(folder, "--first", 2, count=2).exit_code == 0
     for end in ENDS:

@@ -56,7 +56,7 @@ def test_jpeg_is_unpacked_again():
 
 @pytest.mark.slow
 def test_only_pictures_and_one_label_differ(tmp_path):
-    """Only pictures and one label change; rows of a table choose degradations.
+    """Only pictures and one label change; rows of a table choose the degradations.
 
     The data set's card names the option.
     """

@@ -80,9 +80,9 @@ def read(tmp_path, text):
 
 
 def test_a_table_of_ones_own_replaces_sections(tmp_path):
-    """The table that the command prints changes nothing.
+    """The printed table, used as a user's table, changes nothing.
 
-    A user's table replaces the sections in it; some sections keep missing rows.
+    A user's table replaces whole sections, but some sections keep rows that it leaves out.
     """
     printed = risorius("dataset", "--sample-table").output
     assert read(tmp_path, printed) == TABLE

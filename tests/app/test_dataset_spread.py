@@ -81,7 +81,7 @@ def test_shards_hold_the_files_of_the_set(loose, packed):
 
 
 def test_the_index_has_the_place_of_each_sample(loose, packed):
-    """Offset and length in the index cut out a part that is a tar file with this sample alone."""
+    """In the index, offset and length cut out a tar file with only this sample."""
     with (packed / "index.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     for row in rows:

@@ -1,4 +1,4 @@
-"""Heads with too many triangles: a simplified mesh is simulated, and their own follow."""
+"""Heads with too many triangles: a simplified mesh is simulated, and the file's mesh follows."""
 
 import numpy as np
 import pytest

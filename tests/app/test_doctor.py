@@ -56,7 +56,7 @@ def test_every_command_is_said_to_work_or_not(machine_without):
     "missing", [each for count in range(4) for each in itertools.combinations(PARTS, count)]
 )
 def test_the_verdict_agrees_with_the_parts(machine_without, missing):
-    """For each missing part, line, summary and exit code agree."""
+    """For each missing part, its line, the summary and the exit code agree."""
     machine_without(*missing)
     result = ask()
     lines = dict(line.split(": ", 1) for line in result.output.splitlines() if ": " in line)

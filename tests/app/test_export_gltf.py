@@ -324,7 +324,7 @@ def test_named_targets_alone_follow_the_motion(clip, tmp_path):
 
 
 def test_weights_of_shapes_come_back_by_name(tmp_path):
-    """A take of ARKit shapes is written under the same names, with the face's delay."""
+    """Weights of ARKit's targets repeat a take of ARKit shapes, with the face's delay."""
     script = parse_script(TAKE, source="test")
     path = tmp_path / "take.glb"
     written(record(script, None, 12.0, progress=False), path)

@@ -141,7 +141,7 @@ def test_arrays_and_point_caches_have_the_refined_vertices(refined, tmp_path):
 
 @pytest.mark.parametrize("look", ["paper", "smooth"])
 def test_a_pose_that_is_held(look):
-    """A held pose has its own triangles, other than rest, in all frames and in the file."""
+    """In a held pose, all frames and the file have triangles other than those at rest."""
     held = "duration = 0.2\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
     scene = FaceScene()
     scene.pose({"joy": 1.0})
@@ -176,7 +176,7 @@ def test_a_refiner_that_never_changes_needs_no_splits(clip):
     ],
 )
 def test_mistakes_are_reported(name, request_, error, tmp_path: Path):
-    """A format without a mesh, or limited to the base triangles, is refused in one line."""
+    """A format is refused in one line if it has no mesh, or only the base mesh's triangles."""
     path = tmp_path / name
     with pytest.raises(UserError, match=error):
         check_request(path, format_for(path, None), request_)

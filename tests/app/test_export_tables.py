@@ -1,4 +1,4 @@
-"""Exported curves: read by the readers of recordings, they move the face equally."""
+"""Exported curves: readers of recordings read them, and the face moves in the same way."""
 
 import csv
 

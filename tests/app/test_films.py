@@ -101,7 +101,10 @@ def test_a_gif_refuses_frames_that_players_slow_down(tmp_path):
 @pytest.mark.parametrize("samples", [0, 4])
 @pytest.mark.parametrize("colour", [(255, 255, 255), (0, 0, 0), (0, 177, 64)])
 def test_a_transparent_picture_lies_over_any_colour(samples, colour):
-    """Over white, black and green, a transparent picture equals the opaque one, without fringe."""
+    """A transparent picture over white, black or green equals the opaque picture there.
+
+    Its edges have no fringe.
+    """
     flat = tuple(part / 255.0 for part in colour)
     background = render.Background(flat, flat)
     pictures = []

@@ -11,7 +11,7 @@ from tests.assets.gltf_files import GltfMaker
 
 @pytest.mark.parametrize("kind", ["png", "jpeg", "webp"])
 def test_a_picture_beside_a_document_keeps_its_kind(tmp_path, kind):
-    """A texture that only EXT_texture_webp names is unchanged; its image is an image/webp."""
+    """A texture that only EXT_texture_webp names stays; its image has the type image/webp."""
     content = io.BytesIO()
     PIL.Image.new("RGB", (4, 4), (250, 10, 20)).save(content, kind)
     (tmp_path / "skin").write_bytes(content.getvalue())

@@ -112,7 +112,10 @@ def test_skin_below_dense_hair_is_not_shaded(person, monkeypatch):
 
 
 def test_no_specks_of_light_lie_in_parted_hair(monkeypatch):
-    """Rounded depths below hair hid hair itself: 843 white pixels on person 9 from this side."""
+    """No white pixels lie in parted hair: person 9 had 843 of them from this side.
+
+    Rounded depths of layers below the hair hid the hair.
+    """
     with Capture(FaceScene(person_called(9)), CaptureOptions(size=(640, 480))) as capture:
         capture.camera = camera_for(capture.scene, "-40,10,2")
         capture.camera.target = np.array([0.0, 60.0, 10.0])
@@ -123,7 +126,10 @@ def test_no_specks_of_light_lie_in_parted_hair(monkeypatch):
 
 
 def test_halves_of_parted_hair_meet_softly():
-    """Person 9's right half shone up to the parting, 1.38 times as bright as the left one there."""
+    """Both halves of parted hair shine equally.
+
+    Person 9's right half was 1.38 times as bright as the left half up to the parting.
+    """
     options = CaptureOptions(size=(480, 360), camera="0,40,3")
     with Capture(FaceScene(person_called(9)), options) as capture:
         capture.camera.target = np.array([0.0, 90.0, 30.0])

@@ -117,10 +117,7 @@ def _off(scene, viewer):
 
 
 def test_a_camera_at_the_side_is_not_followed(scene):
-    """With the camera in profile or behind, the face looks straight ahead.
-
-    Its motion never jumps on the way.
-    """
+    """With the camera at the side or behind, the face looks straight ahead, without jumps."""
     for view in ("profile", "180,0", "0,80"):
         parts = looking_at(scene.face, camera_for(scene, view).eye)
         assert all(value == 0.0 for part in parts.values() for value in part.values())

@@ -65,7 +65,10 @@ def test_live_link_angles_are_radians_to_the_right_and_down():
 
 
 def test_without_a_face_live_link_sends_no_values():
-    """Without a face, the count is 0 or missing, or nothing follows it; no values are read."""
+    """A packet without a face has a count of 0 or no count, or ends after it.
+
+    No values are read.
+    """
     packet = live_link(None)
     for cut in (packet, packet[:-1] + b"\x3d", packet[:-1]):
         frame = parse_live_link(cut)
@@ -83,7 +86,7 @@ def test_nonsense_among_values_is_left_out():
 
 
 def test_other_versions_and_every_torn_packet_are_none():
-    """A packet cut at any byte, or of another version, is refused, where values must follow."""
+    """A packet of another version, or cut at any byte, is refused if values are required."""
     assert parse_live_link(live_link({}, version=5)) is None
     packet = GOOD["livelink"]
     values = len(packet) - 4 * 61
@@ -205,7 +208,7 @@ def is_sound(frame):
 @pytest.mark.parametrize("kind", KINDS)
 @given(data=st.data())
 def test_hypothesis_finds_no_packet_that_does_harm(kind, data):
-    """Good packets with a part replaced by random bytes or text do no harm."""
+    """Good packets with a part replaced by random bytes or text raise no error."""
     good = GOOD[kind]
     begin = data.draw(st.integers(0, len(good)))
     end = data.draw(st.integers(begin, len(good)))

@@ -1,4 +1,4 @@
-"""The walls of the mouth stay inside it: in turned heads, with open jaws, on masks."""
+"""The walls of the mouth stay inside the head: in turned heads, with open jaws, on masks."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -112,7 +112,7 @@ def seen_from_in_front(sitter, pitches):
 def test_nothing_hangs_below_a_mask(renderer, lowest):
     """A skin without a neck hides the inside of its mouth, at rest and with an open jaw.
 
-    The inside is visible from below only, if the jaw is open.
+    The inside is visible only from below and with an open jaw.
     """
     sitter = Sitter(FaceScene(mask(lowest)), renderer)
     assert seen_from_in_front(sitter, (-10.0, 0.0, 20.0)) == {}
@@ -132,7 +132,7 @@ def lower_edge(walls):
 
 
 def test_walls_stretch_with_the_jaw(face):
-    """The walls' edge follows the mandible and their root the skull; at rest nothing changes."""
+    """The walls' edge follows the mandible, and their root the skull; at rest nothing changes."""
     face.reset()
     walls = next(part for part in face.parts if isinstance(part, MouthWalls))
     rest = walls.vertices

@@ -261,7 +261,7 @@ def test_frames_and_samples_follow_no_link(secret, tmp_path):
 
 
 def test_an_output_never_replaces_an_input(tmp_path):
-    """An output that would replace an input is refused, whatever link names either."""
+    """An output that would replace an input is refused, also if links have other names for it."""
     real, link, other = (tmp_path / name for name in ("real.toml", "link.toml", "other.toml"))
     real.write_text("mine")
     link.symlink_to(real)

@@ -45,7 +45,7 @@ def test_points_are_projected_where_opengl_draws_them(size, yaw, pitch):
 @settings(max_examples=25, deadline=None)
 @given(yaw=st.floats(-80.0, 80.0), pitch=st.floats(-60.0, 60.0))
 def test_a_head_at_rest_is_turned_as_the_camera_is_not(scene, yaw, pitch):
-    """A camera at the subject's left measures a head turned right; from above, a bowed head."""
+    """From the subject's left, a head's yaw is to its right; from above, its pitch is downward."""
     scene.reset()
     camera = camera_at(yaw, pitch)
     size = (640, 480)

@@ -141,7 +141,7 @@ def test_the_error_names_the_apparent_kind_of_file(tmp_path, name, content, word
     ],
 )
 def test_angles_turn_head_and_eyes_as_they_were_recorded(face, channel, degrees, axis, towards):
-    """Recorded angles turn only the recorded bone by the same angle.
+    """A recorded angle turns only its own bone, by the same angle.
 
     Angles are to the subject's left, up, and to the left shoulder.
     """

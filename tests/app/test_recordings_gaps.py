@@ -36,9 +36,9 @@ def test_any_rows(rows):
 
 
 def test_rows_are_put_in_the_order_of_their_times():
-    """Rows are sorted by time; of two at one time the first counts.
+    """Rows are sorted by time; of two rows with one time the first is used.
 
-    A time years away is not part of the take.
+    A row whose time is years away is left out.
     """
     times = np.array([0.2, 0.0, 0.1, 0.1, np.nan, 0.3, 1e9])
     take = whole_take("any", "x", times, {"jawOpen": np.arange(7) / 10.0})
@@ -48,7 +48,10 @@ def test_rows_are_put_in_the_order_of_their_times():
 
 
 def test_a_pose_is_held_and_left_at_the_end_of_the_gap():
-    """A gap holds the pose, and returns to motion at its end: 0.5 s at 10 frames/s, exactly."""
+    """A gap holds the last pose, and changes to the next pose at its end.
+
+    The gap is 0.5 s at 10 frames per second, and values are exact.
+    """
     values = np.array([0.2, 0.4, np.nan, np.nan, np.nan, np.nan, 1.0, 1.0])
     take = whole_take("any", "x", np.arange(8) / 10.0, {"jawOpen": values})
     expected = [0.2, 0.4, 0.4, 0.4, 0.6, 0.8, 1.0, 1.0]

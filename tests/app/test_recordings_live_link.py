@@ -75,7 +75,10 @@ def test_units_of_angles(name, unit, tmp_path):
 
 
 def test_axes_of_the_eyeballs(tmp_path):
-    """Axes of eyeballs, 4 degrees outward from the gaze, are corrected, or a face would squint."""
+    """The axes of eyeballs point 4 degrees outward from the gaze, and are corrected.
+
+    Otherwise a face would squint.
+    """
     take = take_in(tmp_path, live_link())
     left = take.channels["eye_yaw_left"]
     right = take.channels["eye_yaw_right"]
@@ -86,7 +89,7 @@ def test_axes_of_the_eyeballs(tmp_path):
 
 
 def test_angles_that_are_switched_off(tmp_path):
-    """If all head angles are 0, the app did not record them, and the head is free."""
+    """If all head angles are 0, the app did not record them, and the take has no head angles."""
     off = {name: np.zeros(120) for name in ("HeadYaw", "HeadPitch", "HeadRoll")}
     take = take_in(tmp_path, live_link() | off)
     assert "head_yaw" not in take.channels

@@ -93,7 +93,7 @@ TEXTS = {
 
 @pytest.mark.parametrize("kind", TEXTS)
 def test_layouts(kind, tmp_path):
-    """With all separators and quotes, times and values are the same, and the guess is reported."""
+    """Times and values are the same with all separators and quotes; the guess is reported."""
     make, note = TEXTS[kind]
     path = tmp_path / "take.csv"
     path.write_text(make(), encoding="utf-8")
@@ -171,7 +171,10 @@ def test_a_quoted_text_beside_numbers(tmp_path):
 
 @pytest.mark.parametrize("is_first", [True, False])
 def test_a_quote_that_is_not_closed(tmp_path, is_first):
-    """An unclosed quote loses its own row only, and its line is reported, also for two."""
+    """An unclosed quote loses its own row only, and its line is reported.
+
+    The same holds for two unclosed quotes.
+    """
     path = tmp_path / "take.csv"
     broken = '0.1,"0.2\n' if is_first else '"0.1,0.2\n'
     path.write_text(f'time,"jawOpen"\n0,0.1\n{broken}0.2,0.3\n0.3,"0.4\n0.4,0.5\n')

@@ -48,7 +48,7 @@ def test_any_timecode(base, step, tmp_path):
 
 @pytest.mark.parametrize(("rate", "base"), [(23.976, 24), (29.97, 30), (47.952, 48), (59.94, 60)])
 def test_the_true_rate_of_timecode(rate, base, tmp_path):
-    """A `--rate` a thousandth below timecode's rate is taken as the camera's real rate."""
+    """A `--rate` that is a thousandth below the timecode's rate is the camera's real rate."""
     cells = [timecode(frame, base) for frame in range(3 * base)]
     take = take_of(tmp_path, cells, name="Timecode", rate=rate)
     assert take.duration == approx((3 * base - 1) / rate)

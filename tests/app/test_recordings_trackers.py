@@ -123,7 +123,10 @@ def test_several_faces(tmp_path):
 
 
 def test_pyfeat_1(tmp_path):
-    """Frame numbers are the times; head angles are degrees, + up, right, left shoulder."""
+    """Frame numbers are the times.
+
+    Head angles are in degrees: up, right, left shoulder are positive.
+    """
     take = take_in(tmp_path, pyfeat())
     assert take.kind == "py-feat 1"
     assert not take.unknown
@@ -136,7 +139,7 @@ def test_pyfeat_1(tmp_path):
 
 
 def test_pyfeat_2(tmp_path):
-    """Rows are every other frame, angles radians; units count only where shapes are missing."""
+    """Rows are every other frame, angles are in radians; units replace missing shapes only."""
     take = take_in(tmp_path, pyfeat_2())
     assert take.kind == "py-feat 2"
     assert not take.unknown

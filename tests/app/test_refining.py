@@ -38,7 +38,7 @@ def test_only_switches_numbers_and_words_are_options():
 
 
 def test_optional_values_are_choices():
-    """Texts stand for values; another value, or a number for a switch, is refused."""
+    """Texts stand for values; another value, or a number instead of a switch, is refused."""
     options = options_of("kahler", "normal")
     choices = {name: dict(each.choices) for name, each in options.items() if each.choices}
     assert choices == {

@@ -235,9 +235,9 @@ def test_an_option_corrects_the_role_of_a_piece(whole, tmp_path):
 
 
 def test_correctives_make_sums_come_true(tmp_path, face):
-    """Correctives are shapes of pairs, weighted by the product of both weights.
+    """A corrective is a shape for a pair, weighted by the product of both weights.
 
-    The file stores this rule, and the sum equals both shapes simulated together.
+    The file stores this rule. Both shapes and the corrective add up to the simulated pair.
     """
     path = tmp_path / "head.glb"
     succeeded("rig", "-o", path, "--correctives", 2, "--quiet")

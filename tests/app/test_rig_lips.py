@@ -125,9 +125,9 @@ def test_a_fault_of_a_cut_head_names_the_cut(shut, tmp_path):
 
 
 def test_a_cut_takes_the_vertices_of_the_mesh_that_is_cut(shut, tmp_path):
-    """The cut uses vertices of the mesh it cuts, not those of an earlier attempt.
+    """The cut doubles vertices of the final mesh, not those of an earlier attempt.
 
-    In the earlier attempt vertices of a seam across the lips were separate.
+    In the earlier attempt, vertices of a seam across the lips were separate.
     """
     path, marks, doubled, _ = write_glb(shut, tmp_path)
     numbers = shut.landmarks.copy()

@@ -140,7 +140,7 @@ def pieces_with(scene: FaceScene, own: tuple[Points, Faces], name: str = "") -> 
 
 @pytest.mark.parametrize("case", CASES)
 def test_each_piece_gets_its_role(face, case):
-    """Roles are found for layered eyes, rooted teeth, a deep tongue, a beard and glasses."""
+    """Roles are found for eyes in layers, teeth with roots, a deep tongue, a beard and glasses."""
     make, role = CASES[case]
     assert {piece.role for piece in pieces_with(face, make(Maker(face)))} == {role}
 

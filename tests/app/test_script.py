@@ -72,7 +72,7 @@ def channels(draw):
 
 @given(tracks=st.dictionaries(st.text(max_size=5), channels(), max_size=3))
 def test_a_written_script_reads_back(tracks):
-    """A written script reads back to the last digit and in order, for both forms of tracks."""
+    """A written script is read back with each digit and in order, for both forms of tracks."""
     script = Script("t", 1.0, "t", poses=(Pose(0.0),), tracks=tracks)
     read = parse_script(script_text(script), source="t")
     assert read == script
@@ -98,7 +98,7 @@ def test_a_channel_has_the_values_of_its_keys(channel, data):
 
 @given(channel=channels(), start=st.floats(0.0, LARGEST), span=st.floats(1e-3, 1e4))
 def test_a_drawn_curve_has_the_played_values(channel, start, span):
-    """Each point of the drawn curve has the played value; with few keys, each key is drawn."""
+    """The drawn curve has the played values; if keys are few, each is drawn."""
     times, values = channel.outline(start, start + span, 40)
     keys = [time for time in channel.times.tolist() if start <= time <= start + span]
     if len(keys) <= 40:

@@ -68,7 +68,7 @@ class Stopped(Exception):  # noqa: N818, what ends the test is no error
 
 
 def clock_until(end):
-    """A clock, a sleep that advances it and ends the test, and the slept times."""
+    """A clock, a sleep that advances the clock and ends the test, and the slept times."""
     now = [0.0]
     slept = []
 

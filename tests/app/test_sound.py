@@ -70,7 +70,7 @@ def test_other_rates_are_in_step(tmp_path, rate):
 def test_an_unreadable_sound_is_reported_in_one_line(tmp_path):
     """An unreadable sound is reported in one line with the fault and the remedy.
 
-    Missing, empty, damaged, silent, a folder, a pipe.
+    Cases: missing, empty, damaged, silent, a folder, a pipe.
     """
     (tmp_path / "text.wav").write_text("no sound")
     (tmp_path / "empty.wav").touch()

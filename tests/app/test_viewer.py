@@ -115,7 +115,10 @@ def test_keys_change_the_picture(viewer):
 
 
 def test_the_mouse_orbits_and_the_wheel_zooms(viewer):
-    """The right button orbits from anywhere, the left beside the face; F frames the face."""
+    """The right button orbits from anywhere, the left button beside the face.
+
+    F frames the face.
+    """
     view = viewer.face.view.camera.view_matrix().copy()
     for button, place in ((3, nose(viewer)), (1, on_screen(viewer, SIZE[0] - 20, 100))):
         drag_and_release(viewer, place, (-80, 20), button=button)
@@ -154,7 +157,7 @@ def test_the_skin_is_dragged_and_swings_back(viewer):
 
 
 def test_a_hovered_expression_lights_its_muscles(viewer):
-    """Hovering joy highlights muscles of both sides; a kiss the lips' but not the forehead's."""
+    """Pointing at joy highlights muscles of both sides, at a kiss only those of the lips."""
     xdotool(viewer, "mousemove", *middle(viewer, "show joy"))
     pulled = [f"{MAJOR}_{side}" for side in ("left", "right")]
     assert until(viewer, lambda: pulled[0] in viewer.face.view.pointed)
@@ -209,7 +212,7 @@ def test_a_look_is_chosen(viewer):
 
 
 def test_closing_asks_about_unsaved_work(viewer):
-    """Closing with a pose set by hand asks; "back" keeps the pose, "on" closes."""
+    """Closing asks about a pose set by hand: "back" keeps the pose, "on" closes."""
     viewer.session.set("jaw_open", 0.5)
     press_keys(viewer, "ctrl+q")
     assert viewer.context.question.is_open
@@ -337,7 +340,7 @@ def test_a_corner_drawn_up_and_out_smiles_at_any_speed(viewer):
 def test_a_pull_is_the_same_beside_busy_processes(viewer):
     """Beside busy processes, muscles move as far as on an idle machine; a far pull is a smile.
 
-    Pulls are short and far, slow and at once.
+    Pulls are short and far, slow and sudden.
     """
     far = pulled_corner(viewer, 60, 6)
     quiet = pulled_corner(viewer, 12, 6)

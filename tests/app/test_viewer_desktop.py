@@ -107,7 +107,7 @@ def test_a_line_is_seen_before_anything_is_compiled(start, tmp_path):
 
 @pytest.mark.slow
 def test_a_plane_has_no_settings_of_a_face():
-    """With the plane, settings of a face are in no panel or menu; those of all scenes are."""
+    """With the plane, panels and menus have settings for all scenes, but none of a face."""
     with Viewer(script_for(None, "plane"), SIZE, Display()) as viewer:
         for tab, there, missing in (
             ("Face", {"search", "Neutral"}, {"Mirror", "Link sides", "tab Live", "menu Live"}),

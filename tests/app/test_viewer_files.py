@@ -321,7 +321,7 @@ def test_the_waveform_is_seen_and_scrubs(viewer, sound, has_device):
 
 
 def test_a_name_that_is_no_utf8(viewer, tmp_path):
-    """A file name that is no UTF-8 is shown escaped, and never changed.
+    """A file name that is not UTF-8 is shown with escapes, and never changed.
 
     The file is dropped, saved, chosen and opened again.
     """

@@ -237,7 +237,7 @@ def test_a_recovered_script_is_complete(session, recovery, tmp_path):
 
 
 def test_a_found_file_stays_and_is_found_once(session, tmp_path):
-    """A found file survives changes, saves and discards, and a window with the plane."""
+    """Changes, saves and discards do not touch a found file, nor does a window with the plane."""
     session.set("jaw_open", 0.4)
     leave(tmp_path, session)
     assert found_by_next(tmp_path, Session(PlaneScene(), script_for(None, "plane"))) is None
@@ -307,9 +307,9 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
     "how", [pytest.param(signal.SIGHUP, marks=pytest.mark.slow), signal.SIGKILL]
 )
 def test_a_window_that_ended_is_recovered(at_work, tmp_path, how):
-    """A window stopped, or killed some seconds after the last change, leaves its work.
+    """The work of a window that was stopped or killed is recovered by the next window.
 
-    The next window names the file in a line.
+    It was killed some seconds after the last change; a line names the file.
     """
     folder = tmp_path / "risorius"
     if how == signal.SIGKILL:
@@ -328,9 +328,9 @@ def test_a_window_that_ended_is_recovered(at_work, tmp_path, how):
 
 
 def test_pictures_of_persons_are_drawn_once(tmp_path, monkeypatch):
-    """Pictures of persons are stored for this version; those of others are removed.
+    """Pictures of persons are stored for this version; those of other versions are removed.
 
-    Broken ones are ignored.
+    Broken pictures are ignored.
     """
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(portraits, "give_way", lambda _: None)

@@ -144,7 +144,7 @@ def test_the_face_follows_an_edit_if_it_followed_the_script(session):
 
 
 def test_undo_restores_the_file_of_a_script(session, tmp_path):
-    """Undo beyond the opening of another script restores the first script's file, too."""
+    """Undo beyond the opening of another script also restores the first script's file name."""
     own = session.file.path
     other = tmp_path / "other.toml"
     other.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")

@@ -37,7 +37,7 @@ def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer):
 
 
 def test_a_key_switches_it_off_and_on(viewer):
-    """A stops the face, so that the window can sleep; A again wakes it."""
+    """The key A stops the face, so that the window can sleep; pressed again, it wakes the face."""
     assert until(viewer, lambda: moved(viewer) > 0.1)
     press_keys(viewer, "a")
     assert not viewer.settings.is_alive
@@ -59,7 +59,10 @@ def test_it_sleeps_without_input(viewer):
 
 
 def test_panels_lie_beside_the_picture_of_a_smaller_window(viewer):
-    """Nobody touches a window that gets smaller: its panels were drawn over the old picture."""
+    """After a window gets smaller without input, panels do not cover an old picture.
+
+    They were drawn over the old picture.
+    """
     import glfw
 
     handle = viewer.surface.handle

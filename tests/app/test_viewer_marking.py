@@ -235,7 +235,7 @@ class TestInTheWindow:
         assert axes() == approx(np.eye(3), abs=0.1)
 
     def test_a_mark_is_put_only_where_it_is_seen(self, viewer, mesh):
-        """A click through the open neck onto the back of skin makes no mark, as a line says."""
+        """A click through the open neck on the back of skin makes no mark; a line reports it."""
         viewer.read(mesh)()
         mode = self.mode(viewer)
         mode.view.camera.orbit(180.0)

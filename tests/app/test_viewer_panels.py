@@ -289,7 +289,7 @@ def test_everything_stays_inside_its_panel(viewer, zoom):
 
 
 def test_any_size_can_be_drawn(viewer):
-    """A window made tiny, flat, and large again while the face moves continues to draw."""
+    """A window made tiny, flat, and large again during motion of the face still draws."""
     import glfw
 
     before = viewer.face.view.area
@@ -308,7 +308,7 @@ def test_any_size_can_be_drawn(viewer):
 
 
 def test_the_status_line_is_complete_in_a_small_window(viewer):
-    """The status line is shown in full; without room a script's name is left out, not cut."""
+    """The status line is shown in full; without room, a script's name is left out."""
     import glfw
 
     def shown(*size):

@@ -74,7 +74,7 @@ def scripts(draw):
 
 
 def cut_by(script, name, times, moment):
-    """Whether a moment is between two keys of a track that one of the times separates."""
+    """Whether a moment lies between two keys of a track, with one of the times between them."""
     keys = script.tracks.get(name, Channel([], [])).times
     ways = itertools.pairwise(keys)
     return any(a < moment < b and any(a < time < b for time in times) for a, b in ways)
@@ -87,9 +87,9 @@ def cut_by(script, name, times, moment):
 )
 @settings(max_examples=100, deadline=None)
 def test_punching_in_changes_nothing_else(played, start, moves):
-    """Outside a recording, every key and every untouched control is the same, to the bit.
+    """Outside a recording, every key and every untouched control stays the same, to the bit.
 
-    An easing that the recording cuts is followed with an invisible error.
+    An easing that the recording cuts is replaced with an invisible error.
     """
     recorder = Recorder(played, start)
     held = dict[str, float]()

@@ -67,7 +67,10 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
 
 
 def test_a_click_selects_a_key_and_goes_there(viewer):
-    """A click selects and shows a pose; Shift adds another without showing it."""
+    """A click selects and shows a pose.
+
+    A click with Shift also selects another, without showing it.
+    """
     session = viewer.session
     press(viewer, key_at(viewer, JOY))
     assert viewer.face.selection.places == {JOY}
@@ -85,7 +88,7 @@ def test_a_click_selects_a_key_and_goes_there(viewer):
 
 
 def test_a_box_selects_keys_that_then_move_together(viewer):
-    """A drag over empty space selects poses and tracks' keys inside; they move together."""
+    """A drag over empty space selects poses and keys in a box; they move together."""
     session = viewer.session
     x, y = key_at(viewer, JOY)
     right, low = key_at(viewer, KeyPlace("blink", 2.4))
@@ -282,7 +285,10 @@ def test_easings_are_chosen_and_seen(viewer):
 
 @pytest.mark.usefixtures("curves")
 def test_handles_set_slopes(viewer):
-    """Handles change slopes at a selected key; face and file agree; undo and Escape work."""
+    """Handles change the slopes at a selected key in the face and the file.
+
+    Undo and Escape revert the change.
+    """
     session = viewer.session
     before = session.script
     viewer.face.selection.places = Places.of(KeyPlace(POSES, 1.0))

@@ -77,7 +77,7 @@ def test_work_of_a_killed_process_is_repeated(tmp_path):
 def test_work_that_kills_every_process_is_given_up(tmp_path):
     """Work that kills every process ends after three attempts, in one line.
 
-    For a crash the log has the place.
+    For a crash, the log has the place in the code.
     """
     log = tmp_path / "log"
     with pytest.raises(UserError, match="died 3 times, the last time of SIGSEGV"):
@@ -115,7 +115,7 @@ def test_everything_that_is_printed_goes_to_its_log(tmp_path):
 
 
 def test_libraries_share_the_cores(monkeypatch):
-    """With more processes than cores, each has one thread; a user's number is divided."""
+    """With more processes than cores, each has one thread; a number set by the user is divided."""
     monkeypatch.delenv("LP_NUM_THREADS", raising=False)
     assert run(working.library_threads, jobs=1024) == ["1"]
     monkeypatch.setenv("LP_NUM_THREADS", "7")

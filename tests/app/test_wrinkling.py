@@ -98,7 +98,7 @@ def test_furrows_of_age_are_pulled_flat():
 def test_folds_of_lids_flatten_when_the_eyes_shut():
     """The crease of an open eye flattens when the lids shut.
 
-    It crossed the shut lid as a dark band above a step.
+    Before, it crossed the shut lid as a dark band above a step.
     """
     person = person_called("maria")
     faces = FaceScene(person)
@@ -112,7 +112,7 @@ def test_folds_of_lids_flatten_when_the_eyes_shut():
 
 
 def test_folds_of_lids_stay_without_wrinkles():
-    """Wrinkles of strength 0 took the fold with those of motion and age."""
+    """Folds of lids stay when wrinkles of motion and age have strength 0."""
     person = person_called("maria")
     faces = FaceScene(person)
     measure = Compression(faces)
@@ -130,7 +130,10 @@ def test_folds_of_lids_stay_without_wrinkles():
 
 
 def test_a_young_person_looks_alike_without_wrinkles():
-    """Person 8 has folds and no furrows; the built-in head has neither, and nothing is measured."""
+    """With and without wrinkles, the picture of a young person at rest is the same.
+
+    Person 8 has folds but no furrows. The built-in head has neither, so nothing is measured.
+    """
     scene = FaceScene(person_called(8))
     pictures = []
     for strength in (1.0, 0.0):
