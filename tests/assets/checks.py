@@ -29,7 +29,7 @@ def is_manifold(faces: Integers32) -> bool:
 
 
 def component_count(faces: Integers32) -> int:
-    """The number of pieces, where a shared vertex connects faces."""
+    """The number of pieces of a mesh; faces with a common vertex are in one piece."""
     used, corners = np.unique(faces, return_inverse=True)
     links = corners.reshape(-1, 3)[:, [0, 1, 1, 2]].reshape(-1, 2)
     graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(len(used),) * 2)

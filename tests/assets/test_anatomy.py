@@ -115,9 +115,9 @@ def test_bone_depth_has_the_chosen_values(head):
 
 
 def test_mandible_carries_lower_lip_and_chin_only(head):
-    """The mandible's weight is 1 at lower lip and chin, 0 from the upper lip upward.
+    """The mandible's weight is 1 at lower lip and chin, and 0 from the upper lip upward.
 
-    At the corners of the mouth it is between.
+    At the corners of the mouth it is between 0 and 1.
     """
     weight = head.mandible_weight
     rings = head.rings

@@ -11,7 +11,7 @@ from risorius.assets.identities import complexion, person_called
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [3, 8, 21])
 def test_a_brow_ends_where_its_hairs_do(monkeypatch, number):
-    """The point of a brow's tail is within 1.5 mm of the last visible hair, in any direction."""
+    """The landmark at a brow's tail is within 1.5 mm of the last visible hair, for any tail."""
     painted = complexion.painted
     pictures = []
 

@@ -39,7 +39,10 @@ def test_coarse_head_is_its_own_mirror_image(coarse):
 
 
 def test_coarse_triangles_are_sound(coarse):
-    """No triangle is a sliver or crosses another; no vertex has two or a dozen neighbours."""
+    """No triangle is a sliver or crosses another.
+
+    Every vertex has three to ten neighbours.
+    """
     angles = np.degrees(trimesh.triangles.angles(coarse.vertices[coarse.faces]))
     assert angles.min() > 8.0
     assert np.percentile(angles.min(axis=1), 5) > 15.0

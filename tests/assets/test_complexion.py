@@ -57,7 +57,7 @@ def skin_of(head, image):
 
 
 def test_own_tone_is_the_shipped_picture(head):
-    """With its own tone, the picture equals the file byte by byte."""
+    """With the tone of the stored picture, the picture equals the file byte by byte."""
     tints = _tints()
     angle = np.interp(-OWN.melanin, -tints.melanins, tints.angles)
     assert (recoloured(float(angle)) == head.albedo).all()
@@ -275,7 +275,7 @@ def test_irises_follow_the_shares_where_skin_is_light(angle):
 
 @pytest.mark.slow
 def test_each_feature_has_its_effect(head):
-    """Each feature has its effect: brow shape, dark beard, red lips, grey or missing hair."""
+    """Each feature has its effect on brow shape, beard, lips, or hair."""
     plain = recoloured(40.0).astype(int)
 
     def changed(**features):

@@ -35,7 +35,7 @@ def test_a_surface_of_fewer_triangles_is_a_surface(seed, count):
 
 
 def test_a_pinched_attempt_is_followed_by_another():
-    """A tube that the first attempt pinches is a surface in the end, and has fewer triangles."""
+    """A tube that the first attempt pinches becomes a surface with fewer triangles."""
     count = 60
     pinched = 0
     for seed in range(30):

@@ -54,7 +54,7 @@ def test_children_stand_in_the_place_of_their_parent(head, fine):
 
 
 def test_each_level_comes_nearer_to_the_form(head):
-    """The distance of the next level's vertices from the triangles falls to about a quarter."""
+    """With each level, the distance of new vertices from old triangles falls to about a quarter."""
     meshes = [(head.vertices, head.faces)]
     meshes += [(mesh.vertices, mesh.faces) for mesh in (head.finer(1), head.finer(2))]
     ways = []
@@ -116,7 +116,7 @@ def test_boundaries_become_smooth(head):
 
 
 def test_normals_are_unit_and_agree_with_the_faces(fine):
-    """Normals are those of the head's form; where the mesh differs, those of the mesh."""
+    """Normals are those of the head's smooth form, or of the mesh where both differ."""
     assert np.allclose(norm(fine.normals, axis=1), 1.0)
     cross = cross_products(fine.vertices, fine.faces)
     total = np.zeros_like(fine.vertices)

@@ -137,7 +137,7 @@ def test_teeth_lie_behind_the_skin(fitted):
 
 
 def test_teeth_are_apart_in_a_mouth_that_is_open_at_rest():
-    """In a mouth that is open at rest, each row of teeth is as near to its lip as built in."""
+    """If the mouth is open at rest, teeth are as near to their lips as in the built-in head."""
     known = assets.load("head")
     opening = np.array([0.0, -14.0, 0.0])  # [mm]
     opened = known.vertices + known.mandible_weight[:, None] * opening
@@ -352,7 +352,7 @@ def test_landmarks_on_two_pieces_are_named(other):
 
 
 def test_the_warp_is_the_interpolant_of_scipy(generator):
-    """The warp equals scipy's interpolant, through points exactly and with a smoothing tolerance.
+    """The warp equals scipy's interpolant, exactly through points and with a tolerance.
 
     It is evaluated at points in several blocks, and at none.
     """

@@ -86,7 +86,7 @@ def test_hair_is_as_long_and_begins_where_it_is_set():
 
 
 def test_bobs_are_cut_off_without_a_veil():
-    """Person 28's strands behind the head are dense a centimetre above their tips."""
+    """Person 28's hair behind the head is dense down to a centimetre above its tips."""
     hair = next(part for part in person_called(28).parts if part.name == HAIR)
     dense = hair.striation[:, 5].reshape(51, -1)[15:36]
     tips = hair.vertices.reshape(51, -1, 3)[15:36, -2:]

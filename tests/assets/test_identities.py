@@ -41,7 +41,7 @@ def person(request: pytest.FixtureRequest) -> Person:
 
 
 def test_few_persons_lie_far_from_the_mean():
-    """The root mean square of a person's weights is about 1.4; for 1 in 100 it is above 2."""
+    """The root mean square of a person's weights is about 1.4, and above 2 for 1 person in 100."""
     sizes = [np.sqrt(np.mean(np.square(sample_identity(n).weights))) for n in range(400)]
     assert 1.3 < np.median(sizes) < 1.6
     assert np.mean(np.array(sizes) > 2.0) < 0.03
@@ -169,7 +169,7 @@ def test_persons_of_one_age_and_sex_differ_in_small_things():
 
 
 def test_furrows_of_old_persons_differ_in_place():
-    """Two equally old persons have furrows in different places, as forehead or mouth.
+    """Two equally old persons have furrows in different places, such as forehead or mouth.
 
     Both halves of a face are alike.
     """

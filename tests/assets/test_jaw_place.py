@@ -27,7 +27,7 @@ def test_condyles_follow_the_ears(head, depth):
 
 
 def test_without_ears_no_axis_is_found(head):
-    """For a mask that ends before its ears no axis is found, and landmarks give it."""
+    """If a mask ends before its ears, no axis is found; landmarks then give the axis."""
     is_front = head.vertices[:, 2] > head.vertices[head.anatomy["tragion_left"], 2] + 15.0
     faces = head.faces[is_front[head.faces].all(axis=1)]
     assert jaw_axis_of(head.vertices, faces, head.vertices[head.landmarks]) is None

@@ -43,7 +43,7 @@ def test_right_landmarks_are_accepted(seed, stretch):
 @settings(deadline=None, max_examples=10)
 @given(data=st.data())
 def test_a_group_in_another_order_is_named(group, data):
-    """A group of landmarks that is reversed, rotated, or both is reported, at any place."""
+    """A group of landmarks that is reversed or rotated (or both) is reported, at any place."""
     own = np.arange(group.first, group.first + group.count)
     orders = [np.roll(own[::way], by) for way in (1, -1) for by in range(group.count)]
     orders = [each for each in orders if _moves(own, each) > 5.0]

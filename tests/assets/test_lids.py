@@ -1,4 +1,4 @@
-"""Folds of lids, and the neck: drawn into the maps where the identity requires, only there."""
+"""Folds of lids, and the neck, are drawn into the maps where the identity requires."""
 
 from dataclasses import replace
 
@@ -45,7 +45,7 @@ def test_creases_lie_as_high_as_the_identity_says(person):
 
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_creases_have_no_kinks(side):
-    """Person 43's crease follows a smooth curve beside its lid, whose edge has eleven points."""
+    """Person 43's crease follows a smooth curve, although the lid's edge has only eleven points."""
     lids = fold_of(make_person(sample_identity(43)), side, 1280)
     beyond = 0.22  # share of light that is missing below the crease, too
     dark = np.maximum(1.0 - lids.light - beyond, 0.0)
@@ -94,7 +94,7 @@ def test_folds_are_wrinkles_of_the_lids_alone(person):
 
 
 def test_people_show_as_much_of_their_lids_as_measured():
-    """Visible lids of 200 persons at fifty are 1.4 ± 1.1 mm high, as measured in both sexes."""
+    """The visible parts of the lids of 200 persons at fifty are 1.4 ± 1.1 mm high, as measured."""
     seen = [sample_identity(seed, age=50.0).seen_lid for seed in range(200)]
     assert 1.2 < np.mean(seen) < 1.7
     assert 0.9 < np.std(seen) < 1.4

@@ -137,7 +137,7 @@ def test_spread_fan_and_reach_are_where_the_record_says():
 
 
 def test_folds_have_the_recorded_depth_and_the_rest_stays():
-    """Folds beside the mouth are half or 1.4 times as deep as built in, as recorded.
+    """Folds beside the mouth are 0.5 or 1.4 times as deep as built in, as recorded.
 
     Nose, lips, lower lids and chin are unchanged.
     """

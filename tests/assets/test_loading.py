@@ -101,7 +101,7 @@ def test_broken_text_files_are_reported(tmp_path, monkeypatch):
 
 
 def test_layers_arrive_as_written(tmp_path, monkeypatch):
-    """A table of expressions keeps its rows, and knows its file for error messages."""
+    """A table of expressions keeps its rows, and its file name for error messages."""
     file = tmp_path / "expressions.toml"
     file.write_text("[smile]\nzygomaticus_major_left = 0.8\n", encoding="utf-8")
     monkeypatch.setattr(loading, "LAYER_FILES", {"Expressions": file})

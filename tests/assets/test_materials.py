@@ -227,7 +227,7 @@ def test_pictures_of_every_kind_keep_their_colours(content, wanted):
 
 
 def test_colours_of_16_bits_keep_their_higher_bits():
-    """Of a PNG file with 16 bits per channel, the higher 8 bits are kept."""
+    """PNG files with 16 bits per channel are read, and the higher 8 bits are kept."""
 
     def chunk(kind, data):
         return (

@@ -21,7 +21,7 @@ f 4 6 3
 
 
 def test_order_and_doubles_are_kept(tmp_path):
-    """Vertices keep their numbers in the array, also doubled and unused ones."""
+    """Vertices keep the file's numbers in the array, also doubled and unused vertices."""
     path = tmp_path / "mesh.obj"
     path.write_text(OBJ)
     mesh = assets.read_mesh(path)
@@ -167,7 +167,7 @@ def test_ply_files_may_hold_strips(tmp_path, form):
     ],
 )
 def test_colours_of_ply_may_be_of_any_kind(tmp_path, form, colour_kind, row, names):
-    """Colours are read as integers of 8 or 16 bits or as shares, under all usual names."""
+    """Colours are read as integers of 8 or 16 bits or as shares, with all usual names."""
     path = tmp_path / "house.ply"
     colours = {"colours": [row] * 5, "colour_kind": colour_kind, "names": names}
     path.write_bytes(ply(form, HOUSE, **colours))

@@ -47,7 +47,7 @@ def test_head_is_usual_in_every_measure_with_a_norm(measures):
 
 
 def test_head_is_near_the_middle_on_the_whole(measures):
-    """The scores of all measures do not lean to one side on average."""
+    """On average, the scores of all measures are near 0."""
     scores = [
         0.5 * (norm.women.score(measures[code]) + norm.men.score(measures[code]))
         for code, norm in NORMS.items()
@@ -76,7 +76,7 @@ def test_lips_lie_a_little_behind_the_line_from_nose_to_chin(head, page):
 
 
 def test_norms_are_plausible_figures():
-    """Each norm is plausible, against typing mistakes: deviations are 3 to 25 %, men larger."""
+    """The norms have no typing mistakes: deviations are 3 to 25 %, and men are larger."""
     for code, norm in NORMS.items():
         assert norm.men.mean > norm.women.mean, code
         for sample in (norm.women, norm.men):

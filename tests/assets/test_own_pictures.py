@@ -82,7 +82,7 @@ def _colours(head):
 
 
 def _of_file(other, fitted):
-    """The file's number of each triangle of a fitted head, which draws fading ones last."""
+    """For each triangle of a fitted head its number in the file; fading triangles come last."""
     numbers = {frozenset(face): n for n, face in enumerate(other.mesh.faces.tolist())}
     return [numbers[frozenset(face)] for face in fitted.file_vertices[fitted.faces].tolist()]
 

@@ -119,7 +119,7 @@ def test_pieces_that_are_left_away_may_be_painted_with_anything(head, tmp_path):
 
 
 def test_colours_of_the_skin_count_alone(head):
-    """The skin keeps its picture if eyes or hair have none, or if only these have colours."""
+    """The skin keeps its picture if eyes or hair have no colours, or if only these have colours."""
     count = len(head.vertices)
     vertices = np.vstack([head.vertices, head.vertices[:3] + 500.0])
     faces = np.vstack([head.faces, [[count, count + 1, count + 2]]]).astype(np.int32)

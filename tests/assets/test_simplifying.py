@@ -60,7 +60,7 @@ def test_a_dense_head_leaves_its_body_a_share(with_body, head, monkeypatch):
 
 
 def test_sheets_that_touch_along_an_edge_are_parted():
-    """Where simplification pinches a sheet, the sheet continues, and the scrap is removed."""
+    """Where simplification pinches a sheet, the sheet is continued, and the loose piece removed."""
     sheet = grid_faces(np.arange(25).reshape(5, 5))
     scrap = np.array([[12, 13, 25], [13, 12, 26], [12, 25, 26], [25, 13, 26]])
     vertices = np.random.default_rng(0).normal(size=(27, 3))

@@ -29,7 +29,7 @@ def stretches(head):
 
 
 def seen_in_front(head):
-    """Flags of visible faces of the face itself, shape (F,); tucked-in ones are left out."""
+    """Flags of visible faces in the face, shape (F,); tucked-in faces are left out."""
     tucked = [head.rings[f"{row}_{side}"] for row in TUCKED_ROWS for side in ("left", "right")]
     _, y, z = head.vertices[head.faces].mean(axis=1).T
     in_front = (z > 62.0) & (y < 62.0) & (y > -112.0)

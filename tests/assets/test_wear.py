@@ -52,7 +52,7 @@ def test_normals_point_out_of_the_frame(people):
 
 
 def test_shirts_keep_their_shades(people):
-    """Only the shirt's colours differ; without glasses there is no part of glasses."""
+    """Only the shirt's colours differ, and no glasses are added."""
     plain = people[0]
     white = wearing(plain, shirt="white")
     for before, after in zip(plain.parts, white.parts, strict=True):

@@ -92,7 +92,7 @@ def test_left_and_right_are_not_alike(head):
 def test_the_fold_of_the_cheek_runs_whole(head):
     """In the fold of the cheek, slopes change little from texel to texel.
 
-    On other heads, edges of triangles are elsewhere.
+    A jump would be visible on other heads, whose triangle edges are elsewhere.
     """
     wrinkles = head.wrinkles
     size = len(wrinkles.map)

@@ -113,7 +113,7 @@ def test_triangles_are_numbered_through_all_parts(surface):
 
 
 def test_the_back_of_the_mesh_differs_from_its_front(surface):
-    """The mesh's front and back are distinguished, and normals face the camera on both."""
+    """Front and back of the mesh are distinguished; normals face the camera on both sides."""
     camera = facing()
     assert not drawn(surface, square(), camera).is_inside.any()
     camera.orbit(180.0)

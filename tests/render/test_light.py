@@ -81,5 +81,5 @@ def test_no_light_is_too_bright_or_too_dark(surface, name):
 
 
 def test_the_command_knows_all_lights():
-    """The list of lights for `--style`, which exists so that help needs no OpenGL, is complete."""
+    """The list of lights for `--style` is complete; help reads it without OpenGL."""
     assert tuple(LIGHT_NAMES) == tuple(render.LIGHTS)

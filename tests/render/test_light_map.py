@@ -40,7 +40,7 @@ def test_even_light_is_even():
 
 @pytest.mark.parametrize("name", render.LIGHT_MAPS)
 def test_key_and_harmonics_hold_the_light_of_the_map(name):
-    """The error is a few per cent of the brightest surface."""
+    """The error of the key light and coefficients is a few per cent of the brightest surface."""
     light_map = render.LIGHT_MAPS[name]
     normals = directions(8, 16).reshape(-1, 3)
     expected = summed(light_map.radiance, normals)
@@ -65,7 +65,7 @@ def test_the_sun_is_the_key_wherever_it_is_turned():
 
 
 def test_any_unit_gives_the_same_picture():
-    """A map in nits and a map in shares of white give the same light, because it is exposed."""
+    """Maps in nits and in shares of white give the same light, because maps are exposed."""
     radiance = render.LIGHT_MAPS["room"].radiance
     light = render.LightMap(radiance).light()
     other = render.LightMap(1000.0 * radiance).light()
@@ -73,7 +73,7 @@ def test_any_unit_gives_the_same_picture():
 
 
 def test_a_ball_is_lit_as_the_map_says(surface):
-    """In a room with a red right and a blue left wall, a ball is red right and blue left."""
+    """A ball is red at the side of a red wall, and blue at the side of a blue wall."""
     radiance = np.zeros((32, 64, 3))
     away = directions(32, 64)
     radiance[away[..., 0] > 0.3] = (1.0, 0.1, 0.1)

@@ -90,7 +90,7 @@ def test_part_errors():
 
 @pytest.mark.parametrize("samples", [0, 4])
 def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples):
-    """A hair thinner than a pixel takes as much light at any resolution, evenly along it."""
+    """A hair thinner than a pixel covers as much light at any resolution, evenly along it."""
     taken = []
     for scale in (1, 2, 4):
         with render.open_offscreen((60 * scale, 60 * scale), samples=samples) as surface:
@@ -146,7 +146,7 @@ def test_hair_hides_the_skin_behind_it(renderer):
 
 
 def test_hair_shines_where_it_lies_and_not_by_how_far_it_stands_off(renderer):
-    """The highlight stays where strands lie in its direction, for any distance from the skin.
+    """The highlight depends on the direction of strands, not on how steeply they stand.
 
     Otherwise a dark patch with a ring would appear where strands begin.
     """

@@ -27,7 +27,7 @@ def test_flat_facets_have_one_colour(surface):
 
 
 def test_only_pixel_shading_lights_the_middle_of_a_facet(surface):
-    """Between four corners that face away, Gouraud is as dark as they are; per-pixel is lighter."""
+    """If four corners face away, Gouraud shading is as dark as they are; per-pixel is lighter."""
     shape = square(bulge=3.0)
     middle = {
         name: int(at(draw_image(surface, shape, style), 3.0, -1.0).sum())
@@ -79,7 +79,10 @@ def fading(renderer, shape, shares, inner):
 
 @pytest.mark.parametrize("wireframe", [False, True])
 def test_skin_fades_as_its_vertices_have_it(renderer, wireframe):
-    """Skin is opaque for a share of 1, half for a half, and missing for 0; also with wires."""
+    """Skin is opaque for a share of 1, half transparent for 0.5, and missing for 0.
+
+    Wires are drawn in the same way.
+    """
     skin = fading(renderer, square(30.0), (0.0, 0.0, 1.0, 1.0), 1.0)  # from the bottom to the top
     pictures = []
     style = replace(PLAIN, wireframe=wireframe, wire_width=0.01)

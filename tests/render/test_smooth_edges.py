@@ -46,7 +46,10 @@ def turned(shape, degrees):
 
 
 def test_an_outline_covers_as_much_as_its_shape():
-    """Edges of a rotated black square have all five levels of four samples; its area is exact."""
+    """Edges of a rotated black square have five levels, one for each number of covered samples.
+
+    The covered area is exact.
+    """
     black = replace(CLAY, albedo=(0.0, 0.0, 0.0))
     hard, smooth = pictures(turned(square(30.0), 20.0), black)
     darkest = smooth.min()

@@ -89,9 +89,9 @@ def test_texture_is_filtered_in_linear_light(surface):
 
 @pytest.mark.parametrize("size", [(6, 4), (7, 5), (1, 6), (5, 1)])
 def test_smaller_versions_are_means_of_blocks(size):
-    """In smaller versions, a last row or column without a partner is left out.
+    """Smaller versions leave out a last row or column without a partner.
 
-    The only row or column is kept.
+    A single row or column is kept.
     """
     values = np.random.default_rng(0).random((*size, 4), np.float32)
     height, width = (max(count // 2, 1) for count in size)

@@ -9,7 +9,7 @@ from .scenes import PLAIN, Ball, facing, lent, sphere, still
 
 @pytest.mark.parametrize("samples", [0, 4])
 def test_viewports_are_apart(samples):
-    """Both halves show the same; with one half drawn, every pixel of the other stays empty."""
+    """Two viewports show the same; if one is drawn, every pixel of the other stays empty."""
     left = (0, 0, 60, 50)
     right = (60, 0, 60, 50)
     with render.open_offscreen((120, 50), samples=samples) as surface:

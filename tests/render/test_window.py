@@ -124,7 +124,7 @@ def test_the_scene_can_be_shown_without_panels(window):
 
 
 def test_single_samples_have_smooth_edges(window):
-    """Without samples, smoothing removes a part of the steps that four samples remove."""
+    """Without samples, smoothing removes some of the steps that four samples would remove."""
     needs_samples(window)
     fine = draw_image(window, sphere())
     window.detail = render.Detail(samples=0)
@@ -137,7 +137,7 @@ def test_single_samples_have_smooth_edges(window):
 
 
 def test_smoothed_edges_leave_small_discs_round(window):
-    """With smoothing, no pixel of a disc as wide as pupils is far from that of four samples."""
+    """With smoothing, pixels of a disc as wide as pupils are near those with four samples."""
     needs_samples(window)
     pupil = sphere(4, radius=7.0)
     fine = draw_image(window, pupil)

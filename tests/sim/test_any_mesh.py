@@ -70,7 +70,7 @@ def test_input_arrays_are_copied(head):
 
 
 def test_mesh_with_landmarks_but_no_rig_has_no_muscles(head):
-    """Landmarks alone give gaze and head pose; weights add a jaw and lips, a rig adds muscles."""
+    """Landmarks alone give gaze and head pose; weights add jaw and lips, a rig adds muscles."""
     simulation = sim.create(without(head, "rig"))
     assert set(simulation.controls.groups) == {"Lips", "Jaw", "Gaze", "Head", "Both sides"}
     assert moved_landmarks(head, settled_displacement(simulation, {"jaw_open": 1.0}), 8)[1] < -15.0
@@ -84,7 +84,7 @@ def test_mesh_with_rig_but_no_landmarks_has_no_muscles(head):
 
 
 def test_everything_can_be_guessed_from_landmarks(head):
-    """A head without eyes, jaw axis and mandible weight of its own smiles and blinks."""
+    """A head whose eyes, jaw axis and mandible weight are guessed smiles and blinks."""
     simulation = sim.create(without(head, "eyes", "jaw_axis", "mandible_weight"))
     moved = settled_displacement(simulation, {"jaw_open": 1.0})
     assert moved_landmarks(head, moved, 66)[1] - moved_landmarks(head, moved, 62)[1] < -20.0

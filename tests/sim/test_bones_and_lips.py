@@ -18,7 +18,7 @@ INNER_LIPS = (62, 66)
     [("head_pitch", 1, 1.0), ("head_yaw", 0, 1.0), ("head_roll", 0, 1.0)],
 )
 def test_head_turns_as_one(simulation, head, control, axis, sign):
-    """Skin above the neck turns with the cranium: up, to the left, and tilted left."""
+    """Skin above the neck rotates with the cranium: upward, to the left, and tilted to the left."""
     settled_displacement(simulation, {control: 0.5})
     cranium = simulation.bones.transforms()["cranium"]
     carried = head.vertices @ cranium[:3, :3].T + cranium[:3, 3]

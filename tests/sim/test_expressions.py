@@ -110,7 +110,10 @@ def test_a_frown_and_a_funnel_go_as_far_as_scanned_ones(simulation, head):
 
 
 def test_a_funnel_opens_round(simulation, head):
-    """In a funnel, lips part half as far beside the middle as in it; at the corners they touch."""
+    """In a funnel, lips part half as far beside the middle as in the middle.
+
+    At the corners they touch.
+    """
     moved = settled_displacement(simulation, {"mouthFunnel": 1.0})
     heights = (head.vertices + moved)[head.landmarks, 1]
     middle = heights[62] - heights[66]

@@ -51,7 +51,7 @@ FACES = layer("Faces", both={"A": 0.5, "slide": 0.25}, lopsided={"A_left": 1.5})
 
 
 def sums_of(*numbers):
-    """Sums of the lowest controls, in their order."""
+    """Sums of the lowest controls, in order."""
     return dict(zip(LOWEST, numbers, strict=True))
 
 
@@ -138,7 +138,7 @@ def test_floors_do_not_add_up():
 
 
 def test_sums_are_cut_off_once_and_in_any_order():
-    """The own value and contributions are summed in any order, and clipped once at the end.
+    """A control's own value and its contributions are summed in any order, and clipped once.
 
     Opposite contributions cancel.
     """
@@ -269,7 +269,10 @@ def test_the_jaw_of_a_funnel_counts_once(controls):
 
 
 def test_mouth_close_shuts_an_open_jaw(simulation, head):
-    """Equal mouthClose and jawOpen close the lips at any opening; half of it half closes them."""
+    """Equal mouthClose and jawOpen close the lips at any opening.
+
+    Half of mouthClose half closes them.
+    """
     for opening in (0.2, 0.6):
         gaps = []
         for share in (0.0, 0.5, 1.0):

@@ -38,10 +38,7 @@ def test_lids_follow_a_gaze_on_a_large_ball_no_farther():
 
 
 def test_a_shut_lid_is_a_smooth_sheet_over_the_ball(simulation, head):
-    """The corner of a shut lid does not sink.
-
-    No vertex of its fold drops 4 mm beside a fixed one.
-    """
+    """The corner of a shut lid does not sink, and no vertex of its fold drops by 4 mm."""
     shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
     moved = settled_displacement(simulation, shut)
     inner = np.array([0, 1, 2, 17, 18, 19])  # positions in a row, from the inner corner

@@ -1,4 +1,4 @@
-"""Pull to pose: muscles that hold skin at the place to which it was pulled."""
+"""Pull to pose: muscles hold skin at the place to which it was pulled."""
 
 import numpy as np
 import pytest
@@ -114,7 +114,7 @@ def test_skin_without_muscles_does_not_move(simulation, head):
     ],
 )
 def test_a_far_pull_ends_at_the_limit_of_muscles(simulation, head, landmark, way):
-    """Skin pulled far beyond the reach of muscles moves to their limit, by three at most."""
+    """Skin pulled too far moves to the limit of at most three muscles."""
     went = []
     for length in (6.0, 20.0, 40.0):
         simulation.reset()

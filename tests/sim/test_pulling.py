@@ -14,7 +14,10 @@ def cheek(simulation):
 
 
 def test_skin_follows_the_pointer_and_swings_back(simulation):
-    """Pulled by 20 mm, skin and its surroundings move most of the way; released, they rest."""
+    """Pulled by 20 mm, skin and its surroundings follow most of the way.
+
+    Released, they return to rest.
+    """
     grabbed = cheek(simulation)
     target = simulation.rest_positions[grabbed] + (20.0, 0.0, 0.0)
     simulation.touch.drag(grabbed, target, np.ones(len(grabbed)))

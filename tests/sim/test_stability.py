@@ -52,7 +52,7 @@ def test_clones_do_not_disturb_each_other(simulation):
 def test_random_jumps_stay_bounded_and_come_back(simulation, generator, frames_per_second):
     """With random jumps of every control in every frame, the face stays within bounds.
 
-    It is at rest after 2 s without input.
+    After the jumps it is at rest within 2 s.
     """
     controls = simulation.controls
     limits = [controls.limits[name] for name in controls.lowest]

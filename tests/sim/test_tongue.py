@@ -45,7 +45,7 @@ def with_middles(vertices, faces):
 
 
 def test_a_resting_tongue_is_the_part(simulation, head):
-    """Without its controls the tongue is the rigid part, in any pose of the jaw."""
+    """Without its controls the tongue equals the rigid part, in any pose of the jaw."""
     settled_displacement(simulation, {"jaw_open": 0.6, "AU12": 1.0})
     bent = simulation.anatomy.tongue()
     assert bent is not None
@@ -133,7 +133,10 @@ def test_the_measure_detects_points_inside(head):
 
 
 def test_the_tongue_follows_in_time(simulation):
-    """The tongue needs some frames, even if the lips burst open; half a second later it is back."""
+    """The tongue needs some frames to come out, even if the lips burst open.
+
+    Half a second after its control is 0, it is back.
+    """
     simulation.controls.pose({"jaw_open": 0.4, "tongue_out": 1.0})
     before = tongue_now(simulation)
     steps = []

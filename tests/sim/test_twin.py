@@ -130,7 +130,7 @@ def placed(model):
 
 
 def gate_of(muscle, side, model):
-    """The region of a muscle by the rig: its side, and its lip."""
+    """The region of a muscle in the rig: its side, and its lip."""
     gate = np.ones(model.surface.vertex_count)
     if muscle.pair and not muscle.crosses:
         gate = np.clip(0.5 + side.sign * model.surface.positions[:, 0] / 40.0, 0.0, 1.0)
