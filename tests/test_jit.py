@@ -75,7 +75,10 @@ def package(tmp_path: Path) -> Package:
 
 
 def test_code_is_kept_and_never_old(package):
-    """A second start compiles nothing, a change of either file does, and the folder is private."""
+    """A second start compiles nothing; a change of either file compiles again.
+
+    The cache folder is private.
+    """
     assert package.run() == [*COMPILED, RESULT]
     assert package.run() == [RESULT]
     (folder,) = package.kept()

@@ -68,10 +68,7 @@ def test_every_data_file_is_listed():
 
 
 def test_what_an_editor_leaves_is_not_listed(tmp_path):
-    """Editors' locks, copies and partial files are left out.
-
-    Also those with suffixes of data files.
-    """
+    """Editors' locks, copies and partial files are left out, whatever their suffixes."""
     for package, patterns in SETUPTOOLS["package-data"].items():
         for pattern in patterns:
             folder = (tmp_path / package / pattern).parent
@@ -204,7 +201,7 @@ def test_wheel_of_the_sdist_is_that_of_the_checkout(built):
 
 @pytest.mark.slow
 def test_sdist_holds_what_its_tests_need(built):
-    """The sdist has the tests and the documentation, as packagers of systems need them."""
+    """The sdist has the tests and the documentation, which packagers of systems need."""
     with tarfile.open(built.sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     wanted = {

@@ -132,9 +132,9 @@ def test_polygons_strips_and_lines():
     ],
 )
 def test_creases_stay_sharp(shape, crease_angle, growth, count):
-    """Edges sharper than `crease_angle` stay sharp, others become round.
+    """Edges sharper than `crease_angle` stay sharp, and other edges become round.
 
-    Docs/refinement.md has the volumes.
+    The volumes are those in docs/refinement.md.
     """
     sizes = {"Cylinder": {"resolution": 16, "height": 2.0}, "Cube": {}}
     mesh = getattr(pyvista, shape)(**sizes[shape])
@@ -163,7 +163,7 @@ def test_cells_that_are_no_triangles():
 
 @pytest.mark.parametrize("seed", range(6))
 def test_cells_of_all_kinds(seed):
-    """Each triangle shows its cell by its height."""
+    """Each triangle belongs to the cell at its height."""
     generator = np.random.default_rng(seed)
     points = []
     kinds = [[], [], [], []]

@@ -53,7 +53,7 @@ def is_kept(thing, name):
 
 
 def own_head():
-    """A head of a user."""
+    """A user's head."""
     brought = user_head()
     return fit(brought.mesh, brought.landmarks)
 

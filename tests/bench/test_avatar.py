@@ -36,7 +36,7 @@ def test_turned_persons_are_guessed_as_others():
 
 
 def test_another_order_is_seen():
-    """Exchanged vertices and missing vertices do not count as in place."""
+    """Exchanged vertices and missing vertices are not counted as vertices in place."""
     points = np.arange(30.0).reshape(10, 3)
     assert avatar.in_place(points, points) == 10
     assert avatar.in_place(points, points[[1, 0, *range(2, 10)]]) == 8

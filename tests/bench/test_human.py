@@ -1,4 +1,4 @@
-"""The measure of human form explains heads of its model space, and reports all other heads."""
+"""The measure of human form explains heads of its model space, and reports other heads."""
 
 import numpy as np
 import pytest

@@ -75,7 +75,7 @@ def test_own_motion_is_known_again(scored):
 
 
 def held_to(*rows):
-    """The missed targets of these rows beside a correct shape."""
+    """The targets missed by these rows beside a correct shape."""
     sound = Row("jawOpen", 0.99, 1.0, 0.02, 0.5)
     return [target.text for target in targets([sound, *rows], []) if not target.is_met]
 
@@ -100,7 +100,7 @@ def test_the_blob_stands_beside_each_shape():
 
 
 def test_a_bump_is_known_as_a_blob(head):
-    """One of the smooth bumps nearly equals a bump on one side, or bumps on both sides."""
+    """A bump on one side, or bumps on both, nearly equal one of the measure's smooth bumps."""
     for corners in (["cheek_left"], ["cheek_left", "cheek_right"]):
         places = head.vertices[[head.anatomy[name] for name in corners]]
         away = norm(head.vertices[:, None] - places, axis=2)

@@ -66,7 +66,7 @@ def test_without_mediapipe_one_line_says_so(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("content", [b"", b"no model", b"PK\x03\x04 cut short"])
 def test_a_file_without_model_is_named(tmp_path, content):
-    """One line has the file's name, and names the required file."""
+    """A file without a model is named in one line, together with the required file."""
     pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
     (tmp_path / "other.task").write_bytes(content)
     result = risorius("bench", "seen", "--model", tmp_path / "other.task")

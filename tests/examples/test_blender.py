@@ -46,7 +46,7 @@ def seen(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 @pytest.mark.blender
 def test_it_follows_the_source(seen):
-    """In 50 frames triangles are added and removed, equal to the refiner's to the last bit."""
+    """In 50 frames triangles are added and removed; they equal the refiner's to the last bit."""
     assert len(set(seen["triangles"])) > 5
     assert min(seen["triangles"]) > 338
     assert seen["others"] == seen["invalid"] == 0
@@ -65,7 +65,7 @@ def test_numbers_of_points_go_along(seen):
 def test_the_copy_looks_like_its_source(seen):
     """The copy has the source's place, face materials and active UV map.
 
-    The source is hidden, once.
+    The source is hidden in renders.
     """
     assert seen["finished"] == ["FINISHED"]
     assert seen["hidden"]

@@ -27,7 +27,10 @@ WRONG_KIND = "all landmarks must be vertex numbers, or all must be points"
 
 
 class Kind(Enum):
-    """The expected result of an input; a text in place of it must occur in the one-line error."""
+    """The expected result of an input.
+
+    A text instead of a Kind must occur in the one-line error.
+    """
 
     MESH = "a mesh"
     HEAD = "a fitted head"

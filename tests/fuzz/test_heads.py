@@ -24,7 +24,7 @@ MOST_MEMORY = 400_000_000  # [bytes] above the memory before the input
 def quiet_and_bounded():
     """Fail if the work takes too much time or memory, or prints a warning.
 
-    An underflow is silent, as by numpy's default: the processor decides where one occurs.
+    An underflow is silent, as in numpy by default, because it depends on the processor.
     """
     with warnings.catch_warnings(record=True) as caught, np.errstate(all="warn", under="ignore"):
         warnings.simplefilter("always")

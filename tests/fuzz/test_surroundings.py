@@ -64,7 +64,7 @@ def start(words, folder, environment, limit=None):
 
 
 def surroundings(**changed):
-    """The environment of this process with changes, and without a screen unless one is named."""
+    """The environment of this process with changes, and without a screen unless one is given."""
     now = {**os.environ, "DISPLAY": None, **changed}
     return {name: value for name, value in now.items() if value is not None}
 

@@ -9,7 +9,7 @@ from risorius.geometry.texels import Texels
 
 
 def test_colours_come_back():
-    """Screen colours survive conversion to linear light and back; middle grey is 0.2 of white."""
+    """Screen colours are unchanged by conversion to linear light and back; middle grey is 0.2."""
     screen = np.linspace(0.0, 1.0, 256)
     assert_allclose(to_screen(to_linear(screen)), screen, atol=1e-7)
     assert to_linear(0.5) == pytest.approx(0.214, abs=1e-3)

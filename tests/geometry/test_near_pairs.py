@@ -24,7 +24,7 @@ def test_no_triangles_have_no_pairs():
 
 
 def test_more_pairs_than_expected_are_all_found():
-    """In a stack of equal triangles every two touch."""
+    """In a stack of equal triangles every two triangles touch."""
     stack = np.tile(np.eye(3), (40, 1, 1))
     expected = np.argwhere(np.triu(np.ones((40, 40)), 1)).tolist()
     assert sorted(near_pairs(stack).tolist()) == expected

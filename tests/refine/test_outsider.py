@@ -58,7 +58,7 @@ def in_other_order(array, order):
 
 
 def borders(mesh, face, pieces, names):
-    """Output rows along the three edges of an input triangle; the border of its pieces has them."""
+    """Output rows along the three edges of an input triangle, from the border of its pieces."""
     sides = Counter((int(t[i]), int(t[(i + 1) % 3])) for t in pieces for i in range(3))
     assert max(sides.values()) == 1
     following = {a: b for a, b in sides if (b, a) not in sides}

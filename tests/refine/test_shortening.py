@@ -41,9 +41,9 @@ def test_a_squeeze_is_found_along_its_direction_alone():
 
 
 def test_rigid_motions_and_bends_shorten_nothing():
-    """A turned grid shortens by nothing.
+    """A turned grid does not shorten.
 
-    A rolled one by less than the chords of its finest triangles.
+    A rolled grid shortens by less than the chords of its finest triangles.
     """
     faces, rest = grid(41)
     shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
@@ -56,7 +56,7 @@ def test_rigid_motions_and_bends_shorten_nothing():
 
 
 def test_finds_the_largest_compression():
-    """Along its smallest stretch, a flat deformation shortens by 1 minus this stretch."""
+    """Along its direction of smallest stretch, a flat deformation shortens by 1 - this stretch."""
     faces, rest = grid()
     gradient = np.array([[0.9, 0.15, 0.0], [-0.05, 0.75, 0.0], [0.0, 0.0, 1.0]])
     stretches, ways = np.linalg.svd(gradient[:2, :2])[1:]

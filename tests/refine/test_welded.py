@@ -32,7 +32,7 @@ def doubled(mesh, seed):
     options=st.sampled_from([{}, {"blend": False}, {"scheme": "loop", "criterion": "normal"}]),
 )
 def test_carried_as_if_bound(name, seed, options):
-    """`carry` gives the values of a refiner to which they were bound at every corner."""
+    """`carry` gives the same values as a refiner with these values bound at every corner."""
     mesh = meshes.NAMED[name]()
     points, faces = doubled(mesh, seed)
     values = np.random.default_rng(seed).random((len(points), 2))
@@ -57,7 +57,7 @@ def test_carried_as_if_bound(name, seed, options):
 
 
 def one_triangle(**options):
-    """The refiner of one triangle, after a frame.
+    """The refiner of one triangle, after its first frame.
 
     Each edge is split once, or as the options state.
     """

@@ -142,7 +142,7 @@ def test_sums_over_many_groups(side, rules):
     ],
 )
 def test_criteria(options):
-    """The card computes some criteria and their combinations, the processor all others."""
+    """The card computes some criteria and their combinations; the processor computes the others."""
     options = {"scheme": "cubic" if "blend" in options else "loop", **options}
     mesh = meshes.irregular(7, 8, 6, 1)
     card, processor = (

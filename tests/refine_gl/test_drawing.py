@@ -75,7 +75,7 @@ def drawn_by(monkeypatch, kind):
 
 
 def test_a_card_takes_large_meshes_by_itself(pipeline, monkeypatch):
-    """A large mesh in a look is refined on the card without request, if the driver is hardware.
+    """With a hardware driver, a large mesh in a look is refined on the card automatically.
 
     The picture is the same.
     """

@@ -29,7 +29,7 @@ def bound(**options):
 
 
 def test_it_is_found_by_an_entry_point():
-    """It is registered by an entry point, with its own options; wrong options are refused."""
+    """`kahler-gl` is found by its entry point, has its own options, and refuses wrong options."""
     assert "kahler-gl" in refine.refiners.available()
     assert "kahler-gl" in refine.refiners.installed()
     names = [each.name for each in refine.parameters("kahler-gl")]
@@ -167,7 +167,7 @@ def test_a_driver_that_refuses_a_shader(monkeypatch, caplog):
 def test_shaders_take_eight_buffers():
     """Shaders stay within OpenGL 4.3's limits.
 
-    Eight storage buffers, and its largest thread group.
+    The limits are eight storage buffers, and a largest thread group.
     """
     bindings = re.findall(r"std430, binding = (\d+)", frames.shader_text("common"))
     assert sorted(map(int, bindings)) == list(range(8))
@@ -190,7 +190,7 @@ def test_options_of_the_processor_are_refused(options, words):
 
 
 def test_it_imports_public_names_only():
-    """From refinement it imports only `risorius.refine` and `refine.port`, by exported names."""
+    """The plug-in imports only `risorius.refine` and `refine.port`, by exported names."""
     folder = Path(refine_gl.__file__).parent
     for file in folder.glob("*.py"):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):

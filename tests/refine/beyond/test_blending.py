@@ -76,10 +76,7 @@ def test_nothing_pops(scheme):
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES)
 @pytest.mark.parametrize("name", ["seam", "valence 20"])
 def test_nothing_pops_at_seams_and_tips(name, scheme):
-    """Nothing pops on a small tube with a seam, or at a tip.
-
-    Normals turn faster there than elsewhere.
-    """
+    """Nothing pops on a small tube with a seam, or at a tip, where normals turn fastest."""
     mesh = meshes.tube(6, 3) if name == "seam" else meshes.double_cone(20)
     blended = jumps(scheme, True, "normal", mesh)[0]
     assert blended < 2 * BOUND

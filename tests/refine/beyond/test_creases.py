@@ -138,7 +138,7 @@ def test_uniform_subdivision_keeps_them(levels):
 def test_no_crack_whatever_is_sharp(soup, angle, options, seed):
     """With any creases on any triangles, `check` finds no crack.
 
-    Triangles include edges of one or three triangles, turned ones and doubled ones.
+    Some edges have one or three triangles; some triangles are flipped or doubled.
     """
     points, faces = soup
     refiner = refine.create("kahler", faces, points, crease_angle=angle, **options)

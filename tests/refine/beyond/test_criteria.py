@@ -42,7 +42,7 @@ def test_rest_by_hand():
 
 
 def test_rest_is_grown_at_once():
-    """Points that exist at rest have the same place with blending as without."""
+    """Points that exist at rest have the same place with blending and without."""
     sphere = meshes.ball(1)
     points = []
     for blend in (False, True):
@@ -130,7 +130,7 @@ def plain_measure(kind, positions, normals, edges, most):
 def test_needs_by_hand(kind, once, twice, level):
     """A metric is the measure minus `once`, divided by the distance of both thresholds.
 
-    With an infinite second threshold it is scaled by the first threshold.
+    With an infinite second threshold the divisor is the first threshold.
     """
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3)
@@ -196,7 +196,7 @@ def test_displacement(scheme):
 def test_displacement_needs_measures():
     """The paper's scheme has no measure of displacement and is refused.
 
-    Refined normals have one.
+    With refined normals the scheme has one.
     """
     mesh = meshes.octahedron()
     with pytest.raises(ValueError, match='LoopScheme does so with normals="refined" only'):

@@ -54,7 +54,10 @@ def twin_of(mesh, deformed, scheme, normals, blend, needed, edges):
 
 
 def random_metrics(mesh, seed):
-    """Random metrics from -0.7 to 2 for every edge: no split, one or two, and values between."""
+    """Random metrics from -0.7 to 2 for every edge.
+
+    They mean no split, one split or two, and all values between.
+    """
     count = edge_count_of(mesh)
     return np.random.default_rng(seed).uniform(-0.7, 2.0, count)
 
@@ -104,7 +107,7 @@ def test_soups_equal_twin(soup, data, scheme, normals, blend):
 
 
 def _has_normals(refined):
-    """Whether all normals are larger than rounding errors, since cubic edges follow them."""
+    """Whether all normals are larger than rounding errors, which cubic edges would follow."""
     lengths = norm(refined.normals, axis=1)
     return bool((lengths > 0.5).all())
 

@@ -81,9 +81,9 @@ def test_edges_have_normals_where_they_are_needed(scheme, monkeypatch):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_normals_do_not_depend_on_splits(scheme):
-    """The normal of a vertex has the same bits for all splits.
+    """A vertex's normal has the same bits for all splits.
 
-    So has a fully grown middle's normal.
+    The same holds for the normal of a fully grown middle.
     """
     mesh = meshes.irregular(3)
     deformed = meshes.wrinkled(mesh, 4, 0.2)
@@ -265,10 +265,7 @@ def test_planar_is_exact(scheme, blend):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_moves_with_the_mesh(scheme):
-    """A rigid motion turns all normals with it.
-
-    Also when the mesh moves by 100 000 edge lengths.
-    """
+    """A rigid motion turns all normals with it, also over a distance of 100 000 edge lengths."""
     mesh = meshes.irregular(8)
     deformed = meshes.wrinkled(mesh, 9, 0.2)
     turn = meshes.rotation(1)

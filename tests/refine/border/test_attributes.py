@@ -20,7 +20,7 @@ REFINERS = [
 
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 def test_attributes_are_linear(name, options):
-    """An attribute is linear in its triangle, on both sides of seams."""
+    """An attribute is linear in each triangle, on both sides of seams."""
     tube = meshes.tube(10, 6)
     assert tube.face_uv is not None
     deformed = meshes.wrinkled(tube, 3, 0.3)

@@ -37,7 +37,7 @@ class Middles(refine.BaseRefiner):
         return 3 * len(self.connectivity.faces)
 
     def fill(self, stream: refine.Stream, view: refine.View | None) -> tuple[int, int]:
-        """Reserve room for the worst case, and report the number of written rows."""
+        """Reserve room for the worst case, and return the numbers of written rows."""
         mesh = self.connectivity
         wedge_count = len(self.connectivity.wedge_vertices)
         out = self.reserve(stream, self.vertex_capacity, self.triangle_capacity)
@@ -63,7 +63,7 @@ class Middles(refine.BaseRefiner):
         return self.vertex_capacity, count
 
     def origins(self) -> refine.Origins:
-        """The origins of wedges, and behind them those of middles."""
+        """The origins of wedges, followed by those of middles."""
         corners = self.connectivity.faces[self.cut]
         return super().origins().followed_by(corners, np.full(corners.shape, 1 / 3))
 
@@ -80,7 +80,7 @@ def test_named_meshes(name):
 
 
 def test_seams_and_attributes():
-    """Both sides of a seam and all attributes are written, into a stream lent by the caller."""
+    """Both sides of a seam and all attributes are written into a stream lent by the caller."""
     tube = meshes.tube(8, 5)
     colours = np.random.default_rng(1).random((len(tube.vertices), 3))
     refiner = Middles(

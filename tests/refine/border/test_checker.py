@@ -30,7 +30,7 @@ class Wrapped:
 
 @pytest.fixture
 def frame() -> tuple[Wrapped, refine.RefinedMesh, np.ndarray]:
-    """One frame: a refined mesh with its own arrays, its refiner, and the deformed positions."""
+    """A refined mesh with its own arrays, its refiner, and the deformed positions."""
     mesh = meshes.irregular(11)
     deformed = meshes.wrinkled(mesh, 12, amplitude=0.3)
     refiner = kahler(mesh)
@@ -268,7 +268,7 @@ def test_thin_subtriangle_on_an_edge():
 
 
 def test_three_levels():
-    """Edges of eight parts pass as such; checked as edges of four parts, they fail."""
+    """Edges of eight parts pass, but if they are checked as edges of four parts they fail."""
     mesh = meshes.irregular(3)
     refiner = Wrapped(refine.create("loop", mesh.faces, mesh.vertices, levels=3))
     refined = refiner.refiner.refine(mesh.vertices)

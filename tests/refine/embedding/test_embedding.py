@@ -54,7 +54,7 @@ POINTS = around(SURFACES["ball"])
 
 
 class Flawed:
-    """An embedding with one planted fault."""
+    """An embedding with one deliberate fault."""
 
     def __init__(self, embedding, flaw):
         self._embedding = embedding
@@ -160,7 +160,7 @@ def test_continuous_over_coarse_edges():
 
 
 def two_lips():
-    """Two sheets that nearly touch and face each other, and a fine point of each beyond the other.
+    """Two sheets that face each other and nearly touch; each has a fine point beyond the other.
 
     Each point is nearer to the other sheet than to its own, and has its own sheet's normal.
     """
@@ -236,9 +236,9 @@ def test_groups_keep_their_shape_and_go_with_their_root():
 
 
 def test_given_places_are_taken_as_they_are():
-    """Given places of another embedding result in its motion.
+    """An embedding with the places of another embedding has the same motion.
 
-    A place is per vertex or per group.
+    Places are given per vertex or per group.
     """
     mesh, bent, points, hair = hairs()
     searched = refine.Embedding(mesh.faces, mesh.vertices, points)

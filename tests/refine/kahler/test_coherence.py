@@ -116,7 +116,7 @@ def length_of_lines(state):
 
 @pytest.mark.parametrize("length", range(4))
 def test_new_splits_make_the_shortest_lines(length):
-    """New splits of one frame are ordered so that the inner lines are shortest."""
+    """New splits of one frame get the order with the shortest inner lines."""
     lengths = [length_of_lines(state) for state in range(len(TABLES.sequences))]
     for state in states_of(length):
         begun = TABLES.sequences[state]

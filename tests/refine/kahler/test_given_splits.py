@@ -90,7 +90,10 @@ def test_a_frame_has_the_bits_of_one_that_decides(look):
 
 @pytest.mark.parametrize("splits", [1, 2])
 def test_bits_among_many_neighbours_and_on_a_folded_sheet(splits):
-    """Both ways have the same bits for a vertex with many neighbours, and for opposite normals."""
+    """Frames have the same bits with given splits and with a criterion, also in two hard cases.
+
+    The cases are vertices with many neighbours, and opposite normals.
+    """
     cone = meshes.double_cone(12)
     sheet = meshes.open_grid(6, 5)
     flipped = sheet.vertices.copy()
@@ -168,7 +171,7 @@ def test_triangles_are_found_once():
 
 
 def test_the_criterion_rest_keeps_its_triangles():
-    """With the criterion `rest` triangles stay the same; combined with another they change."""
+    """With the criterion `rest` triangles stay the same; with `rest+normal` they change."""
     ball = meshes.ball(3)
     frame = meshes.wrinkled(ball, 1)
     assert kahler(ball, criterion="rest").topology is not None

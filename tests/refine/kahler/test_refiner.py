@@ -60,7 +60,7 @@ def test_soups(soup, data):
 def test_capacity_is_reached():
     """With every edge split twice, the output has the full capacity.
 
-    Ten subtriangles per triangle.
+    The capacity is ten subtriangles per triangle.
     """
     mesh = meshes.octahedron()
     refiner, refined = refine_and_check(mesh, mesh.vertices, criterion=Forced(np.full(12, 2)))

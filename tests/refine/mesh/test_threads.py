@@ -33,7 +33,7 @@ def force_threads(monkeypatch, count):
 @pytest.mark.parametrize("name", OPTIONS)
 @pytest.mark.parametrize("mesh", [meshes.irregular(4), meshes.tube(24, 12), meshes.with_debris()])
 def test_bits_do_not_depend_on_threads(mesh, name, monkeypatch):
-    """One, two and three threads make frames with the same bits, also with seams and debris."""
+    """Frames made by one, two and three threads have the same bits, also with seams and debris."""
     refiner = "none" if name == "none" else "kahler"
     bound = [
         refine.create(refiner, mesh.faces, mesh.vertices, mesh.uv, mesh.face_uv, **OPTIONS[name])
@@ -74,7 +74,7 @@ def test_every_item_once(monkeypatch):
 
 
 def test_small_meshes_start_no_thread(head, monkeypatch):
-    """A face mesh is refined in the calling thread; with one numba thread every mesh is."""
+    """A face mesh is refined in the calling thread; with one numba thread, so is every mesh."""
 
     def refuse():
         raise AssertionError("a thread was started")
@@ -109,7 +109,7 @@ assert same and os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 def test_forked_processes_have_their_own_threads():
-    """A forked child refines like its parent, although the parent's threads do not exist in it."""
+    """A forked child refines like its parent, although it does not have the parent's threads."""
     code = FORKED.replace("{LOOK}", repr(LOOK))
     done = subprocess.run(
         [sys.executable, "-W", "ignore::DeprecationWarning", "-c", code],
